@@ -1,0 +1,13 @@
+// The algorithms that Broadmark brings along.
+#pragma once
+
+#include <vector>
+
+#include "broadmark/algorithm.h"
+
+namespace broadmark {
+
+/// All variants of all families, in the order of the list in algorithms/CMakeLists.txt.
+std::vector<Algorithm> builtinAlgorithms();
+
+}  // namespace broadmark

@@ -1,0 +1,46 @@
+// Axis-aligned bounding boxes and what it means that two overlap.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+namespace broadmark {
+
+/// An axis-aligned box in world units, laid out as in an .aabbs recording: 32 bytes, the fourth
+/// component of each corner is padding (0).
+struct alignas(16) Aabb {
+  std::array<float, 4> min{};
+  std::array<float, 4> max{};
+
+  friend bool operator==(const Aabb&, const Aabb&) = default;
+};
+static_assert(sizeof(Aabb) == 32);
+
+/// Closed intersection on all three axes, in 32-bit floats: touching counts.
+constexpr bool overlaps(const Aabb& a, const Aabb& b) {
+  // `&`, not `&&`: six cheap comparisons beat a badly predicted branch.
+  return (a.min[0] <= b.max[0]) & (b.min[0] <= a.max[0]) &  //
+         (a.min[1] <= b.max[1]) & (b.min[1] <= a.max[1]) &  //
+         (a.min[2] <= b.max[2]) & (b.min[2] <= a.max[2]);
+}
+
+/// The box grown by `margin` on every side.
+constexpr Aabb enlarged(Aabb box, float margin) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] -= margin;
+    box.max[axis] += margin;
+  }
+  return box;
+}
+
+/// The smallest box that holds both.
+constexpr Aabb merged(const Aabb& a, const Aabb& b) {
+  Aabb box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = std::min(a.min[axis], b.min[axis]);
+    box.max[axis] = std::max(a.max[axis], b.max[axis]);
+  }
+  return box;
+}
+
+}  // namespace broadmark

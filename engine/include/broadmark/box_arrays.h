@@ -1,0 +1,46 @@
+// Boxes as six float arrays (structure of arrays), padded for SIMD.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "broadmark/aabb.h"
+
+namespace broadmark {
+
+/// Boxes as structure of arrays: one array per corner and axis, each aligned to 64 bytes and
+/// followed by `kPadding` boxes that overlap nothing, so that a kernel may load whole vectors from
+/// any valid index without a tail loop.
+class BoxArrays {
+ public:
+  static constexpr std::size_t kPadding = 16;  ///< lanes of the widest vector
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] const float* min(int axis) const { return array(axis); }
+  [[nodiscard]] const float* max(int axis) const { return array(axis + 3); }
+  float* min(int axis) { return array(axis); }
+  float* max(int axis) { return array(axis + 3); }
+
+  [[nodiscard]] Aabb box(std::size_t i) const;
+
+  /// Makes room for `size` boxes (kept when it suffices) and writes the padding behind them. The
+  /// boxes themselves are left as they are.
+  void resize(std::size_t size);
+  /// Becomes a transposed copy of `boxes`.
+  void assign(std::span<const Aabb> boxes);
+
+ private:
+  struct Free {
+    void operator()(float* memory) const;
+  };
+  [[nodiscard]] float* array(int which) const {
+    return memory_.get() + static_cast<std::size_t>(which) * stride_;
+  }
+
+  std::unique_ptr<float[], Free> memory_;
+  std::size_t size_ = 0;
+  std::size_t stride_ = 0;  ///< floats from one array to the next
+};
+
+}  // namespace broadmark

@@ -1,0 +1,115 @@
+// The central interface: a broad-phase algorithm, and the layers above it for the usual cases.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/box_arrays.h"
+#include "broadmark/debug_draw.h"
+#include "broadmark/execution.h"
+#include "broadmark/frame.h"
+#include "broadmark/pair.h"
+#include "broadmark/parameters.h"
+
+namespace broadmark {
+
+/// What an instance promises, given its present parameters.
+struct Capabilities {
+  /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
+  /// each is enlarged by this much on every side (world units).
+  float margin = 0;
+  /// Largest number of bodies it can handle.
+  std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
+  /// Name of the process-wide state it depends on: of all instances with the same name only one
+  /// may live at a time. Empty: none.
+  std::string_view exclusive = {};
+};
+
+/// Shows one count of work done in the present frame ("swaps", "moves", "skipped subtrees").
+using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
+
+/// A broad-phase collision detection algorithm.
+///
+/// Per run: setParameters, initialize, then for every frame 1…F the four phases in the order below,
+/// each timed, then overlaps(). An instance is run once, over one scene, from one thread; it may
+/// use the workers of its Execution. A steady state allocates nothing.
+class BroadPhase : public Parametrised {
+ public:
+  [[nodiscard]] virtual Capabilities capabilities() const { return {}; }
+
+  /// Builds everything for the initial pose. `execution` outlives the instance. Throws
+  /// UnsupportedError when it cannot run here.
+  virtual void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) = 0;
+
+  /// Phase 1: takes over the new boxes. The frame is valid only until this returns.
+  virtual void updateObjects(const Frame& frame) = 0;
+  /// Phase 2: drops what is left of the last frame's answer.
+  virtual void cleanCache() {}
+  /// Phase 3: brings the acceleration structure up to date.
+  virtual void updateStructures() {}
+  /// Phase 4: finds the pairs, turning a library's own pairs into ours included.
+  virtual void searchOverlaps() = 0;
+
+  /// The answer for this frame: every overlapping pair once, a < b, in any order. Owned by the
+  /// algorithm; valid until the next updateObjects.
+  [[nodiscard]] virtual PairRuns overlaps() const = 0;
+
+  /// Draws the acceleration structure as it is now.
+  virtual void drawStructure(DebugDraw&) const {}
+  /// Shows the work counters of the last frame (incremental algorithms).
+  virtual void visitCounters(const CounterVisitor&) const {}
+  /// Checks the inner invariants: "" or what is broken. For tests; may be slow.
+  [[nodiscard]] virtual std::string validate() const { return {}; }
+};
+
+/// Layer 1: keeps the execution and one pair buffer per worker, and answers with them.
+class PairBroadPhase : public BroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void cleanCache() override;
+  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+
+ protected:
+  Execution& execution() { return *execution_; }
+  ThreadTeam& team() { return execution_->team(); }
+  /// The pair buffer of one worker. Call publishPairs() once all have been filled.
+  PairBuffer& pairs(int worker = 0) { return buffers_[static_cast<std::size_t>(worker)]; }
+  void publishPairs();
+
+ private:
+  Execution* execution_ = nullptr;
+  std::vector<PairBuffer> buffers_;
+  std::vector<PairRun> runs_;
+};
+
+/// Layer 2: also keeps a copy of the boxes.
+class BoxBroadPhase : public PairBroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void updateObjects(const Frame& frame) override;
+
+ protected:
+  [[nodiscard]] const std::vector<Aabb>& boxes() const { return boxes_; }
+
+ private:
+  std::vector<Aabb> boxes_;
+};
+
+/// Layer 2 for SIMD: keeps the copy as six arrays (structure of arrays).
+class SimdBroadPhase : public PairBroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void updateObjects(const Frame& frame) override;
+
+ protected:
+  [[nodiscard]] const BoxArrays& arrays() const { return arrays_; }
+
+ private:
+  BoxArrays arrays_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,25 @@
+// What an algorithm draws of its own structure: grid cells, tree nodes, split planes, sort axes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "broadmark/aabb.h"
+
+namespace broadmark {
+
+/// Colour of a drawn structure, 0xRRGGBB.
+using Rgb = std::uint32_t;
+
+/// Receives the drawing. Implemented by whoever shows it; the thread that runs the algorithm calls
+/// drawStructure() between frames.
+class DebugDraw {
+ public:
+  virtual ~DebugDraw() = default;
+
+  /// A cell or node. `level` is its depth (0 = root or only level), for filtering by depth.
+  virtual void box(const Aabb&, Rgb, int level) = 0;
+  virtual void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb) = 0;
+};
+
+}  // namespace broadmark

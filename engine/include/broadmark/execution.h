@@ -1,0 +1,87 @@
+// How a case is executed: which instruction set, how many threads.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace broadmark {
+
+enum class Isa { scalar, sse2, avx2, avx512 };
+
+inline constexpr Isa kAllIsas[] = {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512};
+
+std::string_view isaName(Isa);
+/// Whether this processor (and system) can run it.
+bool isaSupported(Isa);
+/// The widest instruction set that this processor can run.
+Isa bestIsa();
+
+/// Exactly `size` workers, the caller being worker 0. A benchmark wants a fixed number of threads
+/// with fixed shares (same answer for the same count, nothing stolen, nothing allocated per call);
+/// that, and a clean ThreadSanitizer, is why this is not a task scheduler.
+class ThreadTeam {
+ public:
+  explicit ThreadTeam(int size);
+  ~ThreadTeam();
+  ThreadTeam(const ThreadTeam&) = delete;
+  ThreadTeam& operator=(const ThreadTeam&) = delete;
+
+  [[nodiscard]] int size() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Calls work(worker) once for each worker, in parallel, and returns when all are done. The first
+  /// exception of any worker is rethrown here. Not reentrant.
+  template <class Work>
+  void run(Work&& work) {
+    using Plain = std::remove_reference_t<Work>;
+    start({[](void* context, int worker) { (*static_cast<Plain*>(context))(worker); },
+           const_cast<void*>(static_cast<const void*>(std::addressof(work)))});
+  }
+
+ private:
+  struct Job {
+    void (*call)(void* context, int worker) = nullptr;
+    void* context = nullptr;
+  };
+  void start(Job);
+  void perform(int worker);
+  void loop(int worker);
+
+  Job job_;
+  std::atomic<unsigned> generation_{0};
+  std::atomic<int> busy_{0};
+  std::atomic<bool> stopping_{false};
+  std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;
+  std::vector<std::thread> threads_;
+};
+
+/// The part-th of `parts` nearly equal, contiguous shares of [0, count): [first, second).
+constexpr std::pair<std::size_t, std::size_t> share(std::size_t count, int parts, int part) {
+  const auto n = static_cast<std::size_t>(parts);
+  const auto k = static_cast<std::size_t>(part);
+  return {count * k / n, count * (k + 1) / n};
+}
+
+/// What the runner gives to an algorithm. Lives as long as the algorithm's instance.
+class Execution {
+ public:
+  Execution(int threads, Isa isa) : isa_(isa), team_(threads) {}
+
+  [[nodiscard]] Isa isa() const { return isa_; }
+  [[nodiscard]] int threads() const { return team_.size(); }
+  ThreadTeam& team() { return team_; }
+
+ private:
+  Isa isa_;
+  ThreadTeam team_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,73 @@
+// Pairs of overlapping bodies, and the buffers an algorithm answers with.
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace broadmark {
+
+/// Two bodies whose boxes overlap, by position in the frame; a < b.
+struct Pair {
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+
+  friend auto operator<=>(const Pair&, const Pair&) = default;
+};
+
+constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
+  return i < j ? Pair{i, j} : Pair{j, i};
+}
+
+/// A contiguous run of pairs, borrowed.
+using PairRun = std::span<const Pair>;
+/// A whole answer: one run or several (one per worker needs no merging), borrowed.
+using PairRuns = std::span<const PairRun>;
+
+/// Number of pairs in all runs, duplicates included.
+constexpr std::uint64_t pairCount(PairRuns runs) {
+  std::uint64_t count = 0;
+  for (const PairRun run : runs) count += run.size();
+  return count;
+}
+
+/// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it hands out
+/// uninitialised room, so that SIMD kernels can write first and count afterwards.
+class PairBuffer {
+ public:
+  void clear() { size_ = 0; }
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] PairRun run() const { return {pairs_.get(), size_}; }
+
+  /// Adds the pair of i and j, in whichever order they come.
+  void add(std::uint32_t i, std::uint32_t j) {
+    *room(1) = orderedPair(i, j);
+    ++size_;
+  }
+
+  /// Room for `count` more pairs behind the present ones; valid until the next call. What is
+  /// written there counts only after advance().
+  Pair* room(std::size_t count) {
+    if (size_ + count > capacity_) grow(size_ + count);
+    return pairs_.get() + size_;
+  }
+  void advance(std::size_t count) { size_ += count; }
+
+ private:
+  void grow(std::size_t wanted) {
+    const std::size_t capacity = std::max<std::size_t>({wanted, capacity_ + capacity_ / 2, 1024});
+    auto bigger = std::make_unique_for_overwrite<Pair[]>(capacity);
+    std::copy_n(pairs_.get(), size_, bigger.get());
+    pairs_ = std::move(bigger);
+    capacity_ = capacity;
+  }
+
+  std::unique_ptr<Pair[]> pairs_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,79 @@
+// .aabbs recordings: reading and writing, byte for byte as the original Broadmark's.
+//
+// Little-endian: name char[128], object type char[128] (NUL-padded printable ASCII), int32 objects,
+// int32 frames, int32 0, int32 0, the world box, then 1 + frames sets of boxes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/frame.h"
+
+namespace broadmark {
+
+inline constexpr std::size_t kRecordingHeaderBytes = 304;
+
+/// Size of a whole recording: 304 + 32·objects·(1 + frames).
+std::uint64_t recordingBytes(const SceneInfo&);
+
+/// "FreeFall Cubes N1000 F1000frames.aabbs"
+std::string recordingFileName(const SceneInfo&, std::string_view extension = ".aabbs");
+
+/// Reads a recording of any length with the memory of one frame. Every frame is checked as it is
+/// read. All errors are InputErrors that name the file and the byte offset, or frame and body.
+class RecordingReader final : public FrameSource {
+ public:
+  /// Opens and checks the header and the length.
+  explicit RecordingReader(const std::filesystem::path& path);
+  /// The same from an open descriptor, which this takes over; `name` stands for it in messages.
+  RecordingReader(FileDescriptor file, std::string name);
+
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+  Frame rewind() override { return read(0); }
+  std::optional<Frame> next() override;
+
+  /// Reads frame `index` (0 = initial pose). next() goes on from there.
+  Frame read(std::uint32_t index);
+
+  /// XXH3-128 of the whole file as 32 hex digits; reads it through on first use.
+  const std::string& hash();
+
+ private:
+  std::string name_;
+  FileDescriptor file_;
+  SceneInfo scene_;
+  std::uint32_t position_ = 0;
+  std::vector<Aabb> boxes_;
+  std::string hash_;
+};
+
+/// Writes a recording, frame by frame, to a temporary neighbour of `path` that takes its name only
+/// in finish(): a writer that is destroyed or killed before leaves nothing that looks whole.
+class RecordingWriter {
+ public:
+  /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
+  RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene);
+  /// Writes to an unnamed file in the temporary directory instead; see finishTemporary().
+  explicit RecordingWriter(const SceneInfo& scene);
+  ~RecordingWriter();
+
+  /// Appends one set of boxes; the first is the initial pose. Throws InputError when the disc is
+  /// full.
+  void write(std::span<const Aabb> boxes);
+  /// Makes the recording whole and gives it its name. Exactly 1 + frames sets must be written.
+  /// Returns the recording's hash, as RecordingReader::hash().
+  std::string finish();
+  /// The same for an unnamed recording: a reader of it. It vanishes with the reader.
+  std::unique_ptr<RecordingReader> finishTemporary();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,53 @@
+// Statistics of timings, as pure functions.
+#pragma once
+
+#include <optional>
+#include <span>
+
+namespace broadmark {
+
+/// Arithmetic mean; 0 for no values.
+double mean(std::span<const double> values);
+/// Sample standard deviation (n − 1); 0 for fewer than two values.
+double standardDeviation(std::span<const double> values);
+/// Quantile q in [0, 1] with linear interpolation between closest ranks (Hyndman & Fan type 7, the
+/// default of R and NumPy); 0 for no values.
+double quantile(std::span<const double> values, double q);
+/// Upper 97.5 % point of Student's t with `degrees` degrees of freedom (>= 1).
+double studentT975(double degrees);
+
+/// An interval around an estimate.
+struct Interval {
+  double low = 0;
+  double high = 0;
+};
+
+/// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
+std::optional<Interval> confidence95(std::span<const double> values);
+
+/// Times of one case, in seconds. Outliers are counted, never dropped.
+struct Summary {
+  double seconds_per_frame = 0;  ///< the mean, as in the paper
+  double median = 0;
+  double p95 = 0;
+  double p99 = 0;
+  double min = 0;
+  double stddev = 0;
+  std::size_t outliers = 0;  ///< frames above the third quartile + 3 interquartile ranges
+  /// Of the mean, over repetitions; nothing for a single one.
+  std::optional<Interval> ci95;
+};
+
+/// Summarises frame times, given per repetition.
+Summary summarise(std::span<const std::span<const double>> repetitions);
+
+/// How much slower B is than A: the ratio of means B / A with its 95 % interval.
+struct RatioEstimate {
+  double ratio = 1;
+  std::optional<Interval> ci95;
+};
+
+/// From logarithms of positive times: independent samples (Welch).
+RatioEstimate ratioOfMeans(std::span<const double> a, std::span<const double> b);
+
+}  // namespace broadmark

@@ -1,0 +1,51 @@
+// Scenes as the rest of the program sees them: described by parameters, turned into frames.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "broadmark/frame.h"
+#include "broadmark/parameters.h"
+
+namespace broadmark {
+
+/// A built-in scene or physics engine, for lists and help.
+struct SceneListing {
+  std::string id;       ///< "freefall"
+  std::string name;     ///< as recordings call it: "FreeFall"
+  std::string summary;  ///< one sentence
+};
+std::vector<SceneListing> builtinScenes();
+struct EngineListing {
+  std::string id;  ///< "bullet"
+  std::string summary;
+};
+std::vector<EngineListing> builtinEngines();
+
+/// A live physics simulation, frame by frame: a FrameSource. Its parameters (objects, frames, seed,
+/// density, object_type, engine, …, and the scene's own) can be set until the first rewind().
+/// Same parameters, same frames, bit for bit. rewind() starts the simulation anew.
+class Simulation : public Parametrised, public FrameSource {};
+
+/// The simulation of a built-in scene, by id or recorded name, any case, with its default
+/// parameters. Throws InputError for an unknown name, suggesting the nearest.
+std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
+
+/// Told after each frame that was written; returning false stops.
+using BakeProgress = std::function<bool(std::uint32_t frame)>;
+
+/// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
+/// says so, and the recording has the stated hash).
+bool isBaked(const std::filesystem::path& path, Simulation& simulation);
+
+/// Simulates all frames into an .aabbs recording at `path`, with a .json of the same name that
+/// holds all parameters and the recording's hash ("schema": "broadmark-bake/1"). Returns the hash,
+/// or "" when progress stopped it (then nothing is left). Throws InputError.
+std::string bake(Simulation& simulation, const std::filesystem::path& path,
+                 const BakeProgress& progress = {});
+
+}  // namespace broadmark
