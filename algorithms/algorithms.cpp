@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-#define FAMILY(name)                \
-  namespace name {                  \
+#define FAMILY(name)                 \
+  namespace name {                   \
   std::vector<Algorithm> variants(); \
   }
 #include "algorithm_families.inc"

@@ -1,7 +1,8 @@
 // Self-checks: broad phases that find nothing, to measure the harness itself.
 //
-// `none` returns at once: what it "costs" is the overhead of the harness. `time-validator` busy-waits
-// a known time in each phase: what is reported must be that. (The original's None, TimeValidator.)
+// `none` returns at once: what it "costs" is the overhead of the harness. `time-validator`
+// busy-waits a known time in each phase: what is reported must be that. (The original's None,
+// TimeValidator.)
 
 #include <chrono>
 #include <vector>

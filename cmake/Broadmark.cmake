@@ -5,7 +5,8 @@ function(broadmark_configure target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   # Same inputs, same bits, on every instruction set: no contraction into fused multiply-adds.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
-    -Wno-sign-conversion -ffp-contract=off $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
+    -Wno-sign-conversion -Wno-missing-field-initializers  # members left to their defaults on purpose
+    -ffp-contract=off $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
   if(BROADMARK_SANITIZE)
     target_compile_options(${target} PUBLIC -fsanitize=${BROADMARK_SANITIZE}
       -fno-omit-frame-pointer -fno-sanitize-recover=all)

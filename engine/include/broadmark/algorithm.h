@@ -19,9 +19,9 @@ struct OriginalId {
 
 /// One algorithm variant.
 struct Algorithm {
-  std::string id;       ///< "sap-simd-mt"
-  std::string family;   ///< "SAP"
-  std::string summary;  ///< one sentence
+  std::string id;           ///< "sap-simd-mt"
+  std::string family;       ///< "SAP"
+  std::string summary;      ///< one sentence
   bool parallel = false;    ///< uses several threads
   bool vectorised = false;  ///< heeds the instruction set
   /// False for the self-checks, which report no pairs and are not checked for them.
@@ -30,13 +30,13 @@ struct Algorithm {
   std::function<std::unique_ptr<BroadPhase>()> create;
 
   // The paper's Table 1.
-  std::string principle;      ///< "brute force", "sorting", "grid", "tree"
-  std::string optimisations;  ///< "SIMD, threads"
-  bool incremental = false;   ///< keeps pairs from frame to frame
+  std::string principle;            ///< "brute force", "sorting", "grid", "tree"
+  std::string optimisations;        ///< "SIMD, threads"
+  bool incremental = false;         ///< keeps pairs from frame to frame
   std::string exactness = "exact";  ///< or what its margin is
-  std::string time;           ///< complexity: "O(n²)"
-  std::string space;          ///< "O(n + k)", k the number of pairs
-  std::string source;         ///< paper and section, or library
+  std::string time;                 ///< complexity: "O(n²)"
+  std::string space;                ///< "O(n + k)", k the number of pairs
+  std::string source;               ///< paper and section, or library
 };
 
 }  // namespace broadmark

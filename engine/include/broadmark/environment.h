@@ -9,10 +9,10 @@ namespace broadmark {
 
 struct Environment {
   std::string cpu;
-  int logical_cores = 0;    ///< that this process may use
+  int logical_cores = 0;  ///< that this process may use
   int physical_cores = 0;
   std::vector<std::string> caches;  ///< "L1 Data 48K" … of the first core
-  std::string isa;          ///< the widest usable instruction set
+  std::string isa;                  ///< the widest usable instruction set
   std::uint64_t memory_bytes = 0;
   std::string governor;     ///< CPU frequency governor; "" if unknown
   double load_average = 0;  ///< over the last minute, when asked
@@ -20,8 +20,8 @@ struct Environment {
   std::string compiler;
   std::string compiler_flags;
   std::string build_type;
-  std::string version;      ///< Broadmark's
-  std::string started;      ///< UTC, ISO 8601
+  std::string version;  ///< Broadmark's
+  std::string started;  ///< UTC, ISO 8601
 };
 
 /// Asks this machine.

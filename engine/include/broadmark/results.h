@@ -47,7 +47,7 @@ struct RecordingReference {
   SceneInfo scene;
   std::optional<std::uint64_t> seed;  ///< nothing for a recording from elsewhere
   std::string hash;
-  std::string path;          ///< "" when it was simulated for this run
+  std::string path;                  ///< "" when it was simulated for this run
   ParameterValues scene_parameters;  ///< all of them, when it was simulated
 };
 
@@ -65,8 +65,8 @@ struct CaseResult {
 
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
-  bool checked = false;        ///< when false, missed and extra mean nothing
-  std::uint64_t missed = 0;    ///< over all frames and repetitions
+  bool checked = false;      ///< when false, missed and extra mean nothing
+  std::uint64_t missed = 0;  ///< over all frames and repetitions
   std::uint64_t extra = 0;
   std::uint64_t invalid = 0;
   std::vector<FrameDifference> differences;

@@ -49,8 +49,8 @@ CaseResult beginCase(const Case&, const RecordingReference&);
 /// status. What the algorithm throws becomes the status. Throws InputError (bad recording, bad
 /// parameters). Returns false when cancelled (the repetition is then dropped). `measured` = false:
 /// a warm-up, checked but with its times dropped.
-bool runRepetition(CaseResult& result, const Case&, FrameSource& source, Oracle&,
-                   const RunOptions&, bool measured = true);
+bool runRepetition(CaseResult& result, const Case&, FrameSource& source, Oracle&, const RunOptions&,
+                   bool measured = true);
 
 /// Runs a few repetitions of one case: the short way for programs of your own.
 CaseResult runCase(const Case&, FrameSource&, const RunOptions& = {}, int repetitions = 1);

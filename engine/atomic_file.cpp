@@ -1,0 +1,102 @@
+// Files on POSIX: every failure becomes one line that names the path and the system's reason.
+
+#include "broadmark/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+InputError failure(const std::filesystem::path& path, std::string_view what) {
+  return InputError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
+}
+
+}  // namespace
+
+FileDescriptor::~FileDescriptor() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
+FileDescriptor openForReading(const std::filesystem::path& path) {
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat status {};
+  if (file.get() < 0 || ::fstat(file.get(), &status) != 0) throw failure(path, "cannot read");
+  if (!S_ISREG(status.st_mode)) {
+    throw InputError(fmt::format("{}: cannot read: not a regular file", path.string()));
+  }
+  return file;
+}
+
+std::string readTextFile(const std::filesystem::path& path, std::uint64_t limit_bytes) {
+  const FileDescriptor file = openForReading(path);
+  std::string text;
+  while (true) {
+    constexpr std::size_t kChunk = 1 << 16;
+    const std::size_t size = text.size();
+    text.resize(size + kChunk);
+    const ssize_t got = ::read(file.get(), text.data() + size, kChunk);
+    if (got < 0 && errno != EINTR) throw failure(path, "cannot read");
+    text.resize(size + static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return text;
+    if (text.size() > limit_bytes) {
+      throw InputError(fmt::format("{}: too large: a text file of at most {} bytes is expected",
+                                   path.string(), limit_bytes));
+    }
+  }
+}
+
+void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) throw failure(path, "cannot write");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+AtomicFile::AtomicFile(std::filesystem::path path)
+    : path_(std::move(path)), partial_(path_.string() + ".part") {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path_, ignored)) {
+    throw InputError(fmt::format("{}: cannot write: is a directory", path_.string()));
+  }
+  // What a killed writer left is taken over; O_TRUNC comes only after the lock is held.
+  file_ = FileDescriptor(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+  if (file_.get() < 0) throw failure(path_, "cannot write");
+  if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
+    committed_ = true;  // not ours to remove
+    throw InputError(
+        fmt::format("{}: cannot write: another process is writing it", path_.string()));
+  }
+  if (::ftruncate(file_.get(), 0) != 0) throw failure(path_, "cannot write");
+}
+
+AtomicFile::~AtomicFile() {
+  if (!committed_) ::unlink(partial_.c_str());
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) { writeAll(file_.get(), bytes, path_); }
+
+void AtomicFile::commit() {
+  if (::fsync(file_.get()) != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) {
+    throw failure(path_, "cannot write");
+  }
+  committed_ = true;
+}
+
+void writeTextFile(const std::filesystem::path& path, std::string_view text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace broadmark

@@ -1,0 +1,51 @@
+// Boxes as structure of arrays.
+
+#include "broadmark/box_arrays.h"
+
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+namespace broadmark {
+namespace {
+
+constexpr std::size_t kAlignment = 64;
+constexpr std::size_t kArrays = 6;
+
+}  // namespace
+
+void BoxArrays::Free::operator()(float* memory) const { std::free(memory); }
+
+Aabb BoxArrays::box(std::size_t i) const {
+  return {{min(0)[i], min(1)[i], min(2)[i], 0}, {max(0)[i], max(1)[i], max(2)[i], 0}};
+}
+
+void BoxArrays::resize(std::size_t size) {
+  const std::size_t stride = (size + 2 * kPadding - 1) / kPadding * kPadding;
+  if (stride > stride_) {
+    memory_.reset(
+        static_cast<float*>(std::aligned_alloc(kAlignment, kArrays * stride * sizeof(float))));
+    if (!memory_) throw std::bad_alloc();
+    stride_ = stride;
+  }
+  size_ = size;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(min(axis) + size, kPadding, kInfinity);
+    std::fill_n(max(axis) + size, kPadding, -kInfinity);
+  }
+}
+
+void BoxArrays::assign(std::span<const Aabb> boxes) {
+  resize(boxes.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    float* const low = min(axis);
+    float* const high = max(axis);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      low[i] = boxes[i].min[axis];
+      high[i] = boxes[i].max[axis];
+    }
+  }
+}
+
+}  // namespace broadmark

@@ -1,0 +1,118 @@
+// Instruction sets of this processor, and a fixed team of threads.
+
+#include "broadmark/execution.h"
+
+#include <immintrin.h>
+
+#include <algorithm>
+
+namespace broadmark {
+namespace {
+
+/// Spins before a waiting thread goes to sleep: about 20 µs, since a frame of a small scene is over
+/// in less than a wake-up takes. Pointless when threads outnumber the cores.
+constexpr int kSpins = 2000;
+
+/// Waits until `value` is no longer `old`.
+template <class T>
+void awaitChange(const std::atomic<T>& value, T old, int spins) {
+  for (int spin = 0; spin < spins; ++spin) {
+    if (value.load(std::memory_order_acquire) != old) return;
+    _mm_pause();
+  }
+  value.wait(old, std::memory_order_acquire);
+}
+
+int spinsFor(std::size_t workers) {
+  return workers <= std::thread::hardware_concurrency() ? kSpins : 0;
+}
+
+}  // namespace
+
+std::string_view isaName(Isa isa) {
+  switch (isa) {
+    case Isa::scalar:
+      return "scalar";
+    case Isa::sse2:
+      return "sse2";
+    case Isa::avx2:
+      return "avx2";
+    case Isa::avx512:
+      return "avx512";
+  }
+  return "?";
+}
+
+bool isaSupported(Isa isa) {
+  __builtin_cpu_init();
+  switch (isa) {
+    case Isa::scalar:
+      return true;
+    case Isa::sse2:
+      return __builtin_cpu_supports("sse2") != 0;
+    case Isa::avx2:
+      return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
+             __builtin_cpu_supports("popcnt") != 0;
+    case Isa::avx512:
+      return isaSupported(Isa::avx2) && __builtin_cpu_supports("avx512f") != 0 &&
+             __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
+             __builtin_cpu_supports("avx512vl") != 0;
+  }
+  return false;
+}
+
+Isa bestIsa() {
+  Isa best = Isa::scalar;
+  for (const Isa isa : kAllIsas) {
+    if (isaSupported(isa)) best = isa;
+  }
+  return best;
+}
+
+ThreadTeam::ThreadTeam(int size) {
+  threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
+  for (int worker = 1; worker < size; ++worker) {
+    threads_.emplace_back([this, worker] { loop(worker); });
+  }
+}
+
+ThreadTeam::~ThreadTeam() {
+  stopping_.store(true);
+  generation_.fetch_add(1, std::memory_order_release);
+  generation_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void ThreadTeam::perform(int worker) {
+  try {
+    job_.call(job_.context, worker);
+  } catch (...) {
+    if (!failed_.exchange(true)) failure_ = std::current_exception();
+  }
+}
+
+void ThreadTeam::start(Job job) {
+  job_ = job;
+  busy_.store(size() - 1, std::memory_order_relaxed);
+  if (!threads_.empty()) {
+    generation_.fetch_add(1, std::memory_order_release);
+    generation_.notify_all();
+  }
+  perform(0);
+  for (int busy = busy_.load(std::memory_order_acquire); busy != 0;
+       busy = busy_.load(std::memory_order_acquire)) {
+    awaitChange(busy_, busy, spinsFor(threads_.size() + 1));
+  }
+  if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void ThreadTeam::loop(int worker) {
+  for (unsigned seen = 0;; ++seen) {
+    awaitChange(generation_, seen, spinsFor(threads_.capacity() + 1));
+    if (stopping_.load()) return;
+    perform(worker);
+    if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_one();
+  }
+}
+
+}  // namespace broadmark

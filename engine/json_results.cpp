@@ -1,0 +1,309 @@
+// Results as JSON ("schema": "broadmark-results/1") and back.
+
+#include <fmt/format.h>
+
+#include "json_fields.h"
+#include "result_writers.h"
+
+namespace broadmark {
+namespace {
+
+constexpr std::string_view kSchema = "broadmark-results/1";
+
+Json toJson(const Environment& e) {
+  return {{"cpu", e.cpu},
+          {"logical_cores", e.logical_cores},
+          {"physical_cores", e.physical_cores},
+          {"caches", e.caches},
+          {"isa", e.isa},
+          {"memory_bytes", e.memory_bytes},
+          {"governor", e.governor},
+          {"load_average", e.load_average},
+          {"os", e.os},
+          {"compiler", e.compiler},
+          {"compiler_flags", e.compiler_flags},
+          {"build_type", e.build_type},
+          {"version", e.version},
+          {"started", e.started}};
+}
+
+std::vector<std::string> textsFrom(const Json& array, const std::string& name) {
+  std::vector<std::string> texts;
+  for (const Json& element : array) {
+    if (!element.is_string()) throw InputError(name + ": texts are expected");
+    texts.push_back(element.get<std::string>());
+  }
+  return texts;
+}
+
+Environment environmentFrom(const JsonFields& json) {
+  return {.cpu = json.text("cpu"),
+          .logical_cores = json.integer<int>("logical_cores", 0),
+          .physical_cores = json.integer<int>("physical_cores", 0),
+          .caches = textsFrom(json.array("caches"), json.path("caches")),
+          .isa = json.text("isa"),
+          .memory_bytes = json.integer<std::uint64_t>("memory_bytes"),
+          .governor = json.text("governor"),
+          .load_average = json.number("load_average"),
+          .os = json.text("os"),
+          .compiler = json.text("compiler"),
+          .compiler_flags = json.text("compiler_flags"),
+          .build_type = json.text("build_type"),
+          .version = json.text("version"),
+          .started = json.text("started")};
+}
+
+Json toJson(const ParameterValues& values) {
+  Json json = Json::object();
+  for (const auto& [name, value] : values) json[name] = value;
+  return json;
+}
+
+ParameterValues parametersFrom(const Json& json, const std::string& name) {
+  if (!json.is_object()) throw InputError(name + ": an object of texts is expected");
+  ParameterValues values;
+  for (const auto& [key, value] : json.items()) {
+    if (!value.is_string()) throw InputError(fmt::format("{}: {}: a text is expected", name, key));
+    values.emplace(key, value.get<std::string>());
+  }
+  return values;
+}
+
+Json toJson(const std::array<float, 4>& corner) { return {corner[0], corner[1], corner[2]}; }
+
+std::array<float, 4> cornerFrom(const Json& json, const std::string& name) {
+  std::array<float, 4> corner{};
+  const bool right =
+      json.size() == 3 && std::ranges::all_of(json, [](const Json& v) { return v.is_number(); });
+  if (!right) throw InputError(name + ": three numbers are expected");
+  for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = json[axis].get<float>();
+  return corner;
+}
+
+Json toJson(const RecordingReference& recording) {
+  const SceneInfo& scene = recording.scene;
+  Json json = {{"name", scene.name},
+               {"object_type", scene.object_type},
+               {"objects", scene.objects},
+               {"frames", scene.frames},
+               {"world", {{"min", toJson(scene.world.min)}, {"max", toJson(scene.world.max)}}},
+               {"seed", nullptr},
+               {"hash", recording.hash}};
+  if (recording.seed) json["seed"] = *recording.seed;
+  if (recording.path.empty()) {
+    json["source"] = toJson(recording.scene_parameters);
+  } else {
+    json["source"] = recording.path;
+  }
+  return json;
+}
+
+RecordingReference recordingFrom(const JsonFields& json) {
+  RecordingReference recording;
+  SceneInfo& scene = recording.scene;
+  scene.name = json.text("name");
+  scene.object_type = json.text("object_type");
+  scene.objects = json.integer<std::uint32_t>("objects");
+  scene.frames = json.integer<std::uint32_t>("frames");
+  const JsonFields world = json.object("world");
+  scene.world.min = cornerFrom(world.array("min"), world.path("min"));
+  scene.world.max = cornerFrom(world.array("max"), world.path("max"));
+  if (json.has("seed")) recording.seed = json.integer<std::uint64_t>("seed");
+  recording.hash = json.text("hash");
+  if (json.at("source").is_string()) {
+    recording.path = json.text("source");
+  } else {
+    recording.scene_parameters = parametersFrom(json.at("source"), json.path("source"));
+  }
+  return recording;
+}
+
+Json toJson(const std::vector<Pair>& pairs) {
+  Json json = Json::array();
+  for (const Pair pair : pairs) json.push_back({pair.a, pair.b});
+  return json;
+}
+
+std::vector<Pair> pairsFrom(const Json& json, const std::string& name) {
+  std::vector<Pair> pairs;
+  for (const Json& element : json) {
+    if (!element.is_array() || element.size() != 2) {
+      throw InputError(name + ": pairs of body numbers are expected");
+    }
+    pairs.push_back({JsonFields::integerOf<std::uint32_t>(element[0], name),
+                     JsonFields::integerOf<std::uint32_t>(element[1], name)});
+  }
+  return pairs;
+}
+
+Json toJson(const FrameDifference& d) {
+  return {{"repetition", d.repetition},           {"frame", d.frame},
+          {"missed_count", d.missed_count},       {"extra_count", d.extra_count},
+          {"forbidden_count", d.forbidden_count}, {"invalid_count", d.invalid_count},
+          {"missed", toJson(d.missed)},           {"extra", toJson(d.extra)},
+          {"invalid", toJson(d.invalid)}};
+}
+
+FrameDifference differenceFrom(const JsonFields& json) {
+  return {.repetition = json.integer<int>("repetition", 0),
+          .frame = json.integer<std::uint32_t>("frame"),
+          .missed_count = json.integer<std::uint64_t>("missed_count"),
+          .extra_count = json.integer<std::uint64_t>("extra_count"),
+          .forbidden_count = json.integer<std::uint64_t>("forbidden_count"),
+          .invalid_count = json.integer<std::uint64_t>("invalid_count"),
+          .missed = pairsFrom(json.array("missed"), json.path("missed")),
+          .extra = pairsFrom(json.array("extra"), json.path("extra")),
+          .invalid = pairsFrom(json.array("invalid"), json.path("invalid"))};
+}
+
+Json toJson(const Summary& summary) {
+  Json json = {{"seconds_per_frame", summary.seconds_per_frame},
+               {"median", summary.median},
+               {"p95", summary.p95},
+               {"p99", summary.p99},
+               {"min", summary.min},
+               {"stddev", summary.stddev},
+               {"outliers", summary.outliers},
+               {"ci95", nullptr}};
+  if (summary.ci95) json["ci95"] = {summary.ci95->low, summary.ci95->high};
+  return json;
+}
+
+/// One array of nanoseconds per phase and repetition.
+Json framesToJson(const std::vector<Repetition>& repetitions) {
+  Json json = Json::object();
+  for (const Phase phase : kAllPhases) {
+    Json& arrays = json[std::string(phaseName(phase))] = Json::array();
+    for (const Repetition& repetition : repetitions) {
+      Json& times = arrays.emplace_back(Json::array());
+      for (const FrameTimes& frame : repetition.frames) times.push_back(frame[phase]);
+    }
+  }
+  return json;
+}
+
+std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initialize_ns,
+                                   const std::string& initialize_name) {
+  std::vector<Repetition> repetitions;
+  for (const Json& ns : initialize_ns) {
+    repetitions.push_back({JsonFields::integerOf<std::int64_t>(ns, initialize_name, 0), {}});
+  }
+  for (const Phase phase : kAllPhases) {
+    const std::string key(phaseName(phase));
+    const Json& arrays = json.array(key.c_str());
+    const std::string name = json.path(key.c_str());
+    if (arrays.size() != repetitions.size()) {
+      throw InputError(fmt::format("{}: {} repetitions instead of the {} initialisations", name,
+                                   arrays.size(), repetitions.size()));
+    }
+    for (std::size_t r = 0; r < arrays.size(); ++r) {
+      if (!arrays[r].is_array()) throw InputError(name + ": arrays of nanoseconds are expected");
+      auto& frames = repetitions[r].frames;
+      if (phase == kAllPhases.front()) frames.resize(arrays[r].size());
+      if (frames.size() != arrays[r].size()) {
+        throw InputError(name + ": all phases must have the same number of frames");
+      }
+      for (std::size_t f = 0; f < frames.size(); ++f) {
+        frames[f][phase] = JsonFields::integerOf<std::int64_t>(arrays[r][f], name, 0);
+      }
+    }
+  }
+  return repetitions;
+}
+
+Json toJson(const CaseResult& result) {
+  Json json = {{"id", result.id},
+               {"recording", toJson(result.recording)},
+               {"algorithm", result.algorithm},
+               {"family", result.family},
+               {"isa", isaName(result.isa)},
+               {"threads", result.threads},
+               {"params", toJson(result.parameters)},
+               {"status", statusName(result.status)},
+               {"reason", result.reason},
+               {"pairs", {{"mean", result.pairs_mean}, {"max", result.pairs_max}}},
+               {"checked", result.checked},
+               {"missed", result.missed},
+               {"extra", result.extra},
+               {"invalid", result.invalid},
+               {"differences", Json::array()},
+               {"peak_bytes", nullptr},
+               {"summary", toJson(result.summary())},
+               {"initialize_ns", Json::array()},
+               {"frames", framesToJson(result.repetitions)}};
+  for (const FrameDifference& difference : result.differences) {
+    json["differences"].push_back(toJson(difference));
+  }
+  if (result.peak_bytes) json["peak_bytes"] = *result.peak_bytes;
+  for (const Repetition& repetition : result.repetitions) {
+    json["initialize_ns"].push_back(repetition.initialize_ns);
+  }
+  return json;
+}
+
+/// The value of a list whose name is the text at `key`.
+template <class Value, class Name, std::size_t n>
+Value named(const JsonFields& json, const char* key, const Value (&values)[n], Name&& name) {
+  const std::string text = json.text(key);
+  for (const Value value : values) {
+    if (name(value) == text) return value;
+  }
+  throw InputError(fmt::format("{}: unknown value '{}'", json.path(key), text));
+}
+
+CaseResult caseFrom(const JsonFields& json) {
+  static constexpr Status kStatuses[] = {Status::ok, Status::mismatch, Status::timeout,
+                                         Status::unsupported, Status::error};
+  CaseResult result;
+  result.id = json.text("id");
+  result.recording = recordingFrom(json.object("recording"));
+  result.algorithm = json.text("algorithm");
+  result.family = json.text("family");
+  result.isa = named(json, "isa", kAllIsas, isaName);
+  result.threads = json.integer<int>("threads", 1);
+  result.parameters = parametersFrom(json.at("params"), json.path("params"));
+  result.status = named(json, "status", kStatuses, statusName);
+  result.reason = json.text("reason");
+  result.pairs_mean = json.object("pairs").number("mean");
+  result.pairs_max = json.object("pairs").integer<std::uint64_t>("max");
+  result.checked = json.boolean("checked");
+  result.missed = json.integer<std::uint64_t>("missed");
+  result.extra = json.integer<std::uint64_t>("extra");
+  result.invalid = json.integer<std::uint64_t>("invalid");
+  json.eachObject("differences", [&](const JsonFields& difference) {
+    result.differences.push_back(differenceFrom(difference));
+  });
+  if (json.has("peak_bytes")) result.peak_bytes = json.integer<std::uint64_t>("peak_bytes");
+  result.repetitions =
+      framesFrom(json.object("frames"), json.array("initialize_ns"), json.path("initialize_ns"));
+  return result;
+}
+
+}  // namespace
+
+std::string formatJson(const Results& results) {
+  Json json = {{"schema", kSchema},
+               {"environment", toJson(results.environment)},
+               {"options", results.options},
+               {"cases", Json::array()}};
+  for (const CaseResult& result : results.cases) json["cases"].push_back(toJson(result));
+  // Names may come from file names, which need not be UTF-8.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+Results parseResults(std::string_view text, std::string_view name) {
+  const Json json = parseJson(text, name);
+  const JsonFields fields(json, std::string(name));
+  if (!fields.has("schema") || fields.text("schema") != kSchema) {
+    throw InputError(
+        fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kSchema));
+  }
+  Results results;
+  results.environment = environmentFrom(fields.object("environment"));
+  results.options = textsFrom(fields.array("options"), fields.path("options"));
+  fields.eachObject("cases",
+                    [&](const JsonFields& one) { results.cases.push_back(caseFrom(one)); });
+  return results;
+}
+
+}  // namespace broadmark

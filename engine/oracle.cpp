@@ -1,0 +1,216 @@
+// The oracle: brute force for few bodies, an exact sweep for many.
+//
+// The sweep: bodies go into strips along the second-longest axis (a body into every strip it
+// touches);
+// within a strip they are sorted along the longest axis and swept. A pair that shares several
+// strips is reported only in the one that holds the larger of its two lower ends, so nothing is
+// reported twice and nothing is lost: that strip belongs to both bodies whenever they overlap. O(n
+// log n) plus the candidates of the sweeps.
+
+#include "broadmark/oracle.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+namespace broadmark {
+namespace {
+
+constexpr std::size_t kBruteForceLimit = 300;
+
+/// A bijective mixer (splitmix64's finaliser): sums of mixed pairs hardly ever collide.
+std::uint64_t mixed(Pair pair) {
+  std::uint64_t x = (std::uint64_t{pair.a} << 32 | pair.b) + 0x9e3779b97f4a7c15U;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebU;
+  return x ^ x >> 31;
+}
+
+/// Equal-width strips over [low, high] of one axis. Monotone, so overlapping intervals share the
+/// strips that their ends fall into; ends are clamped, never dropped.
+class Strips {
+ public:
+  Strips(std::span<const Aabb> boxes, int axis) : axis_(axis) {
+    double edges = 0;
+    double high = boxes.front().max[axis];
+    low_ = boxes.front().min[axis];
+    for (const Aabb& box : boxes) {
+      low_ = std::min<double>(low_, box.min[axis]);
+      high = std::max<double>(high, box.max[axis]);
+      edges += static_cast<double>(box.max[axis]) - box.min[axis];
+    }
+    // Wide enough that a typical body touches little more than one strip.
+    const double mean_edge = edges / static_cast<double>(boxes.size());
+    const double wanted = std::min((high - low_) / std::max(4 * mean_edge, 1e-300),
+                                   static_cast<double>(boxes.size()) / 32);
+    count_ = static_cast<std::uint32_t>(std::clamp(wanted, 1.0, 65536.0));
+    scale_ = high > low_ ? count_ / (high - low_) : 0;
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::uint32_t of(float coordinate) const {
+    const double strip = (coordinate - low_) * scale_;
+    return static_cast<std::uint32_t>(std::clamp(strip, 0.0, count_ - 1.0));
+  }
+  [[nodiscard]] std::uint32_t first(const Aabb& box) const { return of(box.min[axis_]); }
+  [[nodiscard]] std::uint32_t last(const Aabb& box) const { return of(box.max[axis_]); }
+  /// The strip that reports the pair.
+  [[nodiscard]] std::uint32_t reporting(const Aabb& a, const Aabb& b) const {
+    return of(std::max(a.min[axis_], b.min[axis_]));
+  }
+
+ private:
+  int axis_;
+  double low_ = 0;
+  double scale_ = 0;
+  std::uint32_t count_ = 1;
+};
+
+/// The axes, longest extent of all boxes first.
+std::array<int, 3> axesByExtent(std::span<const Aabb> boxes) {
+  Aabb bounds = boxes.front();
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);
+  std::array<int, 3> axes = {0, 1, 2};
+  std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) {
+    return static_cast<double>(bounds.max[axis]) - bounds.min[axis];
+  });
+  return axes;
+}
+
+/// Contents of all strips: bodies of strip s at [start[s], start[s + 1]).
+struct StripContents {
+  std::vector<std::size_t> start;
+  std::vector<std::uint32_t> bodies;
+};
+
+StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
+  StripContents contents;
+  contents.start.resize(strips.count() + 1);
+  for (const Aabb& box : boxes) {
+    for (auto s = strips.first(box); s <= strips.last(box); ++s) ++contents.start[s + 1];
+  }
+  std::partial_sum(contents.start.begin(), contents.start.end(), contents.start.begin());
+  contents.bodies.resize(contents.start.back());
+  std::vector<std::size_t> next(contents.start.begin(), contents.start.end() - 1);
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    for (auto s = strips.first(boxes[body]); s <= strips.last(boxes[body]); ++s) {
+      contents.bodies[next[s]++] = body;
+    }
+  }
+  return contents;
+}
+
+/// Keeps count of every difference and lists the first of each kind.
+void note(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
+  ++count;
+  if (listed.size() < FrameDifference::kListed) listed.push_back(pair);
+}
+
+}  // namespace
+
+PairDigest digest(PairRuns runs) {
+  PairDigest result;
+  for (const PairRun run : runs) {
+    result.count += run.size();
+    for (const Pair pair : run) result.hash += mixed(pair);
+  }
+  return result;
+}
+
+std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes) {
+  std::vector<Pair> pairs;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+std::vector<Pair> sweptPairs(std::span<const Aabb> boxes) {
+  std::vector<Pair> pairs;
+  if (boxes.empty()) return pairs;
+  const auto [sweep_axis, strip_axis, other_axis] = axesByExtent(boxes);
+  const Strips strips(boxes, strip_axis);
+  StripContents contents = fill(strips, boxes);
+
+  for (std::uint32_t s = 0; s < strips.count(); ++s) {
+    const std::span bodies(contents.bodies.data() + contents.start[s],
+                           contents.start[s + 1] - contents.start[s]);
+    std::ranges::sort(bodies, {}, [&](std::uint32_t body) { return boxes[body].min[sweep_axis]; });
+    for (auto i = bodies.begin(); i != bodies.end(); ++i) {
+      const Aabb& a = boxes[*i];
+      for (auto j = i + 1; j != bodies.end() && boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
+           ++j) {
+        if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s) {
+          pairs.push_back(orderedPair(*i, *j));
+        }
+      }
+    }
+  }
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+std::span<const Pair> Oracle::pairs(const Frame& frame) {
+  if (const auto kept = kept_.find(frame.index); kept != kept_.end()) return kept->second;
+  scratch_ = frame.boxes.size() <= kBruteForceLimit ? bruteForcePairs(frame.boxes)
+                                                    : sweptPairs(frame.boxes);
+  const PairRun run = scratch_;
+  digests_[frame.index] = digest({&run, 1});
+  const std::size_t bytes = scratch_.size() * sizeof(Pair);
+  if (bytes > budget_bytes_) return scratch_;
+  budget_bytes_ -= bytes;
+  scratch_.shrink_to_fit();
+  return kept_.emplace(frame.index, std::move(scratch_)).first->second;
+}
+
+PairDigest Oracle::pairDigest(const Frame& frame) {
+  if (!digests_.contains(frame.index)) pairs(frame);
+  return digests_.at(frame.index);
+}
+
+FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
+                               float margin) {
+  FrameDifference difference{.frame = frame.index};
+  std::vector<Pair> given;
+  given.reserve(pairCount(answer));
+  for (const PairRun run : answer) {
+    for (const Pair pair : run) {
+      if (pair.a < pair.b && pair.b < frame.boxes.size()) {
+        given.push_back(pair);
+      } else {
+        note(difference.invalid_count, difference.invalid, pair);
+      }
+    }
+  }
+  std::ranges::sort(given);
+
+  auto expected = right.begin();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const Pair pair = given[i];
+    if (i > 0 && pair == given[i - 1]) {
+      note(difference.invalid_count, difference.invalid, pair);
+      continue;
+    }
+    for (; expected != right.end() && *expected < pair; ++expected) {
+      note(difference.missed_count, difference.missed, *expected);
+    }
+    if (expected != right.end() && *expected == pair) {
+      ++expected;
+      continue;
+    }
+    note(difference.extra_count, difference.extra, pair);
+    const Aabb& a = frame.boxes[pair.a];
+    const Aabb& b = frame.boxes[pair.b];
+    if (!overlaps(enlarged(a, margin), enlarged(b, margin))) ++difference.forbidden_count;
+  }
+  for (; expected != right.end(); ++expected) {
+    note(difference.missed_count, difference.missed, *expected);
+  }
+  return difference;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,105 @@
+// Typed parameters as text and back.
+
+#include "broadmark/parameters.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+
+template <class Number>
+void setNumber(const Parameter& parameter, std::string_view text, Number& value) {
+  Number parsed{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), parsed);
+  const auto as_double = static_cast<double>(parsed);
+  const bool in_range = as_double >= parameter.min && as_double <= parameter.max;
+  if (error != std::errc{} || end != text.data() + text.size() || !in_range) {
+    throw InputError(fmt::format("parameter {}: '{}' is not {} in {}", parameter.name, text,
+                                 std::is_integral_v<Number> ? "an integer" : "a number",
+                                 parameterRange(parameter)));
+  }
+  value = parsed;
+}
+
+void setSwitch(const Parameter& parameter, std::string_view text, bool& value) {
+  const bool on = text == "on" || text == "true" || text == "1";
+  if (!on && text != "off" && text != "false" && text != "0") {
+    throw InputError(fmt::format("parameter {}: '{}' is neither on nor off", parameter.name, text));
+  }
+  value = on;
+}
+
+void setChoice(const Parameter& parameter, std::string_view text, Choice& choice) {
+  for (const std::string& option : choice.options) {
+    if (option == text) {
+      choice.value = option;
+      return;
+    }
+  }
+  throw InputError(unknownName(parameter.name, text, choice.options));
+}
+
+}  // namespace
+
+std::string parameterText(const Parameter& parameter) {
+  return std::visit(Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
+                               [](const Choice* v) { return v->value; },
+                               [](const auto* v) { return fmt::format("{}", *v); }},
+                    parameter.value);
+}
+
+std::string parameterRange(const Parameter& parameter) {
+  const auto range = [&](const auto*) {
+    return fmt::format("{:.15g}…{:.15g}", parameter.min, parameter.max);
+  };
+  return std::visit(
+      Overloaded{[](const bool*) -> std::string { return "on|off"; },
+                 [](const Choice* v) { return fmt::format("{}", fmt::join(v->options, "|")); },
+                 range},
+      parameter.value);
+}
+
+void setParameter(const Parameter& parameter, std::string_view text) {
+  std::visit(Overloaded{[&](bool* v) { setSwitch(parameter, text, *v); },
+                        [&](Choice* v) { setChoice(parameter, text, *v); },
+                        [&](auto* v) { setNumber(parameter, text, *v); }},
+             parameter.value);
+}
+
+void setParameters(Parametrised& object, const ParameterValues& values) {
+  std::vector<std::string> known;
+  object.visitParameters([&](const Parameter& parameter) {
+    known.emplace_back(parameter.name);
+    const auto value = values.find(known.back());
+    if (value != values.end()) setParameter(parameter, value->second);
+  });
+  for (const auto& [name, value] : values) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    if (known.empty()) {
+      throw InputError(fmt::format("unknown parameter '{}': there are none here", name));
+    }
+    throw InputError(unknownName("parameter", name, known));
+  }
+}
+
+ParameterValues parameterValues(Parametrised& object) {
+  ParameterValues values;
+  object.visitParameters([&](const Parameter& parameter) {
+    values.emplace(parameter.name, parameterText(parameter));
+  });
+  return values;
+}
+
+}  // namespace broadmark

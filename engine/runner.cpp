@@ -1,0 +1,276 @@
+// Running cases: the clock, the checks, the verdict.
+
+#include "broadmark/runner.h"
+
+#include <fmt/format.h>
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <map>
+#include <mutex>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Judged on the running mean once this many frames are known.
+constexpr std::size_t kFramesBeforeLimit = 3;
+
+/// A BroadPhase that is ready to run, with all that must outlive it.
+class Instance {
+ public:
+  Instance(const Case& run, const SceneInfo& scene)
+      : execution_(run.threads, run.isa), algorithm_(run.algorithm.create()) {
+    setParameters(*algorithm_, run.parameters);
+    capabilities_ = algorithm_->capabilities();
+    if (run.algorithm.vectorised && !isaSupported(run.isa)) {
+      throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
+    }
+    if (scene.objects > capabilities_.max_objects) {
+      throw UnsupportedError(fmt::format("at most {} bodies, the scene has {}",
+                                         capabilities_.max_objects, scene.objects));
+    }
+  }
+
+  BroadPhase& algorithm() { return *algorithm_; }
+  [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
+
+  /// Returns its duration in nanoseconds.
+  std::int64_t initialize(const SceneInfo& scene, const Frame& first) {
+    const auto start = Clock::now();
+    algorithm_->initialize(scene, first, execution_);
+    return nanoseconds(Clock::now() - start);
+  }
+
+ private:
+  Execution execution_;
+  std::unique_ptr<BroadPhase> algorithm_;
+  Capabilities capabilities_;
+};
+
+/// Adds what the check of one frame found to the case.
+void addDifference(CaseResult& result, FrameDifference difference) {
+  result.missed += difference.missed_count;
+  result.extra += difference.extra_count;
+  result.invalid += difference.invalid_count;
+  if (!difference.isMismatch()) return;
+  if (result.status == Status::ok) {
+    result.status = Status::mismatch;
+    result.reason =
+        fmt::format("frame {}: {} missed, {} false, {} invalid", difference.frame,
+                    difference.missed_count, difference.forbidden_count, difference.invalid_count);
+  }
+  result.differences.push_back(std::move(difference));
+}
+
+void checkFrame(CaseResult& result, const BroadPhase& algorithm, const Frame& frame, float margin,
+                Oracle& oracle, CheckMode mode, int repetition) {
+  const PairRuns answer = algorithm.overlaps();
+  if (mode == CheckMode::hash && margin == 0 && digest(answer) == oracle.pairDigest(frame)) return;
+  FrameDifference difference = findDifference(answer, oracle.pairs(frame), frame, margin);
+  difference.repetition = repetition;
+  addDifference(result, std::move(difference));
+}
+
+/// A case that failed in one way stays failed: later repetitions do not mend it.
+void fail(CaseResult& result, Status status, std::string reason) {
+  if (result.status != Status::ok) return;
+  result.status = status;
+  result.reason = std::move(reason);
+}
+
+/// Running count of pairs per frame.
+void countPairs(CaseResult& result, std::uint64_t pairs, std::uint64_t frames_before) {
+  const auto n = static_cast<double>(frames_before);
+  result.pairs_mean += (static_cast<double>(pairs) - result.pairs_mean) / (n + 1);
+  result.pairs_max = std::max(result.pairs_max, pairs);
+}
+
+/// One pass; false when cancelled.
+bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, FrameSource& source,
+               Oracle& oracle, const RunOptions& options, bool count_pairs) {
+  std::int64_t total_ns = 0;
+  const int number = static_cast<int>(result.repetitions.size()) + 1;
+  while (const std::optional<Frame> frame = source.next()) {
+    if (options.cancelled && options.cancelled()) return false;
+    const FrameTimes times = runFrame(instance.algorithm(), *frame);
+    repetition.frames.push_back(times);
+    if (result.checked) {
+      checkFrame(result, instance.algorithm(), *frame, instance.capabilities().margin, oracle,
+                 options.check, number);
+    }
+    if (count_pairs) {
+      countPairs(result, pairCount(instance.algorithm().overlaps()), repetition.frames.size() - 1);
+    }
+    if (options.progress) options.progress(frame->index);
+
+    total_ns += times[Phase::total];
+    const double mean_s =
+        static_cast<double>(total_ns) * 1e-9 / static_cast<double>(repetition.frames.size());
+    if (repetition.frames.size() >= kFramesBeforeLimit && mean_s > options.frame_limit_seconds) {
+      fail(result, Status::timeout,
+           fmt::format("{:.3g} s/frame after frame {}: over the limit of {:.3g} s", mean_s,
+                       frame->index, options.frame_limit_seconds));
+      return true;
+    }
+  }
+  return true;
+}
+
+/// Libraries with process-wide state run one at a time, each under its own lock.
+class ExclusiveLock {
+ public:
+  explicit ExclusiveLock(std::string_view name) {
+    if (!name.empty()) lock_ = std::unique_lock(mutexOf(name));
+  }
+
+ private:
+  static std::mutex& mutexOf(std::string_view name) {
+    static std::mutex guard;
+    static std::map<std::string, std::mutex, std::less<>> mutexes;
+    const std::lock_guard hold(guard);
+    return mutexes[std::string(name)];
+  }
+  std::unique_lock<std::mutex> lock_;
+};
+
+}  // namespace
+
+FrameTimes runFrame(BroadPhase& algorithm, const Frame& frame) {
+  FrameTimes times;
+  const auto start = Clock::now();
+  algorithm.updateObjects(frame);
+  const auto updated = Clock::now();
+  algorithm.cleanCache();
+  const auto cleaned = Clock::now();
+  algorithm.updateStructures();
+  const auto structured = Clock::now();
+  algorithm.searchOverlaps();
+  const auto end = Clock::now();
+  times[Phase::update_objects] = nanoseconds(updated - start);
+  times[Phase::clean_cache] = nanoseconds(cleaned - updated);
+  times[Phase::update_structures] = nanoseconds(structured - cleaned);
+  times[Phase::search_overlaps] = nanoseconds(end - structured);
+  times[Phase::total] = nanoseconds(end - start);
+  return times;
+}
+
+std::string caseName(const Case& run) {
+  std::string name = run.algorithm.id;
+  if (run.algorithm.vectorised) name += fmt::format("/{}", isaName(run.isa));
+  if (run.algorithm.parallel) name += fmt::format("/t{}", run.threads);
+  for (const auto& [key, value] : run.parameters) name += fmt::format("/{}={}", key, value);
+  return name;
+}
+
+std::string caseId(const RecordingReference& recording, const Case& run) {
+  const SceneInfo& scene = recording.scene;
+  return fmt::format("{}/{}/N{}/F{}{}/{}", scene.name, scene.object_type, scene.objects,
+                     scene.frames, recording.seed ? fmt::format("/s{}", *recording.seed) : "",
+                     caseName(run));
+}
+
+CaseResult beginCase(const Case& run, const RecordingReference& recording) {
+  CaseResult result;
+  result.id = caseId(recording, run);
+  result.recording = recording;
+  result.algorithm = run.algorithm.id;
+  result.family = run.algorithm.family;
+  result.isa = run.isa;
+  result.threads = run.threads;
+  const auto algorithm = run.algorithm.create();
+  setParameters(*algorithm, run.parameters);
+  result.parameters = parameterValues(*algorithm);
+  return result;
+}
+
+bool runRepetition(CaseResult& result, const Case& run, FrameSource& source, Oracle& oracle,
+                   const RunOptions& options, bool measured) {
+  result.checked = options.check != CheckMode::off && run.algorithm.finds_pairs;
+  Repetition repetition;
+  repetition.frames.reserve(source.scene().frames);
+  try {
+    const ExclusiveLock lock(run.algorithm.create()->capabilities().exclusive);
+    Instance instance(run, source.scene());
+    const Frame first = source.rewind();
+    repetition.initialize_ns = instance.initialize(source.scene(), first);
+    const double initialize_s = static_cast<double>(repetition.initialize_ns) * 1e-9;
+    if (initialize_s > options.initialize_limit_seconds) {
+      fail(result, Status::timeout,
+           fmt::format("initialisation took {:.3g} s: over the limit of {:.3g} s", initialize_s,
+                       options.initialize_limit_seconds));
+    } else if (!runFrames(result, repetition, instance, source, oracle, options,
+                          result.repetitions.empty())) {
+      return false;
+    }
+  } catch (const InputError&) {
+    throw;
+  } catch (const UnsupportedError& unsupported) {
+    fail(result, Status::unsupported, unsupported.what());
+    return true;
+  } catch (const std::exception& error) {
+    fail(result, Status::error, error.what());
+    return true;
+  }
+  if (measured) result.repetitions.push_back(std::move(repetition));
+  return true;
+}
+
+CaseResult runCase(const Case& run, FrameSource& source, const RunOptions& options,
+                   int repetitions) {
+  CaseResult result = beginCase(run, {.scene = source.scene()});
+  Oracle oracle;
+  for (int repetition = 0; repetition < repetitions && result.status == Status::ok; ++repetition) {
+    if (!runRepetition(result, run, source, oracle, options)) break;
+  }
+  return result;
+}
+
+std::optional<std::uint64_t> measurePeakBytes(const Case& run, FrameSource& source) {
+  int channel[2];
+  if (::pipe(channel) != 0) return std::nullopt;
+  const pid_t child = ::fork();
+  if (child < 0) return std::nullopt;
+  if (child == 0) {
+    // Free memory inherited from the parent would hide what the algorithm takes.
+    ::malloc_trim(0);
+    const auto peak_kib = [] {
+      rusage usage{};
+      ::getrusage(RUSAGE_SELF, &usage);
+      return static_cast<std::uint64_t>(usage.ru_maxrss);
+    };
+    std::uint64_t growth = 0;
+    try {
+      const Frame first = source.rewind();
+      const std::uint64_t before = peak_kib();
+      Instance instance(run, source.scene());
+      instance.initialize(source.scene(), first);
+      while (const auto frame = source.next()) runFrame(instance.algorithm(), *frame);
+      growth = (peak_kib() - before) * 1024;
+      if (::write(channel[1], &growth, sizeof growth) != sizeof growth) ::_exit(1);
+    } catch (...) {
+      ::_exit(1);
+    }
+    ::_exit(0);
+  }
+  const FileDescriptor read_end(channel[0]);
+  { const FileDescriptor write_end(channel[1]); }
+  std::uint64_t growth = 0;
+  const bool complete = ::read(read_end.get(), &growth, sizeof growth) == sizeof growth;
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return complete ? std::optional(growth) : std::nullopt;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,130 @@
+// Statistics of timings.
+
+#include "broadmark/statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace broadmark {
+namespace {
+
+double sortedQuantile(const std::vector<double>& sorted, double q) {
+  if (sorted.empty()) return 0;
+  const double rank = q * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(rank);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return std::lerp(sorted[below], sorted[above], rank - static_cast<double>(below));
+}
+
+std::vector<double> sortedCopy(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  return sorted;
+}
+
+double squaredStandardError(std::span<const double> values) {
+  const double deviation = standardDeviation(values);
+  return deviation * deviation / static_cast<double>(values.size());
+}
+
+std::vector<double> logarithms(std::span<const double> values) {
+  std::vector<double> logs(values.size());
+  std::ranges::transform(values, logs.begin(), [](double v) { return std::log(v); });
+  return logs;
+}
+
+}  // namespace
+
+double mean(std::span<const double> values) {
+  if (values.empty()) return 0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double standardDeviation(std::span<const double> values) {
+  if (values.size() < 2) return 0;
+  const double centre = mean(values);
+  double squares = 0;
+  for (const double value : values) squares += (value - centre) * (value - centre);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double quantile(std::span<const double> values, double q) {
+  return sortedQuantile(sortedCopy(values), q);
+}
+
+double studentT975(double degrees) {
+  // Exact to the digits given; in between and beyond, interpolated in 1/degrees, in which the
+  // quantile is nearly linear.
+  struct Row {
+    double degrees, t;
+  };
+  static constexpr std::array kTable = {
+      Row{1, 12.7062},  Row{2, 4.30265},  Row{3, 3.18245},  Row{4, 2.77645},
+      Row{5, 2.57058},  Row{6, 2.44691},  Row{7, 2.36462},  Row{8, 2.30600},
+      Row{9, 2.26216},  Row{10, 2.22814}, Row{12, 2.17881}, Row{15, 2.13145},
+      Row{20, 2.08596}, Row{30, 2.04227}, Row{60, 2.00030}, Row{120, 1.97993}};
+  constexpr double kNormal = 1.95996;
+  if (degrees <= 1) return kTable.front().t;
+  for (std::size_t i = 1; i < kTable.size(); ++i) {
+    if (degrees > kTable[i].degrees) continue;
+    const auto [d0, t0] = kTable[i - 1];
+    const auto [d1, t1] = kTable[i];
+    return std::lerp(t0, t1, (1 / d0 - 1 / degrees) / (1 / d0 - 1 / d1));
+  }
+  return std::lerp(kNormal, kTable.back().t, kTable.back().degrees / degrees);
+}
+
+std::optional<Interval> confidence95(std::span<const double> values) {
+  if (values.size() < 2) return std::nullopt;
+  const double half =
+      studentT975(static_cast<double>(values.size() - 1)) * std::sqrt(squaredStandardError(values));
+  const double centre = mean(values);
+  return Interval{centre - half, centre + half};
+}
+
+Summary summarise(std::span<const std::span<const double>> repetitions) {
+  std::vector<double> sorted;
+  std::vector<double> means;
+  for (const auto repetition : repetitions) {
+    sorted.insert(sorted.end(), repetition.begin(), repetition.end());
+    means.push_back(mean(repetition));
+  }
+  std::ranges::sort(sorted);
+  const double q1 = sortedQuantile(sorted, 0.25);
+  const double q3 = sortedQuantile(sorted, 0.75);
+  const auto outliers = std::ranges::count_if(
+      sorted, [fence = q3 + 3 * (q3 - q1)](double value) { return value > fence; });
+  return {.seconds_per_frame = mean(sorted),
+          .median = sortedQuantile(sorted, 0.5),
+          .p95 = sortedQuantile(sorted, 0.95),
+          .p99 = sortedQuantile(sorted, 0.99),
+          .min = sorted.empty() ? 0 : sorted.front(),
+          .stddev = standardDeviation(sorted),
+          .outliers = static_cast<std::size_t>(outliers),
+          .ci95 = confidence95(means)};
+}
+
+RatioEstimate ratioOfMeans(std::span<const double> a, std::span<const double> b) {
+  const std::vector<double> log_a = logarithms(a);
+  const std::vector<double> log_b = logarithms(b);
+  const double difference = mean(log_b) - mean(log_a);
+  RatioEstimate estimate{.ratio = std::exp(difference), .ci95 = {}};
+  if (a.size() < 2 || b.size() < 2) return estimate;
+
+  const double error_a = squaredStandardError(log_a);
+  const double error_b = squaredStandardError(log_b);
+  const double error = error_a + error_b;
+  // Welch–Satterthwaite.
+  const double degrees = error == 0 ? static_cast<double>(a.size() + b.size() - 2)
+                                    : error * error /
+                                          (error_a * error_a / static_cast<double>(a.size() - 1) +
+                                           error_b * error_b / static_cast<double>(b.size() - 1));
+  const double half = studentT975(degrees) * std::sqrt(error);
+  estimate.ci95 = Interval{std::exp(difference - half), std::exp(difference + half)};
+  return estimate;
+}
+
+}  // namespace broadmark
