@@ -1,0 +1,298 @@
+// Rigid bodies by Bullet (single precision): dynamic AABB trees, sequential impulses.
+//
+// Bullet keeps some process-wide settings; this engine only ever reads them, so that several worlds
+// can live side by side.
+
+#include <btBulletDynamicsCommon.h>
+
+#include <BulletCollision/CollisionDispatch/btConvexPlaneCollisionAlgorithm.h>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+
+#include "scenes/registry.h"
+
+namespace broadmark::scenes::bullet_engine {
+namespace {
+
+btVector3 toBullet(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vec3 fromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+btTransform toBullet(const Pose& pose) {
+  const auto& q = pose.rotation;
+  return btTransform(btQuaternion(q[0], q[1], q[2], q[3]), toBullet(pose.position));
+}
+
+Pose fromBullet(const btTransform& transform) {
+  const btQuaternion q = transform.getRotation();
+  return {fromBullet(transform.getOrigin()), {q.x(), q.y(), q.z(), q.w()}};
+}
+
+/// A half-space with a finite side. Bullet's own plane has an infinite box, which makes a pair with
+/// every body of the world; walls along the axes need only those that reach them.
+class HalfSpaceShape final : public btStaticPlaneShape {
+ public:
+  using btStaticPlaneShape::btStaticPlaneShape;
+
+  void getAabb(const btTransform& transform, btVector3& min, btVector3& max) const override {
+    btStaticPlaneShape::getAabb(transform, min, max);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (m_planeNormal[axis] == 1) max[axis] = m_planeConstant;
+      if (m_planeNormal[axis] == -1) min[axis] = -m_planeConstant;
+    }
+  }
+};
+
+/// Contact of a body with a wall, found before the body touches: as far ahead as the body moves in
+/// one step. The solver then stops it at the wall, where a fast body would else end up inside.
+class WallContact final : public btConvexPlaneCollisionAlgorithm {
+ public:
+  WallContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+              const btCollisionObjectWrapper* b, bool swapped)
+      : btConvexPlaneCollisionAlgorithm(nullptr, info, a, b, swapped, kPerturbations,
+                                        kPerturbations) {
+    btManifoldArray manifolds;
+    getAllContactManifolds(manifolds);
+    if (manifolds.size() == 0) return;  // neither of the two can move
+    manifold_ = manifolds[0];
+    resting_threshold_ = manifold_->getContactBreakingThreshold();
+  }
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult* result) override {
+    if (manifold_ == nullptr) return;
+    const bool plane_is_a = a->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+    const auto& plane =
+        static_cast<const btStaticPlaneShape&>(*(plane_is_a ? a : b)->getCollisionShape());
+    // A wall has a manifold with bodies that can move only.
+    const auto& body = static_cast<const btRigidBody&>(*(plane_is_a ? b : a)->getCollisionObject());
+    const btScalar speed = -body.getLinearVelocity().dot(plane.getPlaneNormal());
+    const btScalar spin =
+        body.getAngularVelocity().length() * body.getCollisionShape()->getAngularMotionDisc();
+    const btScalar approach = std::max(btScalar(0), speed) + spin;
+    manifold_->setContactBreakingThreshold(resting_threshold_ + approach * info.m_timeStep);
+    btConvexPlaneCollisionAlgorithm::processCollision(a, b, info, result);
+  }
+
+  /// Tells Bullet how to make one.
+  struct CreateFunc final : btCollisionAlgorithmCreateFunc {
+    explicit CreateFunc(bool swapped) { m_swapped = swapped; }
+
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override {
+      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(WallContact));
+      return new (memory) WallContact(info, a, b, m_swapped);
+    }
+  };
+
+ private:
+  /// Tilts that find further corners of a box, until it stands on this many contacts.
+  static constexpr int kPerturbations = 3;
+
+  btPersistentManifold* manifold_ = nullptr;
+  btScalar resting_threshold_ = 0;
+};
+
+/// Bullet's world with a limit on angular speeds.
+class World final : public btDiscreteDynamicsWorld {
+ public:
+  World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
+        btCollisionConfiguration* configuration, btScalar max_angular_speed)
+      : btDiscreteDynamicsWorld(dispatcher, broad_phase, solver, configuration),
+        max_angular_speed_(max_angular_speed) {}
+
+ protected:
+  void integrateTransforms(btScalar time_step) override {
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+      btRigidBody& body = *m_nonStaticRigidBodies[i];
+      const btVector3& velocity = body.getAngularVelocity();
+      const btScalar speed_squared = velocity.length2();
+      if (speed_squared > max_angular_speed_ * max_angular_speed_) {
+        body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+      }
+    }
+    btDiscreteDynamicsWorld::integrateTransforms(time_step);
+  }
+
+ private:
+  btScalar max_angular_speed_;
+};
+
+class BulletBody final : public PhysicsBody {
+ public:
+  BulletBody(const BodyDescription& description,
+             const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
+      : shape_(description.shape), world_(world), body_(info) {
+    body_.setLinearVelocity(toBullet(description.linear_velocity));
+    body_.setAngularVelocity(toBullet(description.angular_velocity));
+    world_.addRigidBody(&body_);
+  }
+
+  [[nodiscard]] const Shape& shape() const override { return shape_; }
+  [[nodiscard]] Pose pose() const override { return fromBullet(body_.getWorldTransform()); }
+  [[nodiscard]] Vec3 linearVelocity() const override {
+    return fromBullet(body_.getLinearVelocity());
+  }
+  [[nodiscard]] Vec3 angularVelocity() const override {
+    return fromBullet(body_.getAngularVelocity());
+  }
+
+  void setPose(const Pose& pose) override {
+    body_.setWorldTransform(toBullet(pose));
+    body_.setInterpolationWorldTransform(body_.getWorldTransform());
+    world_.updateSingleAabb(&body_);
+    wake();
+  }
+
+  void setVelocity(const Vec3& linear, const Vec3& angular) override {
+    if (frozen()) return;
+    body_.setLinearVelocity(toBullet(linear));
+    body_.setAngularVelocity(toBullet(angular));
+    wake();
+  }
+
+  [[nodiscard]] bool asleep() const override { return !body_.isActive(); }
+  [[nodiscard]] bool frozen() const override { return body_.isStaticObject(); }
+
+  void freeze() override {
+    body_.setLinearVelocity(btVector3(0, 0, 0));
+    body_.setAngularVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationLinearVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationAngularVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationWorldTransform(body_.getWorldTransform());
+    // No mass is what makes a body static. Unlike a kinematic one it keeps no neighbour awake.
+    body_.setMassProps(0, btVector3(0, 0, 0));
+    body_.updateInertiaTensor();
+    body_.forceActivationState(ISLAND_SLEEPING);
+  }
+
+  /// Does nothing to a frozen body.
+  void wake() { body_.activate(); }
+
+ private:
+  Shape shape_;
+  World& world_;
+  btRigidBody body_;
+};
+
+class BulletEngine final : public PhysicsEngine {
+ public:
+  explicit BulletEngine(const PhysicsSettings& settings) : settings_(settings) {
+    // Bullet multiplies the values of the two bodies in contact.
+    material_friction_ = static_cast<btScalar>(std::sqrt(settings.friction));
+    material_restitution_ = static_cast<btScalar>(std::sqrt(settings.restitution));
+    world_.getSolverInfo().m_numIterations = static_cast<int>(settings.solver_iterations);
+    // Sleeping bodies keep their boxes; whoever places one anew updates its box.
+    world_.setForceUpdateAllAabbs(false);
+    dispatcher_.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE,
+                                            &body_meets_wall_);
+    dispatcher_.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE,
+                                            &wall_meets_body_);
+  }
+
+  ~BulletEngine() override {
+    // Bullet's own clean-up goes through all pairs once for each body: O(n²). Drop the pairs first.
+    btOverlappingPairCache& pairs = *broad_phase_.getOverlappingPairCache();
+    while (pairs.getNumOverlappingPairs() > 0) {
+      const btBroadphasePair& last =
+          pairs.getOverlappingPairArrayPtr()[pairs.getNumOverlappingPairs() - 1];
+      pairs.removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, &dispatcher_);
+    }
+  }
+
+  BulletEngine(const BulletEngine&) = delete;
+  BulletEngine& operator=(const BulletEngine&) = delete;
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    btCollisionShape& shape =
+        std::visit([this](const auto& kind) -> btCollisionShape& { return collisionShape(kind); },
+                   description.shape);
+    const auto mass = static_cast<btScalar>(description.mass);
+    btVector3 inertia;
+    shape.calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+    info.m_startWorldTransform = toBullet(description.pose);
+    info.m_friction = material_friction_;
+    info.m_restitution = material_restitution_;
+    info.m_linearDamping = static_cast<btScalar>(settings_.linear_damping);
+    info.m_angularDamping = static_cast<btScalar>(settings_.angular_damping);
+    setSleepingThresholds(info);
+    return bodies_.emplace_back(description, info, world_);
+  }
+
+  void addWall(const HalfSpace& half_space) override {
+    auto& shape = wall_shapes_.emplace_back(toBullet(half_space.normal), half_space.offset);
+    btCollisionObject& wall = walls_.emplace_back();
+    wall.setCollisionShape(&shape);
+    wall.setFriction(material_friction_);
+    wall.setRestitution(material_restitution_);
+    world_.addCollisionObject(&wall);
+  }
+
+  void setGravity(const Vec3& gravity) override {
+    if (toBullet(gravity) == world_.getGravity()) return;
+    for (BulletBody& body : bodies_) body.wake();  // Bullet tells only those awake
+    world_.setGravity(toBullet(gravity));
+  }
+
+  void step() override {
+    const double substep = settings_.time_step / static_cast<double>(settings_.substeps);
+    // Each substep by itself: Bullet's own division of a step depends on rounding.
+    for (std::int64_t i = 0; i < settings_.substeps; ++i) {
+      world_.stepSimulation(static_cast<btScalar>(substep), 0);
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    return std::ranges::all_of(bodies_, &BulletBody::asleep);
+  }
+
+ private:
+  btCollisionShape& collisionShape(const BoxShape& box) {
+    // Bodies of the same size share a shape.
+    auto& shape = box_shapes_[box.half_extents];
+    if (!shape) shape = std::make_unique<btBoxShape>(toBullet(box.half_extents));
+    return *shape;
+  }
+
+  /// Bullet compares speeds, not energies: those of a body that has the threshold's energy in its
+  /// linear or in its angular motion alone.
+  void setSleepingThresholds(btRigidBody::btRigidBodyConstructionInfo& info) const {
+    const auto speed = static_cast<btScalar>(std::sqrt(2 * settings_.sleep_threshold));
+    const btVector3& inertia = info.m_localInertia;
+    const btScalar mean_inertia = (inertia.x() + inertia.y() + inertia.z()) / 3;
+    info.m_linearSleepingThreshold = speed;
+    info.m_angularSleepingThreshold = speed * std::sqrt(info.m_mass / mean_inertia);
+  }
+
+  PhysicsSettings settings_;
+  btScalar material_friction_ = 0;
+  btScalar material_restitution_ = 0;
+  WallContact::CreateFunc body_meets_wall_{false};
+  WallContact::CreateFunc wall_meets_body_{true};
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broad_phase_;
+  btSequentialImpulseConstraintSolver solver_;
+  std::map<Vec3, std::unique_ptr<btBoxShape>> box_shapes_;
+  std::deque<HalfSpaceShape> wall_shapes_;
+  std::deque<btCollisionObject> walls_;
+  std::deque<BulletBody> bodies_;
+  // Last: on its destruction the world still looks at everything that stands in it.
+  World world_{&dispatcher_, &broad_phase_, &solver_, &configuration_,
+               static_cast<btScalar>(settings_.max_angular_speed)};
+};
+
+}  // namespace
+
+EngineEntry entry() {
+  return {.listing = {"bullet", "Bullet's rigid bodies (single precision)"},
+          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
+            return std::make_unique<BulletEngine>(settings);
+          }};
+}
+
+}  // namespace broadmark::scenes::bullet_engine

@@ -1,0 +1,58 @@
+#include "scenes/settings.h"
+
+#include <cmath>
+
+#include "scenes/registry.h"
+
+namespace broadmark::scenes {
+namespace {
+
+/// A choice of all ids in a list, with the first as default.
+template <class Entries>
+Choice choiceOf(const Entries& entries) {
+  Choice choice;
+  for (const auto& entry : entries) choice.options.push_back(entry.listing.id);
+  choice.value = choice.options.front();
+  return choice;
+}
+
+}  // namespace
+
+Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
+
+void Settings::visit(const ParameterVisitor& visit) {
+  visit({"objects", "number of bodies", &objects, 1, 10'000'000});
+  visit({"frames", "number of frames after the initial pose", &frames, 1, 1'000'000});
+  visit({"object_type", "what the bodies are", &object_type});
+  visit({"engine", "physics engine that moves them", &engine});
+  visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
+  visit({"density", "share of the world's volume that bodies of unit shape and this scale fill",
+         &density, 1e-6, 1});
+  visit({"scale", "factor on the size of all bodies, in world units", &scale, 1e-3, 1e3});
+  visit({"mass", "mass of a body", &mass, 1e-3, 1e6});
+  visit({"initial_radius", "radius of the ball that bodies start in, per side of the world",
+         &initial_radius, 0, 1});
+  visit({"initial_speed", "largest speed of a launched body, in sides of the world per second",
+         &initial_speed, 0, 10});
+  visit({"gravity", "gravity, in sides of the world per second squared", &gravity, 0, 10});
+  visit({"time_step", "time between frames, in seconds", &physics.time_step, 1e-4, 1});
+  visit({"substeps", "physics steps per frame", &physics.substeps, 1, 1000});
+  visit({"solver_iterations", "iterations of the contact solver per physics step",
+         &physics.solver_iterations, 1, 1000});
+  visit({"friction", "Coulomb friction of contacts", &physics.friction, 0, 10});
+  visit({"restitution", "restitution of contacts (1: fully elastic)", &physics.restitution, 0, 1});
+  visit({"linear_damping", "share of its velocity that a body loses per second",
+         &physics.linear_damping, 0, 1});
+  visit({"angular_damping", "share of its angular velocity that a body loses per second",
+         &physics.angular_damping, 0, 1});
+  visit({"max_angular_speed", "largest angular speed, in radians per second",
+         &physics.max_angular_speed, 0, 1000});
+  visit({"sleep_threshold", "kinetic energy per mass below which a body may fall asleep",
+         &physics.sleep_threshold, 0, 1e6});
+}
+
+double Settings::side() const {
+  return std::cbrt(static_cast<double>(objects) * scale * scale * scale / density);
+}
+
+}  // namespace broadmark::scenes
