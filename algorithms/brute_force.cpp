@@ -1,0 +1,122 @@
+// Brute force: every box against every other. O(n²) tests, no structure: the definition of the
+// answer, and what every other algorithm has to beat.
+//
+// The triangle of pairs i < j is cut into tiles of columns that fit the first-level cache; all rows
+// pass over one tile before the next is begun. Workers get bands of rows with equally many pairs.
+//
+// Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark: A Testing Framework for Broad-Phase
+// Collision Detection Algorithms", Computer Graphics Forum, 2019.
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "algorithms/axis_overlap.h"
+#include "algorithms/simd/overlap_kernels.h"
+#include "broadmark/algorithm.h"
+
+namespace broadmark::brute_force {
+namespace {
+
+/// Columns of a tile: 24 or 32 KiB of boxes.
+constexpr std::size_t kTile = 1024;
+
+/// The rows of one worker. Rows [0, r) hold n·r − r²/2 pairs or so: solved for a share of n²/2.
+Range rowsOf(int worker, int workers, std::size_t count) {
+  const auto first_row = [&](int k) {
+    if (k == workers) return count;
+    const double done = static_cast<double>(k) / workers;
+    return static_cast<std::size_t>(static_cast<double>(count) * (1 - std::sqrt(1 - done)));
+  };
+  return {first_row(worker), first_row(worker + 1)};
+}
+
+/// Calls test(rows, columns) for all tiles of the worker's part of the triangle.
+template <class Test>
+void forEachTile(int worker, int workers, std::size_t count, Test test) {
+  const Range rows = rowsOf(worker, workers, count);
+  for (std::size_t begin = rows.begin; begin < count; begin += kTile) {
+    const std::size_t end = std::min(begin + kTile, count);
+    test(Range{rows.begin, std::min(rows.end, end)}, Range{begin, end});
+  }
+}
+
+class Plain final : public BoxBroadPhase {
+ public:
+  void searchOverlaps() override {
+    team().run([this](int worker) {
+      forEachTile(worker, team().size(), boxes().size(),
+                  [&](Range rows, Range columns) { testTile(rows, columns, pairs(worker)); });
+    });
+    publishPairs();
+  }
+
+ private:
+  void testTile(Range rows, Range columns, PairBuffer& found) const {
+    for (std::size_t i = rows.begin; i < rows.end; ++i) {
+      const Aabb row = boxes()[i];
+      for (std::size_t j = std::max(columns.begin, i + 1); j < columns.end; ++j) {
+        const Aabb& column = boxes()[j];
+        // One axis rules most pairs out, so this branch is predicted well; the others wait.
+        if (overlapsOnAxis(row, column, 0)) [[unlikely]] {
+          if (overlapsOnAxis(row, column, 1) && overlapsOnAxis(row, column, 2)) {
+            found.add(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+          }
+        }
+      }
+    }
+  }
+};
+
+class Simd final : public SimdBroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    SimdBroadPhase::initialize(scene, first, execution);
+    kernels_ = &overlapKernels(execution.isa());
+  }
+
+  void searchOverlaps() override {
+    team().run([this](int worker) {
+      forEachTile(worker, team().size(), arrays().size(), [&](Range rows, Range columns) {
+        kernels_->test_tile(arrays(), rows, columns, pairs(worker));
+      });
+    });
+    publishPairs();
+  }
+
+ private:
+  const OverlapKernels* kernels_ = nullptr;
+};
+
+template <class T>
+Algorithm variant(std::string id, std::string summary, std::string optimisations,
+                  std::vector<OriginalId> original_ids) {
+  return {.id = id,
+          .family = "BF",
+          .summary = std::move(summary),
+          .parallel = id.ends_with("-mt"),
+          .vectorised = std::is_same_v<T, Simd>,
+          .original_ids = std::move(original_ids),
+          .create = [] { return std::make_unique<T>(); },
+          .principle = "brute force",
+          .optimisations = std::move(optimisations),
+          .time = "O(n²)",
+          .space = "O(n + k)",
+          .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"};
+}
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  return {
+      variant<Plain>("bf", "tests every box against every other", "none", {{"BF", {}}}),
+      variant<Simd>("bf-simd", "brute force, one box against a vector of boxes", "SIMD",
+                    {{"BF_SSE", Isa::sse2}, {"BF_AVX", Isa::avx2}}),
+      variant<Plain>("bf-mt", "brute force, on several threads", "threads", {{"BF_Parallel", {}}}),
+      variant<Simd>("bf-simd-mt", "brute force, vectorised and on several threads", "SIMD, threads",
+                    {{"BF_SSE_Parallel", Isa::sse2}, {"BF_AVX_Parallel", Isa::avx2}})};
+}
+
+}  // namespace broadmark::brute_force

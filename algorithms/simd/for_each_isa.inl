@@ -1,0 +1,58 @@
+// Compiles the file named by BROADMARK_KERNELS once for each instruction set, in the namespaces
+// broadmark::simd::scalar, sse2, avx2 and avx512, each with its own Vector (vector_*.inl).
+//
+// Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
+// copies of shared inline functions behind, of which the linker might keep one for everybody. So
+// kernels may call nothing that is instantiated here from a standard header; all headers must have
+// been included before.
+
+#define BROADMARK_PRAGMA(text) _Pragma(#text)
+#if defined(__clang__)
+#define BROADMARK_TARGET_BEGIN(isa) \
+  BROADMARK_PRAGMA(clang attribute push(__attribute__((target(isa))), apply_to = function))
+#define BROADMARK_TARGET_END BROADMARK_PRAGMA(clang attribute pop)
+#else
+#define BROADMARK_TARGET_BEGIN(isa) \
+  BROADMARK_PRAGMA(GCC push_options) BROADMARK_PRAGMA(GCC target(isa))
+#define BROADMARK_TARGET_END BROADMARK_PRAGMA(GCC pop_options)
+#endif
+
+namespace broadmark::simd {
+namespace {
+
+namespace scalar {
+#include "algorithms/simd/vector_scalar.inl"
+#include BROADMARK_KERNELS
+}  // namespace scalar
+
+#if defined(__x86_64__)
+
+BROADMARK_TARGET_BEGIN("sse2")
+namespace sse2 {
+#include "algorithms/simd/vector_sse2.inl"
+#include BROADMARK_KERNELS
+}  // namespace sse2
+BROADMARK_TARGET_END
+
+BROADMARK_TARGET_BEGIN("avx2")
+namespace avx2 {
+#include "algorithms/simd/vector_avx2.inl"
+#include BROADMARK_KERNELS
+}  // namespace avx2
+BROADMARK_TARGET_END
+
+BROADMARK_TARGET_BEGIN("avx512f")
+namespace avx512 {
+#include "algorithms/simd/vector_avx512.inl"
+#include BROADMARK_KERNELS
+}  // namespace avx512
+BROADMARK_TARGET_END
+
+#endif
+
+}  // namespace
+}  // namespace broadmark::simd
+
+#undef BROADMARK_TARGET_BEGIN
+#undef BROADMARK_TARGET_END
+#undef BROADMARK_PRAGMA

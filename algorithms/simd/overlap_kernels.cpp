@@ -1,0 +1,32 @@
+#include "algorithms/simd/overlap_kernels.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes the undefined operand inside its own AVX-512 intrinsics for ours (GCC bug 105593).
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#define BROADMARK_KERNELS "algorithms/simd/overlap_kernels.inl"
+#include "algorithms/simd/for_each_isa.inl"
+
+namespace broadmark {
+
+const OverlapKernels& overlapKernels(Isa isa) {
+  switch (isa) {
+#if defined(__x86_64__)
+    case Isa::sse2:
+      return simd::sse2::kKernels;
+    case Isa::avx2:
+      return simd::avx2::kKernels;
+    case Isa::avx512:
+      return simd::avx512::kKernels;
+#endif
+    default:
+      return simd::scalar::kKernels;
+  }
+}
+
+}  // namespace broadmark

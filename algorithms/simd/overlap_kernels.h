@@ -1,0 +1,33 @@
+// The inner loops of brute force and sweep and prune, one table of them per instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "broadmark/box_arrays.h"
+#include "broadmark/execution.h"
+#include "broadmark/pair.h"
+
+namespace broadmark {
+
+/// Positions [begin, end).
+struct Range {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+struct OverlapKernels {
+  /// Adds every overlapping pair (i, j) with i in `rows`, j in `columns` and i < j.
+  void (*test_tile)(const BoxArrays& boxes, Range rows, Range columns, PairBuffer& pairs);
+
+  /// Adds the pair of bodies[i] and bodies[j] for every i in `rows` and j in (i, ends[i]) whose
+  /// boxes overlap on axes 1 and 2; ends[i] > i for all rows. (Axis 0 is the sort axis: all j in
+  /// the window overlap i there.)
+  void (*sweep)(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
+                Range rows, PairBuffer& pairs);
+};
+
+/// The kernels for an instruction set, which this processor must support.
+const OverlapKernels& overlapKernels(Isa isa);
+
+}  // namespace broadmark

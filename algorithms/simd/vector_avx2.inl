@@ -1,0 +1,15 @@
+// Eight lanes. Functions as explained in vector_scalar.inl.
+
+inline constexpr std::size_t kLanes = 8;
+using Vector = __m256;
+using Mask = __m256;
+
+inline Vector load(const float* from) { return _mm256_load_ps(from); }
+inline Vector broadcast(float value) { return _mm256_set1_ps(value); }
+inline Mask meet(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+  return _mm256_and_ps(_mm256_cmp_ps(a_min, b_max, _CMP_LE_OQ),
+                       _mm256_cmp_ps(b_min, a_max, _CMP_LE_OQ));
+}
+inline Mask both(Mask a, Mask b) { return _mm256_and_ps(a, b); }
+inline Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
+inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
