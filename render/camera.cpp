@@ -1,0 +1,152 @@
+#include "render/camera.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace broadmark {
+namespace {
+
+using Eigen::Map;
+using Eigen::Matrix4f;
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+using Eigen::Vector4f;
+
+Matrix4f viewMatrix(const Camera& camera) {
+  const Vector3f eye(camera.eye.data());
+  const Vector3f back = (eye - Vector3f(camera.target.data())).normalized();
+  // Looking straight up or down leaves the horizontal undecided: x then points to the right.
+  Vector3f right = Vector3f::UnitY().cross(back);
+  right = right.norm() > 1e-6F ? right.normalized() : Vector3f::UnitX();
+  Matrix4f view = Matrix4f::Identity();
+  view.block<1, 3>(0, 0) = right;
+  view.block<1, 3>(1, 0) = back.cross(right);
+  view.block<1, 3>(2, 0) = back;
+  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * eye;
+  return view;
+}
+
+Matrix4f projectionMatrix(const Camera& camera) {
+  const Vector2f low(camera.window_min.data());
+  const Vector2f high(camera.window_max.data());
+  const Vector2f size = high - low;
+  const float depth = camera.far - camera.near;
+  Matrix4f projection = Matrix4f::Zero();
+  projection(0, 0) = 2 / size.x();
+  projection(1, 1) = 2 / size.y();
+  projection(0, 2) = (high.x() + low.x()) / size.x();
+  projection(1, 2) = (high.y() + low.y()) / size.y();
+  projection(2, 2) = -(camera.far + camera.near) / depth;
+  projection(2, 3) = -2 * camera.far * camera.near / depth;
+  projection(3, 2) = -1;
+  return projection;
+}
+
+Matrix4f viewProjectionMatrix(const Camera& camera) {
+  return projectionMatrix(camera) * viewMatrix(camera);
+}
+
+Vector3f corner(const Aabb& box, int index) {
+  Vector3f point;
+  for (int axis = 0; axis < 3; ++axis) {
+    point[axis] = ((index >> axis) & 1) != 0 ? box.max[axis] : box.min[axis];
+  }
+  return point;
+}
+
+bool holdsCentre(const Aabb& world, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double centre = (double{box.min[axis]} + double{box.max[axis]}) / 2;
+    if (!(centre >= world.min[axis] && centre <= world.max[axis])) return false;
+  }
+  return true;
+}
+
+double longestEdge(const Aabb& box) {
+  double longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, double{box.max[axis]} - double{box.min[axis]});
+  }
+  return longest;
+}
+
+}  // namespace
+
+std::array<float, 3> ViewSpace::toView(const std::array<float, 4>& world_point) const {
+  std::array<float, 3> point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double value = (double{world_point[axis]} - origin[axis]) / side;
+    point[axis] = static_cast<float>(std::clamp(value, -kLimit, kLimit));
+  }
+  return point;
+}
+
+Aabb ViewSpace::toView(const Aabb& world_box) const {
+  const std::array<float, 3> low = toView(world_box.min);
+  const std::array<float, 3> high = toView(world_box.max);
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+ViewSpace viewSpaceOf(const Aabb& box) {
+  ViewSpace space;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    space.origin[axis] = (double{box.min[axis]} + double{box.max[axis]}) / 2;
+  }
+  const double longest = longestEdge(box);
+  if (longest > 0) space.side = longest;
+  return space;
+}
+
+Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes) {
+  if (boxes.empty()) return world;
+  const auto inside = std::count_if(boxes.begin(), boxes.end(),
+                                    [&](const Aabb& box) { return holdsCentre(world, box); });
+  if (longestEdge(world) > 0 && 2 * static_cast<std::size_t>(inside) >= boxes.size()) return world;
+  Aabb all = longestEdge(world) > 0 ? world : boxes.front();
+  for (const Aabb& box : boxes) all = merged(all, box);
+  return all;
+}
+
+Camera figureCamera(const Aabb& box, double aspect) {
+  constexpr float kMargin = 0.04F;  // of the picture's smaller free side, on each side
+  Camera camera;
+  camera.eye = {0.57F * 3, 0.20F * 3, 0.60F * 3};
+  camera.target = {0, -0.15F, 0};
+
+  const Matrix4f view = viewMatrix(camera);
+  Vector2f low = Vector2f::Constant(std::numeric_limits<float>::max());
+  Vector2f high = -low;
+  for (int index = 0; index < 8; ++index) {
+    const Vector4f point = view * corner(box, index).homogeneous();
+    const Vector2f on_window = point.head<2>() / -point.z();
+    low = low.cwiseMin(on_window);
+    high = high.cwiseMax(on_window);
+  }
+
+  const Vector2f centre = (low + high) / 2;
+  // A point has no extent: leave it the window that a unit box has, more or less.
+  const Vector2f extent = (high - low).cwiseMax(0.05F) * (1 + 2 * kMargin);
+  const auto ratio = static_cast<float>(aspect);
+  const float height = std::max(extent.y(), extent.x() / ratio);
+  const Vector2f half(height * ratio / 2, height / 2);
+  Map<Vector2f>(camera.window_min.data()) = centre - half;
+  Map<Vector2f>(camera.window_max.data()) = centre + half;
+  return camera;
+}
+
+std::array<float, 16> viewProjection(const Camera& camera) {
+  std::array<float, 16> columns;
+  Map<Matrix4f>(columns.data()) = viewProjectionMatrix(camera);
+  return columns;
+}
+
+std::optional<std::array<float, 3>> project(const Camera& camera,
+                                            const std::array<float, 3>& point) {
+  const Vector4f clip = viewProjectionMatrix(camera) * Vector3f(point.data()).homogeneous();
+  if (clip.w() <= 0) return std::nullopt;
+  return std::array{clip.x() / clip.w(), clip.y() / clip.w(), clip.z() / clip.w()};
+}
+
+}  // namespace broadmark

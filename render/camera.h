@@ -1,0 +1,57 @@
+// Cameras. Everything is seen in view space: the world moved to the origin and scaled to side 1 in
+// double precision, so that neither huge nor far-off coordinates ever reach a matrix.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "broadmark/aabb.h"
+
+namespace broadmark {
+
+/// The map from world to view space.
+struct ViewSpace {
+  std::array<double, 3> origin{};  ///< the world point that becomes 0
+  double side = 1;                 ///< the world length that becomes 1; positive
+
+  /// Clamped to ±kLimit, so always finite for a finite point.
+  [[nodiscard]] std::array<float, 3> toView(const std::array<float, 4>& world_point) const;
+  [[nodiscard]] Aabb toView(const Aabb& world_box) const;
+
+  static constexpr double kLimit = 1e5;
+};
+
+/// The view space in which `box` is centred and its longest edge has length 1 (a point: its
+/// neighbourhood of side 1).
+ViewSpace viewSpaceOf(const Aabb& box);
+
+/// What a picture should show: the world, joined with all bodies when it has no extent or holds
+/// fewer than half of their centres.
+Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes);
+
+/// A perspective camera in view space; y is up. The frustum may be shifted off the view axis.
+struct Camera {
+  std::array<float, 3> eye{0, 0, 3};
+  std::array<float, 3> target{};
+  /// The window on the plane at distance 1 before the eye: x to the right, y up.
+  std::array<float, 2> window_min{-0.5F, -0.5F};
+  std::array<float, 2> window_max{0.5F, 0.5F};
+  float near = 0.01F;
+  float far = 100;
+};
+
+/// The camera of the paper's figures, at (0.57, 0.20, 0.60)·3 looking at (0, −0.15, 0), with the
+/// window chosen so that all of `box` (in view space) is in the picture, for any aspect ratio
+/// (width / height).
+Camera figureCamera(const Aabb& box, double aspect);
+
+/// View space to clip space, column by column as OpenGL wants it.
+std::array<float, 16> viewProjection(const Camera& camera);
+
+/// Where a point of view space appears: x and y in [-1, 1] from left to right and bottom to top,
+/// depth in [-1, 1]. Nothing for a point behind the eye.
+std::optional<std::array<float, 3>> project(const Camera& camera,
+                                            const std::array<float, 3>& point);
+
+}  // namespace broadmark

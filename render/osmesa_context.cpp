@@ -1,0 +1,78 @@
+// Mesa's software rasteriser as a plain library: works where EGL has no driver at all.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "render/gl.h"
+#include "render/offscreen_context.h"
+#include "render/shared_library.h"
+
+namespace broadmark {
+namespace {
+
+// From GL/osmesa.h, which is all we would need of libosmesa6-dev.
+using OSMesaContext = struct osmesa_context*;
+using Proc = void (*)();
+constexpr int kOsmesaFormat = 0x22;
+constexpr int kOsmesaDepthBits = 0x30;
+constexpr int kOsmesaProfile = 0x33;
+constexpr int kOsmesaCoreProfile = 0x34;
+constexpr int kOsmesaMajorVersion = 0x36;
+constexpr int kOsmesaMinorVersion = 0x37;
+
+class Osmesa final : public OffscreenContext {
+ public:
+  explicit Osmesa(const std::string& library_name)
+      : library_(library_name),
+        destroy_(library_.get<void (*)(OSMesaContext)>("OSMesaDestroyContext")),
+        address_(library_.get<Proc (*)(const char*)>("OSMesaGetProcAddress")) {
+    const auto create =
+        library_.get<OSMesaContext (*)(const int*, OSMesaContext)>("OSMesaCreateContextAttribs");
+    const auto make_current =
+        library_.get<unsigned char (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei)>(
+            "OSMesaMakeCurrent");
+    const std::array attributes = {kOsmesaFormat,
+                                   GL_RGBA,
+                                   kOsmesaDepthBits,
+                                   24,
+                                   kOsmesaProfile,
+                                   kOsmesaCoreProfile,
+                                   kOsmesaMajorVersion,
+                                   3,
+                                   kOsmesaMinorVersion,
+                                   3,
+                                   0};
+    context_ = create(attributes.data(), nullptr);
+    if (context_ == nullptr) throw RenderError("OSMesaCreateContextAttribs gave no 3.3 context");
+    if (make_current(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
+      destroy_(context_);
+      throw RenderError("OSMesaMakeCurrent failed");
+    }
+  }
+  ~Osmesa() override { destroy_(context_); }
+
+  [[nodiscard]] std::string description() const override {
+    return fmt::format("OSMesa, {}", describeGl(*this));
+  }
+  [[nodiscard]] void* function(const char* name) const override {
+    return reinterpret_cast<void*>(address_(name));
+  }
+
+ private:
+  static constexpr int kSide = 16;
+
+  SharedLibrary library_;
+  void (*destroy_)(OSMesaContext);
+  Proc (*address_)(const char*);
+  OSMesaContext context_ = nullptr;
+  // OSMesa insists on a buffer; pictures are drawn into a framebuffer object.
+  std::array<std::uint8_t, std::size_t{4} * kSide * kSide> buffer_{};
+};
+
+}  // namespace
+
+std::unique_ptr<OffscreenContext> makeOsmesaContext(const OffscreenOptions& options) {
+  return std::make_unique<Osmesa>(options.osmesa_library);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+#define STBI_NO_STDIO
+#include <stb/stb_image.h>
+#define STBI_WRITE_NO_STDIO
+#include <stb/stb_image_write.h>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "render/picture.h"
+
+namespace broadmark {
+namespace {
+
+constexpr int kChannels = 4;
+
+}  // namespace
+
+void writePng(const std::filesystem::path& path, const Picture& picture) {
+  AtomicFile file(path);
+  std::string png;
+  const auto append = [](void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<const char*>(data),
+                                               static_cast<std::size_t>(size));
+  };
+  if (stbi_write_png_to_func(append, &png, picture.width, picture.height, kChannels,
+                             picture.rgba.data(), picture.width * kChannels) == 0) {
+    throw InputError(fmt::format("{}: a picture of {} x {} cannot be written as PNG", path.string(),
+                                 picture.width, picture.height));
+  }
+  file.write(png);
+  file.commit();
+}
+
+Picture readPng(const std::filesystem::path& path) {
+  const std::string png = readTextFile(path);
+  Picture picture;
+  int channels = 0;
+  const std::unique_ptr<stbi_uc, decltype(&stbi_image_free)> pixels(
+      stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()),
+                            static_cast<int>(png.size()), &picture.width, &picture.height,
+                            &channels, kChannels),
+      stbi_image_free);
+  if (pixels == nullptr) {
+    throw InputError(
+        fmt::format("{}: not a readable PNG ({})", path.string(), stbi_failure_reason()));
+  }
+  const std::size_t bytes = std::size_t{kChannels} * static_cast<std::size_t>(picture.width) *
+                            static_cast<std::size_t>(picture.height);
+  picture.rgba.assign(pixels.get(), pixels.get() + bytes);
+  return picture;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,84 @@
+#include "render/primitive_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace broadmark {
+namespace {
+
+constexpr std::size_t kTexelsPerPrimitive = 2;
+
+std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t wanted) {
+  const auto texels = static_cast<std::size_t>(gl.integer(GL_MAX_TEXTURE_BUFFER_SIZE));
+  // gl_VertexID is a signed 32-bit integer.
+  const auto vertices = static_cast<std::size_t>(std::numeric_limits<GLsizei>::max());
+  return std::max<std::size_t>(
+      1, std::min({wanted, texels / kTexelsPerPrimitive,
+                   vertices / static_cast<std::size_t>(vertices_per_primitive)}));
+}
+
+float component(Rgb colour, int shift) {
+  return static_cast<float>((colour >> shift) & 0xFFU) / 255.0F;
+}
+
+float distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+}  // namespace
+
+PrimitiveRenderer::PrimitiveRenderer(const Gl& gl, std::string_view vertex_source,
+                                     std::string_view fragment_source, int vertices_per_primitive,
+                                     std::size_t max_batch)
+    : gl_(&gl),
+      program_(makeProgram(gl, vertex_source, fragment_source)),
+      vertex_array_(makeObject(gl.GenVertexArrays, gl.DeleteVertexArrays)),
+      vertices_per_primitive_(vertices_per_primitive),
+      batch_size_(batchSize(gl, vertices_per_primitive, max_batch)) {}
+
+void PrimitiveRenderer::upload(std::span<const Primitive> primitives) {
+  batches_.clear();
+  for (; !primitives.empty();
+       primitives = primitives.subspan(std::min(batch_size_, primitives.size()))) {
+    batches_.push_back(makeBatch(primitives.first(std::min(batch_size_, primitives.size()))));
+  }
+  gl_->check("uploading boxes and lines");
+}
+
+PrimitiveRenderer::Batch PrimitiveRenderer::makeBatch(std::span<const Primitive> primitives) const {
+  Batch batch{makeObject(gl_->GenBuffers, gl_->DeleteBuffers),
+              makeObject(gl_->GenTextures, gl_->DeleteTextures),
+              static_cast<GLsizei>(primitives.size()) * vertices_per_primitive_};
+  gl_->BindBuffer(GL_TEXTURE_BUFFER, batch.buffer.get());
+  gl_->BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(primitives.size_bytes()),
+                  primitives.data(), GL_STATIC_DRAW);
+  gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
+  gl_->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, batch.buffer.get());
+  return batch;
+}
+
+GLint PrimitiveRenderer::uniform(const char* name) const {
+  return gl_->GetUniformLocation(program_.get(), name);
+}
+
+void PrimitiveRenderer::draw(const Viewpoint& viewpoint) const {
+  // Setting a uniform that a shader does not use (location -1) is allowed and does nothing.
+  const Camera& camera = viewpoint.camera;
+  gl_->UseProgram(program_.get());
+  gl_->UniformMatrix4fv(uniform("view_projection"), 1, GL_FALSE, viewProjection(camera).data());
+  gl_->Uniform3f(uniform("eye"), camera.eye[0], camera.eye[1], camera.eye[2]);
+  gl_->Uniform1f(uniform("focus"), distance(camera.eye, camera.target));
+  gl_->Uniform2f(uniform("viewport"), static_cast<float>(viewpoint.width),
+                 static_cast<float>(viewpoint.height));
+  gl_->Uniform3f(uniform("haze"), component(viewpoint.haze, 16), component(viewpoint.haze, 8),
+                 component(viewpoint.haze, 0));
+
+  gl_->BindVertexArray(vertex_array_.get());
+  for (const Batch& batch : batches_) {
+    gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
+    gl_->DrawArrays(GL_TRIANGLES, 0, batch.vertices);
+  }
+  gl_->check("drawing boxes and lines");
+}
+
+}  // namespace broadmark
