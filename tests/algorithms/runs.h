@@ -1,0 +1,128 @@
+// Running any listed algorithm over given boxes, in every way it can be run.
+#pragma once
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "broadmark/algorithms.h"
+#include "broadmark/error.h"
+#include "broadmark/oracle.h"
+#include "tests/support/inputs.h"
+
+namespace broadmark {
+
+/// How GoogleTest shows an algorithm.
+inline void PrintTo(const Algorithm& algorithm, std::ostream* out) { *out << algorithm.id; }
+
+}  // namespace broadmark
+
+namespace broadmark::tests {
+
+/// One way to run an algorithm.
+struct Configuration {
+  Isa isa = Isa::scalar;
+  int threads = 1;
+};
+
+/// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
+/// is parallel: among them ones that divide hardly any number of bodies.
+inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
+  std::vector<int> teams = {1};
+  if (algorithm.parallel) teams = {1, 2, 3, 5};
+  std::vector<Configuration> all;
+  for (const Isa isa : kAllIsas) {
+    if (!isaSupported(isa) || (isa != Isa::scalar && !algorithm.vectorised)) continue;
+    for (const int threads : teams) all.push_back({isa, threads});
+  }
+  return all;
+}
+
+inline std::string describe(const Algorithm& algorithm, const Configuration& configuration) {
+  return algorithm.id + "/" + std::string(isaName(configuration.isa)) + "/t" +
+         std::to_string(configuration.threads);
+}
+
+/// The listed algorithms that report pairs.
+inline std::vector<Algorithm> pairFinders() {
+  std::vector<Algorithm> all = builtinAlgorithms();
+  std::erase_if(all, [](const Algorithm& algorithm) { return !algorithm.finds_pairs; });
+  return all;
+}
+
+/// "sap-simd" as a name that GoogleTest accepts.
+inline std::string testName(const Algorithm& algorithm) {
+  std::string name = algorithm.id;
+  std::ranges::replace_if(
+      name, [](char c) { return std::isalnum(c) == 0; }, '_');
+  return name;
+}
+
+/// Frames 0…count-1 of an input.
+inline std::vector<std::vector<Aabb>> framesOf(const inputs::Input& input, std::size_t n,
+                                               std::uint32_t count) {
+  std::vector<std::vector<Aabb>> frames;
+  for (std::uint32_t frame = 0; frame < count; ++frame) {
+    frames.push_back(input.boxes(n, frame, 1 + n));
+  }
+  return frames;
+}
+
+/// What the header of a recording of these frames would say.
+inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
+  SceneInfo scene;
+  scene.name = "Test";
+  scene.object_type = "Boxes";
+  scene.objects = static_cast<std::uint32_t>(frames.front().size());
+  scene.frames = static_cast<std::uint32_t>(frames.size() - 1);
+  scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};
+  for (const std::vector<Aabb>& boxes : frames) {
+    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);
+  }
+  return scene;
+}
+
+/// The answer as one ascending list.
+inline std::vector<Pair> sorted(PairRuns runs) {
+  std::vector<Pair> pairs;
+  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+/// An instance at work.
+class Instance {
+ public:
+  /// Throws UnsupportedError.
+  Instance(const Algorithm& algorithm, Execution& execution, const SceneInfo& scene,
+           const std::vector<Aabb>& first)
+      : broad_phase_(algorithm.create()) {
+    broad_phase_->initialize(scene, {0, first}, execution);
+  }
+
+  /// Runs the four phases on the next frame.
+  PairRuns step(const std::vector<Aabb>& boxes) {
+    broad_phase_->updateObjects({++index_, boxes});
+    search();
+    return broad_phase_->overlaps();
+  }
+
+  /// The phases after updateObjects.
+  void search() {
+    broad_phase_->cleanCache();
+    broad_phase_->updateStructures();
+    broad_phase_->searchOverlaps();
+  }
+
+  BroadPhase& broadPhase() { return *broad_phase_; }
+
+ private:
+  std::unique_ptr<BroadPhase> broad_phase_;
+  std::uint32_t index_ = 0;
+};
+
+}  // namespace broadmark::tests

@@ -1,0 +1,131 @@
+// Parts of brute force and sweep and prune by themselves.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "algorithms/radix_sort.h"
+#include "algorithms/simd/overlap_kernels.h"
+#include "tests/algorithms/runs.h"
+
+namespace broadmark::tests {
+namespace {
+
+TEST(SortKey, OrdersAsFloatsDo) {
+  using Limits = std::numeric_limits<float>;
+  const float ascending[] = {-Limits::infinity(),  Limits::lowest(),      -1.5F, -1.0F,
+                             -Limits::min(),       -Limits::denorm_min(), -0.0F, 0.0F,
+                             Limits::denorm_min(), Limits::min(),         1.0F,  1.5F,
+                             Limits::max(),        Limits::infinity()};
+  for (std::size_t i = 1; i < std::size(ascending); ++i) {
+    EXPECT_LT(sortKey(ascending[i - 1]), sortKey(ascending[i])) << ascending[i];
+  }
+}
+
+TEST(RadixSort, SortsStablyWhateverTheTeam) {
+  for (const int threads : {1, 2, 3, 5}) {
+    ThreadTeam team(threads);
+    RadixSorter sorter;
+    for (const std::size_t count : {0, 1, 2, 4, 1000, 4099}) {
+      for (const std::uint32_t mask : {0U, 7U, 0x00F0'0000U, 0xFFFF'FFFFU}) {
+        sorter.resize(count, threads);
+        inputs::Random random(count, mask);
+        for (std::uint32_t i = 0; SortEntry & entry : sorter.entries()) {
+          const auto key = static_cast<std::uint32_t>(random.integer(0, 0x7FFF'FFFE)) * 2U;
+          entry = {key & mask, i++};
+        }
+        std::vector<SortEntry> expected(sorter.entries().begin(), sorter.entries().end());
+        std::ranges::stable_sort(expected, {}, &SortEntry::key);
+        sorter.sort(team);
+        EXPECT_TRUE(
+            std::ranges::equal(sorter.entries(), expected,
+                               [](auto& a, auto& b) { return a.key == b.key && a.body == b.body; }))
+            << count << " entries, " << threads << " threads";
+      }
+    }
+  }
+}
+
+// A kernel may load whole vectors, but must report nothing outside of what it was given.
+TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
+  constexpr std::size_t kCount = 70;
+  const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
+  BoxArrays arrays;
+  arrays.assign(boxes);
+  for (const Isa isa : kAllIsas) {
+    if (!isaSupported(isa)) continue;
+    for (const Range rows : {Range{0, 70}, {0, 0}, {3, 4}, {5, 16}, {17, 39}, {69, 70}}) {
+      for (const Range columns : {Range{0, 70}, {0, 0}, {1, 2}, {15, 33}, {20, 25}, {68, 70}}) {
+        std::vector<Pair> expected;
+        for (auto i = static_cast<std::uint32_t>(rows.begin); i < rows.end; ++i) {
+          for (std::uint32_t j = i + 1; j < kCount; ++j) {
+            if (j >= columns.begin && j < columns.end) expected.push_back({i, j});
+          }
+        }
+        PairBuffer found;
+        overlapKernels(isa).test_tile(arrays, rows, columns, found);
+        const PairRun run = found.run();
+        EXPECT_EQ(sorted({&run, 1}), expected)
+            << isaName(isa) << " rows " << rows.begin << "–" << rows.end << " columns "
+            << columns.begin << "–" << columns.end;
+      }
+    }
+  }
+}
+
+// Values no recording holds, whose sums and differences overflow: only comparisons are right.
+TEST(BruteForceAndSweep, SurviveTheLimitsOfFloats) {
+  const auto frames = framesOf({"limits", inputs::limits}, 300, 4);
+  const SceneInfo scene = sceneOf(frames);
+  for (const Algorithm& algorithm : pairFinders()) {
+    if (algorithm.family != "BF" && algorithm.family != "SAP") continue;
+    for (const Configuration& way : configurations(algorithm)) {
+      Execution execution(way.threads, way.isa);
+      Instance run(algorithm, execution, scene, frames[0]);
+      for (std::size_t i = 1; i < frames.size(); ++i) {
+        EXPECT_EQ(sorted(run.step(frames[i])), bruteForcePairs(frames[i]))
+            << describe(algorithm, way);
+      }
+    }
+  }
+}
+
+/// Remembers what was drawn.
+class DrawnLines final : public DebugDraw {
+ public:
+  void box(const Aabb&, Rgb, int) override {}
+  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb) override {
+    lines.push_back({from, to});
+  }
+  std::vector<std::array<std::array<float, 3>, 2>> lines;
+};
+
+TEST(SweepAndPrune, SweepsAlongTheAxisOfLargestVariance) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<std::vector<Aabb>> frames;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      frames.push_back(inputs::uniform(100, i, 3));
+      for (Aabb& box : frames.back()) {
+        box.min[axis] *= 10;
+        box.max[axis] *= 10;
+      }
+    }
+    for (const Algorithm& algorithm : pairFinders()) {
+      if (algorithm.family != "SAP") continue;
+      Execution execution(1, Isa::scalar);
+      Instance run(algorithm, execution, sceneOf(frames), frames[0]);
+      run.step(frames[1]);
+      DrawnLines drawn;
+      run.broadPhase().drawStructure(drawn);
+      ASSERT_EQ(drawn.lines.size(), 1U);
+      for (std::size_t other = 0; other < 3; ++other) {
+        const float length = drawn.lines[0][1][other] - drawn.lines[0][0][other];
+        EXPECT_EQ(length > 0, other == axis) << algorithm.id;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests
