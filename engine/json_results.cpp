@@ -217,6 +217,7 @@ Json toJson(const CaseResult& result) {
                {"algorithm", result.algorithm},
                {"family", result.family},
                {"isa", isaName(result.isa)},
+               {"vectorised", result.vectorised},
                {"threads", result.threads},
                {"params", toJson(result.parameters)},
                {"status", statusName(result.status)},
@@ -260,6 +261,7 @@ CaseResult caseFrom(const JsonFields& json) {
   result.algorithm = json.text("algorithm");
   result.family = json.text("family");
   result.isa = named(json, "isa", kAllIsas, isaName);
+  result.vectorised = json.boolean("vectorised");
   result.threads = json.integer<int>("threads", 1);
   result.parameters = parametersFrom(json.at("params"), json.path("params"));
   result.status = named(json, "status", kStatuses, statusName);

@@ -315,4 +315,13 @@ std::unique_ptr<RecordingReader> RecordingWriter::finishTemporary() {
   return std::make_unique<RecordingReader>(std::move(state_->unnamed), state_->name);
 }
 
+bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress) {
+  std::optional<Frame> frame = source.rewind();
+  for (; frame; frame = source.next()) {
+    writer.write(frame->boxes);
+    if (progress && !progress(frame->index)) return false;
+  }
+  return true;
+}
+
 }  // namespace broadmark

@@ -188,6 +188,7 @@ CaseResult beginCase(const Case& run, const RecordingReference& recording) {
   result.algorithm = run.algorithm.id;
   result.family = run.algorithm.family;
   result.isa = run.isa;
+  result.vectorised = run.algorithm.vectorised;
   result.threads = run.threads;
   const auto algorithm = run.algorithm.create();
   setParameters(*algorithm, run.parameters);

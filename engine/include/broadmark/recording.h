@@ -6,9 +6,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/atomic_file.h"
@@ -75,5 +77,12 @@ class RecordingWriter {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Told after each frame; returning false stops.
+using FrameProgress = std::function<bool(std::uint32_t frame)>;
+
+/// Writes all frames of `source`, from its initial pose on. Returns false when `progress` stopped
+/// it: the recording is then not whole.
+bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress = {});
 
 }  // namespace broadmark

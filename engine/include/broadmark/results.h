@@ -57,6 +57,7 @@ struct CaseResult {
   std::string algorithm;
   std::string family;
   Isa isa = Isa::scalar;
+  bool vectorised = false;  ///< whether the algorithm is vectorised, so that `isa` means something
   int threads = 1;
   ParameterValues parameters;  ///< all, defaults included
 

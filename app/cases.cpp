@@ -1,0 +1,124 @@
+// Selecting algorithms and making cases of them.
+
+#include "app/cases.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+const OriginalId* originalId(const Algorithm& algorithm, const std::string& name) {
+  const auto found = std::ranges::find(algorithm.original_ids, name, &OriginalId::name);
+  return found == algorithm.original_ids.end() ? nullptr : &*found;
+}
+
+bool selects(const std::string& selector, const Algorithm& algorithm) {
+  if (selector == "all") return algorithm.finds_pairs;
+  return globMatches(selector, algorithm.id) || lower(selector) == lower(algorithm.family);
+}
+
+std::vector<std::string> idsOf(const std::vector<Algorithm>& known) {
+  std::vector<std::string> ids;
+  for (const Algorithm& algorithm : known) ids.push_back(algorithm.id);
+  return ids;
+}
+
+/// A case of `algorithm`, what it does not heed left at its neutral value.
+Case makeCase(const Algorithm& algorithm, Isa isa, int threads, const ParameterValues& parameters) {
+  return {.algorithm = algorithm,
+          .isa = algorithm.vectorised ? isa : Isa::scalar,
+          .threads = algorithm.parallel ? threads : 1,
+          .parameters = applicable(*algorithm.create(), parameters)};
+}
+
+void addOnce(std::vector<Case>& cases, Case made) {
+  const std::string name = caseName(made);
+  const bool there =
+      std::ranges::any_of(cases, [&](const Case& other) { return caseName(other) == name; });
+  if (!there) cases.push_back(std::move(made));
+}
+
+}  // namespace
+
+std::vector<std::string> parameterNames(Parametrised& object) {
+  std::vector<std::string> names;
+  object.visitParameters([&](const Parameter& p) { names.emplace_back(p.name); });
+  return names;
+}
+
+ParameterValues applicable(Parametrised& object, const ParameterValues& values) {
+  ParameterValues chosen;
+  for (const std::string& name : parameterNames(object)) {
+    if (const auto value = values.find(name); value != values.end()) chosen.insert(*value);
+  }
+  return chosen;
+}
+
+std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
+                                        const std::vector<Algorithm>& known) {
+  for (const std::string& selector : selectors) {
+    const bool names_any = std::ranges::any_of(
+        known, [&](const Algorithm& algorithm) { return selects(selector, algorithm); });
+    if (!names_any)
+      throw InputError("--algorithm: " + unknownName("algorithm", selector, idsOf(known)));
+  }
+  std::vector<Algorithm> selected;
+  for (const Algorithm& algorithm : known) {
+    const auto by = [&](const std::string& selector) { return selects(selector, algorithm); };
+    if (std::ranges::any_of(selectors, by)) selected.push_back(algorithm);
+  }
+  return selected;
+}
+
+std::vector<Case> selectCases(const HeadlessOptions& options, const std::vector<Algorithm>& known) {
+  std::vector<Case> cases;
+  std::vector<std::string> selectors;
+  // The original's names state an instruction set of their own.
+  for (const std::string& selector : options.algorithms) {
+    const auto named = std::ranges::find_if(known, [&](const Algorithm& algorithm) {
+      return originalId(algorithm, selector) != nullptr;
+    });
+    if (named == known.end()) {
+      selectors.push_back(selector);
+      continue;
+    }
+    for (const int threads : options.threads) {
+      const Isa isa = originalId(*named, selector)->isa.value_or(options.isas.front());
+      addOnce(cases, makeCase(*named, isa, threads, options.parameters));
+    }
+  }
+  if (options.algorithms.empty()) selectors.emplace_back("all");
+  for (const Algorithm& algorithm : selectAlgorithms(selectors, known)) {
+    for (const int threads : options.threads) {
+      for (const Isa isa : options.isas) {
+        addOnce(cases, makeCase(algorithm, isa, threads, options.parameters));
+      }
+    }
+  }
+  return cases;
+}
+
+Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>& known) {
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : known) {
+    for (const OriginalId& id : algorithm.original_ids) names.push_back(id.name);
+    if (const OriginalId* id = originalId(algorithm, settings.algorithm)) {
+      const auto threads = std::clamp<std::int64_t>(settings.threads, 1, 1024);
+      return makeCase(algorithm, id->isa.value_or(bestIsa()), static_cast<int>(threads), {});
+    }
+  }
+  throw InputError("m_algorithm: " + unknownName("algorithm", settings.algorithm, names));
+}
+
+}  // namespace broadmark

@@ -1,0 +1,113 @@
+// broadmark compare: two result files, case by case. With several repetitions on both sides the
+// interval comes from the repetitions' means; otherwise from the frames.
+
+#include <fmt/format.h>
+
+#include <map>
+
+#include "app/options.h"
+#include "app/table.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "broadmark/results.h"
+#include "broadmark/statistics.h"
+
+namespace broadmark {
+namespace {
+
+Results readResults(const std::filesystem::path& path) {
+  return parseResults(readTextFile(path), path.string());
+}
+
+/// Seconds per frame of each repetition, or, of a single one, of each frame.
+std::vector<double> samples(const CaseResult& result, bool per_repetition) {
+  std::vector<double> values;
+  for (const Repetition& repetition : result.repetitions) {
+    std::vector<double> frames;
+    for (const FrameTimes& times : repetition.frames) {
+      // A time below the clock's resolution still has a logarithm.
+      frames.push_back(static_cast<double>(std::max<std::int64_t>(times[Phase::total], 1)) * 1e-9);
+    }
+    if (frames.empty()) continue;
+    if (per_repetition) {
+      values.push_back(mean(frames));
+    } else {
+      values.insert(values.end(), frames.begin(), frames.end());
+    }
+  }
+  return values;
+}
+
+struct Verdict {
+  std::string text;
+  bool regressed = false;
+};
+
+Verdict judge(const RatioEstimate& estimate, double fail_above) {
+  // Without an interval the ratio itself must do.
+  const Interval interval = estimate.ci95.value_or(Interval{estimate.ratio, estimate.ratio});
+  if (interval.low > 1 + fail_above) return {"REGRESSED", true};
+  if (interval.low > 1) return {"slower", false};
+  if (interval.high < 1) return {"faster", false};
+  return {"same within noise", false};
+}
+
+std::vector<std::string> compareCase(const CaseResult& before, const CaseResult& after,
+                                     double fail_above, bool& regressed) {
+  if (after.status != before.status) {
+    const bool worse = before.status == Status::ok;
+    regressed |= worse;
+    return {after.id,
+            "",
+            "",
+            "",
+            "",
+            fmt::format("{} -> {}{}", statusName(before.status), statusName(after.status),
+                        worse ? " REGRESSED" : "")};
+  }
+  const bool per_repetition = before.repetitions.size() > 1 && after.repetitions.size() > 1;
+  const std::vector<double> a = samples(before, per_repetition);
+  const std::vector<double> b = samples(after, per_repetition);
+  if (a.empty() || b.empty()) return {after.id, "", "", "", "", "not timed"};
+  const RatioEstimate estimate = ratioOfMeans(a, b);
+  const Verdict verdict = judge(estimate, fail_above);
+  regressed |= verdict.regressed;
+  return {
+      after.id,
+      fmt::format("{:.6g}", before.summary().seconds_per_frame),
+      fmt::format("{:.6g}", after.summary().seconds_per_frame),
+      fmt::format("{:.3f}", estimate.ratio),
+      estimate.ci95 ? fmt::format("{:.3f}…{:.3f}", estimate.ci95->low, estimate.ci95->high) : "",
+      verdict.text};
+}
+
+}  // namespace
+
+int runCompare(const CompareOptions& options) {
+  const Results before = readResults(options.before);
+  const Results after = readResults(options.after);
+  std::map<std::string, const CaseResult*> before_by_id;
+  for (const CaseResult& result : before.cases) before_by_id[result.id] = &result;
+
+  bool regressed = false;
+  std::vector<std::vector<std::string>> rows = {
+      {"case", "A s/frame", "B s/frame", "B/A", "95 % interval", "verdict"}};
+  for (const CaseResult& result : after.cases) {
+    const auto found = before_by_id.find(result.id);
+    if (found == before_by_id.end()) {
+      rows.push_back({result.id, "", "", "", "", "only in B"});
+      continue;
+    }
+    if (found->second->recording.hash != result.recording.hash) {
+      rows.push_back({result.id, "", "", "", "", "not comparable: other recording"});
+    } else {
+      rows.push_back(compareCase(*found->second, result, options.fail_above, regressed));
+    }
+    before_by_id.erase(found);
+  }
+  for (const auto& [id, result] : before_by_id) rows.push_back({id, "", "", "", "", "only in A"});
+  fmt::print("{}", alignColumns(rows, {false, true, true, true, true, false}));
+  return regressed ? 1 : 0;
+}
+
+}  // namespace broadmark

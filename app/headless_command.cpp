@@ -1,0 +1,267 @@
+// broadmark --headless: simulate or open recordings, run every case on them, check, measure,
+// report.
+//
+// Recordings are taken one after the other. On each, repetitions of different cases are
+// interleaved, so that a disturbance of the machine hits all of them alike. Result files are
+// rewritten (each time atomically) after every recording: whatever ends the run, finished cases are
+// kept.
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <map>
+#include <regex>
+
+#include "app/cases.h"
+#include "app/interrupt.h"
+#include "app/options.h"
+#include "app/progress.h"
+#include "app/recordings.h"
+#include "app/screenshot.h"
+#include "app/table.h"
+#include "broadmark/algorithms.h"
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A recording with the cases to run on it.
+struct Job {
+  Source source;
+  std::vector<Case> cases;
+};
+
+std::regex compiledFilter(const std::string& filter) {
+  try {
+    return std::regex(filter);
+  } catch (const std::regex_error&) {
+    throw InputError(fmt::format("--filter: '{}' is not a regular expression", filter));
+  }
+}
+
+/// A --param that nobody has is an error.
+void requireKnownParameters(const HeadlessOptions& options, const std::vector<Job>& jobs) {
+  std::vector<std::string> known;
+  const auto collect = [&](Parametrised& object) {
+    std::ranges::move(parameterNames(object), std::back_inserter(known));
+  };
+  for (const Job& job : jobs) {
+    if (job.source.simulation) collect(*job.source.simulation);
+    for (const Case& run : job.cases) collect(*run.algorithm.create());
+  }
+  std::ranges::sort(known);
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  for (const auto& [name, value] : options.parameters) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--param: " + unknownName("parameter", name, known));
+    }
+  }
+}
+
+/// All jobs, already divided among shards and filtered; jobs without cases are left out.
+std::vector<Job> makeJobs(const HeadlessOptions& options) {
+  const std::vector<Algorithm> algorithms = builtinAlgorithms();
+  const std::regex filter = compiledFilter(options.filter);
+  std::vector<Job> jobs;
+  for (Source& source : resolveSources(options)) {
+    Job job{std::move(source), {}};
+    if (!job.source.settings) {
+      job.cases = selectCases(options, algorithms);
+    } else if (options.algorithms.empty()) {
+      job.cases = {originalCase(*job.source.settings, algorithms)};
+    } else {
+      throw InputError("--algorithm: a settings file of the original names its own algorithm");
+    }
+    jobs.push_back(std::move(job));
+  }
+  requireKnownParameters(options, jobs);
+  int number = 0;
+  for (Job& job : jobs) {
+    for (const Case& run : job.cases) beginCase(run, job.source.reference);  // checks parameters
+    std::erase_if(job.cases, [&](const Case& run) {
+      if (!std::regex_search(caseId(job.source.reference, run), filter)) return true;
+      return number++ % options.shard.count != options.shard.index;
+    });
+  }
+  std::erase_if(jobs, [](const Job& job) { return job.cases.empty(); });
+  return jobs;
+}
+
+/// Whether an algorithm crossed the time limit on a smaller scene of the same kind: then it is not
+/// run on larger ones (the paper's rule).
+class Exhausted {
+ public:
+  void note(const CaseResult& result, const Case& run) {
+    if (result.status == Status::timeout)
+      smallest_[key(result, run)] = result.recording.scene.objects;
+  }
+  /// Gives the result of a case that need not be run.
+  bool skip(CaseResult& result, const Case& run) const {
+    const auto found = smallest_.find(key(result, run));
+    if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
+    result.status = Status::timeout;
+    result.reason = fmt::format("not run: crossed the time limit with {} bodies", found->second);
+    return true;
+  }
+
+ private:
+  static std::string key(const CaseResult& result, const Case& run) {
+    const SceneInfo& scene = result.recording.scene;
+    return fmt::format("{}/{}/{}", scene.name, scene.object_type, caseName(run));
+  }
+  std::map<std::string, std::uint32_t> smallest_;
+};
+
+/// Outcome of all cases of one job.
+struct JobResult {
+  std::vector<CaseResult> cases;
+  bool interrupted = false;
+};
+
+/// Runs all repetitions of all cases, interleaved.
+JobResult runJob(const Job& job, RecordingReader& recording, Oracle& oracle,
+                 const HeadlessOptions& options, Exhausted& exhausted) {
+  JobResult outcome;
+  for (const Case& run : job.cases) outcome.cases.push_back(beginCase(run, job.source.reference));
+
+  const int passes = options.warmup + options.repetitions;
+  const std::uint64_t frames = recording.scene().frames;
+  Progress progress(
+      fmt::format("running {} N{}", recording.scene().name, recording.scene().objects),
+      frames * job.cases.size() * static_cast<std::uint64_t>(passes), options.quiet);
+  std::uint64_t steps = 0;
+  RunOptions run_options{.check = options.check,
+                         .frame_limit_seconds = options.frame_limit_seconds,
+                         .cancelled = InterruptGuard::requested,
+                         .progress = [&](std::uint32_t frame) { progress.update(steps + frame); }};
+  for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t i = 0; i < job.cases.size(); ++i) {
+      CaseResult& result = outcome.cases[i];
+      progress.detail(job.cases[i].algorithm.id);
+      const bool finished = result.status != Status::ok || exhausted.skip(result, job.cases[i]);
+      if (!finished && !runRepetition(result, job.cases[i], recording, oracle, run_options,
+                                      pass >= options.warmup)) {
+        outcome.interrupted = true;
+        std::erase_if(outcome.cases, [](const CaseResult& r) { return r.repetitions.empty(); });
+        return outcome;
+      }
+      exhausted.note(result, job.cases[i]);
+      progress.update(steps += frames);
+    }
+  }
+  if (options.memory) {
+    for (std::size_t i = 0; i < job.cases.size(); ++i) {
+      if (outcome.cases[i].status != Status::ok) continue;
+      outcome.cases[i].peak_bytes = measurePeakBytes(job.cases[i], recording);
+    }
+  }
+  return outcome;
+}
+
+void writeOutputs(const HeadlessOptions& options, const Results& results) {
+  for (const ResultWriter& writer : resultWriters()) {
+    const auto output = options.outputs.find(std::string(writer.name));
+    if (output != options.outputs.end()) writeTextFile(output->second, writer.format(results));
+  }
+}
+
+/// Fails now rather than after an hour's run.
+void requireWritable(const HeadlessOptions& options, const std::vector<Job>& jobs) {
+  for (const auto& [name, path] : options.outputs) AtomicFile probe(path);
+  if (!options.screenshot.empty()) {
+    const bool several = jobs.size() > 1;
+    for (const Job& job : jobs) {
+      const SceneInfo& scene = job.source.reference.scene;
+      AtomicFile probe(screenshotPath(options.screenshot, scene, several));
+      if (options.screenshot_frame > scene.frames) {
+        throw InputError(fmt::format("--frame: there is no frame {}: {} has {}",
+                                     options.screenshot_frame, scene.name, scene.frames));
+      }
+    }
+  }
+  for (const Job& job : jobs) {
+    if (job.source.settings) AtomicFile probe(job.source.settings->output_log);
+  }
+}
+
+/// What a run has left to tell when it ends.
+struct Outcome {
+  bool failed = false;      ///< a case is not right
+  bool no_picture = false;  ///< a screenshot could not be taken
+  bool interrupted = false;
+  std::vector<fs::path> written;
+};
+
+bool isFailure(const CaseResult& result) {
+  return result.status == Status::mismatch || result.status == Status::timeout ||
+         result.status == Status::error;
+}
+
+/// One job from recording to report. Returns false when interrupted.
+void performJob(Job& job, const HeadlessOptions& options, bool several, Results& results,
+                Exhausted& exhausted, Outcome& outcome) {
+  const auto recording = openRecording(job.source, options.record, options.quiet);
+  if (!recording) {
+    outcome.interrupted = true;
+    return;
+  }
+  Oracle oracle;
+  const JobResult done = runJob(job, *recording, oracle, options, exhausted);
+  outcome.interrupted = done.interrupted;
+  for (const CaseResult& result : done.cases) outcome.failed |= isFailure(result);
+  std::cout << formatTable(done.cases) << std::endl;
+  if (job.source.settings && !done.cases.empty()) {
+    const fs::path log = job.source.settings->output_log;
+    writeTextFile(log, formatOriginalLog(*job.source.settings, done.cases.front()));
+    outcome.written.push_back(log);
+  }
+  results.cases.insert(results.cases.end(), done.cases.begin(), done.cases.end());
+  writeOutputs(options, results);
+  if (options.screenshot.empty() || done.interrupted) return;
+  const fs::path path = screenshotPath(options.screenshot, recording->scene(), several);
+  try {
+    takeScreenshot(options, *recording, oracle, path);
+    outcome.written.push_back(path);
+  } catch (const RenderError& error) {
+    std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
+    outcome.no_picture = true;
+  }
+}
+
+}  // namespace
+
+int runHeadless(const HeadlessOptions& options) {
+  std::vector<Job> jobs = makeJobs(options);
+  if (options.list_only) {
+    for (const Job& job : jobs) {
+      for (const Case& run : job.cases) fmt::print("{}\n", caseId(job.source.reference, run));
+    }
+    return 0;
+  }
+  if (jobs.empty()) throw InputError("no case is left to run after --filter and --shard");
+  if (!options.record.empty()) makeDirectory(options.record);
+  requireWritable(options, jobs);
+
+  const InterruptGuard guard;
+  Results results{.environment = thisEnvironment(), .options = options.command_line, .cases = {}};
+  Exhausted exhausted;
+  Outcome outcome;
+  for (Job& job : jobs) {
+    performJob(job, options, jobs.size() > 1, results, exhausted, outcome);
+    if (outcome.interrupted) break;
+  }
+
+  if (!options.record.empty()) outcome.written.push_back(options.record);
+  for (const auto& [name, path] : options.outputs) outcome.written.push_back(path);
+  for (const fs::path& path : outcome.written) fmt::print("written: {}\n", path.string());
+  if (outcome.interrupted) {
+    throw InputError(fmt::format("interrupted: {} finished cases kept", results.cases.size()));
+  }
+  if (outcome.no_picture) return 2;
+  return outcome.failed ? 1 : 0;
+}
+
+}  // namespace broadmark

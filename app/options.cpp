@@ -1,0 +1,354 @@
+// The command line: what is accepted, and how it is explained.
+
+#include "app/options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+constexpr const char* kFooter =
+    "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
+    "bad input.\nStart with:  broadmark --headless freefall --objects 2000 --frames 60";
+
+/// Text split at commas, empty parts dropped.
+std::vector<std::string> splitList(const std::vector<std::string>& texts) {
+  std::vector<std::string> parts;
+  for (const std::string& text : texts) {
+    for (std::size_t start = 0; start <= text.size();) {
+      const std::size_t end = std::min(text.find(',', start), text.size());
+      if (end > start) parts.push_back(text.substr(start, end - start));
+      start = end + 1;
+    }
+  }
+  return parts;
+}
+
+/// The value among `values` that is called `text`.
+template <class Value>
+Value named(std::string_view option, const std::string& text,
+            const std::vector<std::pair<std::string, Value>>& values) {
+  std::vector<std::string> known;
+  for (const auto& [name, value] : values) {
+    if (name == text) return value;
+    known.push_back(name);
+  }
+  throw InputError(fmt::format("{}: {}", option, unknownName("value", text, known)));
+}
+
+/// Which object counts are accepted: those that an .aabbs header can state.
+constexpr long long kMaxObjects = 100'000'000;
+
+/// Adds a flag-like option that takes a comma-separated list, and may be repeated.
+void addList(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+             const std::string& doc, const std::string& type) {
+  app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
+}
+
+/// KEY=VALUE texts as parameter values.
+ParameterValues keyValues(const std::vector<std::string>& texts) {
+  ParameterValues values;
+  for (const std::string& text : texts) {
+    const auto split = text.find('=');
+    if (split == std::string::npos || split == 0) {
+      throw InputError(fmt::format("--param: '{}' is not of the form KEY=VALUE", text));
+    }
+    values[text.substr(0, split)] = text.substr(split + 1);
+  }
+  return values;
+}
+
+/// Scene options as typed, before they are understood; the same for --headless and bake.
+struct SceneTexts {
+  std::vector<std::string> objects;
+  std::vector<std::string> object_types;
+  std::vector<std::string> parameters;
+  /// Options that are nothing but a shorter way to set a scene parameter.
+  struct Shortcut {
+    const char* option;
+    const char* parameter;
+    const char* type;
+    const char* doc;
+    std::string value;
+  };
+  std::array<Shortcut, 4> shortcuts = {{
+      {"--frames", "frames", "F", "frames to simulate, the initial pose not counted", ""},
+      {"--seed", "seed", "S", "seed: same seed, same recording", ""},
+      {"--density", "density", "D", "share of the world's volume that bodies fill", ""},
+      {"--engine", "engine", "NAME", "physics engine (see 'broadmark list engines')", ""},
+  }};
+
+  void addTo(CLI::App& app) {
+    addList(app, "--objects", objects, "numbers of bodies, e.g. 1000,8000,32000", "N[,N...]");
+    addList(app, "--object-type", object_types, "shapes of the bodies", "TYPE[,TYPE...]");
+    for (Shortcut& shortcut : shortcuts) {
+      app.add_option(shortcut.option, shortcut.value, shortcut.doc)->type_name(shortcut.type);
+    }
+    app.add_option("--param", parameters,
+                   "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+  }
+
+  [[nodiscard]] SceneOptions parse() const {
+    SceneOptions options;
+    for (const std::string& text : splitList(objects)) {
+      options.objects.push_back(
+          static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMaxObjects)));
+    }
+    options.object_types = splitList(object_types);
+    for (const Shortcut& shortcut : shortcuts) {
+      if (!shortcut.value.empty()) options.parameters[shortcut.parameter] = shortcut.value;
+    }
+    return options;
+  }
+};
+
+/// --headless options as typed.
+struct HeadlessTexts {
+  std::vector<std::string> algorithms;
+  std::vector<std::string> threads;
+  std::vector<std::string> isas;
+  std::string check = "full";
+  std::string gl = "auto";
+  std::string size = "1280x720";
+  std::string shard = "0/1";
+  std::map<std::string, std::string> outputs;
+};
+
+Shard parseShard(const std::string& text) {
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) {
+    throw InputError(fmt::format("--shard: '{}' is not of the form I/N, e.g. 0/4", text));
+  }
+  Shard shard;
+  shard.count = static_cast<int>(parseInteger(text.substr(slash + 1), "--shard", 1, 1'000'000));
+  shard.index =
+      static_cast<int>(parseInteger(text.substr(0, slash), "--shard", 0, shard.count - 1));
+  return shard;
+}
+
+void parseSize(const std::string& text, HeadlessOptions& options) {
+  const auto x = text.find('x');
+  if (x == std::string::npos) {
+    throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
+  }
+  options.screenshot_width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, 16384));
+  options.screenshot_height =
+      static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, 16384));
+}
+
+std::vector<Isa> parseIsas(const std::vector<std::string>& texts) {
+  std::vector<std::pair<std::string, Isa>> known = {{"auto", bestIsa()}};
+  for (const Isa isa : kAllIsas) known.emplace_back(isaName(isa), isa);
+  std::vector<Isa> isas;
+  for (const std::string& text : splitList(texts)) isas.push_back(named("--isa", text, known));
+  if (isas.empty()) isas.push_back(bestIsa());
+  return isas;
+}
+
+std::vector<int> parseThreads(const std::vector<std::string>& texts) {
+  std::vector<int> threads;
+  for (const std::string& text : splitList(texts)) {
+    threads.push_back(static_cast<int>(parseInteger(text, "--threads", 1, 1024)));
+  }
+  if (threads.empty()) {
+    threads.push_back(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  }
+  return threads;
+}
+
+void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
+  app.add_option("source", options.sources,
+                 "built-in scenes (freefall, brownian, gravity), recordings (.aabbs) or settings "
+                 "files of the original Broadmark (.json)")
+      ->type_name("SOURCE");
+  addList(app, "--algorithm", texts.algorithms,
+          "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
+          "only by name)",
+          "ID[,ID...]");
+  addList(app, "--threads", texts.threads, "threads of parallel variants (default: all cores)",
+          "T[,T...]");
+  addList(app, "--isa", texts.isas,
+          "instruction sets of vectorised variants: auto (default), scalar, sse2, avx2, avx512",
+          "ISA[,ISA...]");
+
+  app.add_option("--repetitions", options.repetitions, "measured passes over each recording")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--warmup", options.warmup, "unmeasured passes before them")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--time-limit", options.frame_limit_seconds,
+                 "limit on the mean seconds per frame (the paper's cap)")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->type_name("SECONDS");
+  app.add_option("--check", texts.check,
+                 "full: compare exact pair sets on every frame; hash: counts and hashes; off")
+      ->capture_default_str()
+      ->type_name("MODE");
+  app.add_flag("--memory", options.memory,
+               "measure each case's memory in a separate untimed process");
+  for (const ResultWriter& writer : resultWriters()) {
+    app.add_option(fmt::format("--{}", writer.name), texts.outputs[std::string(writer.name)],
+                   std::string(writer.doc))
+        ->type_name("FILE");
+  }
+  app.add_option("--record", options.record, "keep the simulated recordings in this directory")
+      ->type_name("DIR");
+  app.add_option("--screenshot", options.screenshot,
+                 "draw a frame of each recording off-screen; with several recordings their names "
+                 "are added to the file's")
+      ->type_name("FILE");
+  app.add_option("--frame", options.screenshot_frame, "frame of the screenshot (default: the last)")
+      ->type_name("K");
+  app.add_option("--size", texts.size, "size of the screenshot")
+      ->capture_default_str()
+      ->type_name("WxH");
+  app.add_option("--gl", texts.gl, "where off-screen OpenGL comes from: auto, egl, osmesa")
+      ->capture_default_str()
+      ->type_name("SOURCE");
+  app.add_option("--shard", texts.shard, "run only every N-th case, from the I-th (from 0)")
+      ->capture_default_str()
+      ->type_name("I/N");
+  app.add_option("--filter", options.filter, "run only cases whose id matches")->type_name("REGEX");
+  app.add_flag("--list", options.list_only, "print the cases, run nothing");
+  app.add_flag("--quiet", options.quiet, "no progress");
+}
+
+HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
+                           const SceneTexts& scene) {
+  options.scene = scene.parse();
+  options.parameters = keyValues(scene.parameters);
+  options.algorithms = splitList(texts.algorithms);
+  options.threads = parseThreads(texts.threads);
+  options.isas = parseIsas(texts.isas);
+  options.check = named<CheckMode>(
+      "--check", texts.check,
+      {{"full", CheckMode::full}, {"hash", CheckMode::hash}, {"off", CheckMode::off}});
+  options.gl = named<GlSource>(
+      "--gl", texts.gl,
+      {{"auto", GlSource::automatic}, {"egl", GlSource::egl}, {"osmesa", GlSource::osmesa}});
+  parseSize(texts.size, options);
+  options.shard = parseShard(texts.shard);
+  for (const auto& [name, path] : texts.outputs) {
+    if (!path.empty()) options.outputs[name] = path;
+  }
+  if (options.sources.empty()) {
+    throw InputError(
+        "no source: name a built-in scene (freefall, brownian, gravity) or a recording");
+  }
+  return options;
+}
+
+/// CLI11's own complaint as one line, with the nearest option for a misspelt one.
+InputError usageError(const CLI::App& app, const CLI::ParseError& error,
+                      const std::vector<std::string>& arguments) {
+  std::string message = error.what();
+  std::ranges::replace(message, '\n', ' ');
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name());
+    for (const std::string& argument : arguments) {
+      if (!argument.starts_with("--")) continue;
+      const std::string name = argument.substr(0, argument.find('='));
+      if (std::ranges::find(known, name) != known.end()) continue;
+      const std::string nearest = nearestName(name, known);
+      message = fmt::format("unknown option '{}'{}", name,
+                            nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+      break;
+    }
+  }
+  return InputError(message + " (see 'broadmark --help')");
+}
+
+}  // namespace
+
+int runCommandLine(int argc, char** argv) {
+  CLI::App app("Broadmark tests, compares and validates broad-phase collision detection.");
+  app.footer(kFooter);
+  app.set_version_flag("--version", thisEnvironment().version);
+  app.get_formatter()->column_width(34);
+
+  bool headless = false;
+  HeadlessOptions options;
+  HeadlessTexts texts;
+  SceneTexts scene;
+  app.add_flag("--headless", headless, "run without a window");
+  addHeadlessOptions(app, options, texts);
+  scene.addTo(app);
+
+  BakeOptions bake_options;
+  SceneTexts bake_scene;
+  std::vector<std::string> bake_scenes;
+  CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
+  addList(*bake, "--scenes", bake_scenes, "built-in scenes", "A[,B...]");
+  bake_scene.addTo(*bake);
+  bake->add_option("--output", bake_options.output, "directory for the recordings")
+      ->type_name("DIR")
+      ->required();
+  bake->add_flag("--force", bake_options.force, "bake anew what is already there");
+  bake->add_flag("--quiet", bake_options.quiet, "no progress");
+
+  std::string what = "all";
+  CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
+  list->add_option("what", what, "algorithms, scenes, engines or all")->capture_default_str();
+
+  std::vector<std::filesystem::path> files;
+  CLI::App* verify = app.add_subcommand("verify", "Checks recordings and says what is wrong.");
+  verify->add_option("files", files, "recordings (.aabbs)")->type_name("FILE")->required();
+
+  CompareOptions compare_options;
+  CLI::App* compare =
+      app.add_subcommand("compare", "Compares two result files (JSON) case by case.");
+  compare->add_option("before", compare_options.before, "results to compare with")
+      ->type_name("A.json")
+      ->required();
+  compare->add_option("after", compare_options.after, "results to judge")
+      ->type_name("B.json")
+      ->required();
+  compare
+      ->add_option("--fail-above", compare_options.fail_above,
+                   "slow-down that counts as a regression, as a share: 0.05 is 5 %")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->type_name("SHARE");
+  app.require_subcommand(0, 1);
+
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    throw usageError(chosen.empty() ? app : *chosen.front(), error, arguments);
+  }
+
+  if (bake->parsed()) {
+    bake_options.scenes = splitList(bake_scenes);
+    bake_options.scene = bake_scene.parse();
+    bake_options.parameters = keyValues(bake_scene.parameters);
+    return runBake(bake_options);
+  }
+  if (list->parsed()) return runList(what);
+  if (verify->parsed()) return runVerify(files);
+  if (compare->parsed()) return runCompare(compare_options);
+  if (!headless) {
+    throw InputError("this version has no inspector window yet: add --headless (see --help)");
+  }
+  options.command_line = arguments;
+  return runHeadless(understand(std::move(options), texts, scene));
+}
+
+}  // namespace broadmark

@@ -1,0 +1,82 @@
+// The command line, parsed.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "broadmark/parameters.h"
+#include "broadmark/runner.h"
+#include "render/picture.h"
+
+namespace broadmark {
+
+/// What is simulated when a source is a built-in scene.
+struct SceneOptions {
+  std::vector<std::uint32_t> objects;     ///< empty: the scene's default
+  std::vector<std::string> object_types;  ///< likewise
+  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
+  ParameterValues parameters;
+};
+
+/// One part of a run that is divided among machines: cases whose number is index (mod count).
+struct Shard {
+  int index = 0;
+  int count = 1;
+};
+
+struct HeadlessOptions {
+  std::vector<std::string> sources;
+  SceneOptions scene;
+  std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
+  std::vector<int> threads;
+  std::vector<Isa> isas;
+  ParameterValues parameters;  ///< --param: of algorithms or scenes, whoever has them
+  int repetitions = 1;
+  int warmup = 0;
+  double frame_limit_seconds = 0.5;
+  CheckMode check = CheckMode::full;
+  bool memory = false;
+  std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
+  std::filesystem::path record;                          ///< "": keep no recordings
+  std::filesystem::path screenshot;                      ///< "": none
+  std::uint32_t screenshot_frame = 0;                    ///< 0: the last one
+  int screenshot_width = 1280;
+  int screenshot_height = 720;
+  GlSource gl = GlSource::automatic;
+  Shard shard;
+  std::string filter;
+  bool list_only = false;
+  bool quiet = false;
+  std::vector<std::string> command_line;
+};
+
+struct BakeOptions {
+  std::vector<std::string> scenes;
+  SceneOptions scene;
+  ParameterValues parameters;
+  std::filesystem::path output;
+  bool force = false;
+  bool quiet = false;
+};
+
+struct CompareOptions {
+  std::filesystem::path before;
+  std::filesystem::path after;
+  double fail_above = 0.05;
+};
+
+/// Parses the command line and runs the command it asks for. Returns the exit status. Throws
+/// InputError.
+int runCommandLine(int argc, char** argv);
+
+// The commands. Each returns the exit status and throws InputError.
+int runHeadless(const HeadlessOptions&);
+int runBake(const BakeOptions&);
+int runList(const std::string& what);
+int runVerify(const std::vector<std::filesystem::path>& files);
+int runCompare(const CompareOptions&);
+
+}  // namespace broadmark

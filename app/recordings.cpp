@@ -1,0 +1,184 @@
+// Sources of a run, and baking.
+
+#include "app/recordings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/cases.h"
+#include "app/interrupt.h"
+#include "app/progress.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isSceneName(const std::string& source) {
+  return std::ranges::any_of(builtinScenes(),
+                             [&](const SceneListing& scene) { return scene.id == source; });
+}
+
+bool looksLikeFile(const std::string& source) {
+  return source.find('/') != std::string::npos || fs::path(source).has_extension() ||
+         fs::exists(source);
+}
+
+RecordingReference referenceTo(Simulation& simulation) {
+  RecordingReference reference;
+  reference.scene = simulation.scene();
+  reference.scene_parameters = parameterValues(simulation);
+  reference.seed = static_cast<std::uint64_t>(parseInteger(
+      reference.scene_parameters.at("seed"), "seed", 0, std::numeric_limits<long long>::max()));
+  return reference;
+}
+
+Source recordingSource(const fs::path& path) {
+  Source source;
+  source.reference.path = path.string();
+  source.reference.scene = RecordingReader(path).scene();
+  return source;
+}
+
+/// A path in a settings file: as given, else relative to the settings file.
+fs::path besides(const fs::path& settings_file, const std::string& path) {
+  const fs::path beside = settings_file.parent_path() / path;
+  return !fs::exists(path) && fs::exists(beside) ? beside : fs::path(path);
+}
+
+Source jsonSource(const fs::path& path) {
+  const std::string text = readTextFile(path);
+  const std::string kind = jsonKind(text, path.string());
+  if (kind != "original-settings") {
+    throw InputError(fmt::format(
+        "{}: {}: a settings file of the original Broadmark (with m_inputScene) is expected",
+        path.string(), kind.empty() ? "of no known kind" : fmt::format("of the kind '{}'", kind)));
+  }
+  const OriginalSettings settings = parseOriginalSettings(text, path.string());
+  Source source = recordingSource(besides(path, settings.input_scene));
+  source.settings = settings;
+  return source;
+}
+
+Source fileSource(const fs::path& path) {
+  if (path.extension() == ".json") return jsonSource(path);
+  if (path.extension() == ".posrot") {
+    throw InputError(path.string() + ": .posrot recordings cannot be replayed yet: use .aabbs");
+  }
+  return recordingSource(path);
+}
+
+std::vector<std::string> sceneIds() {
+  std::vector<std::string> ids;
+  for (const SceneListing& scene : builtinScenes()) ids.push_back(scene.id);
+  return ids;
+}
+
+/// Simulates into `write`, a function that records one source with a progress callback.
+template <class Record>
+bool simulateWithProgress(Simulation& simulation, bool quiet, Record&& record) {
+  const SceneInfo scene = simulation.scene();
+  Progress progress(fmt::format("baking {} {} N{}", scene.name, scene.object_type, scene.objects),
+                    scene.frames, quiet);
+  return record([&](std::uint32_t frame) {
+    progress.update(frame);
+    return !InterruptGuard::requested();
+  });
+}
+
+std::unique_ptr<RecordingReader> simulateTemporary(Simulation& simulation, bool quiet) {
+  RecordingWriter writer(simulation.scene());
+  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
+    return recordAll(simulation, writer, progress);
+  });
+  return whole ? writer.finishTemporary() : nullptr;
+}
+
+}  // namespace
+
+std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
+                                                         const SceneOptions& options,
+                                                         const ParameterValues& parameters) {
+  std::vector<std::unique_ptr<Simulation>> simulations;
+  const auto make = [&](const std::string& scene, const ParameterValues& values) {
+    auto simulation = makeSimulation(scene);
+    setParameters(*simulation, values);
+    simulations.push_back(std::move(simulation));
+  };
+  // An empty list stands for the scene's own default.
+  auto counts = options.objects;
+  std::ranges::sort(counts);
+  const std::size_t count_choices = std::max<std::size_t>(counts.size(), 1);
+  const std::size_t type_choices = std::max<std::size_t>(options.object_types.size(), 1);
+  for (const std::string& scene : scenes) {
+    for (std::size_t type = 0; type < type_choices; ++type) {
+      for (std::size_t count = 0; count < count_choices; ++count) {
+        ParameterValues values = applicable(*makeSimulation(scene), parameters);
+        values.insert(options.parameters.begin(), options.parameters.end());
+        if (!counts.empty()) values["objects"] = fmt::format("{}", counts[count]);
+        if (!options.object_types.empty()) values["object_type"] = options.object_types[type];
+        make(scene, values);
+      }
+    }
+  }
+  return simulations;
+}
+
+std::vector<Source> resolveSources(const HeadlessOptions& options) {
+  std::vector<Source> sources;
+  for (const std::string& name : options.sources) {
+    if (!isSceneName(name)) {
+      if (!looksLikeFile(name)) {
+        throw InputError(unknownName("scene", name, sceneIds()) + ", and no such file");
+      }
+      sources.push_back(fileSource(name));
+      continue;
+    }
+    for (auto& simulation : makeSimulations({name}, options.scene, options.parameters)) {
+      Source source;
+      source.reference = referenceTo(*simulation);
+      source.simulation = std::move(simulation);
+      sources.push_back(std::move(source));
+    }
+  }
+  return sources;
+}
+
+std::unique_ptr<RecordingReader> openRecording(Source& source, const fs::path& directory,
+                                               bool quiet) {
+  std::unique_ptr<RecordingReader> recording;
+  if (!source.simulation) {
+    recording = std::make_unique<RecordingReader>(fs::path(source.reference.path));
+  } else if (directory.empty()) {
+    recording = simulateTemporary(*source.simulation, quiet);
+  } else if (const fs::path path = bakeInto(*source.simulation, directory, false, quiet);
+             !path.empty()) {
+    recording = std::make_unique<RecordingReader>(path);
+  }
+  if (recording) source.reference.hash = recording->hash();
+  return recording;
+}
+
+fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool force, bool quiet) {
+  fs::path path = directory / recordingFileName(simulation.scene());
+  if (!force && isBaked(path, simulation)) return path;
+  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
+    return !bake(simulation, path, progress).empty();
+  });
+  return whole ? path : fs::path();
+}
+
+void makeDirectory(const fs::path& directory) {
+  std::error_code error;
+  fs::create_directories(directory, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: cannot create the directory: {}", directory.string(), error.message()));
+  }
+}
+
+}  // namespace broadmark

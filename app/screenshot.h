@@ -1,0 +1,22 @@
+// The screenshot of a headless run.
+#pragma once
+
+#include <filesystem>
+
+#include "app/options.h"
+#include "broadmark/oracle.h"
+#include "broadmark/recording.h"
+
+namespace broadmark {
+
+/// Draws the chosen frame of a recording off-screen, the pairs being the oracle's, into `path`.
+/// Throws RenderError (no OpenGL) or InputError (no such frame, path).
+void takeScreenshot(const HeadlessOptions&, RecordingReader&, Oracle&,
+                    const std::filesystem::path& path);
+
+/// Where a recording's screenshot goes: the file asked for, or, when there are several recordings,
+/// that name followed by the recording's.
+std::filesystem::path screenshotPath(const std::filesystem::path& asked, const SceneInfo&,
+                                     bool several);
+
+}  // namespace broadmark

@@ -1,0 +1,18 @@
+# Installs the program and the two libraries, and exports them as a package: find_package(broadmark)
+# gives broadmark::engine and broadmark::algorithms.
+include(CMakePackageConfigHelpers)
+
+install(TARGETS broadmark DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS broadmark_engine broadmark_algorithms EXPORT broadmark_targets
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY engine/include/broadmark algorithms/include/broadmark
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/broadmark)
+install(EXPORT broadmark_targets NAMESPACE broadmark:: DESTINATION ${package_dir})
+configure_package_config_file(cmake/broadmarkConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
+  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir})
