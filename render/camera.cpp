@@ -126,8 +126,10 @@ Camera figureCamera(const Aabb& box, double aspect) {
   }
 
   const Vector2f centre = (low + high) / 2;
-  // A point has no extent: leave it the window that a unit box has, more or less.
-  const Vector2f extent = (high - low).cwiseMax(0.05F) * (1 + 2 * kMargin);
+  // A point has no extent: it gets about the window that a unit box has.
+  const bool is_point = (high - low).norm() < 1e-3F;
+  const Vector2f extent =
+      is_point ? Vector2f::Constant(0.5F) : Vector2f((high - low) * (1 + 2 * kMargin));
   const auto ratio = static_cast<float>(aspect);
   const float height = std::max(extent.y(), extent.x() / ratio);
   const Vector2f half(height * ratio / 2, height / 2);

@@ -89,18 +89,25 @@ std::string counted(std::uint64_t count, std::string_view singular, std::string_
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
 
+/// A recording from elsewhere may have names as long as 127 letters.
+std::string abbreviated(const std::string& text) {
+  constexpr std::size_t kLongest = 32;
+  return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
+}
+
 void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
                 const std::vector<bool>& overlapping, std::uint64_t pairs) {
   const auto in_pairs =
       static_cast<std::uint64_t>(std::count(overlapping.begin(), overlapping.end(), true));
-  drawCaption(picture,
-              {{{fmt::format("{} {}", scene.name, scene.object_type), kTitle},
-                {fmt::format("frame {}", frame.index), kText}},
-               {{counted(frame.boxes.size(), "body", "bodies"), kText},
-                {counted(pairs, "pair", "pairs"), kText}},
-               {{fmt::format("{} overlapping", in_pairs), kText, true, kOverlappingBox}},
-               {{fmt::format("{} free", frame.boxes.size() - in_pairs), kText, true, kFreeBox}}},
-              kBackground);
+  drawCaption(
+      picture,
+      {{{fmt::format("{} {}", abbreviated(scene.name), abbreviated(scene.object_type)), kTitle},
+        {fmt::format("frame {}", frame.index), kText}},
+       {{counted(frame.boxes.size(), "body", "bodies"), kText},
+        {counted(pairs, "pair", "pairs"), kText}},
+       {{fmt::format("{} overlapping", in_pairs), kText, true, kOverlappingBox}},
+       {{fmt::format("{} free", frame.boxes.size() - in_pairs), kText, true, kFreeBox}}},
+      kBackground);
 }
 
 }  // namespace

@@ -13,20 +13,27 @@ namespace {
 
 constexpr int kChannels = 4;
 
+std::size_t bytesOf(const Picture& picture) {
+  return std::size_t{kChannels} * static_cast<std::size_t>(picture.width) *
+         static_cast<std::size_t>(picture.height);
+}
+
 }  // namespace
 
 void writePng(const std::filesystem::path& path, const Picture& picture) {
-  AtomicFile file(path);
   std::string png;
   const auto append = [](void* context, void* data, int size) {
     static_cast<std::string*>(context)->append(static_cast<const char*>(data),
                                                static_cast<std::size_t>(size));
   };
-  if (stbi_write_png_to_func(append, &png, picture.width, picture.height, kChannels,
-                             picture.rgba.data(), picture.width * kChannels) == 0) {
+  const bool has_pixels =
+      picture.width > 0 && picture.height > 0 && picture.rgba.size() == bytesOf(picture);
+  if (!has_pixels || stbi_write_png_to_func(append, &png, picture.width, picture.height, kChannels,
+                                            picture.rgba.data(), picture.width * kChannels) == 0) {
     throw InputError(fmt::format("{}: a picture of {} x {} cannot be written as PNG", path.string(),
                                  picture.width, picture.height));
   }
+  AtomicFile file(path);
   file.write(png);
   file.commit();
 }
@@ -44,9 +51,7 @@ Picture readPng(const std::filesystem::path& path) {
     throw InputError(
         fmt::format("{}: not a readable PNG ({})", path.string(), stbi_failure_reason()));
   }
-  const std::size_t bytes = std::size_t{kChannels} * static_cast<std::size_t>(picture.width) *
-                            static_cast<std::size_t>(picture.height);
-  picture.rgba.assign(pixels.get(), pixels.get() + bytes);
+  picture.rgba.assign(pixels.get(), pixels.get() + bytesOf(picture));
   return picture;
 }
 

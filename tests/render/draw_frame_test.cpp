@@ -1,0 +1,308 @@
+#include "render/draw_frame.h"
+
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+#include <limits>
+#include <random>
+
+#include "render/camera.h"
+#include "render/gl.h"
+#include "render/offscreen_context.h"
+#include "tests/support/pictures.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+/// Software drivers only: the same picture on every machine.
+OffscreenOptions software() {
+  OffscreenOptions options;
+  options.software = true;
+  return options;
+}
+
+bool isInstalled(const std::string& library) {
+  return dlopen(library.c_str(), RTLD_LAZY | RTLD_NODELETE) != nullptr;
+}
+
+Aabb cube(const std::array<float, 3>& centre, float side) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = centre[axis] - side / 2;
+    box.max[axis] = centre[axis] + side / 2;
+  }
+  return box;
+}
+
+SceneInfo sceneOf(std::size_t objects, float side) {
+  return {"FreeFall", "Cubes", static_cast<std::uint32_t>(objects), 100, cube({0, 0, 0}, side)};
+}
+
+/// Boxes of a test scene with side 10 and their pairs. Not std::uniform_real_distribution: its
+/// results are the library's own affair.
+struct TestScene {
+  explicit TestScene(std::size_t count) {
+    std::mt19937 bits(2026);
+    const auto random = [&](float low, float high) {
+      return low + (high - low) * static_cast<float>(bits() >> 8) / static_cast<float>(1U << 24);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const float x = random(-4.5F, 4.5F);
+      const float y = random(-4.5F, 4.5F);
+      const float z = random(-4.5F, 4.5F);
+      boxes.push_back(cube({x, y, z}, random(0.4F, 1.2F)));
+    }
+    for (std::uint32_t a = 0; a < count; ++a) {
+      for (std::uint32_t b = a + 1; b < count; ++b) {
+        if (overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
+      }
+    }
+  }
+  Picture draw(OffscreenContext& context, std::size_t max_batch = 1U << 30U) const {
+    const PairRun run = pairs;
+    return drawFrame(context, sceneOf(boxes.size(), 10), {60, boxes}, {&run, 1}, kWidth, kHeight,
+                     max_batch);
+  }
+
+  std::vector<Aabb> boxes;
+  std::vector<Pair> pairs;
+};
+
+Picture drawBoxes(OffscreenContext& context, const SceneInfo& scene, const std::vector<Aabb>& boxes,
+                  const std::vector<Pair>& pairs = {}) {
+  const PairRun run = pairs;
+  return drawFrame(context, scene, {1, boxes}, {&run, 1}, kWidth, kHeight);
+}
+
+std::array<int, 3> pixelAt(const Picture& picture, const SceneInfo& scene,
+                           const std::array<float, 4>& world_point) {
+  const ViewSpace space = viewSpaceOf(scene.world);
+  const double aspect = static_cast<double>(picture.width) / picture.height;
+  const auto point =
+      project(figureCamera(space.toView(scene.world), aspect), space.toView(world_point)).value();
+  const auto x = static_cast<std::size_t>((point[0] + 1) / 2 * static_cast<float>(picture.width));
+  const auto y = static_cast<std::size_t>((1 - point[1]) / 2 * static_cast<float>(picture.height));
+  const std::uint8_t* pixel = &picture.rgba[4 * (y * static_cast<std::size_t>(picture.width) + x)];
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+bool isWarm(const std::array<int, 3>& rgb) { return rgb[0] > rgb[2] + 80; }
+bool isCool(const std::array<int, 3>& rgb) { return rgb[2] > rgb[0] + 5; }
+
+std::string messageOf(GlSource source, const OffscreenOptions& options) {
+  try {
+    makeOffscreenContext(source, options);
+  } catch (const RenderError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Runs with each source that is installed; the others are skipped with the reason.
+class EachSource : public testing::TestWithParam<GlSource> {
+ protected:
+  void SetUp() override {
+    const OffscreenOptions options = software();
+    const std::string& library =
+        GetParam() == GlSource::egl ? options.egl_library : options.osmesa_library;
+    if (!isInstalled(library)) GTEST_SKIP() << library << " is not installed";
+    context_ = makeOffscreenContext(GetParam(), options);
+  }
+  OffscreenContext& context() { return *context_; }
+
+ private:
+  std::unique_ptr<OffscreenContext> context_;
+};
+INSTANTIATE_TEST_SUITE_P(Render, EachSource, testing::Values(GlSource::egl, GlSource::osmesa),
+                         [](const auto& source) {
+                           return source.param == GlSource::egl ? "Egl" : "OsMesa";
+                         });
+
+TEST_P(EachSource, SaysWhatItIs) {
+  EXPECT_THAT(
+      context().description(),
+      AllOf(HasSubstr(GetParam() == GlSource::egl ? "EGL" : "OSMesa"), HasSubstr("OpenGL")));
+}
+
+TEST_P(EachSource, DrawsTheGoldenPicture) {
+  EXPECT_TRUE(looksLikeGolden(
+      TestScene(120).draw(context()),
+      std::filesystem::path(BROADMARK_SOURCE_DIR) / "tests/render/golden/boxes.png"));
+}
+
+TEST_P(EachSource, ColoursWhatOverlaps) {
+  const SceneInfo scene = sceneOf(3, 10);
+  const std::vector<Aabb> boxes = {cube({-3, 0, 3}, 2), cube({3, 0, -3}, 2), cube({0, 3, 0}, 2)};
+  const Picture picture = drawBoxes(context(), scene, boxes, {{0, 1}});
+  // A little above the middle of the face that looks along z.
+  const auto face = [&](std::size_t body) {
+    const Aabb& box = boxes[body];
+    return pixelAt(picture, scene, {box.min[0] + 1, box.min[1] + 1.2F, box.max[2], 0});
+  };
+  EXPECT_TRUE(isWarm(face(0)));
+  EXPECT_TRUE(isWarm(face(1)));
+  EXPECT_TRUE(isCool(face(2)));
+}
+
+TEST_P(EachSource, DrawsTheNearerBoxInFront) {
+  const SceneInfo scene = sceneOf(2, 10);
+  const std::vector<Aabb> boxes = {cube({1.14F, 0.4F, 1.2F}, 2), cube({-2.28F, -0.8F, -2.4F}, 2)};
+  for (const bool reversed : {false, true}) {
+    auto ordered = boxes;
+    if (reversed) std::swap(ordered[0], ordered[1]);
+    const std::uint32_t near = reversed ? 1 : 0;
+    // A pair of the near body with one that does not exist colours it alone.
+    const Picture picture = drawBoxes(context(), scene, ordered, {{near, 99}});
+    EXPECT_TRUE(isWarm(pixelAt(picture, scene, {1.14F, 0.6F, 2.2F, 0})));
+  }
+}
+
+TEST_P(EachSource, BatchesDoNotShow) {
+  const TestScene scene(120);
+  const Picture whole = scene.draw(context());
+  for (const std::size_t batch :
+       {std::size_t{1}, std::size_t{7}, std::size_t{119}, std::size_t{120}}) {
+    EXPECT_EQ(scene.draw(context(), batch).rgba, whole.rgba) << "batches of " << batch;
+  }
+}
+
+TEST_P(EachSource, EmptyAndOddScenesAreDrawn) {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  const Aabb everything{{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}};
+  const std::vector<std::vector<Aabb>> cases = {
+      {},
+      {cube({0, 0, 0}, 0)},
+      {Aabb{{-1, 0, -1}, {1, 0, 1}}, Aabb{{0, -1, 0}, {0, 1, 0}}},
+      {cube({1e30F, -1e30F, 1e30F}, 1), cube({0, 0, 0}, 1)},
+      {everything},
+      {cube({1e7F, 1e7F, 1e7F}, 4)}};
+  for (const Aabb& world : {cube({0, 0, 0}, 10), Aabb{}, everything, cube({1e6F, 0, 0}, 0),
+                            Aabb{{-5, 0, -5}, {5, 0, 5}}, Aabb{{1, 1, 1}, {-1, -1, -1}}}) {
+    for (const std::vector<Aabb>& boxes : cases) {
+      SceneInfo scene = sceneOf(boxes.size(), 1);
+      scene.world = world;
+      const Picture picture = drawBoxes(context(), scene, boxes, {{0, 5}, {7, 9}});
+      EXPECT_EQ(picture.rgba.size(), std::size_t{4} * kWidth * kHeight);
+      EXPECT_EQ(picture.rgba[3], 255);
+    }
+  }
+}
+
+TEST_P(EachSource, BodiesOutsideAFalseWorldAreSeen) {
+  SceneInfo scene = sceneOf(1, 0);
+  const std::vector<Aabb> boxes = {cube({500, 500, 500}, 3)};
+  const Picture picture = drawBoxes(context(), scene, boxes);
+  scene.world = boxes[0];  // which is then what the camera looks at
+  EXPECT_TRUE(isCool(pixelAt(picture, scene, {500, 500.3F, 501.5F, 0})));
+}
+
+TEST_P(EachSource, SizesAreObeyedOrRefused) {
+  const std::vector<Aabb> boxes = {cube({0, 0, 0}, 1)};
+  const SceneInfo scene = sceneOf(1, 4);
+  for (const auto& [width, height] : {std::pair{1, 1}, {3, 200}, {501, 7}}) {
+    const Picture picture = drawFrame(context(), scene, {1, boxes}, {}, width, height);
+    EXPECT_EQ(picture.width, width);
+    EXPECT_EQ(picture.height, height);
+    EXPECT_EQ(picture.rgba.size(), std::size_t{4} * static_cast<std::size_t>(width * height));
+  }
+  for (const auto& [width, height] :
+       {std::pair{0, 10}, {10, 0}, {-1, 10}, {kLargestPicture + 1, 10}}) {
+    EXPECT_THROW(drawFrame(context(), scene, {1, boxes}, {}, width, height), RenderError);
+  }
+}
+
+TEST_P(EachSource, ShaderErrorsAreTold) {
+  const Gl gl(context());
+  try {
+    makeProgram(gl, "#version 330 core\nvoid main() { nonsense = 1; }", "");
+    FAIL() << "nonsense was compiled";
+  } catch (const RenderError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("vertex shader"), HasSubstr("nonsense")));
+  }
+}
+
+TEST_P(EachSource, GlErrorsAreTold) {
+  const Gl gl(context());
+  gl.Enable(0xFFFF);
+  try {
+    gl.check("testing");
+    FAIL() << "no error";
+  } catch (const RenderError& error) {
+    EXPECT_STREQ(error.what(), "OpenGL error 0x0500 (invalid enum) while testing");
+  }
+  EXPECT_NO_THROW(gl.check("testing again"));
+}
+
+TEST(OffscreenContext, SourcesGiveTheSamePicture) {
+  const OffscreenOptions options = software();
+  for (const std::string& library : {options.egl_library, options.osmesa_library}) {
+    if (!isInstalled(library)) GTEST_SKIP() << library << " is not installed";
+  }
+  const TestScene scene(200);
+  const Picture egl = scene.draw(*makeOffscreenContext(GlSource::egl, options));
+  const Picture osmesa = scene.draw(*makeOffscreenContext(GlSource::osmesa, options));
+  EXPECT_TRUE(looksLike(egl, osmesa, "egl-osmesa"));
+}
+
+TEST(OffscreenContext, CanBeMadeAgainAndAgain) {
+  if (!isInstalled(software().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
+  const TestScene scene(10);
+  const Picture first = scene.draw(*makeOffscreenContext(GlSource::egl, software()));
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(scene.draw(*makeOffscreenContext(GlSource::egl, software())).rgba, first.rgba);
+  }
+}
+
+TEST(OffscreenContext, WithoutLibrariesNamesEachSourceAndWhy) {
+  OffscreenOptions none;
+  none.egl_library = "libNoSuchEGL.so.1";
+  none.osmesa_library = "libNoSuchOSMesa.so.8";
+  EXPECT_EQ(messageOf(GlSource::automatic, none),
+            "no OpenGL 3.3 for off-screen pictures: EGL: libNoSuchEGL.so.1 not found; "
+            "OSMesa: libNoSuchOSMesa.so.8 not found");
+  EXPECT_EQ(messageOf(GlSource::egl, none),
+            "no OpenGL 3.3 for off-screen pictures: EGL: libNoSuchEGL.so.1 not found");
+  EXPECT_EQ(messageOf(GlSource::osmesa, none),
+            "no OpenGL 3.3 for off-screen pictures: OSMesa: libNoSuchOSMesa.so.8 not found");
+}
+
+TEST(OffscreenContext, ALibraryThatIsNoGlIsRefused) {
+  OffscreenOptions wrong;
+  wrong.egl_library = wrong.osmesa_library = "libc.so.6";
+  EXPECT_THAT(messageOf(GlSource::automatic, wrong),
+              AllOf(HasSubstr("EGL: libc.so.6 lacks egl"), HasSubstr("libc.so.6 lacks OSMesa")));
+}
+
+TEST(OffscreenContext, AutomaticFallsBackToOsmesa) {
+  OffscreenOptions options = software();
+  if (!isInstalled(options.osmesa_library)) GTEST_SKIP() << "libOSMesa.so.8 is not installed";
+  options.egl_library = "libNoSuchEGL.so.1";
+  EXPECT_THAT(makeOffscreenContext(GlSource::automatic, options)->description(),
+              HasSubstr("OSMesa"));
+}
+
+// EGL is there, its drivers are not. In a process of its own: Mesa reads its environment once.
+TEST(OffscreenContextDeathTest, WithoutDriversNamesEachDisplayAndWhy) {
+  if (!isInstalled(software().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  EXPECT_EXIT(
+      {
+        setenv("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent", 1);
+        std::cerr << messageOf(GlSource::egl, {});
+        std::_Exit(0);
+      },
+      testing::ExitedWithCode(0), "EGL: .*surfaceless platform: .*failed.*default display: ");
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,59 @@
+// Comparing pictures, with a tolerance for what drivers and processors may do differently.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "render/picture.h"
+
+namespace broadmark::tests {
+
+/// Whether two pictures look the same: at most 0.1 % of the pixels differ by more than 8/255 in any
+/// channel. Otherwise a picture of the differences (red on the faded first one) is written to the
+/// tests' temporary directory, as NAME-difference.png.
+inline testing::AssertionResult looksLike(const Picture& actual, const Picture& expected,
+                                          const std::string& name) {
+  constexpr int kTolerance = 8;
+  if (actual.width != expected.width || actual.height != expected.height) {
+    return testing::AssertionFailure()
+           << name << " is " << actual.width << " x " << actual.height << ", expected "
+           << expected.width << " x " << expected.height;
+  }
+  Picture difference = actual;
+  std::size_t wrong = 0;
+  for (std::size_t pixel = 0; pixel < actual.rgba.size(); pixel += 4) {
+    bool differs = false;
+    for (std::size_t i = pixel; i < pixel + 4; ++i) {
+      differs = differs || std::abs(actual.rgba[i] - expected.rgba[i]) > kTolerance;
+      difference.rgba[i] = static_cast<std::uint8_t>(191 + actual.rgba[i] / 4);
+    }
+    if (!differs) continue;
+    ++wrong;
+    difference.rgba[pixel] = 255;
+    difference.rgba[pixel + 1] = difference.rgba[pixel + 2] = 0;
+  }
+  const std::size_t pixels = actual.rgba.size() / 4;
+  if (1000 * wrong <= pixels) return testing::AssertionSuccess();
+  const auto path = std::filesystem::path(testing::TempDir()) / (name + "-difference.png");
+  writePng(path, difference);
+  return testing::AssertionFailure()
+         << name << ": " << wrong << " of " << pixels << " pixels differ, see " << path.string();
+}
+
+/// The same against a picture kept in the source tree. With BROADMARK_UPDATE_GOLDEN=1 in the
+/// environment that picture is written instead.
+inline testing::AssertionResult looksLikeGolden(const Picture& actual,
+                                                const std::filesystem::path& golden) {
+  const char* update = std::getenv("BROADMARK_UPDATE_GOLDEN");
+  if (update != nullptr && std::string(update) == "1") {
+    writePng(golden, actual);
+    return testing::AssertionSuccess();
+  }
+  return looksLike(actual, readPng(golden), golden.stem().string());
+}
+
+}  // namespace broadmark::tests
