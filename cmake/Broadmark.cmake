@@ -25,3 +25,10 @@ function(broadmark_registry target file macro)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${file} CONTENT "${lines}" @ONLY)
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR})
 endfunction()
+
+# The public headers under include/: installed, and each compiled alone by the target
+# all_verify_interface_header_sets.
+function(broadmark_public_headers target)
+  file(GLOB headers CONFIGURE_DEPENDS include/broadmark/*.h)
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
+endfunction()

@@ -4,9 +4,8 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS broadmark DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(TARGETS broadmark_engine broadmark_algorithms EXPORT broadmark_targets
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(DIRECTORY engine/include/broadmark algorithms/include/broadmark
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/broadmark)
 install(EXPORT broadmark_targets NAMESPACE broadmark:: DESTINATION ${package_dir})
