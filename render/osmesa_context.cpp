@@ -13,6 +13,7 @@ namespace {
 // From GL/osmesa.h, which is all we would need of libosmesa6-dev.
 using OSMesaContext = struct osmesa_context*;
 using Proc = void (*)();
+using MakeCurrent = unsigned char (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei);
 constexpr int kOsmesaFormat = 0x22;
 constexpr int kOsmesaDepthBits = 0x30;
 constexpr int kOsmesaProfile = 0x33;
@@ -24,13 +25,11 @@ class Osmesa final : public OffscreenContext {
  public:
   explicit Osmesa(const std::string& library_name)
       : library_(library_name),
+        make_current_(library_.get<MakeCurrent>("OSMesaMakeCurrent")),
         destroy_(library_.get<void (*)(OSMesaContext)>("OSMesaDestroyContext")),
         address_(library_.get<Proc (*)(const char*)>("OSMesaGetProcAddress")) {
     const auto create =
         library_.get<OSMesaContext (*)(const int*, OSMesaContext)>("OSMesaCreateContextAttribs");
-    const auto make_current =
-        library_.get<unsigned char (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei)>(
-            "OSMesaMakeCurrent");
     const std::array attributes = {kOsmesaFormat,
                                    GL_RGBA,
                                    kOsmesaDepthBits,
@@ -44,12 +43,15 @@ class Osmesa final : public OffscreenContext {
                                    0};
     context_ = create(attributes.data(), nullptr);
     if (context_ == nullptr) throw RenderError("OSMesaCreateContextAttribs gave no 3.3 context");
-    if (make_current(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
+    if (make_current_(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
       destroy_(context_);
       throw RenderError("OSMesaMakeCurrent failed");
     }
   }
-  ~Osmesa() override { destroy_(context_); }
+  ~Osmesa() override {
+    make_current_(nullptr, nullptr, 0, 0, 0);
+    destroy_(context_);
+  }
 
   [[nodiscard]] std::string description() const override {
     return fmt::format("OSMesa, {}", describeGl(*this));
@@ -62,6 +64,7 @@ class Osmesa final : public OffscreenContext {
   static constexpr int kSide = 16;
 
   SharedLibrary library_;
+  MakeCurrent make_current_;
   void (*destroy_)(OSMesaContext);
   Proc (*address_)(const char*);
   OSMesaContext context_ = nullptr;
