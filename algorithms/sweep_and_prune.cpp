@@ -83,13 +83,11 @@ std::size_t boundaryNear(std::size_t hint, std::size_t first, std::size_t last, 
     }
     if (last - first > step) first = last - step + 1;
   }
-  while (first < last) {
-    const std::size_t middle = first + (last - first) / 2;
-    if (inside(middle)) {
-      first = middle + 1;
-    } else {
-      last = middle;
-    }
+  // Without a branch on what is found: it would be a coin toss for the predictor.
+  for (std::size_t count = last - first; count > 0;) {
+    const std::size_t half = (count + 1) / 2;
+    first += inside(first + half - 1) ? half : 0;
+    count -= half;
   }
   return first;
 }

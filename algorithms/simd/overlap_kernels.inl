@@ -6,17 +6,28 @@
 /// Rows tested at once: four rows of six bounds and six of the columns fit in 32 registers.
 inline constexpr std::size_t kRows = 4;
 
-/// Where bodies are numbered by their position.
-struct ByPosition {
+inline std::size_t roundedDown(std::size_t position) { return position / kLanes * kLanes; }
+inline std::size_t roundedUp(std::size_t position) { return roundedDown(position + kLanes - 1); }
+inline std::size_t larger(std::size_t a, std::size_t b) { return a > b ? a : b; }
+inline std::size_t smaller(std::size_t a, std::size_t b) { return a < b ? a : b; }
+
+/// The part of the triangle i < j within some columns; bodies are numbered by position.
+struct Tile {
+  Range columns;
+
+  Range behind(std::size_t i) const { return {larger(columns.begin, i + 1), columns.end}; }
+  std::size_t endOf(std::size_t) const { return columns.end; }
   Pair pair(std::size_t i, std::size_t j) const {
     return {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
   }
 };
 
-/// Where bodies have been sorted.
-struct ByLookup {
+/// One window behind each box; bodies have been sorted.
+struct Windows {
+  const std::uint32_t* ends;
   const std::uint32_t* bodies;
 
+  std::size_t endOf(std::size_t i) const { return ends[i]; }
   Pair pair(std::size_t i, std::size_t j) const {
     const std::uint32_t a = bodies[i];
     const std::uint32_t b = bodies[j];
@@ -24,24 +35,27 @@ struct ByLookup {
   }
 };
 
-/// Adds the pairs of `row` and the set bits' columns that lie in `columns`.
-template <class Bodies>
-void addHits(unsigned hits, std::size_t row, std::size_t first_column, Range columns, Bodies bodies,
-             PairBuffer& pairs) {
-  Pair* room = pairs.room(kLanes);
+/// Adds the pairs of the set bits: bit r * kLanes + l is the box at row + r and that at column + l.
+/// Drops those that the row has no business with.
+template <class Part>
+void addHits(std::uint64_t hits, std::size_t row, std::size_t column, std::size_t begin,
+             const Part& part, PairBuffer& pairs) {
+  Pair* const room = pairs.room(kRows * kLanes);
   std::size_t count = 0;
   for (; hits != 0; hits &= hits - 1) {
-    const std::size_t column = first_column + static_cast<std::size_t>(__builtin_ctz(hits));
-    room[count] = bodies.pair(row, column);
-    count += (column >= columns.begin) & (column < columns.end);
+    const auto bit = static_cast<std::size_t>(__builtin_ctzll(hits));
+    const std::size_t i = row + bit / kLanes;
+    const std::size_t j = column + bit % kLanes;
+    room[count] = part.pair(i, j);
+    count += (j > i) & (j >= begin) & (j < part.endOf(i));
   }
   pairs.advance(count);
 }
 
-/// Tests the boxes [row, row + kCount) on the axes from kFirstAxis on against the columns behind
-/// each of them, within `columns`.
-template <int kFirstAxis, std::size_t kCount, class Bodies>
-void testRows(const BoxArrays& boxes, std::size_t row, Range columns, Bodies bodies,
+/// Tests the boxes [row, row + kCount) on the axes from kFirstAxis on against all of `columns` that
+/// are behind them in their part.
+template <int kFirstAxis, std::size_t kCount, class Part>
+void testRows(const BoxArrays& boxes, std::size_t row, Range columns, const Part& part,
               PairBuffer& pairs) {
   Vector row_min[3][kCount];
   Vector row_max[3][kCount];
@@ -54,59 +68,53 @@ void testRows(const BoxArrays& boxes, std::size_t row, Range columns, Bodies bod
   const float* min[3] = {boxes.min(0), boxes.min(1), boxes.min(2)};
   const float* max[3] = {boxes.max(0), boxes.max(1), boxes.max(2)};
 
-  // Whole, aligned vectors: what they hold outside of `columns` is dropped where hits are added.
-  for (std::size_t column = columns.begin / kLanes * kLanes; column < columns.end;
-       column += kLanes) {
+  // Whole, aligned vectors: the lanes that are not wanted are dropped where hits are added.
+  for (std::size_t column = roundedDown(columns.begin); column < columns.end; column += kLanes) {
     Mask hits[kCount];
     for (int axis = kFirstAxis; axis < 3; ++axis) {
       const Vector column_min = load(min[axis] + column);
       const Vector column_max = load(max[axis] + column);
       for (std::size_t r = 0; r < kCount; ++r) {
-        const Mask here = meet(row_min[axis][r], row_max[axis][r], column_min, column_max);
-        hits[r] = axis == kFirstAxis ? here : both(hits[r], here);
+        const Vector low = row_min[axis][r];
+        const Vector high = row_max[axis][r];
+        hits[r] = axis == kFirstAxis ? meet(low, high, column_min, column_max)
+                                     : meet(hits[r], low, high, column_min, column_max);
       }
     }
     Mask any = hits[0];
     for (std::size_t r = 1; r < kCount; ++r) any = either(any, hits[r]);
-    if (bits(any) == 0) [[likely]]
+    if (none(any)) [[likely]]
       continue;
-    for (std::size_t r = 0; r < kCount; ++r) {
-      const std::size_t behind = row + r + 1;
-      addHits(bits(hits[r]), row + r, column,
-              {columns.begin > behind ? columns.begin : behind, columns.end}, bodies, pairs);
-    }
+    std::uint64_t all = 0;
+    for (std::size_t r = 0; r < kCount; ++r) all |= std::uint64_t{bits(hits[r])} << (r * kLanes);
+    addHits(all, row, column, columns.begin, part, pairs);
   }
 }
 
 void testTile(const BoxArrays& boxes, Range rows, Range columns, PairBuffer& pairs) {
+  const Tile tile{columns};
   std::size_t row = rows.begin;
   for (; row + kRows <= rows.end; row += kRows) {
-    const std::size_t begin = columns.begin > row + 1 ? columns.begin : row + 1;
-    testRows<0, kRows>(boxes, row, {begin, columns.end}, ByPosition{}, pairs);
+    testRows<0, kRows>(boxes, row, tile.behind(row), tile, pairs);
   }
-  for (; row < rows.end; ++row) {
-    const std::size_t begin = columns.begin > row + 1 ? columns.begin : row + 1;
-    testRows<0, 1>(boxes, row, {begin, columns.end}, ByPosition{}, pairs);
-  }
+  for (; row < rows.end; ++row) testRows<0, 1>(boxes, row, tile.behind(row), tile, pairs);
 }
 
 void sweep(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
            Range rows, PairBuffer& pairs) {
-  const ByLookup lookup{bodies};
+  const Windows windows{ends, bodies};
   std::size_t row = rows.begin;
   for (; row + kRows <= rows.end; row += kRows) {
-    // The windows' common part together, then what each has beyond.
+    // What the windows have in common for all rows at once, then what each has beyond.
     std::size_t common = ends[row];
-    for (std::size_t r = 1; r < kRows; ++r) {
-      if (ends[row + r] < common) common = ends[row + r];
-    }
-    testRows<1, kRows>(boxes, row, {row + 1, common}, lookup, pairs);
-    for (std::size_t r = 0; r < kRows; ++r) {
-      const std::size_t begin = common > row + r + 1 ? common : row + r + 1;
-      testRows<1, 1>(boxes, row + r, {begin, ends[row + r]}, lookup, pairs);
+    for (std::size_t r = 1; r < kRows; ++r) common = smaller(common, ends[row + r]);
+    common = roundedUp(common);
+    testRows<1, kRows>(boxes, row, {row + 1, common}, windows, pairs);
+    for (std::size_t r = row; r < row + kRows; ++r) {
+      if (ends[r] > common) testRows<1, 1>(boxes, r, {common, ends[r]}, windows, pairs);
     }
   }
-  for (; row < rows.end; ++row) testRows<1, 1>(boxes, row, {row + 1, ends[row]}, lookup, pairs);
+  for (; row < rows.end; ++row) testRows<1, 1>(boxes, row, {row + 1, ends[row]}, windows, pairs);
 }
 
 inline constexpr OverlapKernels kKernels = {testTile, sweep};

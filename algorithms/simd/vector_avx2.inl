@@ -10,6 +10,9 @@ inline Mask meet(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
   return _mm256_and_ps(_mm256_cmp_ps(a_min, b_max, _CMP_LE_OQ),
                        _mm256_cmp_ps(b_min, a_max, _CMP_LE_OQ));
 }
-inline Mask both(Mask a, Mask b) { return _mm256_and_ps(a, b); }
+inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+  return _mm256_and_ps(of, meet(a_min, a_max, b_min, b_max));
+}
 inline Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
+inline bool none(Mask mask) { return bits(mask) == 0; }
