@@ -20,6 +20,22 @@ InputError failure(const std::filesystem::path& path, std::string_view what) {
   return InputError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
+/// Where a symbolic link leads, so that its target is written and the link stays.
+std::filesystem::path throughLinks(std::filesystem::path path) {
+  std::error_code failed;
+  if (!std::filesystem::is_symlink(path, failed)) return path;
+  auto target = std::filesystem::canonical(path, failed);
+  return failed ? path : target;
+}
+
+/// Whether `path` still names the open file.
+bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
 }  // namespace
 
 FileDescriptor::~FileDescriptor() {
@@ -27,7 +43,8 @@ FileDescriptor::~FileDescriptor() {
 }
 
 FileDescriptor openForReading(const std::filesystem::path& path) {
-  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // A FIFO without a writer would block; on regular files O_NONBLOCK means nothing.
+  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) throw failure(path, "cannot read");
   if (!S_ISREG(status.st_mode)) {
@@ -64,19 +81,23 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
 }
 
 AtomicFile::AtomicFile(std::filesystem::path path)
-    : path_(std::move(path)), partial_(path_.string() + ".part") {
+    : path_(throughLinks(std::move(path))), partial_(path_.string() + ".part") {
   std::error_code ignored;
-  if (std::filesystem::is_directory(path_, ignored)) {
-    throw InputError(fmt::format("{}: cannot write: is a directory", path_.string()));
+  const auto status = std::filesystem::status(path_, ignored);
+  // Renaming over a device (/dev/null) would replace it.
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(fmt::format("{}: cannot write: not a regular file", path_.string()));
   }
-  // What a killed writer left is taken over; O_TRUNC comes only after the lock is held.
-  file_ = FileDescriptor(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-  if (file_.get() < 0) throw failure(path_, "cannot write");
-  if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-    committed_ = true;  // not ours to remove
-    throw InputError(
-        fmt::format("{}: cannot write: another process is writing it", path_.string()));
-  }
+  do {
+    // What a killed writer left is taken over; it is cut only after the lock is held.
+    file_ = FileDescriptor(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+    if (file_.get() < 0) throw failure(path_, "cannot write");
+    if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
+      throw InputError(
+          fmt::format("{}: cannot write: another process is writing it", path_.string()));
+    }
+    // Between open and lock its writer may have finished: then we hold the finished file.
+  } while (!hasName(file_, partial_));
   if (::ftruncate(file_.get(), 0) != 0) throw failure(path_, "cannot write");
 }
 

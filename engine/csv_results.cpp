@@ -60,11 +60,11 @@ std::string formatCsv(const Results& results) {
     fmt::format_to(
         std::back_inserter(csv),
         "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", caseColumns(result),
-        result.recording.scene.frames, orEmpty(result.recording.seed), result.recording.hash,
-        statusName(result.status), csvField(result.reason), result.repetitions.size(),
-        time(summary.seconds_per_frame), time(summary.median), time(summary.p95), time(summary.p99),
-        time(summary.min), time(summary.stddev), summary.ci95 ? time(summary.ci95->low) : "",
-        summary.ci95 ? time(summary.ci95->high) : "",
+        result.recording.scene.frames, orEmpty(result.recording.seed),
+        csvField(result.recording.hash), statusName(result.status), csvField(result.reason),
+        result.repetitions.size(), time(summary.seconds_per_frame), time(summary.median),
+        time(summary.p95), time(summary.p99), time(summary.min), time(summary.stddev),
+        summary.ci95 ? time(summary.ci95->low) : "", summary.ci95 ? time(summary.ci95->high) : "",
         timed ? fmt::format("{}", summary.outliers) : "", result.pairs_mean, result.pairs_max,
         found(result.missed), found(result.extra), found(result.invalid),
         orEmpty(result.peak_bytes));

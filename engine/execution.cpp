@@ -5,6 +5,7 @@
 #include <immintrin.h>
 
 #include <algorithm>
+#include <system_error>
 
 namespace broadmark {
 namespace {
@@ -71,12 +72,19 @@ Isa bestIsa() {
 
 ThreadTeam::ThreadTeam(int size) {
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
-  for (int worker = 1; worker < size; ++worker) {
-    threads_.emplace_back([this, worker] { loop(worker); });
+  try {
+    for (int worker = 1; worker < size; ++worker) {
+      threads_.emplace_back([this, worker] { loop(worker); });
+    }
+  } catch (const std::system_error&) {  // the system grants no more of them
+    stop();
+    throw;
   }
 }
 
-ThreadTeam::~ThreadTeam() {
+ThreadTeam::~ThreadTeam() { stop(); }
+
+void ThreadTeam::stop() {
   stopping_.store(true);
   generation_.fetch_add(1, std::memory_order_release);
   generation_.notify_all();

@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 inline Json parseJson(std::string_view text, std::string_view name) {
   try {
     return Json::parse(text);
-  } catch (const Json::parse_error& error) {
+  } catch (const Json::exception& error) {  // out_of_range for numbers like 1e999
     // Drop the library's own prefix "[json.exception.parse_error.101] ".
     const std::string_view what = error.what();
     const auto end_of_prefix = what.find("] ");

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "json_fields.h"
 #include "result_writers.h"
 
@@ -73,9 +77,12 @@ Json toJson(const std::array<float, 4>& corner) { return {corner[0], corner[1], 
 
 std::array<float, 4> cornerFrom(const Json& json, const std::string& name) {
   std::array<float, 4> corner{};
-  const bool right =
-      json.size() == 3 && std::ranges::all_of(json, [](const Json& v) { return v.is_number(); });
-  if (!right) throw InputError(name + ": three numbers are expected");
+  const auto fits = [](const Json& v) {
+    return v.is_number() && std::abs(v.get<double>()) <= std::numeric_limits<float>::max();
+  };
+  if (json.size() != 3 || !std::ranges::all_of(json, fits)) {
+    throw InputError(name + ": three 32-bit floats are expected");
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) corner[axis] = json[axis].get<float>();
   return corner;
 }

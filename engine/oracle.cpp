@@ -1,11 +1,10 @@
 // The oracle: brute force for few bodies, an exact sweep for many.
 //
 // The sweep: bodies go into strips along the second-longest axis (a body into every strip it
-// touches);
-// within a strip they are sorted along the longest axis and swept. A pair that shares several
-// strips is reported only in the one that holds the larger of its two lower ends, so nothing is
-// reported twice and nothing is lost: that strip belongs to both bodies whenever they overlap. O(n
-// log n) plus the candidates of the sweeps.
+// touches); within a strip they are sorted along the longest axis and swept. A pair that shares
+// several strips is reported only in the one that holds the larger of its two lower ends, so
+// nothing is reported twice and nothing is lost: that strip belongs to both bodies whenever they
+// overlap. O(n log n) plus the candidates of the sweeps.
 
 #include "broadmark/oracle.h"
 
@@ -132,8 +131,9 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes) {
 std::vector<Pair> sweptPairs(std::span<const Aabb> boxes) {
   std::vector<Pair> pairs;
   if (boxes.empty()) return pairs;
-  const auto [sweep_axis, strip_axis, other_axis] = axesByExtent(boxes);
-  const Strips strips(boxes, strip_axis);
+  const std::array<int, 3> axes = axesByExtent(boxes);
+  const int sweep_axis = axes[0];
+  const Strips strips(boxes, axes[1]);
   StripContents contents = fill(strips, boxes);
 
   for (std::uint32_t s = 0; s < strips.count(); ++s) {

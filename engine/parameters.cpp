@@ -18,6 +18,8 @@ template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang before 17 needs the guide spelled out
 
 template <class Number>
 void setNumber(const Parameter& parameter, std::string_view text, Number& value) {

@@ -39,6 +39,9 @@ static_assert(sizeof(Header) == kRecordingHeaderBytes);
 
 constexpr std::size_t kTextBytes = 128;
 
+/// Frames of no objects take no bytes, so the file's length does not bound their number.
+constexpr std::uint32_t kMostEmptyFrames = 1'000'000;
+
 class Hasher {
  public:
   Hasher() { XXH3_128bits_reset(&state_); }
@@ -129,6 +132,10 @@ SceneInfo parseHeader(const Header& header, const std::string& name) {
       headerText(header.object_type, "object type", offsetof(Header, object_type), name);
   scene.objects = headerCount(header.objects, "objects", offsetof(Header, objects), name);
   scene.frames = headerCount(header.frames, "frames", offsetof(Header, frames), name);
+  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+    throw InputError(fmt::format("{}: byte {}: {} frames of no objects: at most {} are allowed",
+                                 name, offsetof(Header, frames), scene.frames, kMostEmptyFrames));
+  }
   scene.world = header.world;
   if (const std::string_view fault = boxFault(scene.world); !fault.empty()) {
     throw InputError(
@@ -151,6 +158,10 @@ Header makeHeader(const SceneInfo& scene) {
   if (scene.objects > kMost || scene.frames > kMost) {
     throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
                                  scene.objects, scene.frames, kMost));
+  }
+  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+    throw InputError(fmt::format("cannot record {} frames of no objects: at most {} are allowed",
+                                 scene.frames, kMostEmptyFrames));
   }
   Header header{};
   copyText(header.name, scene.name, "scene name");
@@ -178,8 +189,11 @@ FileDescriptor unnamedFile(const std::filesystem::path& directory) {
 }  // namespace
 
 std::uint64_t recordingBytes(const SceneInfo& scene) {
-  return kRecordingHeaderBytes +
-         sizeof(Aabb) * std::uint64_t{scene.objects} * (std::uint64_t{1} + scene.frames);
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t boxes = std::uint64_t{scene.objects} * (std::uint64_t{1} + scene.frames);
+  // Absurd counts must not wrap around to a size that looks right.
+  if (boxes > (kMost - kRecordingHeaderBytes) / sizeof(Aabb)) return kMost;
+  return kRecordingHeaderBytes + sizeof(Aabb) * boxes;
 }
 
 std::string recordingFileName(const SceneInfo& scene, std::string_view extension) {

@@ -241,11 +241,12 @@ CaseResult runCase(const Case& run, FrameSource& source, const RunOptions& optio
 std::optional<std::uint64_t> measurePeakBytes(const Case& run, FrameSource& source) {
   int channel[2];
   if (::pipe(channel) != 0) return std::nullopt;
+  // Free memory that the child inherits is within its peak from the start, and would hide what the
+  // algorithm takes.
+  ::malloc_trim(0);
   const pid_t child = ::fork();
   if (child < 0) return std::nullopt;
   if (child == 0) {
-    // Free memory inherited from the parent would hide what the algorithm takes.
-    ::malloc_trim(0);
     const auto peak_kib = [] {
       rusage usage{};
       ::getrusage(RUSAGE_SELF, &usage);

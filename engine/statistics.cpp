@@ -57,15 +57,18 @@ double quantile(std::span<const double> values, double q) {
 
 double studentT975(double degrees) {
   // Exact to the digits given; in between and beyond, interpolated in 1/degrees, in which the
-  // quantile is nearly linear.
+  // quantile is nearly linear and convex, so never too small: 3 % too large at most below 1.5
+  // degrees, 0.6 % up to 3, 0.15 % up to 6, 0.02 % from 10 on.
   struct Row {
     double degrees, t;
   };
-  static constexpr std::array kTable = {
-      Row{1, 12.7062},  Row{2, 4.30265},  Row{3, 3.18245},  Row{4, 2.77645},
-      Row{5, 2.57058},  Row{6, 2.44691},  Row{7, 2.36462},  Row{8, 2.30600},
-      Row{9, 2.26216},  Row{10, 2.22814}, Row{12, 2.17881}, Row{15, 2.13145},
-      Row{20, 2.08596}, Row{30, 2.04227}, Row{60, 2.00030}, Row{120, 1.97993}};
+  static constexpr std::array kTable = {Row{1, 12.7062},    Row{1.25, 8.02795}, Row{1.5, 6.01666},
+                                        Row{1.75, 4.94885}, Row{2, 4.30265},    Row{2.5, 3.57465},
+                                        Row{3, 3.18245},    Row{3.5, 2.94009},  Row{4, 2.77645},
+                                        Row{5, 2.57058},    Row{6, 2.44691},    Row{7, 2.36462},
+                                        Row{8, 2.30600},    Row{9, 2.26216},    Row{10, 2.22814},
+                                        Row{12, 2.17881},   Row{15, 2.13145},   Row{20, 2.08596},
+                                        Row{30, 2.04227},   Row{60, 2.00030},   Row{120, 1.97993}};
   constexpr double kNormal = 1.95996;
   if (degrees <= 1) return kTable.front().t;
   for (std::size_t i = 1; i < kTable.size(); ++i) {
@@ -90,7 +93,7 @@ Summary summarise(std::span<const std::span<const double>> repetitions) {
   std::vector<double> means;
   for (const auto repetition : repetitions) {
     sorted.insert(sorted.end(), repetition.begin(), repetition.end());
-    means.push_back(mean(repetition));
+    if (!repetition.empty()) means.push_back(mean(repetition));
   }
   std::ranges::sort(sorted);
   const double q1 = sortedQuantile(sorted, 0.25);

@@ -53,6 +53,7 @@ class ThreadTeam {
   void start(Job);
   void perform(int worker);
   void loop(int worker);
+  void stop();
 
   Job job_;
   std::atomic<unsigned> generation_{0};

@@ -20,7 +20,7 @@ namespace broadmark {
 
 inline constexpr std::size_t kRecordingHeaderBytes = 304;
 
-/// Size of a whole recording: 304 + 32·objects·(1 + frames).
+/// Size of a whole recording: 304 + 32·objects·(1 + frames); the largest uint64 if that is larger.
 std::uint64_t recordingBytes(const SceneInfo&);
 
 /// "FreeFall Cubes N1000 F1000frames.aabbs"

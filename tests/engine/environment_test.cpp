@@ -1,0 +1,39 @@
+// What is said of the machine.
+
+#include "broadmark/environment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "broadmark/execution.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AnyOf;
+using testing::MatchesRegex;
+using testing::StartsWith;
+
+TEST(Environment, IsPlausible) {
+  const Environment environment = thisEnvironment();
+  EXPECT_NE(environment.cpu, "");
+  EXPECT_GE(environment.logical_cores, 1);
+  EXPECT_LE(environment.logical_cores, 4096);
+  EXPECT_GE(environment.physical_cores, 0);  // 0 where the system does not tell
+  EXPECT_EQ(environment.isa, isaName(bestIsa()));
+  EXPECT_GE(environment.memory_bytes, std::uint64_t{1} << 28);
+  EXPECT_LE(environment.memory_bytes, std::uint64_t{1} << 50);
+  EXPECT_GE(environment.load_average, 0);
+  for (const std::string& cache : environment.caches) EXPECT_THAT(cache, StartsWith("L"));
+  EXPECT_THAT(environment.os, testing::HasSubstr("Linux"));
+  EXPECT_THAT(environment.compiler, AnyOf(StartsWith("gcc "), StartsWith("clang ")));
+  EXPECT_NE(environment.build_type, "");
+  EXPECT_THAT(environment.version, MatchesRegex("[0-9]+\\.[0-9]+\\.[0-9]+"));
+  EXPECT_THAT(environment.started,
+              MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}T[0-9]{2}:[0-9]{2}:[0-9]{2}Z"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

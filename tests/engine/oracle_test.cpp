@@ -1,0 +1,186 @@
+// The oracle against the definition, and how answers are compared with it.
+
+#include "broadmark/oracle.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "tests/engine/helpers.h"
+#include "tests/support/inputs.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+
+PairDigest digestOf(std::vector<Pair> pairs) {
+  const PairRun run = pairs;
+  return digest({&run, 1});
+}
+
+FrameDifference compare(const std::vector<Pair>& answer, const std::vector<Aabb>& boxes,
+                        float margin = 0) {
+  const PairRun run = answer;
+  return findDifference({&run, 1}, bruteForcePairs(boxes), {.index = 7, .boxes = boxes}, margin);
+}
+
+TEST(BruteForce, FindsTheObviousPairs) {
+  const std::vector<Aabb> boxes = {unitBox(0), unitBox(5), unitBox(0.5F), unitBox(1)};
+  EXPECT_THAT(bruteForcePairs(boxes), ElementsAre(Pair{0, 2}, Pair{0, 3}, Pair{2, 3}));
+  EXPECT_TRUE(bruteForcePairs({}).empty());
+}
+
+TEST(Sweep, EqualsBruteForceOnAllInputs) {
+  for (const inputs::Input& input : inputs::kAll) {
+    for (const std::size_t n : {0, 1, 2, 3, 17, 100, 299, 700}) {
+      for (const std::uint32_t frame : {0, 1, 5}) {
+        const std::vector<Aabb> boxes = input.boxes(n, frame, 42);
+        ASSERT_THAT(sweptPairs(boxes), ElementsAreArray(bruteForcePairs(boxes)))
+            << input.name << ", n = " << n << ", frame " << frame;
+      }
+    }
+  }
+}
+
+TEST(Sweep, EqualsBruteForceOnRandomSizes) {
+  std::mt19937 random(1);
+  constexpr int kRounds = kSanitized ? 20 : 100;
+  for (int round = 0; round < kRounds; ++round) {
+    const inputs::Input& input = inputs::kAll[random() % inputs::kAll.size()];
+    const std::size_t n = random() % 1500;
+    const std::vector<Aabb> boxes = input.boxes(n, random() % 8, random());
+    ASSERT_EQ(sweptPairs(boxes), bruteForcePairs(boxes)) << input.name << ", n = " << n;
+  }
+}
+
+TEST(Sweep, CopesWithTheLargestFloats) {
+  for (const std::size_t n : {2, 40, 400}) {
+    const std::vector<Aabb> boxes = inputs::limits(n, 1, 3);
+    EXPECT_EQ(sweptPairs(boxes), bruteForcePairs(boxes));
+  }
+}
+
+TEST(Digest, IsTheSameInAnyOrderAndSplit) {
+  std::vector<Pair> pairs = bruteForcePairs(inputs::clustered(100, 1, 1));
+  const PairDigest expected = digestOf(pairs);
+  EXPECT_EQ(expected.count, pairs.size());
+  std::ranges::shuffle(pairs, std::mt19937(5));
+  EXPECT_EQ(digestOf(pairs), expected);
+  const PairRun all = pairs;
+  const PairRun runs[] = {all.first(10), {}, all.subspan(10)};
+  EXPECT_EQ(digest(runs), expected);
+}
+
+TEST(Digest, ChangesWithEverySinglePair) {
+  const std::vector<Pair> pairs = {{0, 1}, {1, 2}, {2, 3}};
+  const PairDigest expected = digestOf(pairs);
+  EXPECT_NE(digestOf({{0, 1}, {1, 2}}), expected);
+  EXPECT_NE(digestOf({{0, 1}, {1, 2}, {2, 4}}), expected);
+  EXPECT_NE(digestOf({{0, 1}, {1, 2}, {3, 2}}), expected);
+  EXPECT_NE(digestOf({{0, 1}, {1, 2}, {2, 3}, {2, 3}}), expected);
+  // One pair missed and another twice: the count is right, the hash is not.
+  EXPECT_NE(digestOf({{0, 1}, {1, 2}, {1, 2}}).hash, expected.hash);
+}
+
+TEST(Oracle, IsRightWithAnyBudget) {
+  std::vector<std::vector<Aabb>> frames;
+  for (std::uint32_t f = 0; f < 4; ++f) frames.push_back(inputs::teleporting(400, f, 9));
+  // Nothing kept; room for about one frame; room for all.
+  for (const std::size_t budget : {std::size_t{0}, std::size_t{20'000}, std::size_t{1} << 30}) {
+    Oracle oracle(budget);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (std::uint32_t f = 0; f < frames.size(); ++f) {
+        const Frame frame = {f, frames[f]};
+        const std::vector<Pair> right = bruteForcePairs(frames[f]);
+        ASSERT_EQ(oracle.pairDigest(frame), digestOf(right));
+        ASSERT_THAT(oracle.pairs(frame), ElementsAreArray(right));
+      }
+    }
+  }
+}
+
+TEST(Difference, NothingWhenAllIsRight) {
+  const std::vector<Aabb> boxes = chain(4);
+  const FrameDifference difference = compare({{2, 3}, {0, 1}, {1, 2}}, boxes);
+  EXPECT_FALSE(difference.any());
+  EXPECT_FALSE(difference.isMismatch());
+  EXPECT_EQ(difference.frame, 7U);
+}
+
+TEST(Difference, ListsMissedAndExtraPairs) {
+  const FrameDifference difference = compare({{0, 3}, {1, 2}}, chain(4));
+  EXPECT_THAT(difference.missed, ElementsAre(Pair{0, 1}, Pair{2, 3}));
+  EXPECT_THAT(difference.extra, ElementsAre(Pair{0, 3}));
+  EXPECT_EQ(difference.missed_count, 2U);
+  EXPECT_EQ(difference.extra_count, 1U);
+  EXPECT_EQ(difference.forbidden_count, 1U);
+  EXPECT_TRUE(difference.isMismatch());
+}
+
+TEST(Difference, MissingEverythingIsSeen) { EXPECT_EQ(compare({}, chain(4)).missed_count, 3U); }
+
+TEST(Difference, ExtraPairsAreAllowedWithinTheMarginOnly) {
+  // The gaps between boxes 0, 1 and 2 are 0.2 and 1.
+  const std::vector<Aabb> boxes = {unitBox(0), unitBox(1.2F), unitBox(3.2F)};
+  const FrameDifference near = compare({{0, 1}}, boxes, 0.125F);
+  EXPECT_EQ(near.extra_count, 1U);
+  EXPECT_TRUE(near.any());
+  EXPECT_FALSE(near.isMismatch());
+
+  const FrameDifference far = compare({{0, 1}, {1, 2}}, boxes, 0.125F);
+  EXPECT_EQ(far.extra_count, 2U);
+  EXPECT_EQ(far.forbidden_count, 1U);
+  EXPECT_TRUE(far.isMismatch());
+  EXPECT_TRUE(compare({{0, 1}}, boxes, 0.0625F).isMismatch());
+}
+
+TEST(Difference, PairsThatAreNoneAreInvalid) {
+  const std::vector<Aabb> boxes = chain(2);
+  const std::vector<Pair> invalid = {{1, 1}, {1, 0}, {0, 2}, {5, 9}, {0, 0xFFFFFFFF}};
+  for (const Pair pair : invalid) {
+    const FrameDifference difference = compare({{0, 1}, pair}, boxes);
+    EXPECT_EQ(difference.invalid_count, 1U);
+    EXPECT_THAT(difference.invalid, ElementsAre(pair));
+    EXPECT_EQ(difference.missed_count + difference.extra_count, 0U);
+    EXPECT_TRUE(difference.isMismatch());
+  }
+}
+
+TEST(Difference, DuplicatesAreInvalidWhetherRightOrWrong) {
+  const FrameDifference right = compare({{0, 1}, {1, 2}, {0, 1}, {0, 1}}, chain(3));
+  EXPECT_THAT(right.invalid, ElementsAre(Pair{0, 1}, Pair{0, 1}));
+  EXPECT_EQ(right.missed_count + right.extra_count, 0U);
+
+  const FrameDifference wrong = compare({{0, 1}, {1, 2}, {0, 2}, {0, 2}}, chain(3));
+  EXPECT_EQ(wrong.extra_count, 1U);
+  EXPECT_EQ(wrong.invalid_count, 1U);
+}
+
+TEST(Difference, CountsAllAndListsTheFirstThousand) {
+  constexpr std::uint32_t kBodies = 1600;
+  const FrameDifference missed = compare({}, chain(kBodies));
+  EXPECT_EQ(missed.missed_count, kBodies - 1U);
+  ASSERT_EQ(missed.missed.size(), FrameDifference::kListed);
+  EXPECT_EQ(missed.missed.back(), (Pair{999, 1000}));
+
+  std::vector<Aabb> apart = chain(kBodies);
+  for (std::size_t i = 0; i < apart.size(); ++i) apart[i] = unitBox(2 * static_cast<float>(i));
+  std::vector<Pair> answer;
+  for (std::uint32_t i = 0; i + 1 < kBodies; ++i) {
+    answer.push_back({i, i + 1});
+    answer.push_back({i, i});
+  }
+  const FrameDifference false_pairs = compare(answer, apart);
+  EXPECT_EQ(false_pairs.extra_count, kBodies - 1U);
+  EXPECT_EQ(false_pairs.forbidden_count, kBodies - 1U);
+  EXPECT_EQ(false_pairs.invalid_count, kBodies - 1U);
+  EXPECT_EQ(false_pairs.extra.size(), FrameDifference::kListed);
+  EXPECT_EQ(false_pairs.invalid.size(), FrameDifference::kListed);
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,140 @@
+// Typed parameters: from text, to text, and what is refused.
+
+#include "broadmark/parameters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cfloat>
+
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// One parameter of each type.
+class Knobs final : public Parametrised {
+ public:
+  bool verbose = false;
+  std::int64_t cells = 200;
+  double margin = 0.01;
+  double scale = 1;
+  Choice shape{"cubes", {"cubes", "spheres"}};
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({.name = "verbose", .doc = "says more", .value = &verbose});
+    visit({.name = "cells", .doc = "bodies per cell", .value = &cells, .min = 1, .max = 1000});
+    visit({.name = "margin", .doc = "world units", .value = &margin, .min = 0, .max = 1});
+    visit({.name = "scale", .doc = "any", .value = &scale, .min = -DBL_MAX, .max = DBL_MAX});
+    visit({.name = "shape", .doc = "what bodies are", .value = &shape});
+  }
+};
+
+TEST(Parameters, AllTypesAreSetFromText) {
+  Knobs knobs;
+  setParameters(knobs, {{"verbose", "on"},
+                        {"cells", "1000"},
+                        {"margin", "2.5e-1"},
+                        {"scale", "-3"},
+                        {"shape", "spheres"}});
+  EXPECT_TRUE(knobs.verbose);
+  EXPECT_EQ(knobs.cells, 1000);
+  EXPECT_EQ(knobs.margin, 0.25);
+  EXPECT_EQ(knobs.scale, -3);
+  EXPECT_EQ(knobs.shape.value, "spheres");
+}
+
+TEST(Parameters, SwitchesTakeTheUsualWords) {
+  for (const auto& [text, value] : std::map<std::string, bool>{{"on", true},
+                                                               {"true", true},
+                                                               {"1", true},
+                                                               {"off", false},
+                                                               {"false", false},
+                                                               {"0", false}}) {
+    Knobs knobs;
+    knobs.verbose = !value;
+    setParameters(knobs, {{"verbose", text}});
+    EXPECT_EQ(knobs.verbose, value) << text;
+  }
+}
+
+TEST(Parameters, WhatIsNotSetKeepsItsDefault) {
+  Knobs knobs;
+  setParameters(knobs, {});
+  EXPECT_EQ(parameterValues(knobs), (ParameterValues{{"verbose", "off"},
+                                                     {"cells", "200"},
+                                                     {"margin", "0.01"},
+                                                     {"scale", "1"},
+                                                     {"shape", "cubes"}}));
+}
+
+TEST(Parameters, TextReadsBackAsTheSameValue) {
+  for (const double value : {0.1, 1.0 / 3, -1e-300, DBL_MAX, 123456789.123456789}) {
+    Knobs knobs;
+    knobs.scale = value;
+    Knobs copy;
+    setParameters(copy, parameterValues(knobs));
+    EXPECT_EQ(copy.scale, value);
+  }
+}
+
+TEST(Parameters, BadValuesAreRefusedAndNamed) {
+  const std::map<std::string, std::vector<std::string>> bad = {
+      {"verbose", {"", "maybe", "ON", "2"}},
+      {"cells", {"", "0", "1001", "-5", "1.5", "1e2", "1 ", "many", "99999999999999999999"}},
+      {"margin", {"", "-0.001", "1.001", "nan", "NaN", "inf", "-inf", "1e999", "0.5m", "0,5"}},
+      {"scale", {"nan", "inf", "-inf", "infinity"}},
+      {"shape", {"", "cube", "Cubes", "cones"}}};
+  for (const auto& [name, texts] : bad) {
+    for (const std::string& text : texts) {
+      Knobs knobs;
+      const auto set = [&] { setParameters(knobs, {{name, text}}); };
+      EXPECT_THAT(inputErrorOf(set), AllOf(HasSubstr(name), HasSubstr("'" + text + "'")));
+      EXPECT_EQ(parameterValues(knobs), [] {
+        Knobs untouched;
+        return parameterValues(untouched);
+      }());
+    }
+  }
+}
+
+TEST(Parameters, MessagesSayWhatWouldBeRight) {
+  Knobs knobs;
+  EXPECT_EQ(inputErrorOf([&] {
+              setParameters(knobs, {{"cells", "0"}});
+            }),
+            "parameter cells: '0' is not an integer in 1…1000");
+  EXPECT_EQ(inputErrorOf([&] {
+              setParameters(knobs, {{"shape", "cube"}});
+            }),
+            "unknown shape 'cube'; did you mean 'cubes'? (one of: cubes, spheres)");
+}
+
+TEST(Parameters, UnknownNamesSuggestTheNearest) {
+  Knobs knobs;
+  EXPECT_THAT(inputErrorOf([&] {
+                setParameters(knobs, {{"cell", "7"}});
+              }),
+              AllOf(HasSubstr("'cell'"), HasSubstr("did you mean 'cells'?")));
+  Parametrised nothing;
+  EXPECT_EQ(inputErrorOf([&] {
+              setParameters(nothing, {{"cells", "7"}});
+            }),
+            "unknown parameter 'cells': there are none here");
+}
+
+TEST(Parameters, RangesAsText) {
+  std::map<std::string, std::string> ranges;
+  Knobs knobs;
+  knobs.visitParameters([&](const Parameter& p) { ranges.emplace(p.name, parameterRange(p)); });
+  EXPECT_EQ(ranges["verbose"], "on|off");
+  EXPECT_EQ(ranges["cells"], "1…1000");
+  EXPECT_EQ(ranges["margin"], "0…1");
+  EXPECT_EQ(ranges["shape"], "cubes|spheres");
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,328 @@
+// Results: JSON and back, the keys that others rely on, CSV.
+
+#include "broadmark/results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::StartsWith;
+using Json = nlohmann::ordered_json;
+
+std::string format(const Results& results, std::string_view name) {
+  for (const ResultWriter& writer : resultWriters()) {
+    if (writer.name == name) return writer.format(results);
+  }
+  ADD_FAILURE() << "no writer " << name;
+  return {};
+}
+
+FrameTimes times(std::int64_t ns) {
+  FrameTimes times;
+  for (const Phase phase : kAllPhases) times[phase] = ns + static_cast<std::int64_t>(phase);
+  return times;
+}
+
+/// Two cases: one with every field set, one with nothing but its name.
+Results everything() {
+  Results results;
+  results.environment = {.cpu = "A \"fast\" one",
+                         .logical_cores = 8,
+                         .physical_cores = 4,
+                         .caches = {"L1 Data 48K", "L2 Unified 2048K"},
+                         .isa = "avx2",
+                         .memory_bytes = std::uint64_t{1} << 40,
+                         .governor = "performance",
+                         .load_average = 0.1,
+                         .os = "Linux",
+                         .compiler = "gcc 12",
+                         .compiler_flags = "-O3",
+                         .build_type = "Release",
+                         .version = "1.2.3",
+                         .started = "2025-01-02T03:04:05Z"};
+  results.options = {"broadmark", "--headless", "FreeFall"};
+
+  CaseResult& full = results.cases.emplace_back();
+  full.id = "FreeFall/Cubes/N10/F2/s7/sap";
+  full.recording.scene = {"FreeFall", "Cubes", 10, 2, {{-0.1F, -1e30F, 0, 0}, {0.1F, 3, 1, 0}}};
+  full.recording.seed = UINT64_MAX;
+  full.recording.hash = "0123";
+  full.recording.path = "some/file.aabbs";
+  full.algorithm = "sap";
+  full.family = "SAP";
+  full.isa = Isa::avx512;
+  full.vectorised = true;
+  full.threads = 3;
+  full.parameters = {{"cells", "2"}, {"margin", "0.01"}};
+  full.status = Status::mismatch;
+  full.reason = "frame 1: 1 missed, 1 false, 1 invalid";
+  full.pairs_mean = 1.0 / 3;
+  full.pairs_max = std::uint64_t{1} << 33;
+  full.checked = true;
+  full.missed = 1;
+  full.extra = 2;
+  full.invalid = 3;
+  full.differences = {{.repetition = 2,
+                       .frame = 1,
+                       .missed_count = 1,
+                       .extra_count = 2,
+                       .forbidden_count = 1,
+                       .invalid_count = 3,
+                       .missed = {{0, 1}},
+                       .extra = {{2, 3}, {4, 5}},
+                       .invalid = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
+  full.peak_bytes = 12345;
+  full.repetitions = {{.initialize_ns = 5, .frames = {times(1000), times(2000)}},
+                      {.initialize_ns = 6, .frames = {times(3000)}}};
+
+  CaseResult& bare = results.cases.emplace_back();
+  bare.id = "bare";
+  bare.recording.scene_parameters = {{"density", "0.1"}};
+  bare.status = Status::unsupported;
+  return results;
+}
+
+/// everything() as JSON with one value replaced.
+std::string spoilt(const std::string& pointer, const Json& value) {
+  Json json = Json::parse(format(everything(), "json"));
+  json[Json::json_pointer(pointer)] = value;
+  return json.dump();
+}
+
+TEST(ResultsJson, ReadsBackAsItWasWritten) {
+  const std::string text = format(everything(), "json");
+  const Results copy = parseResults(text, "a.json");
+  EXPECT_EQ(format(copy, "json"), text);
+
+  const CaseResult& full = copy.cases.at(0);
+  EXPECT_EQ(full.recording.scene, everything().cases[0].recording.scene) << "floats are exact";
+  EXPECT_EQ(full.recording.seed, UINT64_MAX);
+  EXPECT_EQ(full.pairs_mean, 1.0 / 3);
+  EXPECT_EQ(full.differences.at(0).invalid.at(1), (Pair{9, 0xFFFFFFFF}));
+  EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3004);
+  EXPECT_EQ(full.parameters, (ParameterValues{{"cells", "2"}, {"margin", "0.01"}}));
+  const CaseResult& bare = copy.cases.at(1);
+  EXPECT_FALSE(bare.recording.seed);
+  EXPECT_FALSE(bare.peak_bytes);
+  EXPECT_EQ(bare.recording.path, "");
+  EXPECT_EQ(bare.recording.scene_parameters, (ParameterValues{{"density", "0.1"}}));
+  EXPECT_EQ(bare.status, Status::unsupported);
+}
+
+TEST(ResultsJson, EveryStatusAndInstructionSetSurvives) {
+  for (const Status status :
+       {Status::ok, Status::mismatch, Status::timeout, Status::unsupported, Status::error}) {
+    for (const Isa isa : kAllIsas) {
+      Results results = everything();
+      results.cases[0].status = status;
+      results.cases[0].isa = isa;
+      const Results copy = parseResults(format(results, "json"), "a.json");
+      EXPECT_EQ(copy.cases[0].status, status);
+      EXPECT_EQ(copy.cases[0].isa, isa);
+    }
+  }
+}
+
+TEST(ResultsJson, HasTheKeysThatOthersRelyOn) {
+  const Json json = Json::parse(format(everything(), "json"));
+  EXPECT_EQ(json["schema"], "broadmark-results/1");
+  const auto expect_keys = [](const Json& object, const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key;
+  };
+  expect_keys(json, {"environment", "options", "cases"});
+  expect_keys(json["environment"], {"cpu", "caches", "logical_cores", "physical_cores", "isa",
+                                    "memory_bytes", "governor", "load_average", "os", "compiler",
+                                    "compiler_flags", "build_type", "version"});
+  ASSERT_THAT(json["cases"], SizeIs(2));
+  const Json& full = json["cases"][0];
+  expect_keys(full, {"id", "recording", "algorithm", "family", "isa", "threads", "params", "status",
+                     "reason", "pairs", "missed", "extra", "differences", "peak_bytes", "summary",
+                     "frames"});
+  expect_keys(full["recording"],
+              {"name", "object_type", "objects", "frames", "seed", "hash", "source"});
+  expect_keys(full["pairs"], {"mean", "max"});
+  expect_keys(full["summary"],
+              {"seconds_per_frame", "median", "p95", "p99", "min", "stddev", "ci95"});
+  expect_keys(full["differences"][0], {"repetition", "frame", "missed", "extra"});
+  EXPECT_EQ(full["recording"]["source"], "some/file.aabbs");
+  EXPECT_EQ(json["cases"][1]["recording"]["source"], (Json{{"density", "0.1"}}));
+  EXPECT_TRUE(json["cases"][1]["peak_bytes"].is_null());
+  // One array per phase and repetition.
+  EXPECT_EQ(full["frames"]["update_objects"], Json::parse("[[1000, 2000], [3000]]"));
+  EXPECT_EQ(full["frames"]["total"], Json::parse("[[1004, 2004], [3004]]"));
+  expect_keys(full["frames"], {"clean_cache", "update_structures", "search_overlaps"});
+}
+
+TEST(ResultsJson, TextThatIsNotUtf8IsMended) {
+  Results results = everything();
+  results.cases[0].recording.path = "caf\xE9.aabbs";
+  const std::string text = format(results, "json");
+  EXPECT_EQ(format(parseResults(text, "a.json"), "json"), text);
+}
+
+TEST(ResultsJson, ErrorsNameFileAndKey) {
+  struct Fault {
+    const char* pointer;
+    Json value;
+    const char* message;
+  };
+  const Fault faults[] = {
+      {"/environment/cpu", 5, "a.json: environment: cpu: a text is expected"},
+      {"/environment/caches", Json::array({1}), "a.json: environment: caches: texts are expected"},
+      {"/environment/memory_bytes", -1, "a.json: environment: memory_bytes: an integer from 0 to"},
+      {"/options", "x", "a.json: options: an array is expected"},
+      {"/cases/0", 1, "a.json: cases[0]: a JSON object is expected"},
+      {"/cases/1/threads", 0, "a.json: cases[1]: threads: an integer from 1 to"},
+      {"/cases/1/threads", 1.5, "a.json: cases[1]: threads: an integer from 1 to"},
+      {"/cases/1/threads", 3000000000U, "a.json: cases[1]: threads: an integer from 1 to"},
+      {"/cases/0/isa", "mmx", "a.json: cases[0]: isa: unknown value 'mmx'"},
+      {"/cases/0/status", "fine", "a.json: cases[0]: status: unknown value 'fine'"},
+      {"/cases/0/checked", 1, "a.json: cases[0]: checked: true or false is expected"},
+      {"/cases/0/pairs/mean", "1", "a.json: cases[0]: pairs: mean: a number is expected"},
+      {"/cases/0/params", 1, "a.json: cases[0]: params: an object of texts is expected"},
+      {"/cases/0/params/cells", 2, "a.json: cases[0]: params: cells: a text is expected"},
+      {"/cases/0/recording/objects", -2, "a.json: cases[0]: recording: objects: an integer"},
+      {"/cases/0/recording/source", 1, "a.json: cases[0]: recording: source: an object"},
+      {"/cases/0/recording/world/min", Json::array({1, 2}),
+       "a.json: cases[0]: recording: world: min: three 32-bit floats"},
+      {"/cases/0/recording/world/max/0", 1e300,
+       "a.json: cases[0]: recording: world: max: three 32-bit floats"},
+      {"/cases/0/differences/0/missed/0", Json::array({1}),
+       "a.json: cases[0]: differences[0]: missed: pairs of body numbers"},
+      {"/cases/0/differences/0/extra/0/1", -1,
+       "a.json: cases[0]: differences[0]: extra: an integer from 0 to"},
+      {"/cases/0/initialize_ns", Json::array({5}),
+       "a.json: cases[0]: frames: update_objects: 2 repetitions instead of the 1"},
+      {"/cases/0/frames/total/0", Json::array({5}),
+       "a.json: cases[0]: frames: total: all phases must have the same number of frames"},
+      {"/cases/0/frames/clean_cache/0", 5,
+       "a.json: cases[0]: frames: clean_cache: arrays of nanoseconds"},
+      {"/cases/0/frames/total/0/0", -1, "a.json: cases[0]: frames: total: an integer from 0"}};
+  for (const Fault& fault : faults) {
+    EXPECT_THAT(inputErrorOf([&] { parseResults(spoilt(fault.pointer, fault.value), "a.json"); }),
+                StartsWith(fault.message));
+  }
+}
+
+TEST(ResultsJson, MissingKeysAreNamed) {
+  const Json whole = Json::parse(format(everything(), "json"));
+  for (const auto& item : whole["cases"][0].items()) {
+    if (item.key() == "peak_bytes" || item.key() == "summary") continue;  // optional; derived
+    Json json = whole;
+    json["cases"][0].erase(item.key());
+    EXPECT_EQ(inputErrorOf([&] { parseResults(json.dump(), "a.json"); }),
+              "a.json: cases[0]: '" + item.key() + "' is missing");
+  }
+}
+
+TEST(ResultsJson, WhatIsNoResultsFile) {
+  const std::pair<const char*, const char*> texts[] = {
+      {"", "not valid JSON"},
+      {"{", "not valid JSON"},
+      {"\xFF", "not valid JSON"},
+      {"[1e999]", "not valid JSON"},
+      {"[]", "a JSON object is expected"},
+      {"{}", "not a results file"},
+      {R"({"schema": 1})", "schema: a text is expected"},
+      {R"({"schema": "broadmark-scene/1"})", "not a results file"},
+      {R"({"schema": "broadmark-results/1"})", "'environment' is missing"}};
+  for (const auto& [text, fault] : texts) {
+    EXPECT_THAT(inputErrorOf([text = text] { parseResults(text, "a.json"); }),
+                AllOf(StartsWith("a.json: "), HasSubstr(fault), testing::Not(HasSubstr("\n"))));
+  }
+  const std::string deep(100'000, '[');
+  EXPECT_THAT(inputErrorOf([&] { parseResults(deep, "a.json"); }), HasSubstr("not valid JSON"));
+}
+
+/// Splits CSV (RFC 4180) into rows of fields.
+std::vector<std::vector<std::string>> parseCsv(const std::string& text) {
+  std::vector<std::vector<std::string>> rows = {{""}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '"') {
+      const bool literal = quoted && i + 1 < text.size() && text[i + 1] == '"';
+      if (literal) {
+        rows.back().back() += c;
+        ++i;
+      } else {
+        quoted = !quoted;
+      }
+    } else if (c == ',' && !quoted) {
+      rows.back().emplace_back();
+    } else if (c == '\n' && !quoted) {
+      rows.push_back({""});
+    } else {
+      rows.back().back() += c;
+    }
+  }
+  rows.pop_back();  // the text ends with a newline
+  return rows;
+}
+
+/// One row by column name.
+std::map<std::string, std::string> rowOf(const std::vector<std::vector<std::string>>& rows,
+                                         std::size_t row) {
+  std::map<std::string, std::string> fields;
+  for (std::size_t i = 0; i < rows[0].size(); ++i) fields[rows[0][i]] = rows[row].at(i);
+  return fields;
+}
+
+TEST(ResultsCsv, OneRowPerCase) {
+  const auto rows = parseCsv(format(everything(), "csv"));
+  ASSERT_THAT(rows, SizeIs(3));
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+  auto full = rowOf(rows, 1);
+  EXPECT_EQ(full["algorithm"], "sap");
+  EXPECT_EQ(full["objects"], "10");
+  EXPECT_EQ(full["params"], "cells=2;margin=0.01");
+  EXPECT_EQ(full["status"], "mismatch");
+  EXPECT_EQ(full["repetitions"], "2");
+  EXPECT_DOUBLE_EQ(std::stod(full["seconds_per_frame"]), 2004e-9);
+  EXPECT_DOUBLE_EQ(std::stod(full["min"]), 1004e-9);
+  EXPECT_EQ(full["missed"], "1");
+  EXPECT_EQ(full["peak_bytes"], "12345");
+
+  auto bare = rowOf(rows, 2);
+  for (const char* unknown : {"seconds_per_frame", "median", "ci95_low", "outliers", "missed",
+                              "extra", "invalid", "peak_bytes", "seed"}) {
+    EXPECT_EQ(bare[unknown], "") << unknown << ": what is not known is empty, not 0";
+  }
+}
+
+TEST(ResultsCsv, QuotesWhatNeedsIt) {
+  Results results = everything();
+  results.cases[0].reason = "a, \"b\"\nc";
+  results.cases[0].recording.scene.name = "Free,Fall";
+  results.cases[0].recording.hash = "not,a,hash";
+  const std::string text = format(results, "csv");
+  EXPECT_THAT(text, HasSubstr("\"a, \"\"b\"\"\nc\""));
+  const auto rows = parseCsv(text);
+  ASSERT_THAT(rows, SizeIs(3));
+  EXPECT_EQ(rowOf(rows, 1)["reason"], "a, \"b\"\nc");
+  EXPECT_EQ(rowOf(rows, 1)["scene"], "Free,Fall");
+  EXPECT_EQ(rowOf(rows, 1)["recording_hash"], "not,a,hash");
+}
+
+TEST(ResultsCsv, OneRowPerFrame) {
+  const auto rows = parseCsv(format(everything(), "csv-frames"));
+  ASSERT_THAT(rows, SizeIs(1 + 3));
+  auto last = rowOf(rows, 3);
+  EXPECT_EQ(last["repetition"], "2");
+  EXPECT_EQ(last["frame"], "1");
+  EXPECT_EQ(last["update_objects_ns"], "3000");
+  EXPECT_EQ(last["total_ns"], "3004");
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,172 @@
+// Statistics against values worked out elsewhere: by hand where the sum is shown, otherwise from
+// tables of Student's t (as in R's qt(0.975, df)).
+
+#include "broadmark/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <vector>
+
+namespace broadmark::tests {
+namespace {
+
+using Values = std::vector<double>;
+
+TEST(Statistics, MeanAndStandardDeviation) {
+  const Values values = {2, 4, 4, 4, 5, 5, 7, 9};
+  EXPECT_DOUBLE_EQ(mean(values), 5);
+  // Squares about 5: 9 + 1 + 1 + 1 + 0 + 0 + 4 + 16 = 32, over n - 1 = 7.
+  EXPECT_DOUBLE_EQ(standardDeviation(values), std::sqrt(32.0 / 7));
+}
+
+TEST(Statistics, NothingAndASingleValue) {
+  EXPECT_EQ(mean({}), 0);
+  EXPECT_EQ(standardDeviation({}), 0);
+  EXPECT_EQ(quantile({}, 0.5), 0);
+  const Values one = {3};
+  EXPECT_EQ(mean(one), 3);
+  EXPECT_EQ(standardDeviation(one), 0);
+  EXPECT_FALSE(confidence95({}).has_value());
+  EXPECT_FALSE(confidence95(one).has_value());
+}
+
+// Type 7: rank q (n - 1), linear in between.
+TEST(Statistics, Quantiles) {
+  const Values one = {3};
+  for (const double q : {0.0, 0.3, 0.5, 0.99, 1.0}) EXPECT_EQ(quantile(one, q), 3);
+
+  const Values two = {20, 10};
+  EXPECT_DOUBLE_EQ(quantile(two, 0), 10);
+  EXPECT_DOUBLE_EQ(quantile(two, 0.25), 12.5);
+  EXPECT_DOUBLE_EQ(quantile(two, 0.95), 19.5);
+  EXPECT_DOUBLE_EQ(quantile(two, 1), 20);
+
+  const Values five = {50, 10, 40, 20, 30};
+  EXPECT_DOUBLE_EQ(quantile(five, 0.5), 30);
+  EXPECT_DOUBLE_EQ(quantile(five, 0.1), 14);
+  EXPECT_DOUBLE_EQ(quantile(five, 0.95), 48);
+  EXPECT_DOUBLE_EQ(quantile(five, 0.99), 49.6);
+}
+
+TEST(Statistics, StudentQuantiles) {
+  const std::map<double, double> known = {
+      {1, 12.7062},   {2, 4.30265},    {3, 3.18245},   {4, 2.77645},   {5, 2.57058},
+      {7, 2.36462},   {9, 2.26216},    {10, 2.22814},  {11, 2.20099},  {13, 2.16037},
+      {14, 2.14479},  {17, 2.10982},   {19, 2.09302},  {25, 2.05954},  {29, 2.04523},
+      {40, 2.02108},  {50, 2.00856},   {80, 1.99006},  {100, 1.98397}, {200, 1.97190},
+      {500, 1.96472}, {1000, 1.96234}, {1e6, 1.95997}, {1e12, 1.95996}};
+  for (const auto& [degrees, t] : known) EXPECT_NEAR(studentT975(degrees), t, 1e-3) << degrees;
+}
+
+// Welch's degrees are no whole numbers. By integrating the density numerically.
+TEST(Statistics, StudentQuantilesInBetween) {
+  for (const auto& [degrees, t] : std::map<double, double>{
+           {1.25, 8.02795}, {1.5, 6.01666}, {2.5, 3.57465}, {3.5, 2.94009}, {4.5, 2.65891}}) {
+    EXPECT_NEAR(studentT975(degrees), t, 2e-3 * t) << degrees;
+  }
+}
+
+TEST(Statistics, StudentQuantilesFallWithDegrees) {
+  double last = studentT975(1);
+  for (double degrees = 1.1; degrees < 300; degrees *= 1.05) {
+    const double t = studentT975(degrees);
+    EXPECT_LT(t, last) << degrees;
+    last = t;
+  }
+}
+
+TEST(Statistics, ConfidenceOfTheMean) {
+  const Values values = {1, 2, 3, 4, 5};
+  // Deviation sqrt(10 / 4), standard error sqrt(0.5), t of 4 degrees.
+  const double half = 2.77645 * std::sqrt(0.5);
+  const auto interval = confidence95(values);
+  ASSERT_TRUE(interval);
+  EXPECT_NEAR(interval->low, 3 - half, 1e-4);
+  EXPECT_NEAR(interval->high, 3 + half, 1e-4);
+}
+
+Summary summariseAll(const std::vector<Values>& repetitions) {
+  const std::vector<std::span<const double>> views(repetitions.begin(), repetitions.end());
+  return summarise(views);
+}
+
+TEST(Summary, OfTwoRepetitions) {
+  const Summary summary = summariseAll({{1, 2, 3}, {3, 4, 5}});
+  EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 3);
+  EXPECT_DOUBLE_EQ(summary.median, 3);
+  EXPECT_DOUBLE_EQ(summary.p95, 4.75);
+  EXPECT_DOUBLE_EQ(summary.p99, 4.95);
+  EXPECT_DOUBLE_EQ(summary.min, 1);
+  EXPECT_DOUBLE_EQ(summary.stddev, std::sqrt(2.0));  // squares 4 + 1 + 0 + 0 + 1 + 4 over 5
+  EXPECT_EQ(summary.outliers, 0U);
+  // The means are 2 and 4: standard error 1, t of 1 degree.
+  ASSERT_TRUE(summary.ci95);
+  EXPECT_NEAR(summary.ci95->low, 3 - 12.7062, 1e-3);
+  EXPECT_NEAR(summary.ci95->high, 3 + 12.7062, 1e-3);
+}
+
+TEST(Summary, OfOneRepetitionHasNoInterval) {
+  EXPECT_FALSE(summariseAll({{1, 2, 3}}).ci95.has_value());
+}
+
+TEST(Summary, OfNothing) {
+  const Summary summary = summariseAll({});
+  EXPECT_EQ(summary.seconds_per_frame, 0);
+  EXPECT_EQ(summary.min, 0);
+  EXPECT_EQ(summary.outliers, 0U);
+  EXPECT_FALSE(summary.ci95.has_value());
+}
+
+// A repetition that timed out before its first frame has no mean, least of all 0.
+TEST(Summary, RepetitionsWithoutFramesDoNotCount) {
+  const Summary summary = summariseAll({{2, 4}, {}});
+  EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 3);
+  EXPECT_FALSE(summary.ci95.has_value());
+}
+
+TEST(Summary, OutliersAreCountedAndKept) {
+  // Quartiles 3 and 7 (type 7 of nine values): the fence is 7 + 3 · 4 = 19.
+  const Values quiet = {1, 2, 3, 4, 5, 6, 7, 8, 19};
+  EXPECT_EQ(summariseAll({quiet}).outliers, 0U);
+  const Values loud = {1, 2, 3, 4, 5, 6, 7, 8, 19.5};
+  const Summary summary = summariseAll({loud});
+  EXPECT_EQ(summary.outliers, 1U);
+  EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 55.5 / 9);
+}
+
+TEST(Ratio, WelchOfLogarithms) {
+  const Values a = {1, std::exp(1), std::exp(2)};
+  const Values b = {std::exp(1), std::exp(3), std::exp(5), std::exp(7)};
+  const RatioEstimate estimate = ratioOfMeans(a, b);
+  // Logarithms: means 1 and 4, variances 1 and 20/3, squared errors 1/3 and 5/3, their sum 2.
+  EXPECT_NEAR(estimate.ratio, std::exp(3), 1e-9);
+  // Welch–Satterthwaite: 2² / ((1/3)²/2 + (5/3)²/3) = 4 / (1/18 + 25/27) = 216/53 degrees; between
+  // 4 and 5, so t lies between 2.57058 and 2.77645: 2.75628 by integrating its density.
+  ASSERT_TRUE(estimate.ci95);
+  const double half = (std::log(estimate.ci95->high) - std::log(estimate.ci95->low)) / 2;
+  EXPECT_NEAR(half, studentT975(216.0 / 53) * std::sqrt(2.0), 1e-9);
+  EXPECT_NEAR(half, 2.75628 * std::sqrt(2.0), 2e-3);
+  EXPECT_NEAR(std::log(estimate.ci95->high), 3 + half, 1e-9);
+}
+
+TEST(Ratio, OfEqualSamplesIsOne) {
+  const Values same = {0.5, 0.5, 0.5};
+  const RatioEstimate estimate = ratioOfMeans(same, same);
+  EXPECT_DOUBLE_EQ(estimate.ratio, 1);
+  ASSERT_TRUE(estimate.ci95);
+  EXPECT_DOUBLE_EQ(estimate.ci95->low, 1);
+  EXPECT_DOUBLE_EQ(estimate.ci95->high, 1);
+}
+
+TEST(Ratio, OfSingleValuesHasNoInterval) {
+  const Values a = {2};
+  const Values b = {3};
+  const RatioEstimate estimate = ratioOfMeans(a, b);
+  EXPECT_DOUBLE_EQ(estimate.ratio, 1.5);
+  EXPECT_FALSE(estimate.ci95.has_value());
+}
+
+}  // namespace
+}  // namespace broadmark::tests
