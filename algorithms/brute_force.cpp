@@ -55,14 +55,15 @@ class Plain final : public BoxBroadPhase {
 
  private:
   void testTile(Range rows, Range columns, PairBuffer& found) const {
+    const Aabb* const first = boxes().data();
+    const Aabb* const end = first + columns.end;
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
-      const Aabb row = boxes()[i];
-      for (std::size_t j = std::max(columns.begin, i + 1); j < columns.end; ++j) {
-        const Aabb& column = boxes()[j];
+      const Aabb row = first[i];
+      for (const Aabb* j = first + std::max(columns.begin, i + 1); j < end; ++j) {
         // One axis rules most pairs out, so this branch is predicted well; the others wait.
-        if (overlapsOnAxis(row, column, 0)) [[unlikely]] {
-          if (overlapsOnAxis(row, column, 1) && overlapsOnAxis(row, column, 2)) {
-            found.add(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+        if (overlapsOnAxis(row, *j, 0)) [[unlikely]] {
+          if (overlapsOnAxis(row, *j, 1) && overlapsOnAxis(row, *j, 2)) {
+            found.add(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j - first));
           }
         }
       }

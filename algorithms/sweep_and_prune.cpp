@@ -105,10 +105,11 @@ class PlainSweeper {
              PairBuffer& pairs) const {
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
       const Aabb row = boxes_[i];
-      for (std::size_t j = i + 1; j < ends[i]; ++j) {
+      const Aabb* const end = boxes_.data() + ends[i];
+      for (const Aabb* column = boxes_.data() + i + 1; column != end; ++column) {
         // One axis rules most pairs out, so this branch is predicted well.
-        if (overlapsOnAxis(row, boxes_[j], 1)) [[unlikely]] {
-          if (overlapsOnAxis(row, boxes_[j], 2)) pairs.add(bodies[i], bodies[j]);
+        if (overlapsOnAxis(row, *column, 1)) [[unlikely]] {
+          if (overlapsOnAxis(row, *column, 2)) pairs.add(bodies[i], bodies[column - boxes_.data()]);
         }
       }
     }
