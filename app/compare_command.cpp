@@ -52,23 +52,27 @@ Verdict judge(const RatioEstimate& estimate, double fail_above) {
   return {"same within noise", false};
 }
 
+/// A row of the table that has nothing but a verdict.
+std::vector<std::string> verdictOnly(const CaseResult& result, std::string verdict) {
+  return {result.id, "", "", "", "", std::move(verdict)};
+}
+
 std::vector<std::string> compareCase(const CaseResult& before, const CaseResult& after,
                                      double fail_above, bool& regressed) {
   if (after.status != before.status) {
     const bool worse = before.status == Status::ok;
     regressed |= worse;
-    return {after.id,
-            "",
-            "",
-            "",
-            "",
-            fmt::format("{} -> {}{}", statusName(before.status), statusName(after.status),
-                        worse ? " REGRESSED" : "")};
+    return verdictOnly(after, fmt::format("{} -> {}{}", statusName(before.status),
+                                          statusName(after.status), worse ? " REGRESSED" : ""));
+  }
+  // The time of a wrong or unfinished answer says nothing.
+  if (after.status != Status::ok) {
+    return verdictOnly(after, fmt::format("{} in both", statusName(after.status)));
   }
   const bool per_repetition = before.repetitions.size() > 1 && after.repetitions.size() > 1;
   const std::vector<double> a = samples(before, per_repetition);
   const std::vector<double> b = samples(after, per_repetition);
-  if (a.empty() || b.empty()) return {after.id, "", "", "", "", "not timed"};
+  if (a.empty() || b.empty()) return verdictOnly(after, "not timed");
   const RatioEstimate estimate = ratioOfMeans(a, b);
   const Verdict verdict = judge(estimate, fail_above);
   regressed |= verdict.regressed;
@@ -81,32 +85,52 @@ std::vector<std::string> compareCase(const CaseResult& before, const CaseResult&
       verdict.text};
 }
 
+/// Cases by id; of several with the same id (recordings alike in all but their contents), the k-th
+/// of one file belongs to the k-th of the other.
+using CaseKey = std::pair<std::string, int>;
+std::vector<CaseKey> keysOf(const Results& results) {
+  std::vector<CaseKey> keys;
+  std::map<std::string, int> seen;
+  for (const CaseResult& result : results.cases) keys.emplace_back(result.id, seen[result.id]++);
+  return keys;
+}
+
 }  // namespace
 
 int runCompare(const CompareOptions& options) {
   const Results before = readResults(options.before);
   const Results after = readResults(options.after);
-  std::map<std::string, const CaseResult*> before_by_id;
-  for (const CaseResult& result : before.cases) before_by_id[result.id] = &result;
+  const std::vector<CaseKey> before_keys = keysOf(before);
+  const std::vector<CaseKey> after_keys = keysOf(after);
+  std::map<CaseKey, const CaseResult*> left;
+  for (std::size_t i = 0; i < before_keys.size(); ++i) left[before_keys[i]] = &before.cases[i];
 
   bool regressed = false;
+  int comparable = 0;
   std::vector<std::vector<std::string>> rows = {
       {"case", "A s/frame", "B s/frame", "B/A", "95 % interval", "verdict"}};
-  for (const CaseResult& result : after.cases) {
-    const auto found = before_by_id.find(result.id);
-    if (found == before_by_id.end()) {
-      rows.push_back({result.id, "", "", "", "", "only in B"});
+  for (std::size_t i = 0; i < after_keys.size(); ++i) {
+    const CaseResult& result = after.cases[i];
+    const auto found = left.find(after_keys[i]);
+    if (found == left.end()) {
+      rows.push_back(verdictOnly(result, "only in B"));
       continue;
     }
     if (found->second->recording.hash != result.recording.hash) {
-      rows.push_back({result.id, "", "", "", "", "not comparable: other recording"});
+      rows.push_back(verdictOnly(result, "not comparable: other recording"));
     } else {
       rows.push_back(compareCase(*found->second, result, options.fail_above, regressed));
+      ++comparable;
     }
-    before_by_id.erase(found);
+    left.erase(found);
   }
-  for (const auto& [id, result] : before_by_id) rows.push_back({id, "", "", "", "", "only in A"});
+  for (const auto& [key, result] : left) rows.push_back(verdictOnly(*result, "only in A"));
   fmt::print("{}", alignColumns(rows, {false, true, true, true, true, false}));
+  // A check that compared nothing must not look like one that passed.
+  if (comparable == 0) {
+    throw InputError(fmt::format("{} and {}: no case of both ran on the same recording",
+                                 options.before.string(), options.after.string()));
+  }
   return regressed ? 1 : 0;
 }
 

@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 struct Job {
   Source source;
   std::vector<Case> cases;
+  fs::path screenshot;  ///< "": none
 };
 
 std::regex compiledFilter(const std::string& filter) {
@@ -61,13 +62,21 @@ void requireKnownParameters(const HeadlessOptions& options, const std::vector<Jo
   }
 }
 
+void nameScreenshots(const HeadlessOptions& options, std::vector<Job>& jobs) {
+  if (options.screenshot.empty() || jobs.empty()) return;
+  std::vector<const SceneInfo*> scenes;
+  for (const Job& job : jobs) scenes.push_back(&job.source.reference.scene);
+  const std::vector<fs::path> paths = screenshotPaths(options.screenshot, scenes);
+  for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].screenshot = paths[i];
+}
+
 /// All jobs, already divided among shards and filtered; jobs without cases are left out.
 std::vector<Job> makeJobs(const HeadlessOptions& options) {
   const std::vector<Algorithm> algorithms = builtinAlgorithms();
   const std::regex filter = compiledFilter(options.filter);
   std::vector<Job> jobs;
   for (Source& source : resolveSources(options)) {
-    Job job{std::move(source), {}};
+    Job job{std::move(source), {}, {}};
     if (!job.source.settings) {
       job.cases = selectCases(options, algorithms);
     } else if (options.algorithms.empty()) {
@@ -87,6 +96,7 @@ std::vector<Job> makeJobs(const HeadlessOptions& options) {
     });
   }
   std::erase_if(jobs, [](const Job& job) { return job.cases.empty(); });
+  nameScreenshots(options, jobs);
   return jobs;
 }
 
@@ -95,8 +105,10 @@ std::vector<Job> makeJobs(const HeadlessOptions& options) {
 class Exhausted {
  public:
   void note(const CaseResult& result, const Case& run) {
-    if (result.status == Status::timeout)
-      smallest_[key(result, run)] = result.recording.scene.objects;
+    if (result.status != Status::timeout) return;
+    const std::uint32_t objects = result.recording.scene.objects;
+    std::uint32_t& smallest = smallest_.try_emplace(key(result, run), objects).first->second;
+    smallest = std::min(smallest, objects);
   }
   /// Gives the result of a case that need not be run.
   bool skip(CaseResult& result, const Case& run) const {
@@ -145,7 +157,9 @@ JobResult runJob(const Job& job, RecordingReader& recording, Oracle& oracle,
       if (!finished && !runRepetition(result, job.cases[i], recording, oracle, run_options,
                                       pass >= options.warmup)) {
         outcome.interrupted = true;
-        std::erase_if(outcome.cases, [](const CaseResult& r) { return r.repetitions.empty(); });
+        std::erase_if(outcome.cases, [](const CaseResult& r) {
+          return r.status == Status::ok && r.repetitions.empty();
+        });
         return outcome;
       }
       exhausted.note(result, job.cases[i]);
@@ -154,7 +168,7 @@ JobResult runJob(const Job& job, RecordingReader& recording, Oracle& oracle,
   }
   if (options.memory) {
     for (std::size_t i = 0; i < job.cases.size(); ++i) {
-      if (outcome.cases[i].status != Status::ok) continue;
+      if (outcome.cases[i].status != Status::ok || InterruptGuard::requested()) continue;
       outcome.cases[i].peak_bytes = measurePeakBytes(job.cases[i], recording);
     }
   }
@@ -168,22 +182,43 @@ void writeOutputs(const HeadlessOptions& options, const Results& results) {
   }
 }
 
-/// Fails now rather than after an hour's run.
-void requireWritable(const HeadlessOptions& options, const std::vector<Job>& jobs) {
-  for (const auto& [name, path] : options.outputs) AtomicFile probe(path);
-  if (!options.screenshot.empty()) {
-    const bool several = jobs.size() > 1;
-    for (const Job& job : jobs) {
-      const SceneInfo& scene = job.source.reference.scene;
-      AtomicFile probe(screenshotPath(options.screenshot, scene, several));
-      if (options.screenshot_frame > scene.frames) {
-        throw InputError(fmt::format("--frame: there is no frame {}: {} has {}",
-                                     options.screenshot_frame, scene.name, scene.frames));
-      }
-    }
-  }
+/// Every file that the run will write, with what asks for it.
+std::vector<std::pair<std::string, fs::path>> plannedFiles(const HeadlessOptions& options,
+                                                           const std::vector<Job>& jobs) {
+  std::vector<std::pair<std::string, fs::path>> files;
+  for (const auto& [name, path] : options.outputs) files.emplace_back("--" + name, path);
   for (const Job& job : jobs) {
-    if (job.source.settings) AtomicFile probe(job.source.settings->output_log);
+    if (!job.screenshot.empty()) files.emplace_back("--screenshot", job.screenshot);
+    if (job.source.settings) files.emplace_back("m_outputLog", job.source.settings->output_log);
+  }
+  return files;
+}
+
+/// Fails now rather than after an hour's run: no such place, or a file that would be overwritten
+/// by the run itself.
+void requireWritable(const HeadlessOptions& options, const std::vector<Job>& jobs) {
+  std::map<fs::path, std::string> taken;
+  for (const Job& job : jobs) {
+    if (job.source.simulation) continue;
+    taken[fs::weakly_canonical(job.source.reference.path)] = "a source";
+  }
+  for (const auto& [option, path] : plannedFiles(options, jobs)) {
+    const auto [other, free] = taken.emplace(fs::weakly_canonical(path), option);
+    if (!free) {
+      throw InputError(fmt::format("{}: {}: already the file of {}: another name is needed", option,
+                                   path.string(), other->second));
+    }
+    AtomicFile probe(path);
+  }
+}
+
+/// The frame of the screenshot is in every recording.
+void requireFrame(const HeadlessOptions& options, const std::vector<Job>& jobs) {
+  for (const Job& job : jobs) {
+    const SceneInfo& scene = job.source.reference.scene;
+    if (options.screenshot_frame.value_or(0) <= scene.frames) continue;
+    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}",
+                                 *options.screenshot_frame, scene.name, scene.frames));
   }
 }
 
@@ -200,9 +235,9 @@ bool isFailure(const CaseResult& result) {
          result.status == Status::error;
 }
 
-/// One job from recording to report. Returns false when interrupted.
-void performJob(Job& job, const HeadlessOptions& options, bool several, Results& results,
-                Exhausted& exhausted, Outcome& outcome) {
+/// One job from recording to report.
+void performJob(Job& job, const HeadlessOptions& options, Results& results, Exhausted& exhausted,
+                Outcome& outcome) {
   const auto recording = openRecording(job.source, options.record, options.quiet);
   if (!recording) {
     outcome.interrupted = true;
@@ -211,20 +246,20 @@ void performJob(Job& job, const HeadlessOptions& options, bool several, Results&
   Oracle oracle;
   const JobResult done = runJob(job, *recording, oracle, options, exhausted);
   outcome.interrupted = done.interrupted;
+  if (done.cases.empty()) return;
   for (const CaseResult& result : done.cases) outcome.failed |= isFailure(result);
   std::cout << formatTable(done.cases) << std::endl;
-  if (job.source.settings && !done.cases.empty()) {
+  if (job.source.settings) {
     const fs::path log = job.source.settings->output_log;
     writeTextFile(log, formatOriginalLog(*job.source.settings, done.cases.front()));
     outcome.written.push_back(log);
   }
   results.cases.insert(results.cases.end(), done.cases.begin(), done.cases.end());
   writeOutputs(options, results);
-  if (options.screenshot.empty() || done.interrupted) return;
-  const fs::path path = screenshotPath(options.screenshot, recording->scene(), several);
+  if (job.screenshot.empty() || done.interrupted) return;
   try {
-    takeScreenshot(options, *recording, oracle, path);
-    outcome.written.push_back(path);
+    takeScreenshot(options, *recording, oracle, job.screenshot);
+    outcome.written.push_back(job.screenshot);
   } catch (const RenderError& error) {
     std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
     outcome.no_picture = true;
@@ -242,20 +277,23 @@ int runHeadless(const HeadlessOptions& options) {
     return 0;
   }
   if (jobs.empty()) throw InputError("no case is left to run after --filter and --shard");
-  if (!options.record.empty()) makeDirectory(options.record);
+  requireFrame(options, jobs);
   requireWritable(options, jobs);
+  if (!options.record.empty()) makeDirectory(options.record);
 
   const InterruptGuard guard;
   Results results{.environment = thisEnvironment(), .options = options.command_line, .cases = {}};
   Exhausted exhausted;
   Outcome outcome;
   for (Job& job : jobs) {
-    performJob(job, options, jobs.size() > 1, results, exhausted, outcome);
+    performJob(job, options, results, exhausted, outcome);
     if (outcome.interrupted) break;
   }
 
   if (!options.record.empty()) outcome.written.push_back(options.record);
-  for (const auto& [name, path] : options.outputs) outcome.written.push_back(path);
+  if (!results.cases.empty()) {
+    for (const auto& [name, path] : options.outputs) outcome.written.push_back(path);
+  }
   for (const fs::path& path : outcome.written) fmt::print("written: {}\n", path.string());
   if (outcome.interrupted) {
     throw InputError(fmt::format("interrupted: {} finished cases kept", results.cases.size()));

@@ -2,16 +2,34 @@
 //
 // Exit status: 0 all well; 1 a case mismatched, timed out or regressed; 2 bad usage or input.
 
+#include <cstdio>
 #include <exception>
 #include <iostream>
+#include <system_error>
 
 #include "app/options.h"
 #include "broadmark/error.h"
 
+namespace {
+
+/// What was printed has arrived, or it is an error: a table on a full disc is no success.
+void requirePrinted() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw broadmark::InputError("standard output: cannot write");
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   try {
-    return broadmark::runCommandLine(argc, argv);
+    const int status = broadmark::runCommandLine(argc, argv);
+    requirePrinted();
+    return status;
   } catch (const broadmark::InputError& error) {
+    std::cerr << "broadmark: " << error.what() << '\n';
+  } catch (const std::system_error& error) {
+    // The system's refusal (of a write to standard output, of a thread), not our mistake.
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {
     std::cerr << "broadmark: out of memory\n";

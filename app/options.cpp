@@ -7,7 +7,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include "broadmark/error.h"
@@ -18,7 +20,8 @@ namespace {
 
 constexpr const char* kFooter =
     "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
-    "bad input.\nStart with:  broadmark --headless freefall --objects 2000 --frames 60";
+    "bad input.\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
+    "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
 
 /// Text split at commas, empty parts dropped.
 std::vector<std::string> splitList(const std::vector<std::string>& texts) {
@@ -45,10 +48,26 @@ Value named(std::string_view option, const std::string& text,
   throw InputError(fmt::format("{}: {}", option, unknownName("value", text, known)));
 }
 
+/// A finite number from `min` up, or above it when `open`. (CLI11's own checks let NaN pass.)
+double parseNumber(const std::string& text, std::string_view option, double min, bool open) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number =
+      error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  if (!number || value < min || (open && value == min)) {
+    throw InputError(
+        fmt::format("{}: '{}' is not a number {} {}", option, text, open ? ">" : ">=", min));
+  }
+  return value;
+}
+
 /// Which object counts are accepted: those that an .aabbs header can state.
 constexpr long long kMaxObjects = 100'000'000;
 
-/// Adds a flag-like option that takes a comma-separated list, and may be repeated.
+/// Most passes over a recording, of either kind.
+constexpr long long kMaxPasses = 1'000'000;
+
+/// Adds an option that takes a comma-separated list, and may be repeated.
 void addList(CLI::App& app, const std::string& name, std::vector<std::string>& target,
              const std::string& doc, const std::string& type) {
   app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
@@ -105,6 +124,9 @@ struct SceneTexts {
       options.objects.push_back(
           static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMaxObjects)));
     }
+    std::ranges::sort(options.objects);
+    options.objects.erase(std::unique(options.objects.begin(), options.objects.end()),
+                          options.objects.end());
     options.object_types = splitList(object_types);
     for (const Shortcut& shortcut : shortcuts) {
       if (!shortcut.value.empty()) options.parameters[shortcut.parameter] = shortcut.value;
@@ -118,7 +140,11 @@ struct HeadlessTexts {
   std::vector<std::string> algorithms;
   std::vector<std::string> threads;
   std::vector<std::string> isas;
+  std::string repetitions = "1";
+  std::string warmup = "0";
+  std::string frame_limit = "0.5";
   std::string check = "full";
+  std::string frame;
   std::string gl = "auto";
   std::string size = "1280x720";
   std::string shard = "0/1";
@@ -182,15 +208,14 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
           "instruction sets of vectorised variants: auto (default), scalar, sse2, avx2, avx512",
           "ISA[,ISA...]");
 
-  app.add_option("--repetitions", options.repetitions, "measured passes over each recording")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--warmup", options.warmup, "unmeasured passes before them")
-      ->check(CLI::Range(0, 1'000'000))
-      ->capture_default_str();
-  app.add_option("--time-limit", options.frame_limit_seconds,
+  app.add_option("--repetitions", texts.repetitions, "measured passes over each recording")
+      ->capture_default_str()
+      ->type_name("R");
+  app.add_option("--warmup", texts.warmup, "unmeasured passes before them")
+      ->capture_default_str()
+      ->type_name("W");
+  app.add_option("--time-limit", texts.frame_limit,
                  "limit on the mean seconds per frame (the paper's cap)")
-      ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->type_name("SECONDS");
   app.add_option("--check", texts.check,
@@ -210,7 +235,8 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
                  "draw a frame of each recording off-screen; with several recordings their names "
                  "are added to the file's")
       ->type_name("FILE");
-  app.add_option("--frame", options.screenshot_frame, "frame of the screenshot (default: the last)")
+  app.add_option("--frame", texts.frame,
+                 "frame of the screenshot, 0 being the initial pose (default: the last)")
       ->type_name("K");
   app.add_option("--size", texts.size, "size of the screenshot")
       ->capture_default_str()
@@ -233,6 +259,14 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   options.algorithms = splitList(texts.algorithms);
   options.threads = parseThreads(texts.threads);
   options.isas = parseIsas(texts.isas);
+  options.repetitions =
+      static_cast<int>(parseInteger(texts.repetitions, "--repetitions", 1, kMaxPasses));
+  options.warmup = static_cast<int>(parseInteger(texts.warmup, "--warmup", 0, kMaxPasses));
+  options.frame_limit_seconds = parseNumber(texts.frame_limit, "--time-limit", 0, true);
+  if (!texts.frame.empty()) {
+    options.screenshot_frame = static_cast<std::uint32_t>(
+        parseInteger(texts.frame, "--frame", 0, std::numeric_limits<std::int32_t>::max()));
+  }
   options.check = named<CheckMode>(
       "--check", texts.check,
       {{"full", CheckMode::full}, {"hash", CheckMode::hash}, {"off", CheckMode::off}});
@@ -251,32 +285,61 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   return options;
 }
 
+/// Complains about an argument that `app` does not know, with the nearest of what it does.
+std::string unexpected(const CLI::App& app, const std::string& argument) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name());
+  if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::string nearest = nearestName(name, known);
+  return fmt::format("unknown option '{}'{}", name,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
+
 /// CLI11's own complaint as one line, with the nearest option for a misspelt one.
-InputError usageError(const CLI::App& app, const CLI::ParseError& error,
-                      const std::vector<std::string>& arguments) {
+InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
+  const auto chosen = main.get_subcommands();
+  const CLI::App& app = chosen.empty() ? main : *chosen.front();
   std::string message = error.what();
   std::ranges::replace(message, '\n', ' ');
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    std::vector<std::string> known;
-    for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name());
-    for (const std::string& argument : arguments) {
-      if (!argument.starts_with("--")) continue;
-      const std::string name = argument.substr(0, argument.find('='));
-      if (std::ranges::find(known, name) != known.end()) continue;
-      const std::string nearest = nearestName(name, known);
-      message = fmt::format("unknown option '{}'{}", name,
-                            nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
-      break;
-    }
+  if (!app.remaining().empty()) {
+    message = unexpected(app, app.remaining().front());
   }
-  return InputError(message + " (see 'broadmark --help')");
+  const std::string command = chosen.empty() ? "" : app.get_name() + " ";
+  return InputError(fmt::format("{}{} (see 'broadmark {}--help')",
+                                chosen.empty() ? "" : app.get_name() + ": ", message, command));
+}
+
+/// Neither --headless nor a command: perhaps a misspelt one.
+InputError missingHeadless(const CLI::App& app, const std::vector<std::string>& sources) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  const std::string nearest = sources.empty() ? "" : nearestName(sources.front(), commands);
+  return InputError(
+      fmt::format("{}this version has no inspector window yet: add --headless (see "
+                  "'broadmark --help')",
+                  nearest.empty() ? "" : fmt::format("did you mean the command '{}'? ", nearest)));
+}
+
+/// Options before a command would be lost on it.
+void requireNothingBefore(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  if (chosen.empty()) return;
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0) continue;
+    const std::string command = chosen.front()->get_name();
+    throw InputError(fmt::format("{}: must not stand before '{}' (see 'broadmark {} --help')",
+                                 option->get_name(), command, command));
+  }
 }
 
 }  // namespace
 
 int runCommandLine(int argc, char** argv) {
-  CLI::App app("Broadmark tests, compares and validates broad-phase collision detection.");
+  CLI::App app("Broadmark tests, compares and validates broad-phase collision detection.",
+               "broadmark");
   app.footer(kFooter);
+  app.set_help_all_flag("--help-all", "Print the help of all commands and exit");
   app.set_version_flag("--version", thisEnvironment().version);
   app.get_formatter()->column_width(34);
 
@@ -309,6 +372,7 @@ int runCommandLine(int argc, char** argv) {
   verify->add_option("files", files, "recordings (.aabbs)")->type_name("FILE")->required();
 
   CompareOptions compare_options;
+  std::string fail_above = "0.05";
   CLI::App* compare =
       app.add_subcommand("compare", "Compares two result files (JSON) case by case.");
   compare->add_option("before", compare_options.before, "results to compare with")
@@ -318,22 +382,20 @@ int runCommandLine(int argc, char** argv) {
       ->type_name("B.json")
       ->required();
   compare
-      ->add_option("--fail-above", compare_options.fail_above,
+      ->add_option("--fail-above", fail_above,
                    "slow-down that counts as a regression, as a share: 0.05 is 5 %")
-      ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->type_name("SHARE");
   app.require_subcommand(0, 1);
 
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    const auto chosen = app.get_subcommands();
-    throw usageError(chosen.empty() ? app : *chosen.front(), error, arguments);
+    throw usageError(app, error);
   }
+  requireNothingBefore(app);
 
   if (bake->parsed()) {
     bake_options.scenes = splitList(bake_scenes);
@@ -343,11 +405,12 @@ int runCommandLine(int argc, char** argv) {
   }
   if (list->parsed()) return runList(what);
   if (verify->parsed()) return runVerify(files);
-  if (compare->parsed()) return runCompare(compare_options);
-  if (!headless) {
-    throw InputError("this version has no inspector window yet: add --headless (see --help)");
+  if (compare->parsed()) {
+    compare_options.fail_above = parseNumber(fail_above, "--fail-above", 0, false);
+    return runCompare(compare_options);
   }
-  options.command_line = arguments;
+  if (!headless) throw missingHeadless(app, options.sources);
+  options.command_line.assign(argv + 1, argv + argc);
   return runHeadless(understand(std::move(options), texts, scene));
 }
 

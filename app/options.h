@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +43,7 @@ struct HeadlessOptions {
   std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
   std::filesystem::path record;                          ///< "": keep no recordings
   std::filesystem::path screenshot;                      ///< "": none
-  std::uint32_t screenshot_frame = 0;                    ///< 0: the last one
+  std::optional<std::uint32_t> screenshot_frame;         ///< nothing: the last one
   int screenshot_width = 1280;
   int screenshot_height = 720;
   GlSource gl = GlSource::automatic;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "app/options.h"
 #include "broadmark/oracle.h"
@@ -14,9 +15,9 @@ namespace broadmark {
 void takeScreenshot(const HeadlessOptions&, RecordingReader&, Oracle&,
                     const std::filesystem::path& path);
 
-/// Where a recording's screenshot goes: the file asked for, or, when there are several recordings,
-/// that name followed by the recording's.
-std::filesystem::path screenshotPath(const std::filesystem::path& asked, const SceneInfo&,
-                                     bool several);
+/// Where the screenshots of all recordings of a run go: the file asked for, or, when there are
+/// several recordings, that name followed by the recording's.
+std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& asked,
+                                                   const std::vector<const SceneInfo*>& scenes);
 
 }  // namespace broadmark

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <tuple>
 
 namespace broadmark {
 namespace {
@@ -36,17 +37,22 @@ struct Row {
   const CaseResult* result;
   Summary summary;
 
-  [[nodiscard]] bool timed() const { return !result->repetitions.empty(); }
+  [[nodiscard]] bool timed() const {
+    return std::ranges::any_of(result->repetitions,
+                               [](const Repetition& pass) { return !pass.frames.empty(); });
+  }
   [[nodiscard]] bool right() const { return timed() && result->status == Status::ok; }
 };
 
 std::vector<Row> sortedRows(std::span<const CaseResult> results) {
   std::vector<Row> rows;
   for (const CaseResult& result : results) rows.push_back({&result, result.summary()});
-  // Right ones first; among them the fastest first.
+  // Right ones first; among them the fastest first; self-checks, which answer nothing, last.
   std::ranges::stable_sort(rows, {}, [](const Row& row) {
+    const bool self_check = row.timed() && !row.result->checked;
     const double untimed = std::numeric_limits<double>::infinity();
-    return std::pair(!row.right(), row.timed() ? row.summary.seconds_per_frame : untimed);
+    return std::tuple(self_check, !row.right(),
+                      row.timed() ? row.summary.seconds_per_frame : untimed);
   });
   return rows;
 }

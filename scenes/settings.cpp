@@ -1,5 +1,6 @@
 #include "scenes/settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenes/registry.h"
@@ -21,7 +22,7 @@ Choice choiceOf(const Entries& entries) {
 Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
 
 void Settings::visit(const ParameterVisitor& visit) {
-  visit({"objects", "number of bodies", &objects, 1, 10'000'000});
+  visit({"objects", "number of bodies", &objects, 0, 10'000'000});
   visit({"frames", "number of frames after the initial pose", &frames, 1, 1'000'000});
   visit({"object_type", "what the bodies are", &object_type});
   visit({"engine", "physics engine that moves them", &engine});
@@ -52,7 +53,9 @@ void Settings::visit(const ParameterVisitor& visit) {
 }
 
 double Settings::side() const {
-  return std::cbrt(static_cast<double>(objects) * scale * scale * scale / density);
+  // Of no bodies at all, the world is that of one.
+  const auto bodies = static_cast<double>(std::max<std::int64_t>(objects, 1));
+  return std::cbrt(bodies * scale * scale * scale / density);
 }
 
 }  // namespace broadmark::scenes
