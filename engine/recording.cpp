@@ -61,7 +61,7 @@ bool isPrintable(std::string_view text) {
   return std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-std::uint64_t frameOffset(const SceneInfo& scene, std::uint32_t frame) {
+std::uint64_t frameOffset(const SceneInfo& scene, std::uint64_t frame) {
   return kRecordingHeaderBytes + sizeof(Aabb) * std::uint64_t{scene.objects} * frame;
 }
 
@@ -100,6 +100,16 @@ bool isSound(const Aabb& box) {
     sound &= box.min[axis] <= box.max[axis] && box.min[axis] >= -kHuge && box.max[axis] <= kHuge;
   }
   return sound;
+}
+
+/// Throws InputError naming the first broken box of a frame.
+void requireSound(std::span<const Aabb> boxes, std::uint64_t frame, const SceneInfo& scene,
+                  const std::string& name) {
+  const auto broken = std::ranges::find_if_not(boxes, isSound);
+  if (broken == boxes.end()) return;
+  const auto body = static_cast<std::uint64_t>(broken - boxes.begin());
+  throw InputError(fmt::format("{}: frame {}, body {} (byte {}): the box {}", name, frame, body,
+                               frameOffset(scene, frame) + body * sizeof(Aabb), boxFault(*broken)));
 }
 
 /// A NUL-padded text of the header.
@@ -242,12 +252,7 @@ Frame RecordingReader::read(std::uint32_t index) {
   }
   const std::uint64_t offset = frameOffset(scene_, index);
   readAll(file_.get(), std::as_writable_bytes(std::span(boxes_)), offset, name_);
-  const auto broken = std::ranges::find_if_not(boxes_, isSound);
-  if (broken != boxes_.end()) {
-    const auto body = static_cast<std::uint64_t>(broken - boxes_.begin());
-    throw InputError(fmt::format("{}: frame {}, body {} (byte {}): the box {}", name_, index, body,
-                                 offset + body * sizeof(Aabb), boxFault(*broken)));
-  }
+  requireSound(boxes_, index, scene_, name_);
   position_ = index;
   return {index, boxes_};
 }
@@ -314,6 +319,7 @@ void RecordingWriter::write(std::span<const Aabb> boxes) {
     throw std::logic_error(fmt::format("{}: a set of {} boxes instead of {}", state_->name,
                                        boxes.size(), state_->scene.objects));
   }
+  requireSound(boxes, state_->sets, state_->scene, state_->name);
   state_->append(std::as_bytes(boxes));
   ++state_->sets;
 }

@@ -242,6 +242,17 @@ TEST(RecordingWriter, RefusesScenesThatAreNotRecordable) {
   EXPECT_EQ(longest.finishTemporary()->scene().name, std::string(127, 'x'));
 }
 
+TEST(RecordingWriter, RefusesBoxesThatNoReaderWouldTake) {
+  RecordingWriter writer(handMadeScene());
+  writer.write(chain(2));
+  std::vector<Aabb> boxes = chain(2);
+  boxes[1].max[2] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(inputErrorOf([&] { writer.write(boxes); }),
+              HasSubstr("frame 1, body 1 (byte 400): the box is infinite"));
+  writer.write(chain(2));
+  EXPECT_EQ(writer.finishTemporary()->read(1).boxes.size(), 2U) << "the bad set was not written";
+}
+
 TEST(RecordingWriter, SaysWhereItCannotWrite) {
   const TemporaryDirectory directory;
   const auto path = directory / "missing" / "a.aabbs";

@@ -64,8 +64,8 @@ class RecordingWriter {
   explicit RecordingWriter(const SceneInfo& scene);
   ~RecordingWriter();
 
-  /// Appends one set of boxes; the first is the initial pose. Throws InputError when the disc is
-  /// full.
+  /// Appends one set of boxes; the first is the initial pose. Throws InputError when a box is not
+  /// finite or inverted (a simulation that blew up), or the disc is full.
   void write(std::span<const Aabb> boxes);
   /// Makes the recording whole and gives it its name. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as RecordingReader::hash().
