@@ -74,6 +74,40 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
   }
 }
 
+// Windows of any length from any row on: rows are swept several at once, beyond their common part
+// one by one, and no pair may fall between or be reported by both.
+TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
+  constexpr std::size_t kCount = 90;
+  BoxArrays arrays;
+  arrays.assign(inputs::identical(kCount, 0, 0));
+  inputs::Random random(5, 0);
+  for (int round = 0; round < 50; ++round) {
+    std::vector<std::uint32_t> ends;
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+      const int longest = static_cast<int>(kCount - i);
+      ends.push_back(i + static_cast<std::uint32_t>(random.integer(1, longest)));
+      bodies.push_back(1000 - i);
+    }
+    const auto begin = static_cast<std::size_t>(random.integer(0, 20));
+    const Range rows = {begin, begin + static_cast<std::size_t>(random.integer(0, 70))};
+    std::vector<Pair> expected;
+    for (std::size_t i = rows.begin; i < rows.end; ++i) {
+      for (std::size_t j = i + 1; j < ends[i]; ++j) {
+        expected.push_back(orderedPair(bodies[i], bodies[j]));
+      }
+    }
+    std::ranges::sort(expected);
+    for (const Isa isa : kAllIsas) {
+      if (!isaSupported(isa)) continue;
+      PairBuffer found;
+      overlapKernels(isa).sweep(arrays, ends.data(), bodies.data(), rows, found);
+      const PairRun run = found.run();
+      EXPECT_EQ(sorted({&run, 1}), expected) << isaName(isa) << " rows from " << rows.begin;
+    }
+  }
+}
+
 // Values no recording holds, whose sums and differences overflow: only comparisons are right.
 TEST(BruteForceAndSweep, SurviveTheLimitsOfFloats) {
   const auto frames = framesOf({"limits", inputs::limits}, 300, 4);

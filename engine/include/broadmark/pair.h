@@ -36,7 +36,9 @@ constexpr std::uint64_t pairCount(PairRuns runs) {
 
 /// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it hands out
 /// uninitialised room, so that SIMD kernels can write first and count afterwards.
-class PairBuffer {
+///
+/// Alone on its cache line: workers count up their own buffers, which lie side by side.
+class alignas(64) PairBuffer {
  public:
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
