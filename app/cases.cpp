@@ -23,9 +23,14 @@ const OriginalId* originalId(const Algorithm& algorithm, const std::string& name
   return found == algorithm.original_ids.end() ? nullptr : &*found;
 }
 
-bool selects(const std::string& selector, const Algorithm& algorithm) {
+/// Whether `selector` names `algorithm`, one of `known`.
+bool selects(const std::string& selector, const Algorithm& algorithm,
+             const std::vector<Algorithm>& known) {
   if (selector == "all") return algorithm.finds_pairs;
-  return globMatches(selector, algorithm.id) || lower(selector) == lower(algorithm.family);
+  if (globMatches(selector, algorithm.id)) return true;
+  // An id is that algorithm alone, even where a whole family is called the same ("sap").
+  const bool is_id = std::ranges::find(known, selector, &Algorithm::id) != known.end();
+  return !is_id && lower(selector) == lower(algorithm.family);
 }
 
 std::vector<std::string> idsOf(const std::vector<Algorithm>& known) {
@@ -69,13 +74,15 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
                                         const std::vector<Algorithm>& known) {
   for (const std::string& selector : selectors) {
     const bool names_any = std::ranges::any_of(
-        known, [&](const Algorithm& algorithm) { return selects(selector, algorithm); });
+        known, [&](const Algorithm& algorithm) { return selects(selector, algorithm, known); });
     if (!names_any)
       throw InputError("--algorithm: " + unknownName("algorithm", selector, idsOf(known)));
   }
   std::vector<Algorithm> selected;
   for (const Algorithm& algorithm : known) {
-    const auto by = [&](const std::string& selector) { return selects(selector, algorithm); };
+    const auto by = [&](const std::string& selector) {
+      return selects(selector, algorithm, known);
+    };
     if (std::ranges::any_of(selectors, by)) selected.push_back(algorithm);
   }
   return selected;

@@ -12,8 +12,9 @@
 
 namespace broadmark {
 
-/// The algorithms that the selectors (ids, families, globs, original ids, "all") name, each once,
-/// in the order of `known`. Throws InputError for a selector that names none.
+/// The algorithms that the selectors (ids, families, globs, "all") name, each once, in the order of
+/// `known`. What is both an id and a family means the id. Throws InputError for a selector that
+/// names none.
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
                                         const std::vector<Algorithm>& known);
 

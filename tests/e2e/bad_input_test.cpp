@@ -1,0 +1,227 @@
+// Bad input: exit status 2 and one line that names what is wrong and what would be right; nothing
+// is written.
+
+#include <sys/stat.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+class BadInput : public EndToEnd {
+ protected:
+  /// A small run with more arguments is refused.
+  void expectRunRefused(const Arguments& more, const std::vector<std::string>& words) const {
+    Arguments call = {"--headless", "freefall", "--objects", "20",          "--frames", "3",
+                      "--quiet",    "--json",   "no.json",   "--algorithm", "sap"};
+    call.insert(call.end(), more.begin(), more.end());
+    expectRefusal(call, words);
+  }
+
+  /// A file with these bytes is refused as a source and by verify.
+  void expectFileRefused(const std::string& bytes, const std::vector<std::string>& words) const {
+    writeFile(file("bad file.aabbs"), bytes);
+    std::vector<std::string> all = words;
+    all.emplace_back("bad file.aabbs");
+    expectRefusal(
+        {"--headless", "bad file.aabbs", "--json", "no.json", "--quiet", "--screenshot", "no.png"},
+        all);
+    const Ended verified = run({"verify", "bad file.aabbs"});
+    EXPECT_EQ(verified.status, 2);
+    EXPECT_EQ(linesOf(verified.err).size(), 1U) << verified.err;
+    for (const std::string& word : all) EXPECT_THAT(verified.err, HasSubstr(word));
+  }
+};
+
+TEST_F(BadInput, UnknownNamesAreSuggested) {
+  expectRunRefused({"--algoritm", "sap"}, {"'--algoritm'", "'--algorithm'"});
+  expectRunRefused({"--shards=0/1"}, {"'--shards'", "'--shard'"});
+  expectRunRefused({"--zzzzzzzzzzzz"}, {"'--zzzzzzzzzzzz'", "--help"});
+  expectRunRefused({"-x"}, {"'-x'", "--help"});
+  expectRunRefused({"--algorithm", "sapp"}, {"--algorithm", "'sapp'", "'sap'"});
+  expectRunRefused({"--isa", "avx3"}, {"--isa", "'avx3'", "'avx2'"});
+  expectRunRefused({"--check", "ful"}, {"--check", "'ful'", "'full'"});
+  expectRunRefused({"--gl", "egll"}, {"--gl", "'egll'", "'egl'"});
+  expectRunRefused({"--object-type", "cube"}, {"'cube'", "'cubes'"});
+  expectRunRefused({"--engine", "bulet"}, {"'bulet'", "'bullet'"});
+  expectRunRefused({"--param", "densty=1"}, {"--param", "'densty'", "'density'"});
+  expectRefusal({"--headless", "freefal"}, {"'freefal'", "'freefall'"});
+  expectRefusal({"list", "algoritms"}, {"'algoritms'", "'algorithms'"});
+  expectRefusal({"bake", "--scenes", "brownain", "--output", "no"}, {"'brownain'", "'brownian'"});
+  expectRefusal({"bake", "--sceness", "brownian", "--output", "no"}, {"bake", "'--scenes'"});
+  expectRefusal({"bake", "--param", "masss=1", "--output", "no"}, {"'masss'", "'mass'"});
+  expectRefusal({"compare", "a", "b", "--fail-abov", "1"}, {"compare", "'--fail-above'"});
+  expectRefusal({"verfy", "a.aabbs"}, {"'verify'"});
+}
+
+TEST_F(BadInput, NumbersOutOfRange) {
+  for (const std::string count : {"-1", "0x", "1e99", "abc", "99999999999", "1.5"}) {
+    expectRunRefused({"--objects", count}, {"--objects", "'" + count + "'", "integer from 0"});
+    expectRefusal({"bake", "--objects=" + count, "--output", "no"}, {"--objects"});
+  }
+  expectRunRefused({"--objects", "50000000"}, {"objects", "'50000000'"});
+  for (const std::string frames : {"0", "-1", "1000001", "x"}) {
+    expectRefusal({"--headless", "freefall", "--frames", frames},
+                  {"frames", "'" + frames + "'", "1…1000000"});
+  }
+  expectRunRefused({"--density", "0"}, {"density", "'0'"});
+  expectRunRefused({"--density", "nan"}, {"density", "'nan'"});
+  expectRunRefused({"--seed", "-1"}, {"seed", "'-1'"});
+  expectRunRefused({"--repetitions", "0"}, {"--repetitions", "'0'", "from 1"});
+  expectRunRefused({"--repetitions", "x"}, {"--repetitions", "'x'"});
+  expectRunRefused({"--warmup", "-1"}, {"--warmup", "'-1'", "from 0"});
+  for (const std::string limit : {"0", "-1", "nan", "inf", "1s"}) {
+    expectRunRefused({"--time-limit", limit}, {"--time-limit", "'" + limit + "'", "> 0"});
+  }
+  for (const std::string threads : {"0", "1025", "two"}) {
+    expectRunRefused({"--threads", threads}, {"--threads", "'" + threads + "'", "from 1"});
+  }
+  expectRunRefused({"--size", "0x0"}, {"--size", "'0'", "from 1"});
+  expectRunRefused({"--size", "640"}, {"--size", "'640'", "WxH"});
+  expectRunRefused({"--size", "99999x2"}, {"--size", "'99999'"});
+  for (const std::string frame : {"4", "-1", "abc"}) {
+    expectRunRefused({"--screenshot", "no.png", "--frame", frame}, {"--frame", frame});
+  }
+  expectRunRefused({"--shard", "4/4"}, {"--shard", "'4'", "0 to 3"});
+  expectRunRefused({"--shard", "1"}, {"--shard", "'1'", "I/N"});
+  expectRunRefused({"--shard", "0/0"}, {"--shard", "'0'"});
+  expectRunRefused({"--param", "friction=much"}, {"friction", "'much'"});
+  expectRunRefused({"--param", "friction"}, {"--param", "'friction'", "KEY=VALUE"});
+  for (const std::string share : {"-0.1", "nan", "inf", "x"}) {
+    expectRefusal({"compare", "a", "b", "--fail-above=" + share}, {"--fail-above", share});
+  }
+}
+
+TEST_F(BadInput, IncompleteCalls) {
+  expectRefusal({}, {"--headless"});
+  expectRefusal({"freefall"}, {"no inspector", "--headless"});
+  expectRefusal({"--headless"}, {"no source", "freefall"});
+  expectRefusal({"bake"}, {"bake", "--output"});
+  expectRefusal({"verify"}, {"verify", "files"});
+  expectRefusal({"compare", "one.json"}, {"compare", "after"});
+  expectRefusal({"bake", "freefall", "--output", "no"}, {"bake", "'freefall'"});
+  expectRefusal({"--objects", "5", "bake", "--output", "no"}, {"--objects", "'bake'"});
+  expectRunRefused({"--json"}, {"--json"});
+  expectRunRefused({"--filter", "(["}, {"--filter", "'(['"});
+  expectRunRefused({"--filter", "matches nothing"}, {"--filter"});
+}
+
+TEST_F(BadInput, SourcesThatAreNone) {
+  expectRefusal({"--headless", "missing.aabbs"}, {"missing.aabbs", "No such file"});
+  expectRefusal({"--headless", "missing.json"}, {"missing.json", "No such file"});
+  fs::create_directory(file("folder.aabbs"));
+  expectRefusal({"--headless", "folder.aabbs"}, {"folder.aabbs", "not a regular file"});
+  ASSERT_EQ(::mkfifo(file("fifo.aabbs").c_str(), 0600), 0);
+  expectRefusal({"--headless", "fifo.aabbs"}, {"fifo.aabbs", "not a regular file"});
+  writeFile(file("old.posrot"), "");
+  expectRefusal({"--headless", "old.posrot"}, {"old.posrot", ".aabbs"});
+
+  for (const auto& [name, text] :
+       std::map<std::string, std::string>{{"broken.json", "{"},
+                                          {"array.json", "[]"},
+                                          {"empty.json", ""},
+                                          {"unknown.json", R"({"schema": "something/9"})"},
+                                          {"deep.json", std::string(100000, '[')}}) {
+    writeFile(file(name), text);
+    expectRefusal({"--headless", name}, {name});
+    expectRefusal({"compare", name, name}, {name});
+  }
+}
+
+TEST_F(BadInput, AResultsFileIsNoSource) {
+  runQuietly({"--headless", "freefall", "--objects", "5", "--frames", "2", "--json", "r.json"});
+  expectRefusal({"--headless", "r.json"}, {"r.json", "broadmark-results/1", "settings file"});
+}
+
+TEST_F(BadInput, UnreadableFile) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
+  bakeRecording("secret.aabbs");
+  fs::permissions(file("secret.aabbs"), fs::perms::none);
+  expectRefusal({"--headless", "secret.aabbs"}, {"secret.aabbs", "Permission denied"});
+}
+
+TEST_F(BadInput, RecordingsOfTheWrongLength) {
+  const std::string good = recordingOf(3, 2, unitBoxes(9));
+  expectFileRefused("", {"0 bytes", "304"});
+  expectFileRefused(good.substr(0, 100), {"100 bytes", "304"});
+  expectFileRefused(good.substr(0, good.size() - 1), {"too short", std::to_string(good.size())});
+  expectFileRefused(good + "x", {"too long", std::to_string(good.size())});
+}
+
+TEST_F(BadInput, RecordingsThatLieAboutTheirCounts) {
+  expectFileRefused(recordingOf(-1, 2, unitBoxes(3)), {"negative", "-1", "byte 256"});
+  expectFileRefused(recordingOf(1, -2, unitBoxes(3)), {"negative", "-2", "byte 260"});
+  expectFileRefused(recordingOf(1 << 30, 2, unitBoxes(3)), {"too short"});
+  // 2^30 objects and 2^29 sets are 2^64 bytes: 0, to those who multiply carelessly.
+  expectFileRefused(recordingOf(1 << 30, (1 << 29) - 1, {}), {"too short"});
+  expectFileRefused(recordingOf(0, std::numeric_limits<std::int32_t>::max(), {}), {"frames"});
+}
+
+TEST_F(BadInput, RecordingsWithBadValues) {
+  struct Fault {
+    float min;
+    float max;
+    std::string word;
+  };
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  for (const Fault& fault :
+       {Fault{kNan, 1, "NaN"}, Fault{0, kNan, "NaN"}, Fault{-kInfinite, 1, "infinite"},
+        Fault{0, kInfinite, "infinite"}, Fault{2, 1, "inverted"}}) {
+    // The third set is frame 2; its second box is body 1.
+    std::vector<Aabb> boxes = unitBoxes(9);
+    boxes[7].min[1] = fault.min;
+    boxes[7].max[1] = fault.max;
+    expectFileRefused(recordingOf(3, 2, boxes), {"frame 2", "body 1", "byte 528", fault.word});
+    expectFileRefused(recordingOf(3, 2, unitBoxes(9), {{fault.min, 0, 0, 0}, {fault.max, 1, 1, 0}}),
+                      {"world box", fault.word});
+  }
+}
+
+TEST_F(BadInput, RecordingsWithUnprintableNames) {
+  std::string bytes = recordingOf(1, 1, unitBoxes(2));
+  bytes[3] = '\x1b';
+  expectFileRefused(bytes, {"byte 0", "ASCII"});
+  bytes = recordingOf(1, 1, unitBoxes(2));
+  std::fill(bytes.begin() + 128, bytes.begin() + 256, 'x');
+  expectFileRefused(bytes, {"byte 128", "ASCII"});
+}
+
+TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
+  writeFile(file("plain"), "");
+  fs::create_directory(file("folder"));
+  ASSERT_EQ(::mkfifo(file("fifo").c_str(), 0600), 0);
+  // As large and long as this is, only an early complaint comes in time.
+  const auto refused = [&](const Arguments& more, const std::vector<std::string>& words) {
+    Arguments call = {"--headless", "gravity", "--objects", "100000",
+                      "--frames",   "100000",  "--quiet"};
+    call.insert(call.end(), more.begin(), more.end());
+    expectRefusal(call, words, {.patience = std::chrono::seconds(20)});
+  };
+  for (const std::string option : {"--json", "--csv", "--csv-frames", "--screenshot"}) {
+    refused({option, "missing/file"}, {"missing/file", "No such file or directory"});
+    refused({option, "plain/file"}, {"plain/file"});
+    refused({option, "folder"}, {"folder", "cannot write"});
+    refused({option, "fifo"}, {"fifo", "cannot write"});
+  }
+  EXPECT_TRUE(fs::is_fifo(file("fifo")));
+  refused({"--record", "plain/folder"}, {"plain/folder", "directory"});
+  refused({"--record", "recordings", "--json", "missing/file"}, {"missing/file"});
+  expectRefusal({"bake", "--output", "plain/folder"}, {"plain/folder", "directory"});
+}
+
+TEST_F(BadInput, OneFileForTwoThings) {
+  bakeRecording("source.aabbs");
+  const std::string bytes = readFile(file("source.aabbs"));
+  expectRefusal({"--headless", "source.aabbs", "--json", "./source.aabbs"},
+                {"--json", "source.aabbs"});
+  EXPECT_EQ(readFile(file("source.aabbs")), bytes);
+  expectRefusal({"--headless", "source.aabbs", "--json", "same", "--csv", "same"},
+                {"--csv", "--json", "same"});
+}
+
+}  // namespace
+}  // namespace broadmark::testing

@@ -1,0 +1,107 @@
+// Baking, verifying and the recordings' promises.
+
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+using Bake = EndToEnd;
+
+constexpr const char* kBaked = "out dir/FreeFall Cubes N40 F8frames.aabbs";
+
+Arguments bakeCall(const Arguments& more = {}) {
+  Arguments call = {"bake",     "--scenes", "freefall", "--objects", "40",
+                    "--frames", "8",        "--output", "out dir"};
+  call.insert(call.end(), more.begin(), more.end());
+  return call;
+}
+
+TEST_F(Bake, EveryCombinationIsBakedAndSound) {
+  const Ended baked =
+      runQuietly({"bake", "--scenes", "freefall,brownian,gravity", "--objects", "30,10,20",
+                  "--object-type", "cubes", "--frames", "4", "--output", "deep/er/out"});
+  const auto files = linesOf(baked.out);
+  ASSERT_EQ(files.size(), 9U) << baked.out;
+  EXPECT_EQ(files.front(), "deep/er/out/FreeFall Cubes N10 F4frames.aabbs");
+  Arguments verify = {"verify"};
+  verify.insert(verify.end(), files.begin(), files.end());
+  const Ended verified = run(verify);
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  EXPECT_EQ(verified.err, "");
+  EXPECT_EQ(linesOf(verified.out).size(), 9U);
+  for (const std::string& line : linesOf(verified.out)) EXPECT_THAT(line, HasSubstr(": ok: "));
+  for (const std::string& name : files) {
+    const Json sidecar = readJson(file(fs::path(name).replace_extension(".json")));
+    EXPECT_EQ(sidecar.at("schema"), "broadmark-bake/1");
+    EXPECT_EQ(sidecar.at("parameters").at("frames"), 4);
+    EXPECT_THAT(verified.out, HasSubstr(sidecar.at("hash").get<std::string>()));
+  }
+}
+
+TEST_F(Bake, TheSeedDecidesTheRecording) {
+  bakeRecording("first.aabbs", "40", "8", "7");
+  bakeRecording("second.aabbs", "40", "8", "7");
+  bakeRecording("other.aabbs", "40", "8", "8");
+  EXPECT_EQ(readFile(file("first.aabbs")), readFile(file("second.aabbs")));
+  EXPECT_NE(readFile(file("first.aabbs")), readFile(file("other.aabbs")));
+}
+
+TEST_F(Bake, WhatIsThereIsKeptUnlessForced) {
+  runQuietly(bakeCall());
+  const std::string bytes = readFile(file(kBaked));
+  const auto long_ago = fs::last_write_time(file(kBaked)) - std::chrono::hours(1);
+  fs::last_write_time(file(kBaked), long_ago);
+  runQuietly(bakeCall());
+  EXPECT_EQ(fs::last_write_time(file(kBaked)), long_ago);
+  runQuietly(bakeCall({"--force"}));
+  EXPECT_NE(fs::last_write_time(file(kBaked)), long_ago);
+  EXPECT_EQ(readFile(file(kBaked)), bytes);
+}
+
+TEST_F(Bake, WhatIsOtherOrDamagedIsBakedAnew) {
+  runQuietly(bakeCall());
+  const std::string bytes = readFile(file(kBaked));
+  runQuietly(bakeCall({"--seed", "2"}));
+  EXPECT_NE(readFile(file(kBaked)), bytes);
+  runQuietly(bakeCall());
+  EXPECT_EQ(readFile(file(kBaked)), bytes);
+
+  std::string damaged = bytes;
+  damaged[400] ^= 1;
+  writeFile(file(kBaked), damaged);
+  runQuietly(bakeCall());
+  EXPECT_EQ(readFile(file(kBaked)), bytes);
+}
+
+TEST_F(Bake, ParametersOfTheSceneCount) {
+  runQuietly(bakeCall());
+  const std::string bytes = readFile(file(kBaked));
+  runQuietly(bakeCall({"--density", "0.02", "--param", "friction=0.1"}));
+  EXPECT_NE(readFile(file(kBaked)), bytes);
+  const Json sidecar = readJson(file("out dir/FreeFall Cubes N40 F8frames.json"));
+  EXPECT_EQ(sidecar.at("parameters").at("friction"), 0.1);
+}
+
+TEST_F(Bake, WhatAKilledBakeLeftIsTakenOver) {
+  fs::create_directory(file("out dir"));
+  writeFile(file(std::string(kBaked) + ".part"), std::string(1 << 20, 'x'));
+  runQuietly(bakeCall());
+  EXPECT_EQ(fs::file_size(file(kBaked)), 304U + 32 * 40 * 9);
+  EXPECT_FALSE(fs::exists(file(std::string(kBaked) + ".part")));
+  EXPECT_EQ(run({"verify", kBaked}).status, 0);
+}
+
+TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {
+  bakeRecording("good.aabbs");
+  writeFile(file("bad.aabbs"), readFile(file("good.aabbs")).substr(0, 1000));
+  const Ended ended = run({"verify", "bad.aabbs", "good.aabbs", "missing.aabbs"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.out, HasSubstr("good.aabbs: ok"));
+  const auto complaints = linesOf(ended.err);
+  ASSERT_EQ(complaints.size(), 2U) << ended.err;
+  EXPECT_THAT(complaints[0], HasSubstr("bad.aabbs"));
+  EXPECT_THAT(complaints[1], HasSubstr("missing.aabbs"));
+}
+
+}  // namespace
+}  // namespace broadmark::testing

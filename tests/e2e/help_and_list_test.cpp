@@ -1,0 +1,94 @@
+// What the program says about itself.
+
+#include "broadmark/algorithms.h"
+#include "scenes/simulation.h"
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+using Help = EndToEnd;
+using List = EndToEnd;
+
+void expectWords(const Ended& ended, const std::vector<std::string>& words) {
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "");
+  for (const std::string& word : words) EXPECT_THAT(ended.out, HasSubstr(word));
+}
+
+TEST_F(Help, NamesEveryOptionAndCommand) {
+  const std::vector<std::string> session = {"--objects", "--object-type", "--frames", "--seed",
+                                            "--density", "--engine",      "--param"};
+  const Ended help = run({"--help"});
+  expectWords(help, session);
+  expectWords(help, {"Usage: broadmark ",
+                     "--headless",
+                     "--algorithm",
+                     "--threads",
+                     "--isa",
+                     "--repetitions",
+                     "--warmup",
+                     "--time-limit",
+                     "--check",
+                     "--memory",
+                     "--json",
+                     "--csv ",
+                     "--csv-frames",
+                     "--record",
+                     "--screenshot",
+                     "--frame ",
+                     "--size",
+                     "--gl",
+                     "--shard",
+                     "--filter",
+                     "--list",
+                     "--quiet",
+                     "--version",
+                     "bake",
+                     "list ",
+                     "verify",
+                     "compare",
+                     "Exit status"});
+  expectWords(run({"bake", "--help"}), session);
+  expectWords(run({"bake", "--help"}), {"--scenes", "--output", "--force", "--quiet"});
+  expectWords(run({"compare", "--help"}), {"--fail-above", "A.json", "B.json"});
+  expectWords(run({"verify", "--help"}), {"FILE"});
+  expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines"});
+  expectWords(run({"--help-all"}), {"--headless", "--scenes", "--fail-above"});
+}
+
+TEST_F(Help, Version) {
+  const Ended ended = run({"--version"});
+  expectWords(ended, {"."});
+  EXPECT_EQ(linesOf(ended.out).size(), 1U);
+}
+
+TEST_F(List, NamesEverything) {
+  const Ended all = run({"list"});
+  for (const Algorithm& algorithm : builtinAlgorithms()) {
+    expectWords(all, {algorithm.id, algorithm.source, algorithm.time});
+    expectWords(run({"list", "algorithms"}), {algorithm.id});
+  }
+  for (const SceneListing& scene : builtinScenes()) {
+    expectWords(all, {scene.id, scene.summary});
+    expectWords(run({"list", "scenes"}), {scene.id, "density", "0.1", "1e-06…1"});
+  }
+  for (const EngineListing& engine : builtinEngines()) {
+    expectWords(all, {engine.id, engine.summary});
+    expectWords(run({"list", "engines"}), {engine.id});
+  }
+}
+
+TEST_F(List, WhatCannotBePrintedIsAnError) {
+  for (const Arguments& call :
+       {Arguments{"list"}, Arguments{"--help"}, Arguments{"--version"},
+        Arguments{"--headless", "freefall", "--objects", "5", "--frames", "2", "--quiet"}}) {
+    const Ended ended = run(call, {.standard_output = "/dev/full"});
+    EXPECT_EQ(ended.status, 2) << call.front();
+    EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+    EXPECT_THAT(ended.err, StartsWith("broadmark: "));
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::testing

@@ -1,0 +1,176 @@
+// Ctrl-C, a kill and a full disc: what is finished stays, what is not does not look finished.
+
+#include <fmt/format.h>
+#include <sys/mount.h>
+
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+/// So many frames that no bake of them ends before it is interrupted.
+constexpr const char* kEndless = "1000000";
+
+class Interruption : public EndToEnd {
+ protected:
+  [[nodiscard]] bool hasGrown(const fs::path& name) const {
+    std::error_code missing;
+    const auto size = fs::file_size(file(name), missing);
+    return !missing && size > 304;
+  }
+};
+
+const std::string kEndlessFile = "out/Brownian Cubes N100 F1000000frames.aabbs";
+const Arguments kEndlessBake = {"bake",     "--scenes", "brownian", "--objects", "100",
+                                "--frames", kEndless,   "--output", "out",       "--quiet"};
+
+TEST_F(Interruption, OfABakeLeavesNothingHalf) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    Program bake(directory_, kEndlessBake);
+    ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+    bake.signal(signal);
+    const Ended ended = bake.wait();
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+    EXPECT_THAT(ended.err, StartsWith("broadmark: interrupted"));
+    EXPECT_EQ(ended.out, "");
+    EXPECT_EQ(entries(), std::set<std::string>{"out"});
+  }
+}
+
+TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
+  Program bake(directory_, {"bake", "--scenes", "freefall", "--objects", "2,5000", "--frames",
+                            "1500", "--output", "out"});
+  const std::string second = "out/FreeFall Cubes N5000 F1500frames.aabbs";
+  ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(second + ".part"); }));
+  bake.signal(SIGINT);
+  const Ended ended = bake.wait();
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
+  const std::string first = "out/FreeFall Cubes N2 F1500frames.aabbs";
+  EXPECT_EQ(linesOf(ended.out), std::vector{first});
+  EXPECT_EQ(run({"verify", first}).status, 0);
+  EXPECT_FALSE(fs::exists(file(second)));
+  EXPECT_FALSE(fs::exists(file(second + ".part")));
+}
+
+TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
+  {
+    Program bake(directory_, kEndlessBake);
+    ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+    bake.signal(SIGKILL);
+    EXPECT_EQ(bake.wait().status, 128 + SIGKILL);
+  }
+  EXPECT_FALSE(fs::exists(file(kEndlessFile)));
+  // The next one takes over what was left (made recognisable here); its name is not locked.
+  constexpr std::uintmax_t kMuch = std::uintmax_t{1} << 30;
+  fs::resize_file(file(kEndlessFile + ".part"), kMuch);
+  Program again(directory_, kEndlessBake);
+  ASSERT_TRUE(again.waitUntil([&] {
+    return hasGrown(kEndlessFile + ".part") && fs::file_size(file(kEndlessFile + ".part")) < kMuch;
+  }));
+  again.signal(SIGINT);
+  EXPECT_EQ(again.wait().status, 2);
+  EXPECT_EQ(entries(), std::set<std::string>{"out"});
+}
+
+TEST_F(Interruption, TwoBakesOfOneNameExcludeEachOther) {
+  Program first(directory_, kEndlessBake);
+  ASSERT_TRUE(first.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+  const Ended second = run(kEndlessBake);
+  EXPECT_EQ(second.status, 2);
+  EXPECT_THAT(second.err, HasSubstr("another process is writing it"));
+  EXPECT_TRUE(first.runs());
+  EXPECT_TRUE(fs::exists(file(kEndlessFile + ".part")));
+}
+
+TEST_F(Interruption, OfARunKeepsFinishedCases) {
+  // The second recording's cases would take hours.
+  Program run_of_two(directory_,
+                     {"--headless", "freefall", "--objects", "10,2000", "--frames", "20",
+                      "--algorithm", "bf,bf-mt", "--json", "results.json", "--repetitions", "20000",
+                      "--filter", "(N10/.*/bf$)|(N2000/.*/bf-mt)", "--time-limit", "100"});
+  ASSERT_TRUE(run_of_two.waitUntil([&] { return fs::exists(file("results.json")); }));
+  run_of_two.signal(SIGINT);
+  const Ended ended = run_of_two.wait();
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
+  EXPECT_THAT(ended.out, HasSubstr("written: results.json"));
+  const Json cases = readJson(file("results.json")).at("cases");
+  ASSERT_GE(cases.size(), 1U);
+  EXPECT_EQ(cases[0].at("recording").at("objects"), 10);
+  EXPECT_EQ(cases[0].at("frames").at("total").size(), 20000U);
+}
+
+TEST_F(Interruption, OfARunsFirstSimulationWritesNothing) {
+  Program endless(directory_, {"--headless", "brownian", "--objects", "100", "--frames", kEndless,
+                               "--json", "results.json", "--record", "out", "--quiet"});
+  ASSERT_TRUE(endless.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+  endless.signal(SIGINT);
+  const Ended ended = endless.wait();
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+  EXPECT_THAT(ended.out, Not(HasSubstr("results.json")));
+  EXPECT_EQ(entries(), std::set<std::string>{"out"});
+}
+
+TEST_F(Interruption, AKilledRunLeavesWholeResultsOrNone) {
+  std::string counts = "1";
+  for (int n = 2; n <= 120; ++n) counts += fmt::format(",{}", n);
+  std::size_t before = 0;
+  for (const int delay_ms : {0, 3, 8, 20}) {
+    fs::remove(file("results.json"));
+    Program many(directory_, {"--headless", "freefall", "--objects", counts, "--frames", "3",
+                              "--json", "results.json", "--quiet", "--threads", "1"});
+    ASSERT_TRUE(many.waitUntil([&] { return fs::exists(file("results.json")); }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
+    many.signal(SIGKILL);
+    many.wait();
+    before += readJson(file("results.json")).at("cases").size();
+  }
+  EXPECT_GT(before, 0U);
+}
+
+class FullDisc : public EndToEnd {
+ protected:
+  /// One line that names the file; nothing left but what was there.
+  void expectNoSpace(const Arguments& arguments, const std::vector<std::string>& words,
+                     const Surroundings& around) const {
+    const auto before = entries();
+    const Ended ended = run(arguments, around);
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+    for (const std::string& word : words) EXPECT_THAT(ended.err, HasSubstr(word));
+    EXPECT_EQ(entries(), before);
+  }
+};
+
+const Arguments kLargeRun = {"--headless", "freefall", "--objects",         "2",      "--frames",
+                             "40",         "--json",   "disc/results.json", "--quiet"};
+const Arguments kLargeBake = {"bake",     "--scenes", "freefall", "--objects", "200",
+                              "--frames", "40",       "--output", "disc",      "--quiet"};
+
+// A limit on the size of files stands in for a full disc where none can be had.
+TEST_F(FullDisc, AsALimitOnFiles) {
+  fs::create_directory(file("disc"));
+  const Surroundings small{.largest_file = 8000};
+  expectNoSpace(kLargeBake, {"disc/FreeFall Cubes N200", "cannot write", "File too large"}, small);
+  expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "File too large"}, small);
+}
+
+TEST_F(FullDisc, AsASmallFileSystem) {
+  fs::create_directory(file("disc"));
+  if (::mount("tmpfs", file("disc").c_str(), "tmpfs", 0, "size=16k") != 0) {
+    GTEST_SKIP() << "cannot mount a file system: " << std::strerror(errno);
+  }
+  expectNoSpace(kLargeBake, {"disc/FreeFall Cubes N200", "cannot write", "No space left"}, {});
+  expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "No space left"}, {});
+  // Recordings that are simulated for one run lie in the temporary directory.
+  expectNoSpace({"--headless", "freefall", "--objects", "200", "--frames", "40", "--quiet"},
+                {"temporary", "No space left"},
+                {.environment = {{"TMPDIR", file("disc").string()}}});
+  EXPECT_EQ(::umount(file("disc").c_str()), 0);
+}
+
+}  // namespace
+}  // namespace broadmark::testing

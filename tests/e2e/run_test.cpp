@@ -1,0 +1,348 @@
+// The main job: recordings in, checked and measured cases out.
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <map>
+
+#include "broadmark/algorithms.h"
+#include "broadmark/execution.h"
+#include "render/picture.h"
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+class Run : public EndToEnd {
+ protected:
+  /// The cases of results.json.
+  [[nodiscard]] Json cases() const { return readJson(file("results.json")).at("cases"); }
+
+  /// Runs a small FreeFall scene with more arguments and returns its cases.
+  [[nodiscard]] Json casesOf(const Arguments& more) const {
+    Arguments arguments = {"--headless", "freefall", "--objects", "60",
+                           "--frames",   "5",        "--json",    "results.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    runQuietly(arguments);
+    return cases();
+  }
+};
+
+/// How many lines of a table are marked as the fastest.
+std::ptrdiff_t marks(const std::vector<std::string>& lines) {
+  return std::ranges::count_if(lines,
+                               [](const std::string& line) { return line.starts_with("* "); });
+}
+
+TEST_F(Run, MainJob) {
+  const Ended ended = run(
+      {"--headless", "freefall",    "brownian",     "gravity",    "--objects",    "80",
+       "--frames",   "6",           "--check",      "full",       "--json",       "results.json",
+       "--csv",      "results.csv", "--csv-frames", "frames.csv", "--screenshot", "picture.png",
+       "--size",     "160x90",      "--record",     "recordings"});
+  ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+
+  std::size_t algorithms = 0;
+  for (const Algorithm& algorithm : builtinAlgorithms()) {
+    if (!algorithm.finds_pairs) continue;
+    ++algorithms;
+    EXPECT_THAT(ended.out, HasSubstr(" " + algorithm.id + " "));
+  }
+  EXPECT_EQ(marks(linesOf(ended.out)), 3) << ended.out;
+
+  const Json results = readJson(file("results.json"));
+  EXPECT_EQ(results.at("schema"), "broadmark-results/1");
+  for (const char* key :
+       {"cpu", "caches", "logical_cores", "physical_cores", "isa", "memory_bytes", "governor",
+        "load_average", "os", "compiler", "compiler_flags", "build_type", "version", "started"}) {
+    EXPECT_TRUE(results.at("environment").contains(key)) << key;
+  }
+  EXPECT_EQ(results.at("options").at(1), "freefall");
+  ASSERT_EQ(results.at("cases").size(), 3 * algorithms);
+  std::map<std::string, std::set<double>> pairs;  // by recording
+  for (const Json& one : results.at("cases")) {
+    SCOPED_TRACE(one.at("id"));
+    for (const char* key : {"family", "isa", "threads", "params", "reason", "extra", "differences",
+                            "peak_bytes", "summary"}) {
+      EXPECT_TRUE(one.contains(key)) << key;
+    }
+    for (const char* key : {"name", "object_type", "objects", "frames", "seed", "hash", "source"}) {
+      EXPECT_TRUE(one.at("recording").contains(key)) << key;
+    }
+    for (const char* key : {"seconds_per_frame", "median", "p95", "p99", "min", "stddev", "ci95"}) {
+      EXPECT_TRUE(one.at("summary").contains(key)) << key;
+    }
+    EXPECT_EQ(one.at("status"), "ok");
+    EXPECT_EQ(one.at("checked"), true);
+    EXPECT_EQ(one.at("missed"), 0);
+    EXPECT_EQ(one.at("recording").at("source").at("density"), "0.1");
+    EXPECT_GT(one.at("summary").at("seconds_per_frame"), 0);
+    for (const char* phase :
+         {"update_objects", "clean_cache", "update_structures", "search_overlaps", "total"}) {
+      ASSERT_EQ(one.at("frames").at(phase).size(), 1U);
+      EXPECT_EQ(one.at("frames").at(phase).at(0).size(), 6U);
+    }
+    if (one.at("extra") == 0)
+      pairs[one.at("recording").at("hash")].insert(one.at("pairs").at("mean").get<double>());
+  }
+  EXPECT_EQ(pairs.size(), 3U);
+  for (const auto& [hash, means] : pairs) {
+    EXPECT_EQ(means.size(), 1U) << hash;
+    EXPECT_GT(*means.begin(), 0) << hash;
+  }
+
+  EXPECT_EQ(linesOf(readFile(file("results.csv"))).size(), 1 + 3 * algorithms);
+  EXPECT_EQ(linesOf(readFile(file("frames.csv"))).size(), 1 + 3 * algorithms * 6);
+  for (const std::string scene : {"FreeFall", "Brownian", "Gravity"}) {
+    const Picture picture = readPng(file("picture " + scene + " Cubes N80.png"));
+    EXPECT_EQ(picture.width, 160);
+    EXPECT_EQ(picture.height, 90);
+    EXPECT_EQ(fs::file_size(file("recordings/" + scene + " Cubes N80 F6frames.aabbs")),
+              304U + 32 * 80 * 7);
+  }
+}
+
+TEST_F(Run, ARecordingGivesTheSameAnswersAsItsSimulation) {
+  const Json simulated = casesOf({"--record", "kept", "--algorithm", "sap"});
+  runQuietly({"--headless", "kept/FreeFall Cubes N60 F5frames.aabbs", "--algorithm", "sap",
+              "--json", "results.json"});
+  const Json replayed = cases();
+  EXPECT_EQ(replayed[0].at("pairs"), simulated[0].at("pairs"));
+  EXPECT_EQ(replayed[0].at("recording").at("hash"), simulated[0].at("recording").at("hash"));
+  EXPECT_EQ(replayed[0].at("recording").at("source"), "kept/FreeFall Cubes N60 F5frames.aabbs");
+}
+
+TEST_F(Run, FewBodies) {
+  const Ended ended = run({"--headless", "freefall", "--objects", "2,0,1,1", "--frames", "3",
+                           "--screenshot", "few.png", "--size", "40x30", "--json", "results.json"});
+  ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+  std::set<int> counts;
+  std::set<std::string> ids;
+  for (const Json& one : cases()) {
+    EXPECT_EQ(one.at("status"), "ok") << one.at("id");
+    counts.insert(one.at("recording").at("objects").get<int>());
+    EXPECT_TRUE(ids.insert(one.at("id")).second) << "twice: " << one.at("id");
+  }
+  EXPECT_EQ(counts, (std::set{0, 1, 2}));
+  for (const char* count : {"0", "1", "2"}) {
+    EXPECT_EQ(readPng(file(std::string("few FreeFall Cubes N") + count + ".png")).width, 40);
+  }
+}
+
+TEST_F(Run, ARecordingWithoutFramesHasNoTimes) {
+  writeFile(file("still.aabbs"), recordingOf(2, 0, unitBoxes(2)));
+  const Ended ended = runQuietly({"--headless", "still.aabbs", "--algorithm", "sap"});
+  EXPECT_THAT(ended.out, HasSubstr("–"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("0 ns")));
+  EXPECT_EQ(marks(linesOf(ended.out)), 0);
+}
+
+TEST_F(Run, SelfChecksStandLastAndAreNeverTheFastest) {
+  const Ended ended =
+      runQuietly({"--headless", "freefall", "--objects", "60", "--frames", "3", "--algorithm",
+                  "time-validator,none,sap,bf", "--param", "phase_us=1"});
+  const auto lines = linesOf(ended.out);
+  ASSERT_EQ(marks(lines), 1) << ended.out;
+  const auto row = [&](const std::string& id) {
+    return std::ranges::find_if(lines, [&](const std::string& line) {
+      return line.find("  " + id + " ") != std::string::npos;
+    });
+  };
+  for (const char* check : {"none", "time-validator"}) {
+    ASSERT_NE(row(check), lines.end()) << ended.out;
+    EXPECT_LT(row("sap"), row(check)) << ended.out;
+  }
+}
+
+TEST_F(Run, RepetitionsAndWarmup) {
+  const Json done = casesOf({"--algorithm", "sap,bf", "--repetitions", "3", "--warmup", "1"});
+  for (const Json& one : done) {
+    EXPECT_EQ(one.at("frames").at("total").size(), 3U);
+    EXPECT_EQ(one.at("initialize_ns").size(), 3U);
+    EXPECT_EQ(one.at("summary").at("ci95").size(), 2U);
+  }
+}
+
+TEST_F(Run, ThreadsMakeCasesOfParallelVariantsOnly) {
+  const Json done = casesOf({"--algorithm", "sap,sap-mt", "--threads", "1,2,2"});
+  ASSERT_EQ(done.size(), 3U);
+  EXPECT_EQ(done[0].at("threads"), 1);
+  EXPECT_EQ(done[1].at("threads"), 1);
+  EXPECT_EQ(done[2].at("threads"), 2);
+  EXPECT_EQ(done[1].at("pairs"), done[2].at("pairs"));
+}
+
+TEST_F(Run, EveryInstructionSetIsRightOrUnsupported) {
+  const Json done =
+      casesOf({"--algorithm", "sap-simd,bf-simd", "--isa", "scalar,sse2,avx2,avx512"});
+  ASSERT_EQ(done.size(), 8U);
+  for (const Json& one : done) {
+    const auto isa = std::ranges::find(kAllIsas, one.at("isa").get<std::string>(), isaName);
+    ASSERT_NE(isa, std::end(kAllIsas));
+    EXPECT_EQ(one.at("status"), isaSupported(*isa) ? "ok" : "unsupported") << one.at("id");
+    EXPECT_EQ(one.at("reason") == "", isaSupported(*isa));
+  }
+}
+
+TEST_F(Run, CheckModes) {
+  for (const Json& one : casesOf({"--check", "hash"})) {
+    EXPECT_EQ(one.at("status"), "ok") << one.at("id");
+    EXPECT_EQ(one.at("checked"), true);
+  }
+  for (const Json& one : casesOf({"--check", "off"})) EXPECT_EQ(one.at("checked"), false);
+}
+
+TEST_F(Run, MemoryIsMeasuredWhenAskedFor) {
+  for (const Json& one : casesOf({"--algorithm", "sap,sap-mt", "--memory"})) {
+    EXPECT_TRUE(one.at("peak_bytes").is_number_unsigned()) << one.at("id");
+  }
+  for (const Json& one : casesOf({"--algorithm", "sap"})) {
+    EXPECT_TRUE(one.at("peak_bytes").is_null());
+  }
+}
+
+TEST_F(Run, ParametersReachTheAlgorithmAndItsId) {
+  const Json done = casesOf({"--algorithm", "time-validator", "--param", "phase_us=2000"});
+  ASSERT_EQ(done.size(), 1U);
+  EXPECT_THAT(done[0].at("id"), HasSubstr("phase_us=2000"));
+  EXPECT_EQ(done[0].at("params").at("phase_us"), "2000");
+  EXPECT_GE(done[0].at("summary").at("min"), 0.002);
+}
+
+TEST_F(Run, AlgorithmsAreChosenByIdFamilyOrPattern) {
+  const auto ids = [&](const std::string& selector) {
+    std::set<std::string> chosen;
+    for (const Json& one : casesOf({"--algorithm", selector})) chosen.insert(one.at("algorithm"));
+    return chosen;
+  };
+  using Ids = std::set<std::string>;
+  EXPECT_EQ(ids("sap"), Ids{"sap"});
+  EXPECT_EQ(ids("bf,sap-mt"), (Ids{"bf", "sap-mt"}));
+  EXPECT_EQ(ids("sap*"), (Ids{"sap", "sap-simd", "sap-mt", "sap-simd-mt"}));
+  EXPECT_EQ(ids("Self-Check"), (Ids{"none", "time-validator"}));
+}
+
+TEST_F(Run, TheOriginalsNamesAreUnderstood) {
+  const Json done = casesOf({"--algorithm", "BF_SSE,SAP"});
+  ASSERT_EQ(done.size(), 2U);
+  EXPECT_THAT(done[0].at("id"), HasSubstr("bf-simd/sse2"));
+  EXPECT_EQ(done[1].at("algorithm"), "sap");
+}
+
+TEST_F(Run, ListPrintsTheCasesAndRunsNothing) {
+  const Arguments call = {"--headless", "freefall", "--objects", "60",     "--frames",
+                          "5",          "--list",   "--json",    "no.json"};
+  const Ended listed = run(call);
+  EXPECT_EQ(listed.status, 0);
+  EXPECT_EQ(listed.err, "");
+  EXPECT_THAT(entries(), IsEmpty());
+
+  std::vector<std::string> ids;
+  for (const Json& one : casesOf({})) ids.push_back(one.at("id"));
+  EXPECT_EQ(linesOf(listed.out), ids);
+}
+
+TEST_F(Run, ShardsDivideTheCases) {
+  const auto list = [&](Arguments more) {
+    Arguments call = {"--headless", "freefall", "--objects",  "9,8",
+                      "--list",     "--isa",    "scalar,sse2"};
+    call.insert(call.end(), more.begin(), more.end());
+    return linesOf(run(call).out);
+  };
+  std::vector<std::string> divided;
+  for (const char* shard : {"0/3", "1/3", "2/3"}) {
+    const auto part = list({"--shard", shard});
+    EXPECT_FALSE(part.empty());
+    divided.insert(divided.end(), part.begin(), part.end());
+  }
+  EXPECT_THAT(divided, ::testing::UnorderedElementsAreArray(list({})));
+  EXPECT_EQ(std::set(divided.begin(), divided.end()).size(), divided.size());
+}
+
+TEST_F(Run, FilterChoosesByCaseId) {
+  const Json done = casesOf({"--filter", "/sap(-mt/t2)?$", "--threads", "2"});
+  ASSERT_EQ(done.size(), 2U);
+  EXPECT_EQ(done[0].at("algorithm"), "sap");
+  EXPECT_EQ(done[1].at("algorithm"), "sap-mt");
+}
+
+TEST_F(Run, ProgressSpeaksUnlessQuiet) {
+  const Arguments call = {"--headless", "freefall", "--objects", "20", "--frames", "3"};
+  EXPECT_THAT(run(call).err, HasSubstr("running FreeFall N20"));
+  runQuietly(call);
+}
+
+TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
+  const Ended ended =
+      run({"--headless", "freefall", "--objects", "40,20,30", "--frames", "5", "--algorithm", "bf",
+           "--filter", "/bf$", "--time-limit", "1e-12", "--json", "results.json"});
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  const Json done = cases();
+  ASSERT_EQ(done.size(), 3U);
+  EXPECT_EQ(done[0].at("recording").at("objects"), 20);
+  EXPECT_EQ(done[0].at("frames").at("total").at(0).size(), 3U);
+  for (const Json& one : done) EXPECT_EQ(one.at("status"), "timeout");
+  for (const std::size_t larger : {1U, 2U}) {
+    EXPECT_THAT(done[larger].at("reason"), HasSubstr("not run"));
+    EXPECT_THAT(done[larger].at("reason"), HasSubstr("20 bodies"));
+  }
+  EXPECT_EQ(marks(linesOf(ended.out)), 0);
+}
+
+TEST_F(Run, RecordingsAlikeInNameGetPicturesOfTheirOwn) {
+  bakeRecording("one.aabbs", "20", "2", "1");
+  bakeRecording("two.aabbs", "20", "2", "2");
+  runQuietly({"--headless", "one.aabbs", "two.aabbs", "--algorithm", "sap", "--screenshot", "p.png",
+              "--size", "80x60"});
+  EXPECT_NE(readPng(file("p FreeFall Cubes N20.png")).rgba,
+            readPng(file("p FreeFall Cubes N20 (2).png")).rgba);
+}
+
+TEST_F(Run, AnyFrameCanBeDrawnTheInitialPoseToo) {
+  std::set<std::string> pictures;
+  for (const std::string frame : {"0", "1", "5"}) {
+    runQuietly({"--headless", "brownian", "--objects", "20", "--frames", "5", "--algorithm", "sap",
+                "--screenshot", frame + ".png", "--frame", frame, "--size", "80x60"});
+    pictures.insert(readFile(file(frame + ".png")));
+  }
+  EXPECT_EQ(pictures.size(), 3U);
+  runQuietly({"--headless", "brownian", "--objects", "20", "--frames", "5", "--algorithm", "sap",
+              "--screenshot", "last.png", "--size", "80x60"});
+  EXPECT_EQ(readPng(file("last.png")).rgba, readPng(file("5.png")).rgba);
+}
+
+TEST_F(Run, EitherGlSourceDraws) {
+  for (const std::string source : {"egl", "osmesa"}) {
+    runQuietly({"--headless", "freefall", "--objects", "20", "--frames", "2", "--algorithm", "sap",
+                "--screenshot", source + ".png", "--gl", source, "--size", "64x48"});
+    const Picture picture = readPng(file(source + ".png"));
+    EXPECT_EQ(picture.width, 64);
+    EXPECT_EQ(picture.height, 48);
+  }
+}
+
+TEST_F(Run, WithoutGlThereIsNoPictureButEverythingElse) {
+  // Broken libraries of the same name, found first, hide the real ones.
+  fs::create_directory(file("hidden"));
+  for (const char* library : {"libEGL.so.1", "libOSMesa.so.8"}) {
+    writeFile(file("hidden") / library, "");
+  }
+  for (const std::string source : {"auto", "egl", "osmesa"}) {
+    const std::string json = source + ".json";
+    const Ended ended =
+        run({"--headless", "freefall", "--objects", "20", "--frames", "2", "--algorithm", "sap",
+             "--screenshot", "p.png", "--gl", source, "--json", json, "--quiet"},
+            {.environment = {{"LD_LIBRARY_PATH", file("hidden").string()}}});
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+    EXPECT_THAT(ended.err, StartsWith("broadmark: no screenshot: "));
+    EXPECT_THAT(ended.err, HasSubstr(source == "osmesa" ? "libOSMesa" : "libEGL"));
+    EXPECT_THAT(ended.out, HasSubstr("sap"));
+    EXPECT_THAT(ended.out, Not(HasSubstr("p.png")));
+    EXPECT_EQ(readJson(file(json)).at("cases").size(), 1U);
+    EXPECT_FALSE(fs::exists(file("p.png")));
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::testing
