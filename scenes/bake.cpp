@@ -40,10 +40,18 @@ Json parametersJson(Simulation& simulation) {
   return parameters;
 }
 
+/// The id of the built-in scene with this simulation's name.
+std::string sceneId(const Simulation& simulation) {
+  for (const SceneListing& listing : builtinScenes()) {
+    if (listing.name == simulation.scene().name) return listing.id;
+  }
+  return simulation.scene().name;
+}
+
 /// What stands beside a recording with this hash.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
   return {{"schema", "broadmark-bake/1"},
-          {"scene", simulation.scene().name},
+          {"scene", sceneId(simulation)},
           {"parameters", parametersJson(simulation)},
           {"hash", hash}};
 }

@@ -1,0 +1,279 @@
+// Whole simulations: parameters, determinism, and bodies that behave.
+
+#include "scenes/simulation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <future>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+using testing::HasSubstr;
+
+using Frames = std::vector<std::vector<Aabb>>;
+
+std::unique_ptr<Simulation> simulationOf(const std::string& scene, const ParameterValues& values) {
+  auto simulation = makeSimulation(scene);
+  setParameters(*simulation, values);
+  return simulation;
+}
+
+std::vector<Aabb> copyOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
+
+/// All frames, the initial pose first.
+Frames framesOf(Simulation& simulation) {
+  Frames frames = {copyOf(simulation.rewind())};
+  while (const auto frame = simulation.next()) {
+    EXPECT_EQ(frame->index, frames.size());
+    frames.push_back(copyOf(*frame));
+  }
+  return frames;
+}
+
+std::array<double, 3> centre(const Aabb& box) {
+  return {(box.min[0] + box.max[0]) / 2.0, (box.min[1] + box.max[1]) / 2.0,
+          (box.min[2] + box.max[2]) / 2.0};
+}
+
+double distance(const Aabb& a, const Aabb& b) {
+  const auto p = centre(a);
+  const auto q = centre(b);
+  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+}
+
+double meanHeight(std::span<const Aabb> boxes) {
+  double sum = 0;
+  for (const Aabb& box : boxes) sum += centre(box)[1];
+  return sum / static_cast<double>(boxes.size());
+}
+
+/// How far the farthest box pokes out of the world; negative: none does.
+double pokingOut(std::span<const Aabb> boxes, const Aabb& world) {
+  double farthest = -1e9;
+  for (const Aabb& box : boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      farthest = std::max({farthest, static_cast<double>(world.min[axis]) - box.min[axis],
+                           static_cast<double>(box.max[axis]) - world.max[axis]});
+    }
+  }
+  return farthest;
+}
+
+class EveryScene : public testing::TestWithParam<SceneListing> {};
+
+TEST_P(EveryScene, DescribesItselfByItsParameters) {
+  auto simulation = makeSimulation(GetParam().id);
+  EXPECT_EQ(simulation->scene().name, GetParam().name);
+  EXPECT_EQ(simulation->scene().object_type, "Cubes");
+  EXPECT_EQ(simulation->scene().objects, 1000U);
+  EXPECT_EQ(simulation->scene().frames, 1000U);
+  EXPECT_FLOAT_EQ(simulation->scene().world.max[0], static_cast<float>(std::cbrt(1e4) / 2));
+
+  setParameters(*simulation,
+                {{"objects", "270"}, {"frames", "3"}, {"density", "0.01"}, {"scale", "2"}});
+  EXPECT_EQ(simulation->scene().objects, 270U);
+  EXPECT_EQ(simulation->scene().frames, 3U);
+  for (int axis = 0; axis < 3; ++axis) {  // (270 · 2³ / 0.01)^(1/3) = 60
+    EXPECT_FLOAT_EQ(simulation->scene().world.min[axis], -30);
+    EXPECT_FLOAT_EQ(simulation->scene().world.max[axis], 30);
+  }
+}
+
+TEST_P(EveryScene, GivesTheSameBitsForTheSameSeedOnly) {
+  const ParameterValues values = {{"objects", "120"}, {"frames", "20"}, {"seed", "5"}};
+  auto simulation = simulationOf(GetParam().id, values);
+  const Frames first = framesOf(*simulation);
+  EXPECT_EQ(first.size(), 21U);
+  EXPECT_EQ(framesOf(*simulation), first) << "after rewinding";
+  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, values)), first) << "in another instance";
+
+  auto other_values = values;
+  other_values["seed"] = "6";
+  const Frames other = framesOf(*simulationOf(GetParam().id, other_values));
+  EXPECT_NE(other.front(), first.front());
+  EXPECT_NE(other.back(), first.back());
+}
+
+TEST_P(EveryScene, SimulationsAliveAtOnceDoNotInfluenceEachOther) {
+  const ParameterValues values = {{"objects", "150"}, {"frames", "15"}};
+  const ParameterValues other_values = {
+      {"objects", "90"}, {"frames", "15"}, {"seed", "2"}, {"substeps", "2"}, {"friction", "0.1"}};
+  const Frames alone = framesOf(*simulationOf(GetParam().id, values));
+  const Frames other_alone = framesOf(*simulationOf(GetParam().id, other_values));
+
+  auto simulation = simulationOf(GetParam().id, values);
+  auto other = simulationOf(GetParam().id, other_values);
+  simulation->rewind();
+  other->rewind();
+  for (std::size_t i = 1; i <= 15; ++i) {
+    ASSERT_EQ(copyOf(*simulation->next()), alone[i]);
+    ASSERT_EQ(copyOf(*other->next()), other_alone[i]);
+  }
+}
+
+TEST_P(EveryScene, ThreadsDoNotInfluenceEachOther) {
+  const ParameterValues values = {{"objects", "150"}, {"frames", "15"}};
+  const auto run = [&] { return framesOf(*simulationOf(GetParam().id, values)); };
+  const Frames alone = run();
+  std::vector<std::future<Frames>> others;
+  for (int i = 0; i < 3; ++i) others.push_back(std::async(std::launch::async, run));
+  for (auto& other : others) EXPECT_EQ(other.get(), alone);
+}
+
+TEST_P(EveryScene, BoxesAreValidTightAndStayInTheWorld) {
+  auto simulation = simulationOf(GetParam().id, {{"objects", "300"}, {"frames", "90"}});
+  const double diagonal = std::sqrt(3.0);
+  bool moved = false;
+  auto previous = copyOf(simulation->rewind());
+  while (const auto frame = simulation->next()) {
+    ASSERT_EQ(frame->boxes.size(), 300U);
+    EXPECT_LT(pokingOut(frame->boxes, simulation->scene().world), 0.2) << "frame " << frame->index;
+    for (const Aabb& box : frame->boxes) {
+      ASSERT_EQ(box.min[3], 0);
+      ASSERT_EQ(box.max[3], 0);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double edge = box.max[axis] - box.min[axis];
+        ASSERT_GE(edge, 1 - 1e-5) << "smaller than the cube";
+        ASSERT_LE(edge, diagonal + 1e-5) << "larger than the turned cube";
+      }
+    }
+    moved = moved || previous != copyOf(*frame);
+    previous = copyOf(*frame);
+  }
+  EXPECT_TRUE(moved);
+}
+
+TEST_P(EveryScene, OfOneBodyOrWithTheFewestFramesWorks) {
+  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, {{"objects", "1"}, {"frames", "5"}})).size(), 6U);
+  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, {{"objects", "40"}, {"frames", "1"}})).size(),
+            2U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryScene, testing::ValuesIn(builtinScenes()),
+                         [](const auto& param) { return param.param.name; });
+
+TEST(Simulation, IsFoundByIdOrNameInAnyCase) {
+  EXPECT_EQ(makeSimulation("freefall")->scene().name, "FreeFall");
+  EXPECT_EQ(makeSimulation("FreeFall")->scene().name, "FreeFall");
+  EXPECT_EQ(makeSimulation("BROWNIAN")->scene().name, "Brownian");
+  try {
+    makeSimulation("freefal");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("freefal"));
+    EXPECT_THAT(error.what(), HasSubstr("did you mean 'freefall'"));
+  }
+}
+
+TEST(Simulation, RejectsWrongParameters) {
+  const auto message = [](const ParameterValues& values) -> std::string {
+    try {
+      simulationOf("brownian", values);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message({{"densty", "1"}}), HasSubstr("density"));
+  EXPECT_THAT(message({{"launch_shore", "1"}}), HasSubstr("launch_share"));
+  EXPECT_THAT(message({{"density", "0"}}), HasSubstr("density"));
+  EXPECT_THAT(message({{"objects", "-1"}}), HasSubstr("objects"));
+  EXPECT_THAT(message({{"objects", "99999999999"}}), HasSubstr("objects"));
+  EXPECT_THAT(message({{"object_type", "cones"}}), HasSubstr("cubes"));
+  EXPECT_THAT(message({{"engine", "bulet"}}), HasSubstr("bullet"));
+  EXPECT_THAT(message({{"strength", "4"}}), HasSubstr("strength")) << "of another scene";
+  EXPECT_EQ(message({{"objects", "10"}, {"engine", "bullet"}}), "");
+}
+
+TEST(Simulation, NewParametersCountFromTheNextRewindOn) {
+  auto simulation = simulationOf("freefall", {{"objects", "10"}, {"frames", "4"}});
+  simulation->rewind();
+  setParameters(*simulation, {{"frames", "2"}});
+  EXPECT_EQ(simulation->scene().frames, 4U) << "of the running simulation";
+  simulation->rewind();
+  EXPECT_EQ(simulation->scene().frames, 2U);
+}
+
+TEST(FreeFallSimulation, FallsAndComesToRestOnTheFloor) {
+  auto simulation = simulationOf("freefall", {{"objects", "50"}, {"frames", "450"}});
+  const Frames frames = framesOf(*simulation);
+  const Aabb& world = simulation->scene().world;
+  EXPECT_LT(meanHeight(frames[100]), meanHeight(frames[0]) - 0.1 * world.max[1]);
+  EXPECT_LT(meanHeight(frames[200]), meanHeight(frames[100]));
+  EXPECT_EQ(frames[449], frames[450]) << "all bodies sleep";
+
+  const std::vector<Aabb>& rest = frames.back();
+  EXPECT_LT(meanHeight(rest), world.min[1] + 2);
+  EXPECT_LT(pokingOut(rest, world), 0.02);
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      // The balls inscribed into two unit cubes meet only if the cubes do.
+      EXPECT_GT(distance(rest[i], rest[j]), 0.97) << i << " penetrates " << j;
+    }
+  }
+}
+
+TEST(FreeFallSimulation, FrozenBodiesStayForGood) {
+  auto simulation = simulationOf("freefall", {{"objects", "60"},
+                                              {"frames", "60"},
+                                              {"freeze_slow", "on"},
+                                              {"freeze_after", "50"},
+                                              {"freeze_speed", "1000"},
+                                              {"freeze_angular_speed", "1000"}});
+  const Frames frames = framesOf(*simulation);
+  EXPECT_NE(frames[49], frames[50]);
+  for (std::size_t i = 51; i <= 60; ++i) EXPECT_EQ(frames[i], frames[50]) << "frame " << i;
+}
+
+TEST(BrownianSimulation, NeverSettles) {
+  auto simulation = simulationOf("brownian", {{"objects", "100"}, {"frames", "300"}});
+  const Frames frames = framesOf(*simulation);
+  double path = 0;
+  for (std::size_t i = 0; i < 100; ++i) path += distance(frames[299][i], frames[300][i]);
+  EXPECT_GT(path / 100, 0.01) << "mean way of a body in the last frame";
+  EXPECT_NEAR(meanHeight(frames[300]), 0, 0.3 * simulation->scene().world.max[1]);
+}
+
+TEST(GravitySimulation, GathersBodiesAtTheWallThatGravityPointsTo) {
+  auto simulation =
+      simulationOf("gravity", {{"objects", "100"}, {"frames", "80"}, {"period", "1e6"}});
+  const Frames frames = framesOf(*simulation);
+  double mean_x = 0;
+  for (const Aabb& box : frames.back()) mean_x += centre(box)[0] / 100;
+  EXPECT_GT(mean_x, 0.5 * simulation->scene().world.max[0]);
+}
+
+TEST(Simulation, BodiesThatLeaveTheWorldAreFrozen) {
+  // Bodies start in a ball that reaches out of the world.
+  auto simulation =
+      simulationOf("brownian", {{"objects", "200"}, {"frames", "20"}, {"initial_radius", "0.8"}});
+  const Frames frames = framesOf(*simulation);
+  const Aabb& world = simulation->scene().world;
+  const auto outside = [&](const Aabb& box) {
+    const auto c = centre(box);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(c[axis]) > world.max[axis] + 1e-3) return true;
+    }
+    return false;
+  };
+  int escaped = 0;
+  int moving = 0;
+  for (std::size_t i = 0; i < 200; ++i) {
+    if (outside(frames[1][i])) {
+      ++escaped;
+      for (std::size_t k = 2; k <= 20; ++k) ASSERT_EQ(frames[k][i], frames[1][i]) << "body " << i;
+    } else if (frames[20][i] != frames[1][i]) {
+      ++moving;
+    }
+  }
+  EXPECT_GT(escaped, 20);
+  EXPECT_GT(moving, 50);
+}
+
+}  // namespace
+}  // namespace broadmark
