@@ -25,7 +25,8 @@ class MyBroadPhase : public broadmark::BoxBroadPhase {
 /// Unit boxes that jump about: frames can come from anywhere.
 class JumpingBoxes : public broadmark::FrameSource {
  public:
-  JumpingBoxes() : scene_{.name = "Jumping", .object_type = "Cubes", .objects = 500, .frames = 10} {}
+  JumpingBoxes()
+      : scene_{.name = "Jumping", .object_type = "Cubes", .objects = 500, .frames = 10} {}
   const broadmark::SceneInfo& scene() const override { return scene_; }
   broadmark::Frame rewind() override { return frame(0); }
   std::optional<broadmark::Frame> next() override {
@@ -56,9 +57,8 @@ class JumpingBoxes : public broadmark::FrameSource {
 
 int main() {
   std::vector<broadmark::Algorithm> algorithms = broadmark::builtinAlgorithms();
-  algorithms.push_back({.id = "mine", .family = "mine", .create = [] {
-                          return std::make_unique<MyBroadPhase>();
-                        }});
+  algorithms.push_back(
+      {.id = "mine", .family = "mine", .create = [] { return std::make_unique<MyBroadPhase>(); }});
   bool all_ok = true;
   for (const auto& algorithm : algorithms) {
     JumpingBoxes boxes;
