@@ -28,6 +28,8 @@ struct Algorithm {
   bool finds_pairs = true;
   std::vector<OriginalId> original_ids;
   std::function<std::unique_ptr<BroadPhase>()> create;
+  /// A library beneath it allocates in a steady state, out of its reach.
+  bool library_allocates = false;
 
   // The paper's Table 1.
   std::string principle;            ///< "brute force", "sorting", "grid", "tree"

@@ -1,0 +1,69 @@
+// CGAL's box intersection: what its one parameter must not change, and what it cannot do.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/algorithms/runs.h"
+
+namespace broadmark::tests {
+namespace {
+
+/// Skips in a build without CGAL.
+class Cgal : public testing::Test {
+ protected:
+  void SetUp() override {
+    const std::vector<Algorithm> all = builtinAlgorithms();
+    const auto found = std::ranges::find(all, "cgal", &Algorithm::id);
+    if (found == all.end()) GTEST_SKIP() << "built without CGAL";
+    algorithm_ = *found;
+  }
+
+  /// The pairs of one frame.
+  std::vector<Pair> pairsOf(const std::vector<Aabb>& boxes, const ParameterValues& values = {}) {
+    const std::unique_ptr<BroadPhase> cgal = algorithm_.create();
+    setParameters(*cgal, values);
+    cgal->initialize(sceneOf({boxes}), {0, boxes}, execution_);
+    cgal->updateObjects({1, boxes});
+    cgal->cleanCache();
+    cgal->updateStructures();
+    cgal->searchOverlaps();
+    return sorted(cgal->overlaps());
+  }
+
+  Algorithm algorithm_;
+
+ private:
+  Execution execution_{1, Isa::scalar};
+};
+
+TEST_F(Cgal, HasTheLibrarysCutoffByDefault) {
+  EXPECT_EQ(parameterValues(*algorithm_.create()), (ParameterValues{{"cutoff", "10"}}));
+}
+
+TEST_F(Cgal, FindsTheSamePairsWhateverTheCutoff) {
+  for (const inputs::Input& input : inputs::kAll) {
+    const std::vector<Aabb> boxes = input.boxes(500, 1, 1);
+    const std::vector<Pair> right = bruteForcePairs(boxes);
+    for (const char* cutoff : {"1", "2", "10", "100", "1000000000"}) {
+      EXPECT_EQ(pairsOf(boxes, {{"cutoff", cutoff}}), right) << input.name << ", " << cutoff;
+    }
+  }
+}
+
+// A segment of the library's tree is open at its upper end, and the last one ends there.
+TEST_F(Cgal, RefusesBoxesThatBeginAtTheLargestFloat) {
+  constexpr float kLargest = std::numeric_limits<float>::max();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::vector<Aabb> boxes = inputs::clustered(100, 1, 1);
+    for (Aabb& box : boxes) box.max[axis] = kLargest;
+    for (std::size_t i = 0; i < 75; ++i) boxes[i].min[axis] = std::nextafter(kLargest, 0.0F);
+    EXPECT_EQ(pairsOf(boxes), bruteForcePairs(boxes));
+    for (std::size_t i = 0; i < 75; ++i) boxes[i].min[axis] = kLargest;
+    EXPECT_THROW(pairsOf(boxes), UnsupportedError);
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests
