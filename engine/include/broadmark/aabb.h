@@ -19,7 +19,7 @@ static_assert(sizeof(Aabb) == 32);
 /// Closed intersection on all three axes, in 32-bit floats: touching counts.
 constexpr bool overlaps(const Aabb& a, const Aabb& b) {
   // `&`, not `&&`: six cheap comparisons beat a badly predicted branch.
-  constexpr auto in_order = [](float low, float high) -> int { return low <= high; };
+  const auto in_order = [](float low, float high) -> int { return low <= high; };
   return (in_order(a.min[0], b.max[0]) & in_order(b.min[0], a.max[0]) &
           in_order(a.min[1], b.max[1]) & in_order(b.min[1], a.max[1]) &
           in_order(a.min[2], b.max[2]) & in_order(b.min[2], a.max[2])) != 0;
