@@ -15,9 +15,6 @@
 #include "render/offscreen_context.h"
 #include "tests/support/pictures.h"
 
-// OSMesa of Mesa 22.3 itself loses some hundred bytes per context; LeakSanitizer asks here.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so"; }
-
 namespace broadmark::tests {
 namespace {
 
