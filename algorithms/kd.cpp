@@ -30,16 +30,18 @@
 namespace broadmark::kd {
 namespace {
 
-/// Whether `box` lies in `stored`, and that is not larger than for a body that has just moved here
-/// and there within the margin: one that shrinks moves as well.
+/// Whether `box` lies in `stored`, and that is no larger than for a body that moved about within
+/// the margin: to shrink is to move.
 bool isStill(const Aabb& box, const Aabb& stored, float margin) {
   const float slack = 2 * margin;
-  bool still = true;
+  int still = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    still &= (stored.min[axis] <= box.min[axis]) & (box.min[axis] - slack <= stored.min[axis]) &
-             (box.max[axis] <= stored.max[axis]) & (stored.max[axis] <= box.max[axis] + slack);
+    still &= static_cast<int>(stored.min[axis] <= box.min[axis]);
+    still &= static_cast<int>(box.min[axis] - slack <= stored.min[axis]);
+    still &= static_cast<int>(box.max[axis] <= stored.max[axis]);
+    still &= static_cast<int>(stored.max[axis] <= box.max[axis] + slack);
   }
-  return still;
+  return still != 0;
 }
 
 class Kd final : public BroadPhase {

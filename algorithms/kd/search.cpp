@@ -13,6 +13,7 @@
 
 #include <algorithm>
 
+#include "algorithms/boundary_near.h"
 #include "algorithms/moments.h"
 
 namespace broadmark::kd {
@@ -35,10 +36,10 @@ std::size_t lanes(Isa isa) {
   return 1;
 }
 
-void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box, const AxisOrder& axes = {0, 1, 2}) {
+void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box) {
   for (int axis = 0; axis < 3; ++axis) {
-    boxes.min(axis)[i] = box.min[axes[axis]];
-    boxes.max(axis)[i] = box.max[axes[axis]];
+    boxes.min(axis)[i] = box.min[axis];
+    boxes.max(axis)[i] = box.max[axis];
   }
 }
 
@@ -168,13 +169,18 @@ void Searcher::sweep() {
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t position = sorter_.entries()[i].body;
     positions_[i] = position;
-    setBox(sorted_, i, boxes_.box(position), axes);
+    for (int axis = 0; axis < 3; ++axis) {
+      sorted_.min(axis)[i] = boxes_.min(axes[axis])[position];
+      sorted_.max(axis)[i] = boxes_.max(axes[axis])[position];
+    }
   }
   ends_.resize(count);
   const float* const min = sorted_.min(0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const float* const end = std::upper_bound(min + i + 1, min + count, sorted_.max(0)[i]);
-    ends_[i] = static_cast<std::uint32_t>(end - min);
+  for (std::size_t i = 0, end = 0; i < count; ++i) {
+    const float limit = sorted_.max(0)[i];
+    end = boundaryNear(std::max(end, i + 1), i + 1, count,
+                       [&](std::size_t j) { return min[j] <= limit; });
+    ends_[i] = static_cast<std::uint32_t>(end);
   }
   kernels_->sweep(sorted_, ends_.data(), positions_.data(), {0, count}, hits_);
 }
@@ -189,7 +195,7 @@ void Searcher::addPairs() {
     room[count] = orderedPair(arranged_[hit.a], arranged_[hit.b]);
     const bool own_moves = hit.a < s.listed_still;
     const bool listed_moves = hit.a >= s.listed_moving && hit.a < s.own_still;
-    count += own_moves | (listed_moves & (hit.b >= s.own_still));
+    count += own_moves || (listed_moves && hit.b >= s.own_still) ? 1 : 0;
   }
   pairs_->advance(count);
 }
