@@ -150,7 +150,14 @@ class WallContact final : public btCollisionAlgorithm {
   btScalar resting_threshold_;
 };
 
-/// Bullet's world with a limit on angular speeds.
+/// Slow for this long, in seconds, a body that something carries is held.
+constexpr btScalar kHoldAfter = 0.5F;
+/// A body is carried when contacts take at least this share of its weight.
+constexpr btScalar kCarriedShare = 0.75F;
+
+/// Bullet's world with a limit on angular speeds, and piles that come to rest: few iterations leave
+/// each body in a large pile some motion, and Bullet lets none of a pile sleep before all are
+/// quiet.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -162,16 +169,31 @@ class World final : public btDiscreteDynamicsWorld {
   void integrateTransforms(btScalar time_step) override {
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       btRigidBody& body = *m_nonStaticRigidBodies[i];
-      const btVector3& velocity = body.getAngularVelocity();
-      const btScalar speed_squared = velocity.length2();
-      if (speed_squared > max_angular_speed_ * max_angular_speed_) {
-        body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+      limitAngularSpeed(body);
+      if (isHeld(body, time_step)) {
+        body.setLinearVelocity(btVector3(0, 0, 0));
+        body.setAngularVelocity(btVector3(0, 0, 0));
       }
     }
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
   }
 
  private:
+  void limitAngularSpeed(btRigidBody& body) const {
+    const btVector3& velocity = body.getAngularVelocity();
+    const btScalar speed_squared = velocity.length2();
+    if (speed_squared > max_angular_speed_ * max_angular_speed_) {
+      body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+    }
+  }
+
+  /// Whether the body has long been slow, and is not about to fall.
+  [[nodiscard]] bool isHeld(const btRigidBody& body, btScalar time_step) const {
+    if (body.getDeactivationTime() < kHoldAfter) return false;
+    const btScalar freely_fallen = body.getGravity().length2() * time_step;
+    return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
+  }
+
   btScalar max_angular_speed_;
 };
 

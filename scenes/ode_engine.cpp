@@ -22,6 +22,9 @@ namespace {
 
 /// Contacts of two bodies: what a face on a face needs.
 constexpr int kContactsPerPair = 4;
+/// Sweeps over the contacts for each iteration that the settings ask for. The quick step knows
+/// nothing of the step before, and needs more of them than solvers that begin where that ended.
+constexpr int kSweepsPerIteration = 2;
 /// How deep bodies may sink into each other for good: contacts at rest last, and do not flicker.
 constexpr double kRestingDepth = 0.005;
 /// Bodies that overlap are pushed apart no faster than this, in units per second: where many start
@@ -251,7 +254,8 @@ class OdeEngine final : public PhysicsEngine {
         space_(dHashSpaceCreate(nullptr)),
         contacts_(dJointGroupCreate(0)) {
     dWorldID world = world_.get();
-    dWorldSetQuickStepNumIterations(world, static_cast<int>(settings.solver_iterations));
+    dWorldSetQuickStepNumIterations(
+        world, kSweepsPerIteration * static_cast<int>(settings.solver_iterations));
     dWorldSetContactSurfaceLayer(world, kRestingDepth);
     dWorldSetContactMaxCorrectingVel(world, kSeparationSpeed);
     dWorldSetMaxAngularSpeed(world, settings.max_angular_speed);
@@ -276,8 +280,10 @@ class OdeEngine final : public PhysicsEngine {
 
   void step() override {
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
+      // Of sleeping bodies too: one that is awake wakes all that it touches, and these must find
+      // what carries them.
       for (const OdeBody& body : bodies_) {
-        if (!body.asleep()) touchWalls(body);
+        if (!body.frozen()) touchWalls(body);
       }
       dSpaceCollide(space_.get(), this, [](void* engine, dGeomID a, dGeomID b) {
         static_cast<OdeEngine*>(engine)->touch(a, b);
@@ -304,7 +310,7 @@ class OdeEngine final : public PhysicsEngine {
   void touch(dGeomID geom_a, dGeomID geom_b) {
     const auto& a = *static_cast<const OdeBody*>(dGeomGetData(geom_a));
     const auto& b = *static_cast<const OdeBody*>(dGeomGetData(geom_b));
-    if (a.asleep() && b.asleep()) return;
+    if (a.frozen() && b.frozen()) return;
     std::array<dContactGeom, kContactsPerPair> points;
     const int count =
         dCollide(geom_a, geom_b, kContactsPerPair, points.data(), sizeof(dContactGeom));
