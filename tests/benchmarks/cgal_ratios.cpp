@@ -121,9 +121,10 @@ std::vector<Scene> allScenes() {
             {"tracy-mt", 2.3},
             {"dbvt-d", 1.08},
             {"dbvt-f", 1.7},
-            {"kd", 0.178, 0.09}}},
-          {"static", mostlyStill, {{"kd", 0.128}, {"tracy", 0.46}}},
-          {"clustered", clustered, {{"kd", 0.26}, {"grid2d-sap", 0.18}}}};
+            {"kd", 0.178, 0.09},
+            {"kd-mt", 0.111, 0.056}}},
+          {"static", mostlyStill, {{"kd", 0.128, 0.064}, {"tracy", 0.46}}},
+          {"clustered", clustered, {{"kd", 0.26, 0.13}, {"grid2d-sap", 0.18}}}};
 }
 
 /// An algorithm as asked for: "kd", "cgal:cutoff=100".
