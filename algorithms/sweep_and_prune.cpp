@@ -20,6 +20,8 @@
 #include <vector>
 
 #include "algorithms/axis_overlap.h"
+#include "algorithms/boundary_near.h"
+#include "algorithms/moments.h"
 #include "algorithms/radix_sort.h"
 #include "algorithms/simd/overlap_kernels.h"
 #include "broadmark/algorithm.h"
@@ -27,69 +29,9 @@
 namespace broadmark::sweep_and_prune {
 namespace {
 
-/// Sums over box centres, in double: the square of any float is finite there. Taken relative to
-/// some box's centre, lest far from the origin the variance drown in rounding.
-struct Moments {
-  std::array<double, 3> sum{};
-  std::array<double, 3> squares{};
-
-  void add(const Aabb& box, const std::array<double, 3>& origin) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double distance = centre(box, axis) - origin[axis];
-      sum[axis] += distance;
-      squares[axis] += distance * distance;
-    }
-  }
-  void add(const Moments& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-      sum[axis] += other.sum[axis];
-      squares[axis] += other.squares[axis];
-    }
-  }
-  [[nodiscard]] double variance(int axis, double count) const {
-    return squares[axis] / count - (sum[axis] / count) * (sum[axis] / count);
-  }
-
-  static double centre(const Aabb& box, int axis) {
-    return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
-  }
-};
-
-/// The three axes, by falling variance: [0] is the sort axis.
-using AxisOrder = std::array<int, 3>;
-
 Aabb withAxes(const Aabb& box, const AxisOrder& axes) {
   return {{box.min[axes[0]], box.min[axes[1]], box.min[axes[2]], 0},
           {box.max[axes[0]], box.max[axes[1]], box.max[axes[2]], 0}};
-}
-
-/// The first position in [first, last) at which `inside`, true up to somewhere, is false; else
-/// last. Found from `hint` outwards: O(log distance).
-template <class Inside>
-std::size_t boundaryNear(std::size_t hint, std::size_t first, std::size_t last, Inside inside) {
-  std::size_t step = 1;
-  if (hint < last && inside(hint)) {
-    first = hint + 1;
-    while (last - first > step && inside(first + step)) {
-      first += step + 1;
-      step *= 2;
-    }
-    last = std::min(last, first + step);
-  } else {
-    last = hint;
-    while (last - first > step && !inside(last - step)) {
-      last -= step;
-      step *= 2;
-    }
-    if (last - first > step) first = last - step + 1;
-  }
-  // Without a branch on what is found: it would be a coin toss for the predictor.
-  for (std::size_t count = last - first; count > 0;) {
-    const std::size_t half = (count + 1) / 2;
-    first += inside(first + half - 1) ? half : 0;
-    count -= half;
-  }
-  return first;
 }
 
 /// The sorted boxes as structs, and the plain sweep over them.
@@ -215,8 +157,7 @@ class SweepAndPrune final : public PairBroadPhase {
 
   void chooseAxes() {
     if (boxes_.empty()) return;
-    std::array<double, 3> origin{};
-    for (int axis = 0; axis < 3; ++axis) origin[axis] = Moments::centre(boxes_[0], axis);
+    const std::array<double, 3> origin = Moments::centre(boxes_[0]);
     forShares(boxes_.size(), [&](int worker, Range part) {
       Moments moments;
       for (std::size_t i = part.begin; i < part.end; ++i) moments.add(boxes_[i], origin);
@@ -224,13 +165,7 @@ class SweepAndPrune final : public PairBroadPhase {
     });
     Moments all;
     for (const Moments& moments : moments_) all.add(moments);
-    const auto count = static_cast<double>(boxes_.size());
-    axes_ = {0, 1, 2};
-    std::ranges::sort(axes_, [&](int a, int b) {
-      const double of_a = all.variance(a, count);
-      const double of_b = all.variance(b, count);
-      return of_a != of_b ? of_a > of_b : a < b;
-    });
+    axes_ = all.axes(static_cast<double>(boxes_.size()));
   }
 
   void sortBodies() {
@@ -295,7 +230,7 @@ class SweepAndPrune final : public PairBroadPhase {
   Aabb world_;
   std::vector<Aabb> boxes_;
   std::vector<Moments> moments_;  ///< one per worker
-  AxisOrder axes_ = {0, 1, 2};
+  AxisOrder axes_ = {0, 1, 2};    ///< [0] is the sort axis
   RadixSorter sorter_;
   std::vector<std::uint32_t> bodies_;  ///< of sorted box i
   Sweeper sweeper_;                    ///< the sorted boxes, axes in the order of axes_

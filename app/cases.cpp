@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string>
+#include <string_view>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -45,6 +47,29 @@ Case makeCase(const Algorithm& algorithm, Isa isa, int threads, const ParameterV
           .isa = algorithm.vectorised ? isa : Isa::scalar,
           .threads = algorithm.parallel ? threads : 1,
           .parameters = applicable(*algorithm.create(), parameters)};
+}
+
+/// What the original's settings say of one family, and the parameter that it is here.
+struct OriginalParameter {
+  std::string_view family;
+  std::string_view name;
+  std::string (*value)(const OriginalSettings&);
+};
+constexpr OriginalParameter kOriginalParameters[] = {
+    {"KD", "objects_per_leaf",
+     [](const OriginalSettings& s) { return std::to_string(s.kd_objects_per_leaf); }},
+    {"KD", "margin",  // one for all axes here
+     [](const OriginalSettings& s) { return fmt::format("{}", std::ranges::max(s.margin)); }},
+};
+
+ParameterValues originalParameters(const OriginalSettings& settings, const Algorithm& algorithm) {
+  ParameterValues values;
+  for (const OriginalParameter& parameter : kOriginalParameters) {
+    if (parameter.family == algorithm.family) {
+      values.emplace(parameter.name, parameter.value(settings));
+    }
+  }
+  return values;
 }
 
 void addOnce(std::vector<Case>& cases, Case made) {
@@ -122,7 +147,8 @@ Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>
     for (const OriginalId& id : algorithm.original_ids) names.push_back(id.name);
     if (const OriginalId* id = originalId(algorithm, settings.algorithm)) {
       const auto threads = std::clamp<std::int64_t>(settings.threads, 1, 1024);
-      return makeCase(algorithm, id->isa.value_or(bestIsa()), static_cast<int>(threads), {});
+      return makeCase(algorithm, id->isa.value_or(bestIsa()), static_cast<int>(threads),
+                      originalParameters(settings, algorithm));
     }
   }
   throw InputError("m_algorithm: " + unknownName("algorithm", settings.algorithm, names));

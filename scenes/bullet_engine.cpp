@@ -45,39 +45,53 @@ class HalfSpaceShape final : public btStaticPlaneShape {
   }
 };
 
-/// Contacts of a box with a wall: one for each corner that the coming step could carry into the
+/// The points of a shape that can be the first to touch a wall, in the shape's own coordinates: the
+/// corners of a box, the deepest point of a sphere.
+int wallPoints(const btBoxShape& box) { return box.getNumVertices(); }
+btVector3 wallPoint(const btBoxShape& box, int corner, const btVector3& /*into_wall*/) {
+  btVector3 at;
+  box.getVertex(corner, at);
+  return at;
+}
+int wallPoints(const btSphereShape&) { return 1; }
+btVector3 wallPoint(const btSphereShape& sphere, int, const btVector3& into_wall) {
+  return sphere.getRadius() * into_wall;
+}
+
+/// Contacts of a body with a wall: one for each point that the coming step could carry into the
 /// wall, given the body's present motion. The solver then stops it at the wall, where a fast body
-/// would else end up inside. (Bullet's own algorithm finds the nearest corner only, once it
+/// would else end up inside. (Bullet's own algorithm finds the nearest point only, once it
 /// touches.)
-class BoxWallContact final : public btCollisionAlgorithm {
+template <class BodyShape>
+class WallContact final : public btCollisionAlgorithm {
  public:
-  BoxWallContact(const btCollisionAlgorithmConstructionInfo& info,
-                 const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b)
+  WallContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+              const btCollisionObjectWrapper* b)
       : btCollisionAlgorithm(info),
         manifold_(m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject())),
         resting_threshold_(manifold_->getContactBreakingThreshold()) {}
-  ~BoxWallContact() override { m_dispatcher->releaseManifold(manifold_); }
+  ~WallContact() override { m_dispatcher->releaseManifold(manifold_); }
 
   void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
                         const btDispatcherInfo& info, btManifoldResult*) override {
     const bool wall_is_a = a->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
-    const btCollisionObjectWrapper& box = wall_is_a ? *b : *a;
+    const btCollisionObjectWrapper& body = wall_is_a ? *b : *a;
     const btCollisionObjectWrapper& wall = wall_is_a ? *a : *b;
-    const auto& shape = static_cast<const btBoxShape&>(*box.getCollisionShape());
+    const auto& shape = static_cast<const BodyShape&>(*body.getCollisionShape());
     const auto& plane = static_cast<const btStaticPlaneShape&>(*wall.getCollisionShape());
     const btVector3& normal = plane.getPlaneNormal();
+    const btTransform& pose = body.getWorldTransform();
+    const btVector3 into_wall = -normal * pose.getBasis();
     const btScalar reach =
         resting_threshold_ +
         info.m_timeStep *
-            approachSpeed(static_cast<const btRigidBody&>(*box.getCollisionObject()), normal);
+            approachSpeed(static_cast<const btRigidBody&>(*body.getCollisionObject()), normal);
     manifold_->setContactBreakingThreshold(reach);
 
     const btPersistentManifold before = *manifold_;
     manifold_->clearManifold();
-    for (int corner = 0; corner < shape.getNumVertices(); ++corner) {
-      btVector3 at;
-      shape.getVertex(corner, at);
-      at = box.getWorldTransform() * at;
+    for (int i = 0; i < wallPoints(shape); ++i) {
+      const btVector3 at = pose * wallPoint(shape, i, into_wall);
       const btScalar distance = normal.dot(at) - plane.getPlaneConstant();
       if (distance >= reach) continue;
       const btVector3 on_wall = at - distance * normal;
@@ -89,7 +103,7 @@ class BoxWallContact final : public btCollisionAlgorithm {
           a->getCollisionObject(), b->getCollisionObject());
       point.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(
           a->getCollisionObject(), b->getCollisionObject());
-      point.m_index0 = corner;
+      point.m_index0 = i;
       warmStart(point, before);
       manifold_->addManifoldPoint(point);  // keeps the four that carry best
     }
@@ -108,8 +122,8 @@ class BoxWallContact final : public btCollisionAlgorithm {
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b) override {
-      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(BoxWallContact));
-      return new (memory) BoxWallContact(info, a, b);
+      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(WallContact));
+      return new (memory) WallContact(info, a, b);
     }
   };
 
@@ -121,7 +135,7 @@ class BoxWallContact final : public btCollisionAlgorithm {
     return std::max(btScalar(0), -body.getLinearVelocity().dot(normal)) + spin;
   }
 
-  /// The last step's impulses are the solver's first guess for the same corner.
+  /// The last step's impulses are the solver's first guess for the same point.
   static void warmStart(btManifoldPoint& point, const btPersistentManifold& before) {
     for (int i = 0; i < before.getNumContacts(); ++i) {
       const btManifoldPoint& old = before.getContactPoint(i);
@@ -136,7 +150,14 @@ class BoxWallContact final : public btCollisionAlgorithm {
   btScalar resting_threshold_;
 };
 
-/// Bullet's world with a limit on angular speeds.
+/// Slow for this long, in seconds, a body that something carries is held.
+constexpr btScalar kHoldAfter = 0.5F;
+/// A body is carried when contacts take at least this share of its weight.
+constexpr btScalar kCarriedShare = 0.75F;
+
+/// Bullet's world with a limit on angular speeds, and piles that come to rest: few iterations leave
+/// each body in a large pile some motion, and Bullet lets none of a pile sleep before all are
+/// quiet.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -148,16 +169,31 @@ class World final : public btDiscreteDynamicsWorld {
   void integrateTransforms(btScalar time_step) override {
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       btRigidBody& body = *m_nonStaticRigidBodies[i];
-      const btVector3& velocity = body.getAngularVelocity();
-      const btScalar speed_squared = velocity.length2();
-      if (speed_squared > max_angular_speed_ * max_angular_speed_) {
-        body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+      limitAngularSpeed(body);
+      if (isHeld(body, time_step)) {
+        body.setLinearVelocity(btVector3(0, 0, 0));
+        body.setAngularVelocity(btVector3(0, 0, 0));
       }
     }
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
   }
 
  private:
+  void limitAngularSpeed(btRigidBody& body) const {
+    const btVector3& velocity = body.getAngularVelocity();
+    const btScalar speed_squared = velocity.length2();
+    if (speed_squared > max_angular_speed_ * max_angular_speed_) {
+      body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+    }
+  }
+
+  /// Whether the body has long been slow, and is not about to fall.
+  [[nodiscard]] bool isHeld(const btRigidBody& body, btScalar time_step) const {
+    if (body.getDeactivationTime() < kHoldAfter) return false;
+    const btScalar freely_fallen = body.getGravity().length2() * time_step;
+    return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
+  }
+
   btScalar max_angular_speed_;
 };
 
@@ -237,10 +273,8 @@ class BulletEngine final : public PhysicsEngine {
     broad_phase_.m_dupdates = 1;
     // Sleeping bodies keep their boxes in the broad phase; whoever places one anew updates its box.
     world_.setForceUpdateAllAabbs(false);
-    dispatcher_.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, STATIC_PLANE_PROXYTYPE,
-                                            &box_wall_contact_);
-    dispatcher_.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, BOX_SHAPE_PROXYTYPE,
-                                            &box_wall_contact_);
+    useAgainstWalls(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
+    useAgainstWalls(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
   }
 
   ~BulletEngine() override {
@@ -303,11 +337,17 @@ class BulletEngine final : public PhysicsEngine {
   }
 
  private:
+  void useAgainstWalls(int shape_type, btCollisionAlgorithmCreateFunc& contact) {
+    dispatcher_.registerCollisionCreateFunc(shape_type, STATIC_PLANE_PROXYTYPE, &contact);
+    dispatcher_.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, shape_type, &contact);
+  }
+
+  // Bodies of the same size share a shape.
   btCollisionShape& collisionShape(const BoxShape& box) {
-    // Bodies of the same size share a shape.
-    auto& shape = box_shapes_[box.half_extents];
-    if (!shape) shape = std::make_unique<btBoxShape>(toBullet(box.half_extents));
-    return *shape;
+    return box_shapes_.try_emplace(box.half_extents, toBullet(box.half_extents)).first->second;
+  }
+  btCollisionShape& collisionShape(const SphereShape& sphere) {
+    return sphere_shapes_.try_emplace(sphere.radius, sphere.radius).first->second;
   }
 
   /// Bullet compares speeds, not energies: those of a body that has the threshold's energy in its
@@ -323,12 +363,14 @@ class BulletEngine final : public PhysicsEngine {
   PhysicsSettings settings_;
   btScalar material_friction_ = 0;
   btScalar material_restitution_ = 0;
-  BoxWallContact::CreateFunc box_wall_contact_;
+  WallContact<btBoxShape>::CreateFunc box_wall_contact_;
+  WallContact<btSphereShape>::CreateFunc sphere_wall_contact_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
   btDbvtBroadphase broad_phase_;
   btSequentialImpulseConstraintSolver solver_;
-  std::map<Vec3, std::unique_ptr<btBoxShape>> box_shapes_;
+  std::map<Vec3, btBoxShape> box_shapes_;
+  std::map<float, btSphereShape> sphere_shapes_;
   std::deque<HalfSpaceShape> wall_shapes_;
   std::deque<btCollisionObject> walls_;
   std::deque<BulletBody> bodies_;

@@ -22,10 +22,15 @@ struct BoxShape {
   Vec3 half_extents{};
 };
 
-/// The form of a body around its centre.
-using Shape = std::variant<BoxShape>;
+struct SphereShape {
+  float radius = 0;
+};
 
-/// The smallest axis-aligned box around the posed shape, with no margin: centre ± |R|·half extents.
+/// The form of a body around its centre.
+using Shape = std::variant<BoxShape, SphereShape>;
+
+/// The smallest axis-aligned box around the posed shape, with no margin: a turned box reaches
+/// |R|·half extents from its centre, a sphere its radius.
 Aabb tightBox(const Shape&, const Pose&);
 
 }  // namespace broadmark::scenes

@@ -20,9 +20,16 @@ struct SceneListing {
   std::string summary;  ///< one sentence
 };
 std::vector<SceneListing> builtinScenes();
+/// What an engine does with the bodies of a scene.
+enum class Dynamics {
+  rigid,     ///< gravity and velocities move them; they collide with each other and the walls
+  passing,   ///< as above, but they pass through each other
+  scripted,  ///< the engine alone decides where they are: no gravity, no launching, no walls
+};
 struct EngineListing {
   std::string id;  ///< "bullet"
   std::string summary;
+  Dynamics dynamics = Dynamics::rigid;
 };
 std::vector<EngineListing> builtinEngines();
 

@@ -68,6 +68,19 @@ TEST_F(OriginalSettings, ThreadsAreThoseOfTheFile) {
   EXPECT_EQ(one.at("threads"), 3);
 }
 
+TEST_F(OriginalSettings, ParametersOfTheTreeAreThoseOfTheFile) {
+  settings_["m_algorithm"] = "KD";
+  settings_["m_KD_ObjectsPerLeaf"] = 20;
+  settings_["m_margin"] = {{"x", 0.25}, {"y", 0.5}, {"z", 0.125}};
+  writeSettings("settings.json", settings_);
+  runQuietly({"--headless", "settings.json", "--json", "results.json"});
+  const Json one = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(one.at("algorithm"), "kd");
+  EXPECT_EQ(one.at("status"), "ok");
+  EXPECT_EQ(one.at("params").at("objects_per_leaf"), "20");
+  EXPECT_EQ(one.at("params").at("margin"), "0.5");
+}
+
 TEST_F(OriginalSettings, InputIsFoundBesideTheSettings) {
   fs::create_directory(file("sub folder"));
   fs::rename(file("scene file.aabbs"), file("sub folder/scene file.aabbs"));

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -48,6 +49,41 @@ TEST(TightBox, OfABarTurnedBy90And30Degrees) {
   const auto cosine = static_cast<float>(std::cos(std::numbers::pi / 6));
   expectBox(tightBox(bar, turnedPose({0, 0, 0}, 2, std::numbers::pi / 6)), {0, 0, 0},
             {4 * cosine + 0.5F, 2 + cosine, 2});
+}
+
+TEST(TightBox, OfASphereIsItsRadiusHoweverTurned) {
+  const Aabb expected = {{0.25F, 1.25F, 2.25F, 0}, {1.75F, 2.75F, 3.75F, 0}};
+  EXPECT_EQ(tightBox(SphereShape{0.75F}, {.position = {1, 2, 3}}), expected);
+  EXPECT_EQ(tightBox(SphereShape{0.75F}, turnedPose({1, 2, 3}, 1, 0.7)), expected);
+}
+
+TEST(TightBox, OfATurnedBoxTouchesItsCorners) {
+  Random random(3);
+  for (int i = 0; i < 200; ++i) {
+    const auto edge = [&] { return static_cast<float>(0.05 + 5 * random.uniform()); };
+    const BoxShape shape{{edge(), edge(), edge()}};
+    Eigen::Quaternionf rotation(
+        Eigen::Vector4f::NullaryExpr([&] { return static_cast<float>(2 * random.uniform() - 1); }));
+    rotation.normalize();
+    const Vec3 position = random.inBall(10);
+    const Aabb box =
+        tightBox(shape, {position, {rotation.x(), rotation.y(), rotation.z(), rotation.w()}});
+
+    Eigen::AlignedBox3d corners;
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto coordinate = [&](int axis) {
+        return static_cast<double>((corner >> axis & 1) == 0 ? -shape.half_extents[axis]
+                                                             : shape.half_extents[axis]);
+      };
+      corners.extend(Eigen::Vector3f(position.data()).cast<double>() +
+                     rotation.cast<double>() *
+                         Eigen::Vector3d(coordinate(0), coordinate(1), coordinate(2)));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(box.min[axis], corners.min()[axis], 5e-6);
+      EXPECT_NEAR(box.max[axis], corners.max()[axis], 5e-6);
+    }
+  }
 }
 
 TEST(Random, SamplesAreTheSameEverywhere) {

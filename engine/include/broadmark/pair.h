@@ -58,6 +58,19 @@ class alignas(64) PairBuffer {
   }
   void advance(std::size_t count) { size_ += count; }
 
+  /// Drops the pairs for which keep(pair) is false; the others stay in their order.
+  template <class Keep>
+  void retain(Keep keep) {
+    std::size_t kept = 0;
+    // Without a branch: what is kept may well be unpredictable.
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Pair pair = pairs_[i];
+      pairs_[kept] = pair;
+      kept += keep(pair) ? 1 : 0;
+    }
+    size_ = kept;
+  }
+
  private:
   void grow(std::size_t wanted) {
     const std::size_t capacity = std::max<std::size_t>({wanted, capacity_ + capacity_ / 2, 1024});

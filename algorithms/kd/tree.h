@@ -1,0 +1,184 @@
+// The adaptive KD tree itself: who is where, and how that is kept up to date.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <mutex>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadmark/aabb.h"
+#include "broadmark/broad_phase.h"
+#include "broadmark/debug_draw.h"
+#include "broadmark/execution.h"
+
+namespace broadmark::kd {
+
+/// The region of a node: lo <= x < hi on every axis. Half open, so that boxes in two different
+/// cells never touch.
+struct Cell {
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  std::array<float, 3> lo = {-kFar, -kFar, -kFar};
+  std::array<float, 3> hi = {kFar, kFar, kFar};
+
+  [[nodiscard]] bool holds(const Aabb& box) const {
+    int inside = 1;  // without branches: a few comparisons cost less than a wrong guess
+    for (int axis = 0; axis < 3; ++axis) {
+      inside &= static_cast<int>(lo[axis] <= box.min[axis]);
+      inside &= static_cast<int>(box.max[axis] < hi[axis]);
+    }
+    return inside != 0;
+  }
+};
+
+/// Which side of a plane a box is on. A box that touches the plane from the right is on the right.
+inline bool isLeft(const Aabb& box, int axis, float plane) { return box.max[axis] < plane; }
+inline bool isRight(const Aabb& box, int axis, float plane) { return box.min[axis] >= plane; }
+
+/// A node owns a contiguous slice of the tree's array of bodies: left child's | own | right
+/// child's. Only populations are kept; where slices begin follows on the way down. So to shift the
+/// slice of a whole subtree is one block move that touches no node.
+struct Node {
+  Node* children = nullptr;  ///< left and right; null: a leaf
+  float plane = 0;
+  int axis = 0;
+  std::uint32_t own = 0;   ///< bodies kept here: in a leaf all, else those that straddle the plane
+  std::uint32_t size = 0;  ///< bodies of the subtree
+  /// During a refit: bodies that no longer fit in the cell, just outside of the slice, on the side
+  /// towards the parent's own.
+  std::uint32_t escaped = 0;
+  std::uint32_t work = 0;   ///< own bodies of the touched nodes of the subtree
+  bool own_touched = true;  ///< in this frame own bodies moved, came or went
+  bool touched = true;      ///< here or anywhere below
+  bool refitted = false;    ///< in parallel, before its parent
+
+  [[nodiscard]] bool isLeaf() const { return children == nullptr; }
+  [[nodiscard]] Node& left() const { return children[0]; }
+  [[nodiscard]] Node& right() const { return children[1]; }
+};
+
+/// What one frame's update did.
+struct UpdateCounts {
+  std::uint64_t moves = 0;  ///< of a body from one node to another
+  std::uint64_t trims = 0;
+  std::uint64_t translations = 0;
+  std::uint64_t erasures = 0;
+  std::uint64_t partitions = 0;
+  std::uint64_t skipped_subtrees = 0;
+
+  void add(const UpdateCounts& other);
+  void visit(const CounterVisitor& visitor) const;
+};
+
+class Tree {
+ public:
+  /// Puts all bodies into a new tree. `boxes`, one per body, and `team` must outlive the tree;
+  /// leaves are split when they hold more than `objects_per_leaf`.
+  void build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, ThreadTeam& team);
+
+  /// An update is: beginUpdate, touch for every body whose box has changed, update.
+  /// `all`: as if all bodies were touched.
+  void beginUpdate(bool all);
+  /// May be called by several workers at once.
+  void touch(std::uint32_t body);
+  void update();
+
+  [[nodiscard]] const Node& root() const { return root_; }
+  /// The array of bodies that nodes own slices of.
+  [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
+  /// Of the last update.
+  [[nodiscard]] UpdateCounts counts() const;
+
+  void draw(DebugDraw& draw, const Aabb& world) const;
+  /// "" or which invariant is broken.
+  [[nodiscard]] std::string validate() const;
+
+ private:
+  /// On which side of its parent's own bodies a node's slice lies.
+  enum class Side { left, right, root };
+  struct Place {
+    std::size_t begin = 0;  ///< of the node's slice
+    Side side = Side::root;
+    Cell cell;
+  };
+  struct Task {
+    Node* node = nullptr;
+    Place place;
+    std::size_t worker = 0;
+  };
+  struct Populations {
+    std::size_t own = 0;
+    std::size_t left = 0;
+    std::size_t right = 0;
+  };
+  struct alignas(64) Worker {
+    UpdateCounts counts;
+    std::vector<std::uint32_t> aside;  ///< the smaller block of a rotation
+    std::vector<float> centres;        ///< of which the median is sought
+  };
+  /// Whether refit looks at touched nodes only, or at all, because the cell has become smaller.
+  enum class Scope { touched, all };
+
+  static Place leftPlace(const Node& node, const Place& place);
+  static Place rightPlace(const Node& node, const Place& place);
+  static bool isGood(const Populations& p);
+
+  [[nodiscard]] std::uint32_t* at(std::size_t position) { return bodies_.data() + position; }
+  [[nodiscard]] Populations populationsAt(std::span<const std::uint32_t> bodies, int axis,
+                                          float plane) const;
+
+  // Bottom-up.
+  void refitAll();
+  void findTasks(Node& node, const Place& place);
+  void refit(Node& node, const Place& place, Scope scope, Worker& worker);
+  void adoptEscaped(Node& node, const Place& place, Worker& worker);
+  void letEscape(Node& node, const Place& place, Worker& worker);
+
+  // Top-down.
+  void settleAll();
+  void settle(Node& node, const Place& place, Worker& worker, bool defer_small);
+  void waterfall(Node& node, const Place& place, Worker& worker);
+  void trim(Node& node, const Place& place, Worker& worker);
+  bool translate(Node& node, const Place& place, Worker& worker);
+  void erase(Node& node, const Place& place, Worker& worker);
+  bool partition(Node& node, const Place& place, Worker& worker);
+  bool findSplit(Node& node, std::span<const std::uint32_t> bodies, Worker& worker) const;
+
+  void giveToLeft(Node& child, std::size_t begin, std::size_t count, Worker& worker);
+  void giveToRight(Node& child, std::size_t begin, std::size_t count, Worker& worker);
+  void receive(Node& node, std::size_t begin, std::size_t count, Worker& worker);
+  void makeHome(Node& node, const Place& place);
+  void rotate(std::size_t begin, std::size_t middle, std::size_t end, Worker& worker);
+
+  template <class Work>
+  void runTasks(Work work);
+  Node* newChildren();
+  void release(Node* pair);
+  void releaseChildren(Node& node);
+  void growPool();
+  void reserveNodes();
+
+  void drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const;
+  [[nodiscard]] std::string validateNode(const Node& node, const Place& place) const;
+
+  std::span<const Aabb> boxes_;
+  std::size_t objects_per_leaf_ = 0;
+  ThreadTeam* team_ = nullptr;
+  Node root_;
+  std::vector<std::uint32_t> bodies_;  ///< that nodes own slices of
+  std::vector<Node*> homes_;           ///< the node that a body is own of
+  std::vector<Worker> workers_;
+  std::vector<Task> tasks_;  ///< subtrees for one worker each, in the order of their slices
+  std::size_t grain_ = 0;    ///< a subtree with no more bodies than this is one task
+
+  // Pairs of nodes. A deque, because nodes must stay where they are.
+  std::deque<std::array<Node, 2>> pool_;
+  std::vector<Node*> free_;
+  std::mutex pool_mutex_;
+};
+
+}  // namespace broadmark::kd

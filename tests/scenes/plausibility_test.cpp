@@ -1,0 +1,269 @@
+// Physics that a spectator would believe: bodies stay in the world, do not sink into each other,
+// gain no energy, and come to rest.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <tuple>
+
+#include "scenes/scene.h"
+
+namespace broadmark::scenes {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+Vector vectorOf(const Vec3& v) { return {v[0], v[1], v[2]}; }
+
+Eigen::Matrix3d rotationOf(const Pose& pose) {
+  return Eigen::Quaternionf(pose.rotation.data()).cast<double>().normalized().toRotationMatrix();
+}
+
+double reach(const BoxShape& box, const Eigen::Matrix3d& rotation, const Vector& axis) {
+  return vectorOf(box.half_extents).dot((rotation.transpose() * axis).cwiseAbs());
+}
+
+/// How deep two turned boxes are in each other: the least overlap over the axes that may separate
+/// them (normals of faces, and normals of a pair of edges). Negative: that far apart, or farther.
+double depth(const BoxShape& a, const Pose& pose_a, const BoxShape& b, const Pose& pose_b) {
+  const Eigen::Matrix3d turned_a = rotationOf(pose_a);
+  const Eigen::Matrix3d turned_b = rotationOf(pose_b);
+  const Vector between = vectorOf(pose_b.position) - vectorOf(pose_a.position);
+  double least = 1e9;
+  const auto test = [&](const Vector& direction) {
+    if (direction.norm() < 1e-6) return;  // parallel edges
+    const Vector axis = direction.normalized();
+    least = std::min(
+        least, reach(a, turned_a, axis) + reach(b, turned_b, axis) - std::abs(axis.dot(between)));
+  };
+  for (int i = 0; i < 3; ++i) {
+    test(turned_a.col(i));
+    test(turned_b.col(i));
+    for (int j = 0; j < 3; ++j) test(turned_a.col(i).cross(turned_b.col(j)));
+  }
+  return least;
+}
+
+double depth(const SphereShape& a, const Pose& pose_a, const SphereShape& b, const Pose& pose_b) {
+  return a.radius + b.radius - (vectorOf(pose_b.position) - vectorOf(pose_a.position)).norm();
+}
+
+/// Object types do not mix forms.
+double depth(const PhysicsBody& a, const PhysicsBody& b) {
+  return std::visit(
+      [&]<class Form>(const Form& form) {
+        return depth(form, a.pose(), std::get<Form>(b.shape()), b.pose());
+      },
+      a.shape());
+}
+
+/// Inertia per mass about the axes of the shape.
+Vector inertia(const BoxShape& box) {
+  const Vector squares = vectorOf(box.half_extents).cwiseAbs2();
+  return (Vector::Constant(squares.sum()) - squares) / 3;
+}
+Vector inertia(const SphereShape& sphere) {
+  return Vector::Constant(0.4 * sphere.radius * sphere.radius);
+}
+
+double kineticEnergy(const PhysicsBody& body) {
+  const Vector turning = rotationOf(body.pose()).transpose() * vectorOf(body.angularVelocity());
+  const Vector about = std::visit([](const auto& shape) { return inertia(shape); }, body.shape());
+  return (vectorOf(body.linearVelocity()).squaredNorm() + about.dot(turning.cwiseAbs2())) / 2;
+}
+
+template <class Entries>
+auto find(const Entries& entries, const std::string& id) {
+  return *std::ranges::find(entries, id, [](const auto& entry) { return entry.listing.id; });
+}
+
+/// FreeFall on one engine, seen from inside.
+class FreeFallWorld {
+ public:
+  FreeFallWorld(const std::string& engine, const std::string& object_type, std::int64_t objects) {
+    setting("engine", engine);
+    setting("object_type", object_type);
+    settings_.objects = objects;
+    // The longest bar must fit in.
+    if (object_type == "assorted") settings_.density = 0.01;
+    engine_ = find(engineEntries(), engine).create(settings_.physics);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const float sign : {1.0F, -1.0F}) {
+        HalfSpace wall{.offset = static_cast<float>(-settings_.side() / 2)};
+        wall.normal[axis] = sign;
+        engine_->addWall(wall);
+      }
+    }
+    const auto scene = find(sceneEntries(), std::string("freefall")).create();
+    const ObjectType type = find(objectTypes(), object_type);
+    for (std::int64_t i = 0; i < objects; ++i) {
+      bodies_.push_back(
+          &engine_->addBody(scene->body(static_cast<std::size_t>(i), settings_, type, random_)));
+    }
+    Stage stage{settings_, *engine_, bodies_, random_};
+    scene->start(stage);
+  }
+
+  void step() { engine_->step(); }
+
+  [[nodiscard]] const std::vector<PhysicsBody*>& bodies() const { return bodies_; }
+
+  /// Kinetic, and potential above the floor; per mass of a body.
+  [[nodiscard]] double energy() const {
+    const double gravity = settings_.gravity * settings_.side();
+    double sum = 0;
+    for (const PhysicsBody* body : bodies_) {
+      sum += kineticEnergy(*body) + gravity * (body->pose().position[1] + settings_.side() / 2);
+    }
+    return sum / static_cast<double>(bodies_.size());
+  }
+
+  [[nodiscard]] std::size_t resting() const {
+    return static_cast<std::size_t>(std::ranges::count_if(bodies_, [](const PhysicsBody* body) {
+      return body->asleep() || kineticEnergy(*body) < 1e-6;
+    }));
+  }
+
+  /// How far the farthest centre, or the farthest point, is outside; negative: inside.
+  [[nodiscard]] double outside(bool centres) const {
+    double farthest = -1e9;
+    for (const PhysicsBody* body : bodies_) {
+      const Pose pose = body->pose();
+      const Aabb box = tightBox(body->shape(), pose);
+      for (int axis = 0; axis < 3; ++axis) {
+        const double point =
+            centres ? std::abs(pose.position[axis]) : std::max(-box.min[axis], box.max[axis]);
+        farthest = std::max(farthest, point - settings_.side() / 2);
+      }
+    }
+    return farthest;
+  }
+
+  /// For each body, how deep it is in the one that it is deepest in; negative: the distance to the
+  /// nearest. Walls count as bodies.
+  [[nodiscard]] std::vector<double> depths() const {
+    std::vector<double> deepest(bodies_.size(), -1e9);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      const Aabb box = tightBox(bodies_[i]->shape(), bodies_[i]->pose());
+      for (int axis = 0; axis < 3; ++axis) {
+        deepest[i] = std::max({deepest[i], -box.min[axis] - settings_.side() / 2,
+                               box.max[axis] - settings_.side() / 2});
+      }
+      for (std::size_t j = 0; j < i; ++j) {
+        const Aabb other = tightBox(bodies_[j]->shape(), bodies_[j]->pose());
+        if (!overlaps(enlarged(box, 0.1F), other)) continue;
+        const double pair = depth(*bodies_[i], *bodies_[j]);
+        deepest[i] = std::max(deepest[i], pair);
+        deepest[j] = std::max(deepest[j], pair);
+      }
+    }
+    return deepest;
+  }
+
+ private:
+  void setting(const std::string& name, const std::string& value) {
+    settings_.visit([&](const Parameter& parameter) {
+      if (parameter.name == name) setParameter(parameter, value);
+    });
+  }
+
+  Settings settings_;
+  Random random_{1};
+  std::unique_ptr<PhysicsEngine> engine_;
+  std::vector<PhysicsBody*> bodies_;
+};
+using Case = std::tuple<std::string, std::string>;  // engine, object type
+
+std::vector<std::string> enginesThat(Dynamics dynamics) {
+  std::vector<std::string> ids;
+  for (const EngineEntry& entry : engineEntries()) {
+    if (entry.listing.dynamics == dynamics) ids.push_back(entry.listing.id);
+  }
+  return ids;
+}
+
+std::vector<std::string> allObjectTypes() {
+  std::vector<std::string> ids;
+  for (const ObjectType& type : objectTypes()) ids.push_back(type.listing.id);
+  return ids;
+}
+
+class Plausibility : public testing::TestWithParam<Case> {
+ protected:
+  FreeFallWorld world_{std::get<0>(GetParam()), std::get<1>(GetParam()), 200};
+};
+
+/// Engines whose bodies collide with each other.
+class RigidPlausibility : public Plausibility {};
+/// Engines whose bodies do not.
+class PassingPlausibility : public Plausibility {};
+
+// Measured, of either engine: no gain at all; depth 0.02 of cubes and spheres, 0.06 of assorted
+// bodies, which are up to 0.08 thin and begin deep inside each other and the walls.
+TEST_P(RigidPlausibility, NobodyGainsEnergySinksInOrEscapes) {
+  const double allowed = std::get<1>(GetParam()) == "assorted" ? 0.1 : 0.05;
+  constexpr int kUntangled = 20;  // frames until bodies that started inside each other have parted
+  const double start = world_.energy();
+  double before = start;
+  for (int frame = 1; frame <= 120; ++frame) {
+    world_.step();
+    const double now = world_.energy();
+    EXPECT_LT(now, before + 1e-4 * start) << "frame " << frame;
+    before = now;
+    EXPECT_LT(world_.outside(true), 0) << "frame " << frame << ": a centre is outside";
+    if (frame <= kUntangled || frame % 10 != 0) continue;
+    EXPECT_LT(std::ranges::max(world_.depths()), allowed) << "frame " << frame;
+  }
+  EXPECT_LT(before, 0.5 * start) << "inelastic impacts and friction take energy";
+}
+
+TEST_P(PassingPlausibility, NobodyGainsEnergyOrLeavesTheWorld) {
+  const double start = world_.energy();
+  double before = start;
+  for (int frame = 1; frame <= 120; ++frame) {
+    world_.step();
+    const double now = world_.energy();
+    EXPECT_LT(now, before + 1e-4 * start) << "frame " << frame;
+    before = now;
+    EXPECT_LT(world_.outside(false), 1e-5) << "frame " << frame;
+  }
+  EXPECT_LT(before, 0.5 * start) << "inelastic impacts and friction take energy";
+}
+
+TEST_P(PassingPlausibility, EverybodyComesToRest) {
+  for (int frame = 0; frame < 1000; ++frame) world_.step();
+  EXPECT_EQ(world_.resting(), 200U);
+}
+
+/// The whole of FreeFall: takes seconds.
+class RigidSettling : public RigidPlausibility {};
+
+// Measured after 1,000 frames: all asleep, depth at most 0.009, gaps at most 0.006.
+TEST_P(RigidSettling, AlmostEverybodyRestsOnSomething) {
+  for (int frame = 0; frame < 1000; ++frame) world_.step();
+  EXPECT_GE(world_.resting(), 198U) << "99 %";
+  for (const double depth : world_.depths()) {
+    EXPECT_LT(depth, 0.03) << "sunk in";
+    EXPECT_GT(depth, -0.03) << "floats";
+  }
+}
+
+const auto name_of_case = [](const auto& param) {
+  return std::get<0>(param.param) + "_" + std::get<1>(param.param);
+};
+INSTANTIATE_TEST_SUITE_P(All, RigidPlausibility,
+                         testing::Combine(testing::ValuesIn(enginesThat(Dynamics::rigid)),
+                                          testing::ValuesIn(allObjectTypes())),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(All, PassingPlausibility,
+                         testing::Combine(testing::ValuesIn(enginesThat(Dynamics::passing)),
+                                          testing::ValuesIn(allObjectTypes())),
+                         name_of_case);
+INSTANTIATE_TEST_SUITE_P(All, RigidSettling,
+                         testing::Combine(testing::ValuesIn(enginesThat(Dynamics::rigid)),
+                                          testing::Values("cubes")),
+                         name_of_case);
+
+}  // namespace
+}  // namespace broadmark::scenes
