@@ -18,33 +18,44 @@ constexpr double kMostCells = 1 << 20;
 struct AxisSample {
   double low = 0;
   double high = 0;
-  double mean_edge = 0;
+  double edge = 0;  ///< three quarters of the boxes are no longer
 };
 
+/// The k-th body of a sample of `count`. Spread by the golden ratio and not by a stride, since
+/// scenes give bodies their shapes by number, in turn.
+std::size_t sampled(std::size_t k, std::size_t count) {
+  if (count <= kSample) return k;
+  return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
+}
+
+/// The value below which `part` of the values lie, which get rearranged.
+double quantileOf(std::span<double> values, double part) {
+  const auto last = static_cast<double>(values.size() - 1);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * last);
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
 AxisSample sampleAxis(std::span<const Aabb> boxes, int axis) {
-  std::array<double, kSample> centres;
+  std::array<double, kSample> centre_memory;
+  std::array<double, kSample> edge_memory;
   const std::size_t count = std::min(boxes.size(), kSample);
-  AxisSample sample;
+  const std::span centres(centre_memory.data(), count);
+  const std::span edges(edge_memory.data(), count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Aabb& box = boxes[i * boxes.size() / count];
+    const Aabb& box = boxes[sampled(i, boxes.size())];
     const double low = box.min[axis];
     const double high = box.max[axis];
     centres[i] = (low + high) / 2;
-    sample.mean_edge += (high - low) / static_cast<double>(count);
+    edges[i] = high - low;
   }
   // Where nine tenths of the centres lie, and a quarter of that more on both sides: for most
   // distributions that holds nearly everything.
-  const auto middle = centres.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  const auto end = centres.begin() + static_cast<std::ptrdiff_t>(count);
-  const auto tail = static_cast<std::ptrdiff_t>(count / 20);
-  std::nth_element(centres.begin(), middle, end);
-  std::nth_element(centres.begin(), centres.begin() + tail, middle);
-  std::nth_element(middle, end - 1 - tail, end);
-  const double low = centres[static_cast<std::size_t>(tail)];
-  const double high = *(end - 1 - tail);
-  sample.low = low - (high - low) / 4 - sample.mean_edge;
-  sample.high = high + (high - low) / 4 + sample.mean_edge;
-  return sample;
+  const double low = quantileOf(centres, 0.05);
+  const double high = quantileOf(centres, 0.95);
+  const double edge = quantileOf(edges, 0.75);
+  const double more = (high - low) / 4 + edge;
+  return {low - more, high + more, edge};
 }
 
 /// The edge of cubic cells, `cells` of them, that fill the extents. An axis shorter than a cell
@@ -79,9 +90,8 @@ void CellGrid::fit(std::span<const Aabb> boxes, const Aabb& bounds, std::size_t 
   }
   const double side = cellSide(extents, static_cast<double>(std::max<std::size_t>(cells, 1)));
   for (int axis = 0; axis < 3; ++axis) {
-    const double length = std::max(side, 2 * samples[axis].mean_edge);
-    // The slack is for rounding: side is a root, 8 cells must not become 7.
-    const double count = std::min(std::floor(extents[axis] / length + 1e-6), kMostCells);
+    const double length = std::max(side, 2 * samples[axis].edge);
+    const double count = std::min(std::round(extents[axis] / length), kMostCells);
     if (!(count >= 2)) continue;  // also when there is no extent: 0/0
     constexpr double kMost = std::numeric_limits<float>::max();
     counts_[axis] = static_cast<std::int32_t>(count);

@@ -35,10 +35,10 @@ struct CellRange {
 /// that alone is what correctness rests on: boxes that overlap have a cell in common.
 class CellGrid {
  public:
-  /// Lays about `cells` cells (at most that many, at least one) over the bulk of `boxes`, all of
-  /// which lie in `bounds`; a few boxes far off don't stretch the grid. `columns`: the cells are
-  /// not cut on the y axis. Cells are at least twice as long as the mean box on each axis, so that
-  /// boxes of similar size touch few of them.
+  /// Lays about `cells` cells (at least one; at most two and a half times as many, by rounding)
+  /// over the bulk of `boxes`, all of which lie in `bounds`; a few boxes far off don't stretch the
+  /// grid. `columns`: the cells are not cut on the y axis. Cells are about twice as long as the
+  /// mean box or longer on each axis, so that boxes of similar size touch few of them.
   void fit(std::span<const Aabb> boxes, const Aabb& bounds, std::size_t cells, bool columns);
 
   [[nodiscard]] std::size_t size() const {
