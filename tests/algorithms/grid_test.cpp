@@ -246,17 +246,14 @@ TEST_P(Grids, ReportPairsThatShareSeveralCellsOnce) {
 
 TEST_P(Grids, TestOneHugeBoxAmongManySmall) {
   std::vector<Aabb> boxes = inputs::uniform(1500, 0, 1);
-  for (const std::size_t position : {std::size_t{0}, std::size_t{700}, boxes.size() - 1}) {
-    std::vector<Aabb> with_huge = boxes;
-    with_huge[position] = inputs::boxAt({-1e6F, 3, -1e6F}, {2e6F, 17, 2e6F});  // a floor
-    check(with_huge);
+  boxes[700] = inputs::boxAt({-1e6F, 3, -1e6F}, {2e6F, 17, 2e6F});  // a floor
+  check(boxes);
 
-    Execution execution(1, bestIsa());
-    const auto grid = begun(execution, "10", boxes.size());
-    search(*grid, 1, with_huge);
-    EXPECT_EQ(countersOf(*grid).at("large bodies"), 1U);
-    EXPECT_GT(countersOf(*grid).at("cells"), 100U);
-  }
+  Execution execution(1, bestIsa());
+  const auto grid = begun(execution, "10", boxes.size());
+  search(*grid, 1, boxes);
+  EXPECT_EQ(countersOf(*grid).at("large bodies"), 1U);
+  EXPECT_GT(countersOf(*grid).at("cells"), 100U);
 }
 
 // Bars along each of the axes: the mean box is long, yet all of them touch many cells.
