@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -23,6 +22,7 @@
 #include "algorithms/boundary_near.h"
 #include "algorithms/moments.h"
 #include "algorithms/radix_sort.h"
+#include "algorithms/row_shares.h"
 #include "algorithms/simd/overlap_kernels.h"
 #include "broadmark/algorithm.h"
 
@@ -116,7 +116,7 @@ class SweepAndPrune final : public PairBroadPhase {
 
   void searchOverlaps() override {
     team().run([this](int worker) {
-      sweeper_.sweep(ends_.data(), bodies_.data(), rowsOf(worker), pairs(worker));
+      sweeper_.sweep(ends_.data(), bodies_.data(), shares_.rowsOf(worker), pairs(worker));
     });
     publishPairs();
   }
@@ -144,9 +144,6 @@ class SweepAndPrune final : public PairBroadPhase {
   }
 
  private:
-  /// Rows whose work is summed up together when it is shared out.
-  static constexpr std::size_t kChunk = 64;
-
   template <class Work>
   void forShares(std::size_t count, Work work) {
     team().run([&](int worker) {
@@ -194,37 +191,17 @@ class SweepAndPrune final : public PairBroadPhase {
   /// Box i's window is (i, ends_[i]). Compares floats, not sort keys: -0 and +0 touch.
   void findWindows() {
     const std::size_t count = boxes_.size();
-    const std::size_t chunks = (count + kChunk - 1) / kChunk;
     ends_.resize(count);
-    work_.resize(chunks);
-    forShares(chunks, [&](int, Range part) {
-      std::size_t end = part.begin * kChunk;
-      for (std::size_t chunk = part.begin; chunk < part.end; ++chunk) {
-        std::uint64_t work = 0;
-        const std::size_t rows_end = std::min(count, (chunk + 1) * kChunk);
-        for (std::size_t i = chunk * kChunk; i < rows_end; ++i) {
-          const float limit = sweeper_.max(i);
-          end = boundaryNear(std::max(end, i + 1), i + 1, count,
-                             [&](std::size_t j) { return sweeper_.min(j) <= limit; });
-          ends_[i] = static_cast<std::uint32_t>(end);
-          work += end - i;
-        }
-        work_[chunk] = work;
+    forShares(count, [&](int, Range part) {
+      std::size_t end = part.begin;
+      for (std::size_t i = part.begin; i < part.end; ++i) {
+        const float limit = sweeper_.max(i);
+        end = boundaryNear(std::max(end, i + 1), i + 1, count,
+                           [&](std::size_t j) { return sweeper_.min(j) <= limit; });
+        ends_[i] = static_cast<std::uint32_t>(end);
       }
     });
-    std::inclusive_scan(work_.begin(), work_.end(), work_.begin());
-  }
-
-  /// The rows of one worker: whole chunks, all workers having about the same work.
-  [[nodiscard]] Range rowsOf(int worker) {
-    const std::uint64_t total = work_.empty() ? 0 : work_.back();
-    const auto first_row = [&](int k) {
-      const auto workers = static_cast<std::uint64_t>(team().size());
-      const std::uint64_t before = total / workers * static_cast<std::uint64_t>(k);
-      const auto chunk = std::ranges::upper_bound(work_, before) - work_.begin();
-      return std::min(static_cast<std::size_t>(chunk) * kChunk, ends_.size());
-    };
-    return {first_row(worker), worker + 1 == team().size() ? ends_.size() : first_row(worker + 1)};
+    shares_.measure(ends_, team());
   }
 
   Aabb world_;
@@ -235,7 +212,7 @@ class SweepAndPrune final : public PairBroadPhase {
   std::vector<std::uint32_t> bodies_;  ///< of sorted box i
   Sweeper sweeper_;                    ///< the sorted boxes, axes in the order of axes_
   std::vector<std::uint32_t> ends_;    ///< of sorted box i's window
-  std::vector<std::uint64_t> work_;    ///< tests up to and with each chunk of rows
+  RowShares shares_;
 };
 
 using Plain = SweepAndPrune<PlainSweeper>;

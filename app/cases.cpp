@@ -55,7 +55,12 @@ struct OriginalParameter {
   std::string_view name;
   std::string (*value)(const OriginalSettings&);
 };
+std::string gridObjectsPerCell(const OriginalSettings& settings) {
+  return std::to_string(settings.grid_objects_per_cell);
+}
 constexpr OriginalParameter kOriginalParameters[] = {
+    {"Grid BF", "objects_per_cell", gridObjectsPerCell},
+    {"Grid SAP", "objects_per_cell", gridObjectsPerCell},
     {"KD", "objects_per_leaf",
      [](const OriginalSettings& s) { return std::to_string(s.kd_objects_per_leaf); }},
     {"KD", "margin",  // one for all axes here

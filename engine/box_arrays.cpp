@@ -21,8 +21,12 @@ Aabb BoxArrays::box(std::size_t i) const {
 }
 
 void BoxArrays::resize(std::size_t size) {
-  const std::size_t stride = (size + 2 * kPadding - 1) / kPadding * kPadding;
-  if (stride > stride_) {
+  const auto padded = [](std::size_t boxes) {
+    return (boxes + 2 * kPadding - 1) / kPadding * kPadding;
+  };
+  if (padded(size) > stride_) {
+    // Growing again by a little each time must not mean new memory each time.
+    const std::size_t stride = std::max(padded(size), padded(stride_ + stride_ / 2));
     memory_.reset(
         static_cast<float*>(std::aligned_alloc(kAlignment, kArrays * stride * sizeof(float))));
     if (!memory_) throw std::bad_alloc();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "algorithms/marked_body.h"
 #include "broadmark/box_arrays.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
@@ -25,6 +26,16 @@ struct OverlapKernels {
   /// the window overlap i there.)
   void (*sweep)(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
                 Range rows, PairBuffer& pairs);
+
+  /// Adds the pair of bodies[i] and bodies[j] for every i in `rows` and j in (i, ends[i]) whose
+  /// boxes overlap and that are to be reported where they are; ends[i] > i for all rows.
+  void (*sweep_cells)(const BoxArrays& boxes, const std::uint32_t* ends, const MarkedBody* bodies,
+                      Range rows, PairBuffer& pairs);
+
+  /// Adds the pair of `body`, whose box is at `row`, and bodies[j] for every j > row in `columns`
+  /// whose boxes overlap and that are to be reported where they are.
+  void (*test_row)(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range columns,
+                   const MarkedBody* bodies, PairBuffer& pairs);
 };
 
 /// The kernels for an instruction set, which this processor must support.

@@ -17,6 +17,7 @@ struct Tile {
 
   Range behind(std::size_t i) const { return {larger(columns.begin, i + 1), columns.end}; }
   std::size_t endOf(std::size_t) const { return columns.end; }
+  bool reports(std::size_t, std::size_t) const { return true; }
   Pair pair(std::size_t i, std::size_t j) const {
     return {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j)};
   }
@@ -28,10 +29,32 @@ struct Windows {
   const std::uint32_t* bodies;
 
   std::size_t endOf(std::size_t i) const { return ends[i]; }
+  bool reports(std::size_t, std::size_t) const { return true; }
+  Pair pair(std::size_t i, std::size_t j) const { return orderedPair(bodies[i], bodies[j]); }
+};
+
+/// One window behind each box in its cell.
+struct CellWindows {
+  const std::uint32_t* ends;
+  const MarkedBody* bodies;
+
+  std::size_t endOf(std::size_t i) const { return ends[i]; }
+  bool reports(std::size_t i, std::size_t j) const { return reportedHere(bodies[i], bodies[j]); }
   Pair pair(std::size_t i, std::size_t j) const {
-    const std::uint32_t a = bodies[i];
-    const std::uint32_t b = bodies[j];
-    return {a < b ? a : b, a < b ? b : a};
+    return orderedPair(bodyNumber(bodies[i]), bodyNumber(bodies[j]));
+  }
+};
+
+/// One body against some columns.
+struct CellRow {
+  MarkedBody body;
+  std::size_t end;
+  const MarkedBody* bodies;
+
+  std::size_t endOf(std::size_t) const { return end; }
+  bool reports(std::size_t, std::size_t j) const { return reportedHere(body, bodies[j]); }
+  Pair pair(std::size_t, std::size_t j) const {
+    return orderedPair(bodyNumber(body), bodyNumber(bodies[j]));
   }
 };
 
@@ -47,7 +70,7 @@ void addHits(std::uint64_t hits, std::size_t row, std::size_t column, std::size_
     const std::size_t i = row + bit / kLanes;
     const std::size_t j = column + bit % kLanes;
     room[count] = part.pair(i, j);
-    count += (j > i) & (j >= begin) & (j < part.endOf(i));
+    count += (j > i) & (j >= begin) & (j < part.endOf(i)) & part.reports(i, j);
   }
   pairs.advance(count);
 }
@@ -100,21 +123,39 @@ void testTile(const BoxArrays& boxes, Range rows, Range columns, PairBuffer& pai
   for (; row < rows.end; ++row) testRows<0, 1>(boxes, row, tile.behind(row), tile, pairs);
 }
 
-void sweep(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
-           Range rows, PairBuffer& pairs) {
-  const Windows windows{ends, bodies};
+/// Tests every row on the axes from kFirstAxis on against its window (row, ends[row]).
+template <int kFirstAxis, class Part>
+void sweepWindows(const BoxArrays& boxes, const std::uint32_t* ends, Range rows, const Part& part,
+                  PairBuffer& pairs) {
   std::size_t row = rows.begin;
   for (; row + kRows <= rows.end; row += kRows) {
     // What the windows have in common for all rows at once, then what each has beyond.
     std::size_t common = ends[row];
     for (std::size_t r = 1; r < kRows; ++r) common = smaller(common, ends[row + r]);
     common = roundedUp(common);
-    testRows<1, kRows>(boxes, row, {row + 1, common}, windows, pairs);
+    testRows<kFirstAxis, kRows>(boxes, row, {row + 1, common}, part, pairs);
     for (std::size_t r = row; r < row + kRows; ++r) {
-      if (ends[r] > common) testRows<1, 1>(boxes, r, {common, ends[r]}, windows, pairs);
+      if (ends[r] > common) testRows<kFirstAxis, 1>(boxes, r, {common, ends[r]}, part, pairs);
     }
   }
-  for (; row < rows.end; ++row) testRows<1, 1>(boxes, row, {row + 1, ends[row]}, windows, pairs);
+  for (; row < rows.end; ++row) {
+    testRows<kFirstAxis, 1>(boxes, row, {row + 1, ends[row]}, part, pairs);
+  }
 }
 
-inline constexpr OverlapKernels kKernels = {testTile, sweep};
+void sweep(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
+           Range rows, PairBuffer& pairs) {
+  sweepWindows<1>(boxes, ends, rows, Windows{ends, bodies}, pairs);
+}
+
+void sweepCells(const BoxArrays& boxes, const std::uint32_t* ends, const MarkedBody* bodies,
+                Range rows, PairBuffer& pairs) {
+  sweepWindows<0>(boxes, ends, rows, CellWindows{ends, bodies}, pairs);
+}
+
+void testRow(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range columns,
+             const MarkedBody* bodies, PairBuffer& pairs) {
+  testRows<0, 1>(boxes, row, columns, CellRow{body, columns.end, bodies}, pairs);
+}
+
+inline constexpr OverlapKernels kKernels = {testTile, sweep, sweepCells, testRow};

@@ -81,6 +81,18 @@ TEST_F(OriginalSettings, ParametersOfTheTreeAreThoseOfTheFile) {
   EXPECT_EQ(one.at("params").at("margin"), "0.5");
 }
 
+TEST_F(OriginalSettings, ObjectsPerCellAreThoseOfTheFile) {
+  for (const char* const algorithm : {"Grid_3D", "Grid_2D_SAP"}) {
+    settings_["m_algorithm"] = algorithm;
+    settings_["m_Grid_ObjectsPerCell"] = 7;
+    writeSettings("settings.json", settings_);
+    runQuietly({"--headless", "settings.json", "--json", "results.json"});
+    const Json one = readJson(file("results.json")).at("cases").at(0);
+    EXPECT_EQ(one.at("status"), "ok");
+    EXPECT_EQ(one.at("params").at("objects_per_cell"), "7") << algorithm;
+  }
+}
+
 TEST_F(OriginalSettings, InputIsFoundBesideTheSettings) {
   fs::create_directory(file("sub folder"));
   fs::rename(file("scene file.aabbs"), file("sub folder/scene file.aabbs"));

@@ -112,6 +112,16 @@ TEST(BoxArrays, KeepsItsRoomWhenShrunk) {
   EXPECT_EQ(arrays.min(0), room);
 }
 
+// Whoever holds a little more every frame must not get new memory every frame.
+TEST(BoxArrays, GrowsAgainByLargerSteps) {
+  BoxArrays arrays;
+  arrays.resize(1000);
+  arrays.resize(1100);
+  const float* const room = arrays.min(0);
+  arrays.resize(1400);
+  EXPECT_EQ(arrays.min(0), room);
+}
+
 /// The least that a broad phase on the helper layers has to write.
 class OnePairPerWorker final : public BoxBroadPhase {
  public:

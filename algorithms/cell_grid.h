@@ -1,0 +1,100 @@
+// A uniform grid of cells over boxes: where they lie, which of them a box touches, and which one of
+// several shared cells answers for a pair.
+#pragma once
+
+#include <emmintrin.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "algorithms/marked_body.h"
+#include "broadmark/aabb.h"
+
+namespace broadmark {
+
+/// The cells that a box touches: first to last on each axis, both inclusive. (The fourth component
+/// is padding, 0.)
+struct CellRange {
+  alignas(16) std::array<std::int32_t, 4> first{};
+  alignas(16) std::array<std::int32_t, 4> last{};
+
+  /// Exact, and at most the number of cells of the grid.
+  [[nodiscard]] std::size_t count() const {
+    std::size_t cells = 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      cells *= static_cast<std::size_t>(last[axis] - first[axis] + 1);
+    }
+    return cells;
+  }
+};
+
+/// Cells of equal size, aligned to the axes. The outermost ones reach to infinity, so every box
+/// touches at least one cell. Which cell a coordinate falls into is monotone in the coordinate, and
+/// that alone is what correctness rests on: boxes that overlap have a cell in common.
+class CellGrid {
+ public:
+  /// Lays about `cells` cells (at least one; at most two and a half times as many, by rounding)
+  /// over the bulk of `boxes`, all of which lie in `bounds`; a few boxes far off don't stretch the
+  /// grid. `columns`: the cells are not cut on the y axis. Cells are about twice as long as the
+  /// mean box or longer on each axis, so that boxes of similar size touch few of them.
+  void fit(std::span<const Aabb> boxes, const Aabb& bounds, std::size_t cells, bool columns);
+
+  [[nodiscard]] std::size_t size() const {
+    return static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
+           static_cast<std::size_t>(counts_[2]);
+  }
+  [[nodiscard]] const std::array<std::int32_t, 4>& counts() const { return counts_; }
+  [[nodiscard]] std::size_t indexOf(std::int32_t x, std::int32_t y, std::int32_t z) const {
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(counts_[0]) *
+               (static_cast<std::size_t>(y) +
+                static_cast<std::size_t>(counts_[1]) * static_cast<std::size_t>(z));
+  }
+
+  [[nodiscard]] CellRange touched(const Aabb& box) const {
+    return {cellsOf(box.min), cellsOf(box.max)};
+  }
+
+  /// Calls visit(index, marks) for each cell in `range`: see MarkedBody for the marks.
+  template <class Visit>
+  void forEachCell(const CellRange& range, Visit visit) const {
+    if (range.first == range.last) {  // most boxes, and quicker than three loops
+      visit(indexOf(range.first[0], range.first[1], range.first[2]), MarkedBody{0});
+      return;
+    }
+    for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
+      for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
+        for (std::int32_t x = range.first[0]; x <= range.last[0]; ++x) {
+          visit(indexOf(x, y, z),
+                cellMarks(x != range.first[0], y != range.first[1], z != range.first[2]));
+        }
+      }
+    }
+  }
+
+  /// The cell at an index, its outer sides drawn in to `bounds`: for drawing.
+  [[nodiscard]] Aabb cell(std::size_t index, const Aabb& bounds) const;
+
+ private:
+  /// The cells that a box's corner lies in. All axes at once, in SSE2, which every x86-64 has: this
+  /// is done to each box twice a frame.
+  [[nodiscard]] std::array<std::int32_t, 4> cellsOf(const std::array<float, 4>& corner) const {
+    const __m128 cell = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(corner.data()), _mm_load_ps(low_.data())),
+                                   _mm_load_ps(scale_.data()));
+    // What overflows ends in an outermost cell, and NaN (infinity · 0), the first operand, in 0.
+    const __m128 clamped =
+        _mm_min_ps(_mm_max_ps(cell, _mm_setzero_ps()), _mm_load_ps(last_.data()));
+    alignas(16) std::array<std::int32_t, 4> cells;
+    _mm_store_si128(reinterpret_cast<__m128i*>(cells.data()), _mm_cvttps_epi32(clamped));
+    return cells;
+  }
+
+  alignas(16) std::array<float, 4> low_{};
+  alignas(16) std::array<float, 4> scale_{};  ///< cells per unit of length; 0 where there is one
+  alignas(16) std::array<float, 4> last_{};   ///< counts_ - 1
+  std::array<std::int32_t, 4> counts_ = {1, 1, 1, 1};
+};
+
+}  // namespace broadmark
