@@ -163,7 +163,7 @@ class AxisSweep final : public BulletBroadPhase {
   [[nodiscard]] Capabilities capabilities() const override { return {.max_objects = 0x7FFF'FFFD}; }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BulletBroadPhase::initialize(scene, first, execution);
+    BoxBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
     sweep_ = std::make_unique<Sweep>(boxes());
   }

@@ -14,22 +14,17 @@ namespace broadmark {
 /// Body i is the proxy with Bullet's unique id i + 1.
 class BulletBroadPhase : public BoxBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    PairBroadPhase::initialize(scene, first, execution);
-    BoxBroadPhase::updateObjects(first);
-    moved_.reserve(first.boxes.size());
-  }
-
   void updateObjects(const Frame& frame) override {
     moved_.clear();
     for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
-      if (frame.boxes[body] != boxes()[body]) moved_.push_back(body);
+      const bool is_new = body >= boxes().size();
+      if (is_new || frame.boxes[body] != boxes()[body]) moved_.push_back(body);
     }
     BoxBroadPhase::updateObjects(frame);
   }
 
  protected:
-  /// The bodies whose boxes differ from the last frame's.
+  /// The bodies whose boxes differ from the last frame's; all, at the beginning.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
 
   /// Answers with those of the library's pairs for which keep(a, b).

@@ -75,7 +75,7 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BulletBroadPhase::initialize(scene, first, execution);
+    BoxBroadPhase::initialize(scene, first, execution);
     proxies_.reserve(boxes().size());
     for (const Aabb& box : boxes()) {
       proxies_.push_back(static_cast<btDbvtProxy*>(tree_.createProxy(

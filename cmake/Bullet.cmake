@@ -2,16 +2,17 @@
 # too, as whoever links the algorithms links Bullet's collision library.
 #
 # CMake's FindBullet gives variables only. Debian's main libraries are single precision and need no
-# definitions. The order is the linker's: each library before those it uses.
+# definitions.
 find_package(Bullet REQUIRED)
 
-if(NOT TARGET broadmark::bullet_collision)
-  add_library(broadmark::bullet_collision INTERFACE IMPORTED GLOBAL)
-  target_include_directories(broadmark::bullet_collision SYSTEM INTERFACE ${BULLET_INCLUDE_DIRS})
-  target_link_libraries(broadmark::bullet_collision INTERFACE
-    ${BULLET_COLLISION_LIBRARY} ${BULLET_MATH_LIBRARY})
-
-  add_library(broadmark::bullet_dynamics INTERFACE IMPORTED GLOBAL)
-  target_link_libraries(broadmark::bullet_dynamics INTERFACE
-    ${BULLET_DYNAMICS_LIBRARY} broadmark::bullet_collision)
-endif()
+# broadmark_bullet(name library uses...)
+function(broadmark_bullet name library)
+  if(NOT TARGET broadmark::${name})
+    add_library(broadmark::${name} UNKNOWN IMPORTED GLOBAL)
+    set_target_properties(broadmark::${name} PROPERTIES IMPORTED_LOCATION "${library}"
+      INTERFACE_INCLUDE_DIRECTORIES "${BULLET_INCLUDE_DIRS}" INTERFACE_LINK_LIBRARIES "${ARGN}")
+  endif()
+endfunction()
+broadmark_bullet(bullet_math "${BULLET_MATH_LIBRARY}")
+broadmark_bullet(bullet_collision "${BULLET_COLLISION_LIBRARY}" broadmark::bullet_math)
+broadmark_bullet(bullet_dynamics "${BULLET_DYNAMICS_LIBRARY}" broadmark::bullet_collision)

@@ -35,7 +35,7 @@ class Dbvt : public testing::TestWithParam<std::string> {
 /// A unit cube that begins at x.
 Aabb cubeAt(float x) { return inputs::boxAt({x, 0, 0}, {1, 1, 1}); }
 
-const std::vector<Pair> kOnePair = {{0, 1}};
+constexpr Pair kPair = {0, 1};
 
 TEST_P(Dbvt, DropsStalePairsAtOnce) {
   // More pairs than a tenth, which is what Bullet would look through in one frame.
@@ -67,7 +67,8 @@ TEST_P(Dbvt, ReachesAsFarAsItDeclaresAndNoFarther) {
     const auto dbvt = start({cubeAt(0), other});
     EXPECT_FLOAT_EQ(dbvt->capabilities().margin, 0.1F);
     step(*dbvt, {cubeAt(0.04F), other});
-    EXPECT_EQ(step(*dbvt, {cubeAt(-0.005F), other}), found ? kOnePair : std::vector<Pair>());
+    EXPECT_EQ(step(*dbvt, {cubeAt(-0.005F), other}),
+              found ? std::vector{kPair} : std::vector<Pair>());
   }
 }
 
@@ -77,7 +78,7 @@ TEST_P(Dbvt, TakesItsMarginFromTheParameter) {
   {
     const auto wide = start(first, {{"margin", "1"}});
     EXPECT_EQ(wide->capabilities().margin, 2);
-    EXPECT_EQ(step(*wide, next), kOnePair);
+    EXPECT_EQ(step(*wide, next), std::vector{kPair});
   }
   // The margin belongs to the process: the next instance must not inherit it.
   EXPECT_TRUE(step(*start(first), next).empty());
@@ -99,7 +100,7 @@ TEST_P(Dbvt, IsExactWithoutAMargin) {
 TEST_P(Dbvt, LeavesShrinkWithTheirBoxes) {
   const Aabb other = cubeAt(3);
   const auto dbvt = start({inputs::boxAt({0, 0, 0}, {4, 4, 4}), other});
-  EXPECT_EQ(step(*dbvt, {inputs::boxAt({0, 0, 0}, {3.5F, 4, 4}), other}), kOnePair);
+  EXPECT_EQ(step(*dbvt, {inputs::boxAt({0, 0, 0}, {3.5F, 4, 4}), other}), std::vector{kPair});
   EXPECT_TRUE(step(*dbvt, {cubeAt(0), other}).empty());
 }
 
