@@ -112,7 +112,6 @@ bool Cell::jumps(std::uint32_t slot) const {
 
 void Cell::leave(std::uint32_t slot, CellWork& work) {
   depart(slot, work);
-  ++work.counts.cell_changes;
   bodies_[slot] = kNobody;
   free_.push_back(slot);
   --size_;
@@ -123,7 +122,6 @@ void Cell::enter(std::uint32_t body, const Bodies& all, CellWork& work) {
   slots_[slot].boxes = {all.boxes[kBefore][body], all.boxes[kNow][body]};
   crossings_[slot][kNow] = all.ranges[kNow][body].crossing(position_);
   arrive(slot, work);
-  ++work.counts.cell_changes;
   work.entered.push_back(slot);
 }
 
@@ -175,7 +173,6 @@ void Cell::tellMeeting(std::uint32_t slot, Moment without, Moment with, Tell tel
 }
 
 void Cell::move(std::uint32_t slot, CellWork& work) {
-  ++work.counts.moves;
   const Ends from = ends(slot, kBefore);
   const Ends to = ends(slot, kNow);
   for (int axis = 0; axis < 3; ++axis) {

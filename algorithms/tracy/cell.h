@@ -95,6 +95,9 @@ class Cell {
     for (const std::uint32_t slot : work.jumping) arrive(slot, work);
     for_each_arrival([&](std::uint32_t body) { enter(body, all, work); });
     settle(work);
+    work.counts.moves += work.staying.size();
+    work.counts.jumps += work.jumping.size();
+    work.counts.cell_changes += work.leaving.size() + work.entered.size();
   }
 
   /// Calls visit(body) for all bodies in the cell.
