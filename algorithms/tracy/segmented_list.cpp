@@ -1,5 +1,6 @@
 #include "algorithms/tracy/segmented_list.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace broadmark::tracy {
@@ -99,7 +100,7 @@ void SegmentedList::insert(Endpoint endpoint, ChunkId near) {
     split(id);
     goOn();
   }
-  Endpoint* const place = std::lower_bound(begin(id), end(id), endpoint);
+  Endpoint* const place = lowerBound(id, endpoint);
   std::copy_backward(place, end(id), end(id) + 1);
   *place = endpoint;
   ++chunks_[id].count;
@@ -124,7 +125,7 @@ void SegmentedList::remove(Endpoint start, Endpoint end) {
 
 void SegmentedList::remove(Endpoint endpoint) {
   const ChunkId id = chunkOf(endpoint);
-  Endpoint* const place = std::lower_bound(begin(id), end(id), endpoint);
+  Endpoint* const place = lowerBound(id, endpoint);
   std::copy(place + 1, end(id), place);
   --chunks_[id].count;
   const ChunkId previous = chunks_[id].previous;

@@ -8,7 +8,6 @@
 // AABB Insertion and Removal", IEEE VR 2009, section 4.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <compare>
 #include <cstdint>
@@ -111,6 +110,16 @@ class SegmentedList {
 
   Endpoint* begin(ChunkId id) { return &endpoints_[std::size_t{id} * chunk_size_]; }
   Endpoint* end(ChunkId id) { return begin(id) + chunks_[id].count; }
+  /// The first in the chunk that is not less. Without branches, which no predictor would foresee.
+  Endpoint* lowerBound(ChunkId id, Endpoint endpoint) {
+    Endpoint* first = begin(id);
+    for (std::size_t count = chunks_[id].count; count > 0;) {
+      const std::size_t half = (count + 1) / 2;
+      first += first[half - 1] < endpoint ? half : 0;
+      count -= half;
+    }
+    return first;
+  }
   [[nodiscard]] std::span<const Endpoint> contents(ChunkId id) const {
     return {&endpoints_[std::size_t{id} * chunk_size_], chunks_[id].count};
   }
@@ -184,7 +193,7 @@ void SegmentedList::shift(Endpoint from, Endpoint to, Passed& passed) {
   constexpr bool kUp = kStep > 0;
   const auto ahead = [&](Endpoint other) { return kUp ? other < to : other > to; };
   ChunkId id = chunkOf(from);
-  Endpoint* at = std::lower_bound(begin(id), end(id), from);
+  Endpoint* at = lowerBound(id, from);
   for (;;) {
     const Endpoint* const last = kUp ? end(id) - 1 : begin(id);
     for (; at != last && ahead(at[kStep]); at += kStep) {
