@@ -354,6 +354,25 @@ TEST(Tracy, HoldsForManyBodies) {
   }
 }
 
+// The listed algorithm is tested with its usual cells; here everything happens at their borders.
+TEST(Tracy, HoldsWithCellsOfAFewBodies) {
+  constexpr std::size_t kCount = 257;
+  constexpr std::uint32_t kFrames = 4;
+  for (const int objects_per_cell : {1, 4}) {
+    std::vector<std::vector<Aabb>> unrelated;
+    for (const inputs::Input& input : inputs::kAll) {
+      SCOPED_TRACE(input.name);
+      const auto frames = framesOf(input, kCount, kFrames);
+      Checked run("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
+      for (std::uint32_t i = 1; i < kFrames; ++i) run.step(frames[i]);
+      unrelated.push_back(frames[1]);
+      if (HasFailure()) return;
+    }
+    Checked run("tracy", 1, objects_per_cell, cube(-10, 20), unrelated[0]);
+    for (const std::vector<Aabb>& boxes : unrelated) run.step(boxes);
+  }
+}
+
 // The intersection moves from cell to cell, but the pair neither begins nor ends.
 TEST(Tracy, KeepsPairsThatChangeCells) {
   std::vector<Aabb> boxes(8, cube(0, 0.4F));
