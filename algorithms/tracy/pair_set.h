@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <vector>
 
 #include "broadmark/pair.h"
@@ -22,16 +23,22 @@ class PairSet {
     table_.assign(table_.size(), kEmpty);
   }
 
-  /// Adds a pair that is not yet in it.
+  /// Adds a pair. Throws std::logic_error if it is in it already.
   void insert(Pair pair) {
     if (2 * (pairs_.size() + 1) > table_.size()) grow();
-    table_[placeFor(pair)] = static_cast<std::uint32_t>(pairs_.size());
+    const std::size_t place = placeFor(pair);
+    if (table_[place] != kEmpty) throw std::logic_error("a pair began that was there already");
+    table_[place] = static_cast<std::uint32_t>(pairs_.size());
     pairs_.push_back(pair);
   }
 
-  /// Removes a pair that is in it; the last one takes its place in the run.
+  /// Removes a pair; the last one takes its place in the run. Throws std::logic_error if it is not
+  /// in it.
   void erase(Pair pair) {
-    const std::size_t place = placeFor(pair);
+    const std::size_t place = pairs_.empty() ? 0 : placeFor(pair);
+    if (pairs_.empty() || table_[place] == kEmpty) {
+      throw std::logic_error("a pair ended that was not there");
+    }
     const std::uint32_t gap = table_[place];
     table_[placeFor(pairs_.back())] = gap;
     pairs_[gap] = pairs_.back();

@@ -242,7 +242,10 @@ TEST(PairSet, DoesAsASetDoes) {
       const PairRun run = pairs.run();
       ASSERT_EQ(sorted({&run, 1}), std::vector<Pair>(expected.begin(), expected.end()));
     }
+    EXPECT_THROW(pairs.insert(pairs.run().front()), std::logic_error);
+    EXPECT_THROW(pairs.erase({100, 200}), std::logic_error);
     pairs.clear();
+    EXPECT_THROW(pairs.erase({0, 1}), std::logic_error);
     expected.clear();
     EXPECT_TRUE(pairs.run().empty());
   }
