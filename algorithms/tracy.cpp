@@ -1,10 +1,9 @@
-// Tracy: a uniform grid whose every cell is an incremental sweep and prune. Bodies are told from
-// those that stay where they are; only what moves is sorted anew, from its last place to the new
-// one, and each swap of a start and an end is an event at which a pair may begin or end. Pairs are
-// kept from frame to frame. O(n) comparisons of boxes per frame, then O(s), s the swaps: about
-// moved bodies × distance × (bodies per cell)^(2/3) / body size for evenly spread boxes. What
-// neither a plain sweep and prune nor its incremental form can do is done by the grid: keep apart
-// bodies that only share a coordinate or two.
+// Tracy: a uniform grid whose every cell is an incremental sweep and prune. A body that stays where
+// it is costs one comparison; what moves is sorted anew, from its last place to the new one, and
+// each swap of a start and an end is an event at which a pair may begin or end. Pairs are kept from
+// frame to frame. O(n + s), s the swaps: for each moved body about the distance times the endpoints
+// per unit of length in a cell. The grid does what no incremental sweep can: keep apart bodies that
+// share but a coordinate or two.
 //
 // A frame: find out which bodies have moved and which cells they touch now; tell the cells; let
 // each cell find the pairs that began and ended in it (tracy/cell.h, with the proof that each
@@ -238,15 +237,20 @@ class Tracy final : public BroadPhase {
   }
 
   void updateCells(int worker) {
-    CellWork& work = workerOf(worker).work;
-    for (std::size_t cell = first_cells_[static_cast<std::size_t>(worker)];
-         cell < first_cells_[static_cast<std::size_t>(worker) + 1]; ++cell) {
-      if (!isConcerned(cell)) continue;
-      cells_[cell].update(bodies_, work, [&](auto enter) {
+    forEachCellOf(worker, [&](std::size_t cell) {
+      if (!isConcerned(cell)) return;
+      cells_[cell].update(bodies_, workerOf(worker).work, [&](auto enter) {
         for (const Worker& from : workers_) from.mailbox.read(cell, enter);
       });
       for (Worker& from : workers_) from.mailbox.empty(cell);
-    }
+    });
+  }
+
+  /// Calls visit(cell) for the cells of a worker's share.
+  template <class Visit>
+  void forEachCellOf(int worker, Visit visit) const {
+    const auto share = first_cells_.begin() + worker;
+    for (std::size_t cell = share[0]; cell < share[1]; ++cell) visit(cell);
   }
 
   [[nodiscard]] bool isConcerned(std::size_t cell) const {
@@ -350,10 +354,9 @@ class Tracy final : public BroadPhase {
     shareOut([&](std::size_t cell) { return 1 + bodiesIn(cell).size(); },
              cells_.size() + bodies.size());
     team_->run([&](int worker) {
-      for (std::size_t cell = first_cells_[static_cast<std::size_t>(worker)];
-           cell < first_cells_[static_cast<std::size_t>(worker) + 1]; ++cell) {
+      forEachCellOf(worker, [&](std::size_t cell) {
         cells_[cell].build(grid_.position(cell), bodiesIn(cell), bodies_, workerOf(worker).work);
-      }
+      });
     });
   }
 
