@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "algorithms/opencl/timer.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 
@@ -97,7 +97,7 @@ DeviceContext::DeviceContext(const Execution& execution) {
 
 cl::Program DeviceContext::build(std::string_view source, const std::string& options) {
   constexpr std::size_t kLogShown = 1000;
-  const auto start = std::chrono::steady_clock::now();
+  const ScopedTimer timer(build_ns_);
   cl::Program program(context_, std::string(source));
   try {
     program.build(device_, ("-cl-std=CL1.2 " + options).c_str());
@@ -107,7 +107,6 @@ cl::Program DeviceContext::build(std::string_view source, const std::string& opt
     throw UnsupportedError(fmt::format("kernels do not build (OpenCL error {}): {}", error.err(),
                                        log.substr(0, kLogShown)));
   }
-  build_ns_ += std::chrono::nanoseconds(std::chrono::steady_clock::now() - start).count();
   return program;
 }
 
