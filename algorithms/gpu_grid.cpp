@@ -98,13 +98,13 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double low = summary.bounds.min[axis];
       const double cells = (summary.bounds.max[axis] - low) / unit + 1;
-      bits[axis] = std::bit_width(static_cast<std::uint32_t>(cells));
+      bits[axis] = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(cells)));
       grid_.scale.s[axis] = static_cast<float>(1 / unit);
       grid_.origin.s[axis] = summary.bounds.min[axis] * grid_.scale.s[axis];
     }
     grid_.scale.s[3] = grid_.origin.s[3] = 0;
     // No more buckets than bodies.
-    const int most = std::bit_width(count() - 1);
+    const auto most = static_cast<int>(std::bit_width(count() - 1));
     while (bits[0] + bits[1] + bits[2] > most) --*std::ranges::max_element(bits);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       grid_.bits.s[axis] = static_cast<cl_uint>(bits[axis]);
