@@ -208,6 +208,10 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
           "instruction sets of vectorised variants: auto (default), scalar, sse2, avx2, avx512",
           "ISA[,ISA...]");
 
+  app.add_option("--device", options.device,
+                 "OpenCL device, by number or part of its name (see 'broadmark list devices'; "
+                 "default: the first, GPUs before CPUs)")
+      ->type_name("NAME");
   app.add_option("--repetitions", texts.repetitions, "measured passes over each recording")
       ->capture_default_str()
       ->type_name("R");
@@ -365,7 +369,8 @@ int runCommandLine(int argc, char** argv) {
 
   std::string what = "all";
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
-  list->add_option("what", what, "algorithms, scenes, engines or all")->capture_default_str();
+  list->add_option("what", what, "algorithms, scenes, engines, devices or all")
+      ->capture_default_str();
 
   std::vector<std::filesystem::path> files;
   CLI::App* verify = app.add_subcommand("verify", "Checks recordings and says what is wrong.");
