@@ -30,7 +30,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "algorithms/opencl/device_context.h"
 #include "algorithms/opencl/timer.h"
@@ -150,6 +149,26 @@ struct SapTraits {
   }
 };
 
+/// The library's object. It is made once for an Execution, as it leaks megabytes and takes a fifth
+/// of a second for its kernels each time. Nothing in it lasts from one answer to the next.
+template <class Traits>
+class SharedLibrary final : public SharedResource {
+ public:
+  explicit SharedLibrary(Execution& execution) {
+    const auto& context = execution.shared<opencl::DeviceContext>();
+    initializeLibrary();
+    const opencl::ScopedTimer timer(build_ns_);
+    broad_phase_ = Traits::create(context);
+    requireNoError();
+  }
+  typename Traits::BroadPhase& broadPhase() { return *broad_phase_; }
+  [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
+
+ private:
+  std::unique_ptr<typename Traits::BroadPhase> broad_phase_;
+  std::int64_t build_ns_ = 0;
+};
+
 template <class Traits>
 class BulletOpenCl final : public BroadPhase {
  public:
@@ -158,14 +177,10 @@ class BulletOpenCl final : public BroadPhase {
   }
 
   void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
-    context_.emplace(execution);
-    initializeLibrary();
-    {
-      const opencl::ScopedTimer timer(build_ns_);
-      broad_phase_ = Traits::create(*context_);
-    }
-    requireNoError();
-    if (!context_->onCpu()) requireSelfCheck();
+    auto& library = execution.shared<SharedLibrary<Traits>>();
+    broad_phase_ = &library.broadPhase();
+    build_ns_ = library.buildNanoseconds();
+    if (!execution.shared<opencl::DeviceContext>().onCpu()) requireSelfCheck();
     run(first);
   }
 
@@ -325,8 +340,7 @@ class BulletOpenCl final : public BroadPhase {
     }
   }
 
-  std::optional<opencl::DeviceContext> context_;
-  std::unique_ptr<typename Traits::BroadPhase> broad_phase_;
+  typename Traits::BroadPhase* broad_phase_ = nullptr;  ///< the execution's
   std::int64_t build_ns_ = 0;
   TransferTimes transfers_;
   int count_ = 0;      ///< bodies, those that fill up not counted

@@ -62,6 +62,14 @@ TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
   EXPECT_GT(result.pairs_mean, 1000);
 }
 
+TEST_P(OnDevice, OneThreadFindsThemToo) {
+  for (const inputs::Input& input : inputs::kAll) {
+    Frames frames(framesOf(input, 257, 3));
+    const CaseResult result = runCase({.algorithm = GetParam(), .threads = 1}, frames);
+    ASSERT_EQ(result.status, Status::ok) << result.reason << " on " << input.name;
+  }
+}
+
 TEST_P(OnDevice, PairBuffersGrow) {
   // Two million pairs of two thousand bodies, after a frame with none.
   std::vector<std::vector<Aabb>> frames = framesOf({"uniform", inputs::uniform}, 2000, 2);

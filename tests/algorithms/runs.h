@@ -32,10 +32,12 @@ struct Configuration {
 };
 
 /// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
-/// is parallel: among them ones that divide hardly any number of bodies.
+/// is parallel: among them ones that divide hardly any number of bodies. A compute device divides
+/// the work by itself.
 inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
   std::vector<int> teams = {1};
   if (algorithm.parallel) teams = {1, 2, 3, 5};
+  if (algorithm.family == "GPU") teams = {2};
   std::vector<Configuration> all;
   for (const Isa isa : kAllIsas) {
     if (!isaSupported(isa) || (isa != Isa::scalar && !algorithm.vectorised)) continue;
