@@ -50,7 +50,8 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                      "compare",
                      "Exit status"});
   expectWords(run({"bake", "--help"}), session);
-  expectWords(run({"bake", "--help"}), {"--scenes", "--output", "--force", "--quiet"});
+  expectWords(run({"bake", "--help"}),
+              {"--scenes", "--output", "--threads", "--list", "--force", "--quiet"});
   expectWords(run({"compare", "--help"}), {"--fail-above", "A.json", "B.json"});
   expectWords(run({"verify", "--help"}), {"FILE"});
   expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines"});
