@@ -17,9 +17,9 @@
 namespace broadmark {
 namespace {
 
-/// Memory that a simulation takes for each body, rounded up: bodies, pairs and contacts of crowded
-/// scenes.
-constexpr std::uint64_t kBytesPerBody = 8192;
+/// Memory that a simulation takes for each body, its pairs and contacts included. Measured with
+/// Bullet: 9 kB in FreeFall, 29 kB in Gravity at density 0.5.
+constexpr std::uint64_t kBytesPerBody = 32'000;
 
 double seconds(std::chrono::steady_clock::duration d) {
   return std::chrono::duration<double>(d).count();

@@ -88,8 +88,10 @@ void Progress::draw(double seconds_left) {
   drawn_ = Clock::now();
   const double share =
       static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>(steps_, 1));
-  const std::string state =
-      fmt::format(": {:.0f} %, about {} left", 100 * share, waitingTime(seconds_left));
+  // Before the first step nobody knows.
+  const std::string left =
+      done_ == 0 ? "" : fmt::format(", about {} left", waitingTime(seconds_left));
+  const std::string state = fmt::format(": {:.0f} %{}", 100 * share, left);
   std::string what = task_ + (detail_.empty() ? "" : " " + detail_);
   if (terminal_) {
     // A line that wraps could not be erased.
