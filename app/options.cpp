@@ -163,14 +163,20 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-void parseSize(const std::string& text, HeadlessOptions& options) {
+/// The size of a picture, where it is given as "WxH".
+void parseSize(const std::string& text, int& width, int& height) {
   const auto x = text.find('x');
   if (x == std::string::npos) {
     throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
   }
-  options.screenshot_width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, 16384));
-  options.screenshot_height =
-      static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, 16384));
+  width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, 16384));
+  height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, 16384));
+}
+
+GlSource parseGl(const std::string& text) {
+  return named<GlSource>(
+      "--gl", text,
+      {{"auto", GlSource::automatic}, {"egl", GlSource::egl}, {"osmesa", GlSource::osmesa}});
 }
 
 std::vector<Isa> parseIsas(const std::vector<std::string>& texts) {
@@ -182,14 +188,16 @@ std::vector<Isa> parseIsas(const std::vector<std::string>& texts) {
   return isas;
 }
 
+int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int parseThreadCount(const std::string& text) {
+  return static_cast<int>(parseInteger(text, "--threads", 1, 1024));
+}
+
 std::vector<int> parseThreads(const std::vector<std::string>& texts) {
   std::vector<int> threads;
-  for (const std::string& text : splitList(texts)) {
-    threads.push_back(static_cast<int>(parseInteger(text, "--threads", 1, 1024)));
-  }
-  if (threads.empty()) {
-    threads.push_back(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  }
+  for (const std::string& text : splitList(texts)) threads.push_back(parseThreadCount(text));
+  if (threads.empty()) threads.push_back(allCores());
   return threads;
 }
 
@@ -270,10 +278,8 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   options.check = named<CheckMode>(
       "--check", texts.check,
       {{"full", CheckMode::full}, {"hash", CheckMode::hash}, {"off", CheckMode::off}});
-  options.gl = named<GlSource>(
-      "--gl", texts.gl,
-      {{"auto", GlSource::automatic}, {"egl", GlSource::egl}, {"osmesa", GlSource::osmesa}});
-  parseSize(texts.size, options);
+  options.gl = parseGl(texts.gl);
+  parseSize(texts.size, options.screenshot_width, options.screenshot_height);
   options.shard = parseShard(texts.shard);
   for (const auto& [name, path] : texts.outputs) {
     if (!path.empty()) options.outputs[name] = path;
@@ -283,6 +289,76 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
         "no source: name a built-in scene (freefall, brownian, gravity) or a recording");
   }
   return options;
+}
+
+/// bake options as typed.
+struct BakeTexts {
+  BakeOptions options;  ///< those that need no understanding
+  SceneTexts scene;
+  std::vector<std::string> scenes;
+  std::string threads;
+  MovieOptions movie;
+  std::string movie_every = "1";
+  std::string size = "1280x720";
+  std::string gl = "auto";
+};
+
+void addBakeOptions(CLI::App& app, BakeTexts& texts) {
+  addList(app, "--scenes", texts.scenes, "built-in scenes (default: all)", "A[,B...]");
+  texts.scene.addTo(app);
+  app.add_option("--output", texts.options.output,
+                 "directory for the recordings; they go into Recordings_AABBs/ in it")
+      ->type_name("DIR")
+      ->required();
+  app.add_option("--threads", texts.threads,
+                 "recordings baked at the same time (default: all cores); they do not depend on it")
+      ->type_name("T");
+  CLI::Option* movie =
+      app.add_option("--movie", texts.movie.directory,
+                     "draw each recording into numbered pictures, in a folder of its name in this "
+                     "directory")
+          ->type_name("DIR");
+  const auto add_movie_option = [&](const char* name, std::string& text, const char* doc,
+                                    const char* type) {
+    app.add_option(name, text, doc)->capture_default_str()->type_name(type)->needs(movie);
+  };
+  add_movie_option("--movie-every", texts.movie_every, "frames from one picture to the next", "K");
+  add_movie_option("--size", texts.size, "size of the pictures", "WxH");
+  add_movie_option("--gl", texts.gl, "where off-screen OpenGL comes from: auto, egl, osmesa",
+                   "SOURCE");
+  app.add_flag("--list", texts.options.list_only,
+               "print what would be baked or kept, with sizes; bake nothing");
+  app.add_flag("--force", texts.options.force,
+               "bake anew what is already there (default: complete recordings are kept)");
+  app.add_flag("--quiet", texts.options.quiet, "no progress");
+}
+
+BakeOptions understand(const BakeTexts& texts) {
+  BakeOptions options = texts.options;
+  options.scenes = splitList(texts.scenes);
+  options.scene = texts.scene.parse();
+  options.parameters = keyValues(texts.scene.parameters);
+  options.threads = texts.threads.empty() ? allCores() : parseThreadCount(texts.threads);
+  if (!texts.movie.directory.empty()) {
+    options.movie = texts.movie;
+    options.movie->every =
+        static_cast<std::uint32_t>(parseInteger(texts.movie_every, "--movie-every", 1, 1'000'000));
+    parseSize(texts.size, options.movie->width, options.movie->height);
+    options.movie->gl = parseGl(texts.gl);
+  }
+  return options;
+}
+
+void addVerifyOptions(CLI::App& app, VerifyOptions& options) {
+  app.add_option("files", options.files, "recordings (.aabbs)")->type_name("FILE")->required();
+  CLI::Option* describe =
+      app.add_flag("--describe", options.describe,
+                   "also print what each is like, over time: density, pairs per body, share of "
+                   "moving bodies, sizes (longest edge of a box), most bodies outside the world");
+  app.add_option("--json", options.json, "write that as JSON, too")
+      ->type_name("FILE")
+      ->needs(describe);
+  app.add_flag("--quiet", options.quiet, "no progress");
 }
 
 /// Complains about an argument that `app` does not know, with the nearest of what it does.
@@ -351,25 +427,19 @@ int runCommandLine(int argc, char** argv) {
   addHeadlessOptions(app, options, texts);
   scene.addTo(app);
 
-  BakeOptions bake_options;
-  SceneTexts bake_scene;
-  std::vector<std::string> bake_scenes;
+  BakeTexts bake_texts;
   CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
-  addList(*bake, "--scenes", bake_scenes, "built-in scenes", "A[,B...]");
-  bake_scene.addTo(*bake);
-  bake->add_option("--output", bake_options.output, "directory for the recordings")
-      ->type_name("DIR")
-      ->required();
-  bake->add_flag("--force", bake_options.force, "bake anew what is already there");
-  bake->add_flag("--quiet", bake_options.quiet, "no progress");
+  addBakeOptions(*bake, bake_texts);
 
   std::string what = "all";
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
   list->add_option("what", what, "algorithms, scenes, engines or all")->capture_default_str();
 
-  std::vector<std::filesystem::path> files;
-  CLI::App* verify = app.add_subcommand("verify", "Checks recordings and says what is wrong.");
-  verify->add_option("files", files, "recordings (.aabbs)")->type_name("FILE")->required();
+  VerifyOptions verify_options;
+  CLI::App* verify = app.add_subcommand(
+      "verify",
+      "Checks recordings, also against what their sidecars say, and tells what is wrong.");
+  addVerifyOptions(*verify, verify_options);
 
   CompareOptions compare_options;
   std::string fail_above = "0.05";
@@ -397,14 +467,9 @@ int runCommandLine(int argc, char** argv) {
   }
   requireNothingBefore(app);
 
-  if (bake->parsed()) {
-    bake_options.scenes = splitList(bake_scenes);
-    bake_options.scene = bake_scene.parse();
-    bake_options.parameters = keyValues(bake_scene.parameters);
-    return runBake(bake_options);
-  }
+  if (bake->parsed()) return runBake(understand(bake_texts));
   if (list->parsed()) return runList(what);
-  if (verify->parsed()) return runVerify(files);
+  if (verify->parsed()) return runVerify(verify_options);
   if (compare->parsed()) {
     compare_options.fail_above = parseNumber(fail_above, "--fail-above", 0, false);
     return runCompare(compare_options);

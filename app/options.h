@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/movie.h"
 #include "broadmark/parameters.h"
 #include "broadmark/runner.h"
 #include "render/picture.h"
@@ -59,7 +60,17 @@ struct BakeOptions {
   SceneOptions scene;
   ParameterValues parameters;
   std::filesystem::path output;
+  int threads = 1;
+  std::optional<MovieOptions> movie;
+  bool list_only = false;
   bool force = false;
+  bool quiet = false;
+};
+
+struct VerifyOptions {
+  std::vector<std::filesystem::path> files;
+  bool describe = false;
+  std::filesystem::path json;  ///< "": none
   bool quiet = false;
 };
 
@@ -77,7 +88,7 @@ int runCommandLine(int argc, char** argv);
 int runHeadless(const HeadlessOptions&);
 int runBake(const BakeOptions&);
 int runList(const std::string& what);
-int runVerify(const std::vector<std::filesystem::path>& files);
+int runVerify(const VerifyOptions&);
 int runCompare(const CompareOptions&);
 
 }  // namespace broadmark

@@ -90,6 +90,18 @@ bool simulateWithProgress(Simulation& simulation, bool quiet, Record&& record) {
   });
 }
 
+/// Bakes a simulation below `directory`, unless it is already there. Returns the path, or "" when
+/// interrupted.
+fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool quiet) {
+  fs::path path = recordingPath(directory, simulation.scene());
+  if (isBaked(path, simulation)) return path;
+  makeDirectory(path.parent_path());
+  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
+    return !bake(simulation, path, progress).empty();
+  });
+  return whole ? path : fs::path();
+}
+
 std::unique_ptr<RecordingReader> simulateTemporary(Simulation& simulation, bool quiet) {
   RecordingWriter writer(simulation.scene());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
@@ -155,21 +167,15 @@ std::unique_ptr<RecordingReader> openRecording(Source& source, const fs::path& d
     recording = std::make_unique<RecordingReader>(fs::path(source.reference.path));
   } else if (directory.empty()) {
     recording = simulateTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(*source.simulation, directory, false, quiet);
-             !path.empty()) {
+  } else if (const fs::path path = bakeInto(*source.simulation, directory, quiet); !path.empty()) {
     recording = std::make_unique<RecordingReader>(path);
   }
   if (recording) source.reference.hash = recording->hash();
   return recording;
 }
 
-fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool force, bool quiet) {
-  fs::path path = directory / recordingFileName(simulation.scene());
-  if (!force && isBaked(path, simulation)) return path;
-  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
-    return !bake(simulation, path, progress).empty();
-  });
-  return whole ? path : fs::path();
+fs::path recordingPath(const fs::path& directory, const SceneInfo& scene) {
+  return directory / "Recordings_AABBs" / recordingFileName(scene);
 }
 
 void makeDirectory(const fs::path& directory) {

@@ -31,15 +31,14 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 
+/// Where a recording lies below a directory of recordings, laid out as the original's:
+/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs".
+std::filesystem::path recordingPath(const std::filesystem::path& directory, const SceneInfo&);
+
 /// Opens a source's recording, simulating it first if need be: into `directory`, or, if that is
 /// empty, into an unnamed temporary file. Null when interrupted.
 std::unique_ptr<RecordingReader> openRecording(Source&, const std::filesystem::path& directory,
                                                bool quiet);
-
-/// Bakes a simulation into `directory` under the name that belongs to it, unless it is already
-/// there (and not `force`). Returns the path, or "" when interrupted.
-std::filesystem::path bakeInto(Simulation&, const std::filesystem::path& directory, bool force,
-                               bool quiet);
 
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);

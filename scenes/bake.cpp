@@ -19,6 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 constexpr std::string_view kRecordingExtension = ".aabbs";
+constexpr std::string_view kSchema = "broadmark-bake/1";
 
 std::filesystem::path sidecarPath(std::filesystem::path recording) {
   return recording.replace_extension(".json");
@@ -50,7 +51,7 @@ std::string sceneId(const Simulation& simulation) {
 
 /// What stands beside a recording with this hash.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
-  return {{"schema", "broadmark-bake/1"},
+  return {{"schema", kSchema},
           {"scene", sceneId(simulation)},
           {"parameters", parametersJson(simulation)},
           {"hash", hash}};
@@ -78,6 +79,18 @@ bool isBaked(const std::filesystem::path& path, Simulation& simulation) {
   } catch (const InputError&) {
     return false;  // missing or damaged: to be baked anew
   }
+}
+
+std::optional<std::string> bakedHash(const std::filesystem::path& recording) {
+  const std::filesystem::path path = sidecarPath(recording);
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  const std::string text = readTextFile(path, kSidecarLimitBytes);
+  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("schema", Json()) != kSchema) return std::nullopt;
+  if (!json.contains("hash") || !json["hash"].is_string()) {
+    throw InputError(fmt::format("{}: states no hash: bake anew with --force", path.string()));
+  }
+  return json["hash"].get<std::string>();
 }
 
 std::string bake(Simulation& simulation, const std::filesystem::path& path,

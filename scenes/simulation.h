@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,10 @@ using BakeProgress = std::function<bool(std::uint32_t frame)>;
 /// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
 /// says so, and the recording has the stated hash).
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
+
+/// The hash that the .json beside a recording states; nothing if there is none, or it is no sidecar
+/// of a baked recording. Throws InputError when a sidecar states no hash.
+std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
 /// Simulates all frames into an .aabbs recording at `path`, with a .json of the same name that
 /// holds all parameters and the recording's hash ("schema": "broadmark-bake/1"). Returns the hash,

@@ -1,5 +1,8 @@
 // Baking, verifying and the recordings' promises.
 
+#include <fmt/format.h>
+
+#include "scenes/simulation.h"
 #include "tests/e2e/end_to_end.h"
 
 namespace broadmark::testing {
@@ -7,7 +10,7 @@ namespace {
 
 using Bake = EndToEnd;
 
-constexpr const char* kBaked = "out dir/FreeFall Cubes N40 F8frames.aabbs";
+const std::string kBaked = recordingIn("out dir", "FreeFall Cubes N40 F8frames");
 
 Arguments bakeCall(const Arguments& more = {}) {
   Arguments call = {"bake",     "--scenes", "freefall", "--objects", "40",
@@ -16,13 +19,29 @@ Arguments bakeCall(const Arguments& more = {}) {
   return call;
 }
 
+/// What follows `word` on the lines that begin with it.
+std::vector<std::string> pathsAfter(const std::string& word, const std::string& output) {
+  std::vector<std::string> paths;
+  for (const std::string& line : linesOf(output)) {
+    if (line.starts_with(word)) paths.push_back(line.substr(word.size()));
+  }
+  return paths;
+}
+
 TEST_F(Bake, EveryCombinationIsBakedAndSound) {
   const Ended baked =
       runQuietly({"bake", "--scenes", "freefall,brownian,gravity", "--objects", "30,10,20",
                   "--object-type", "cubes", "--frames", "4", "--output", "deep/er/out"});
-  const auto files = linesOf(baked.out);
-  ASSERT_EQ(files.size(), 9U) << baked.out;
-  EXPECT_EQ(files.front(), "deep/er/out/FreeFall Cubes N10 F4frames.aabbs");
+  const auto files = pathsAfter("baked  ", baked.out);
+  std::set<std::string> expected;
+  for (const std::string scene : {"FreeFall", "Brownian", "Gravity"}) {
+    for (const int n : {10, 20, 30}) {
+      expected.insert(recordingIn("deep/er/out", fmt::format("{} Cubes N{} F4frames", scene, n)));
+    }
+  }
+  EXPECT_EQ(std::set(files.begin(), files.end()), expected) << baked.out;
+  EXPECT_THAT(linesOf(baked.out).back(),
+              StartsWith(fmt::format("9 baked, 0 kept; {} bytes", 9 * 304 + 3 * 5 * 32 * 60)));
   Arguments verify = {"verify"};
   verify.insert(verify.end(), files.begin(), files.end());
   const Ended verified = run(verify);
@@ -38,6 +57,62 @@ TEST_F(Bake, EveryCombinationIsBakedAndSound) {
   }
 }
 
+TEST_F(Bake, ThreadsChangeNothing) {
+  std::map<std::string, std::string> hashes;
+  for (const std::string threads : {"1", "3"}) {
+    runQuietly({"bake", "--objects", "150,300,50", "--frames", "25", "--output", threads,
+                "--threads", threads});
+    for (const auto& entry : fs::directory_iterator(file(threads + "/Recordings_AABBs"))) {
+      if (entry.path().extension() != ".aabbs") continue;
+      const auto [known, first] = hashes.emplace(entry.path().filename(), readFile(entry.path()));
+      EXPECT_EQ(first, threads == "1") << entry.path();
+      EXPECT_TRUE(known->second == readFile(entry.path())) << entry.path();
+    }
+  }
+  EXPECT_EQ(hashes.size(), 3 * builtinScenes().size());
+}
+
+TEST_F(Bake, ACombinationNamedTwiceIsBakedOnce) {
+  const Ended ended =
+      runQuietly({"bake", "--scenes", "freefall,FreeFall", "--objects", "5,5", "--object-type",
+                  "cubes,cubes", "--frames", "2", "--output", "out"});
+  EXPECT_EQ(pathsAfter("baked  ", ended.out).size(), 1U) << ended.out;
+}
+
+TEST_F(Bake, ListTellsWhatWouldBeDone) {
+  const Arguments call = bakeCall({"--list"});
+  const std::string size = std::to_string(304 + 32 * 40 * 9);
+  const Ended before = runQuietly(call);
+  EXPECT_THAT(
+      linesOf(before.out),
+      ElementsAre(AllOf(StartsWith("bake "), HasSubstr(" " + size + " "), HasSubstr(kBaked)),
+                  "1 recordings: 1 to bake (" + size + " bytes), 0 kept"));
+  EXPECT_THAT(entries(), IsEmpty());
+  runQuietly(bakeCall());
+  const Ended after = runQuietly(call);
+  EXPECT_THAT(after.out, StartsWith("kept "));
+  EXPECT_THAT(after.out, HasSubstr("1 recordings: 0 to bake (0 bytes), 1 kept"));
+  EXPECT_THAT(runQuietly(bakeCall({"--list", "--force"})).out, StartsWith("bake "));
+}
+
+TEST_F(Bake, AFailedOneDoesNotStopTheOthers) {
+  // The largest does not fit below the limit on a file's size.
+  const Ended ended = run({"bake", "--scenes", "freefall", "--objects", "5,9,200", "--frames", "10",
+                           "--output", "out", "--quiet", "--threads", "1"},
+                          {.largest_file = 20'000});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("N200 F10frames.aabbs: cannot write"));
+  EXPECT_EQ(pathsAfter("baked  ", ended.out).size(), 2U) << ended.out;
+  EXPECT_THAT(linesOf(ended.out).back(), StartsWith("2 baked, 0 kept, 1 failed; "));
+}
+
+TEST_F(Bake, PlainProgressEndsWithALine) {
+  const Ended ended = run(bakeCall());
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(linesOf(ended.err), ElementsAre(StartsWith("baking 1 recordings: done (")));
+}
+
 TEST_F(Bake, TheSeedDecidesTheRecording) {
   bakeRecording("first.aabbs", "40", "8", "7");
   bakeRecording("second.aabbs", "40", "8", "7");
@@ -51,9 +126,11 @@ TEST_F(Bake, WhatIsThereIsKeptUnlessForced) {
   const std::string bytes = readFile(file(kBaked));
   const auto long_ago = fs::last_write_time(file(kBaked)) - std::chrono::hours(1);
   fs::last_write_time(file(kBaked), long_ago);
-  runQuietly(bakeCall());
+  EXPECT_THAT(runQuietly(bakeCall()).out,
+              StartsWith("kept   " + kBaked + "\n0 baked, 1 kept; 0 b"));
   EXPECT_EQ(fs::last_write_time(file(kBaked)), long_ago);
-  runQuietly(bakeCall({"--force"}));
+  EXPECT_THAT(runQuietly(bakeCall({"--force"})).out,
+              StartsWith("baked  " + kBaked + "\n1 baked, 0 kept; "));
   EXPECT_NE(fs::last_write_time(file(kBaked)), long_ago);
   EXPECT_EQ(readFile(file(kBaked)), bytes);
 }
@@ -78,16 +155,16 @@ TEST_F(Bake, ParametersOfTheSceneCount) {
   const std::string bytes = readFile(file(kBaked));
   runQuietly(bakeCall({"--density", "0.02", "--param", "friction=0.1"}));
   EXPECT_NE(readFile(file(kBaked)), bytes);
-  const Json sidecar = readJson(file("out dir/FreeFall Cubes N40 F8frames.json"));
+  const Json sidecar = readJson(file("out dir/Recordings_AABBs/FreeFall Cubes N40 F8frames.json"));
   EXPECT_EQ(sidecar.at("parameters").at("friction"), 0.1);
 }
 
 TEST_F(Bake, WhatAKilledBakeLeftIsTakenOver) {
-  fs::create_directory(file("out dir"));
-  writeFile(file(std::string(kBaked) + ".part"), std::string(1 << 20, 'x'));
+  fs::create_directories(file(kBaked).parent_path());
+  writeFile(file(kBaked + ".part"), std::string(1 << 20, 'x'));
   runQuietly(bakeCall());
   EXPECT_EQ(fs::file_size(file(kBaked)), 304U + 32 * 40 * 9);
-  EXPECT_FALSE(fs::exists(file(std::string(kBaked) + ".part")));
+  EXPECT_FALSE(fs::exists(file(kBaked + ".part")));
   EXPECT_EQ(run({"verify", kBaked}).status, 0);
 }
 
