@@ -24,7 +24,7 @@ std::vector<SceneListing> builtinScenes();
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
-  scripted,  ///< the engine alone decides where they are: no gravity, no launching, no walls
+  scripted,  ///< by rules of its own: gravity, launching and walls may count for nothing
 };
 struct EngineListing {
   std::string id;  ///< "bullet"
@@ -33,9 +33,13 @@ struct EngineListing {
 };
 std::vector<EngineListing> builtinEngines();
 
+/// The parameters that only the engine with this id has. Throws InputError for an unknown one.
+std::unique_ptr<Parametrised> engineParameters(const std::string& id);
+
 /// A live physics simulation, frame by frame: a FrameSource. Its parameters (objects, frames, seed,
-/// density, object_type, engine, …, and the scene's own) can be set until the first rewind().
-/// Same parameters, same frames, bit for bit. rewind() starts the simulation anew.
+/// density, object_type, engine, …, the scene's own, and those of the engine that is chosen) count
+/// from the next rewind() on. Same parameters, same frames, bit for bit. rewind() starts the
+/// simulation anew.
 class Simulation : public Parametrised, public FrameSource {};
 
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
