@@ -306,11 +306,11 @@ class BoidsEngine final : public PhysicsEngine {
   }
 
   PhysicsSettings settings_;
-  double sight_ = 3;
-  double elbow_room_ = 1.8;
-  double separation_ = 6;
+  double sight_ = 4;
+  double elbow_room_ = 2.4;
+  double separation_ = 8;
   double alignment_ = 2;
-  double cohesion_ = 1.5;
+  double cohesion_ = 3;
   double foresight_ = 0.8;
   double min_speed_ = 0.7;
   double max_speed_ = 1.4;

@@ -1,6 +1,9 @@
 // Conveyor: belts carry bodies through the world at different speeds and cross each other. A body
 // that reaches the end of its belt is put back to the start: broad phases that rely on small moves
 // meet teleports in every frame.
+//
+// The belts run along the edges of a cube within the world, on to its walls: four along each axis,
+// and three of them cross at each of the cube's corners.
 
 #include <algorithm>
 #include <cmath>
@@ -16,14 +19,13 @@ namespace {
 class Conveyor final : public Scene {
  public:
   void setDefaults(Settings& settings) const override {
-    settings.density = 0.01;
+    settings.density = 0.004;
     settings.initial_speed = 0.5;
     settings.gravity = 0;
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"belts", "number of belts, four on each level, each faster than the one before", &belts_,
-           1, 1000});
+    visit({"belts", "number of belts, each faster than the one before", &belts_, 1, 12});
     visit({"belt_width", "edge of a belt's square cross-section, in sides of the world",
            &belt_width_, 0, 0.5});
     visit({"belt_distance", "distance of parallel belts, in sides of the world", &belt_distance_, 0,
@@ -35,8 +37,10 @@ class Conveyor final : public Scene {
   BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
                        Random& random) override {
     BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
-    const float limit = farthestInside(body.shape, settings.side());
     const Course course = courseOn(static_cast<std::int64_t>(index) % belts_, settings, random);
+    // Nobody is to meet the wall in the frame in which it passes the end.
+    const auto step = std::abs(course.speed) * static_cast<float>(settings.physics.time_step);
+    const float limit = std::max(0.0F, farthestInside(body.shape, settings.side()) - step);
     body.pose = course.poseAt(static_cast<float>(random.between(-limit, limit)));
     body.linear_velocity = course.velocityAt(body.pose.position);
     riders_.push_back({course, limit});
@@ -55,22 +59,18 @@ class Conveyor final : public Scene {
 
   /// A line somewhere inside belt `belt`.
   [[nodiscard]] Course courseOn(std::int64_t belt, const Settings& settings, Random& random) const {
-    const bool along_x = belt % 2 == 0;
-    const bool forwards = belt % 4 < 2;
-    const std::int64_t levels = (belts_ + 3) / 4;
-    const double level = static_cast<double>(belt / 4) + 0.5;
-    const double height = level / static_cast<double>(levels) - 0.5;
-    const double aside = (forwards ? 0.5 : -0.5) * belt_distance_;
+    const auto axis = static_cast<int>(belt % 3);
+    const std::int64_t corner = belt / 3;
     const double share = static_cast<double>(belt + 1) / static_cast<double>(belts_);
-    const double speed = settings.initial_speed * share * (forwards ? 1 : -1);
-
-    const auto somewhereAt = [&](double middle) {
+    const double speed = settings.initial_speed * settings.side() * share;
+    Course course{.axis = axis, .speed = static_cast<float>(corner % 2 == 0 ? speed : -speed)};
+    const auto across = [&](std::int64_t side) {
+      const double middle = belt_distance_ * (static_cast<double>(side) - 0.5);
       const double half = belt_width_ / 2;
       return static_cast<float>(settings.side() * (middle + random.between(-half, half)));
     };
-    Course course{.axis = along_x ? 0 : 2, .speed = static_cast<float>(speed * settings.side())};
-    course.lane[1] = somewhereAt(height);
-    course.lane[along_x ? 2 : 0] = somewhereAt(aside);
+    course.lane[(axis + 1) % 3] = across(corner % 2);
+    course.lane[(axis + 2) % 3] = across(corner / 2);
     return course;
   }
 
@@ -85,8 +85,8 @@ class Conveyor final : public Scene {
     body.setVelocity(course.velocityAt(body.pose().position), body.angularVelocity());
   }
 
-  std::int64_t belts_ = 8;
-  double belt_width_ = 0.1;
+  std::int64_t belts_ = 12;
+  double belt_width_ = 0.06;
   double belt_distance_ = 0.44;
   std::vector<Rider> riders_;  ///< by body
 };

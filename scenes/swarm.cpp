@@ -23,8 +23,8 @@ class Swarm final : public Scene {
  public:
   void setDefaults(Settings& settings) const override {
     settings.engine.value = "boids";
-    settings.density = 0.02;
-    settings.initial_radius = 0.16;
+    settings.density = 0.003;
+    settings.initial_radius = 0.09;
     settings.initial_speed = 0.2;
     settings.gravity = 0;
     settings.physics.substeps = 1;
@@ -65,7 +65,7 @@ class Swarm final : public Scene {
   };
 
   std::int64_t flocks_ = 6;
-  double disorder_ = 0.6;
+  double disorder_ = 0.3;
   std::vector<Start> starts_;  ///< by flock
 };
 
