@@ -13,6 +13,7 @@ namespace broadmark {
 
 int runBake(const BakeOptions& options) {
   std::vector<std::string> scenes = options.scenes;
+  scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
   if (scenes.empty()) {
     for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
   }

@@ -195,8 +195,9 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
 
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
-                 "built-in scenes (freefall, brownian, gravity), recordings (.aabbs) or settings "
-                 "files of the original Broadmark (.json)")
+                 "built-in scenes (freefall, brownian, …), recordings (.aabbs), scene parameters "
+                 "(.json, also the one beside a baked recording) or settings files of the original "
+                 "Broadmark (.json)")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -356,6 +357,11 @@ int runCommandLine(int argc, char** argv) {
   std::vector<std::string> bake_scenes;
   CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
   addList(*bake, "--scenes", bake_scenes, "built-in scenes", "A[,B...]");
+  bake->add_option("--parameters", bake_options.parameter_files,
+                   "bake the scene that this file of scene parameters, or the .json beside a "
+                   "recording, describes; other options override it (repeatable)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   bake_scene.addTo(*bake);
   bake->add_option("--output", bake_options.output, "directory for the recordings")
       ->type_name("DIR")

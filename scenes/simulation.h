@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -45,6 +46,17 @@ class Simulation : public Parametrised, public FrameSource {};
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
 /// parameters. Throws InputError for an unknown name, suggesting the nearest.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
+
+/// Whether JSON of this kind (see jsonKind) describes a scene: a file of scene parameters
+/// ("broadmark-scene-parameters/1"), or the sidecar of a baked recording.
+bool describesScene(std::string_view json_kind);
+
+/// The simulation that such a JSON text describes; what it does not state keeps its default. `name`
+/// stands for the text in messages. Throws InputError that names the key and what would be right.
+std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
+
+/// Scene and parameters as such a text: reading it back gives the same simulation.
+std::string formatSceneParameters(Simulation&);
 
 /// Told after each frame that was written; returning false stops.
 using BakeProgress = std::function<bool(std::uint32_t frame)>;
