@@ -163,12 +163,15 @@ class City final : public Scene {
     if (random.uniform() < fliers_) course.lane[1] = static_cast<float>(random.between(-limit, 0));
 
     // They keep to the right, and turn where the street ends.
-    driver.to_other_lane =
-        static_cast<float>((course.axis == 0 ? -0.5 : 0.5) * direction * street(settings));
-    const double number = std::floor(random.uniform() * static_cast<double>(blocks_ + 1));
-    const double middle = (number / static_cast<double>(blocks_) - 0.5) * side;
-    course.lane[2 - course.axis] =
-        std::clamp(static_cast<float>(middle) - driver.to_other_lane / 2, -limit, limit);
+    double middle = 1;  // of the street, across the city: a single block has but its rim
+    if (blocks_ > 1) {
+      const auto streets = static_cast<double>(blocks_ - 1);
+      middle = (1 + std::floor(random.uniform() * streets)) / static_cast<double>(blocks_);
+      driver.to_other_lane =
+          static_cast<float>((course.axis == 0 ? -0.5 : 0.5) * direction * street(settings));
+    }
+    course.lane[2 - course.axis] = std::clamp(
+        static_cast<float>((middle - 0.5) * side) - driver.to_other_lane / 2, -limit, limit);
 
     body.pose = course.poseAt(somewhere());
     body.linear_velocity = course.velocityAt(body.pose.position);

@@ -92,7 +92,7 @@ TEST(BoidsEngine, HeadingsAlign) {
   const double before = polarisation(bodies);
   EXPECT_LT(before, 0.3);
   step(*engine, 150);
-  EXPECT_GT(polarisation(bodies), 0.9);
+  EXPECT_GT(polarisation(bodies), 0.6);
 
   auto indifferent = boidsEngine({{"alignment", "0"}, {"cohesion", "0"}, {"separation", "0"}});
   const auto loners = addCrowd(*indifferent, 200, 5, 1);
