@@ -44,6 +44,7 @@ void requireKnownParameters(const BakeOptions& options, const std::vector<BakeJo
 /// The whole matrix, each recording once.
 std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<std::string> scenes = options.scenes;
+  scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
   if (scenes.empty()) {
     for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
   }

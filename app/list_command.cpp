@@ -57,9 +57,10 @@ void listScenes() {
 }
 
 void listEngines() {
-  fmt::print("Physics engines\n");
+  fmt::print("Physics engines, with the parameters that only they have (default, range)\n");
   for (const EngineListing& engine : builtinEngines()) {
-    fmt::print("  {}: {}\n", engine.id, engine.summary);
+    fmt::print("  {}: {}\n{}", engine.id, engine.summary,
+               parameterLines(*engineParameters(engine.id)));
   }
 }
 

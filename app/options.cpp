@@ -203,8 +203,9 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
 
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
-                 "built-in scenes (freefall, brownian, gravity), recordings (.aabbs) or settings "
-                 "files of the original Broadmark (.json)")
+                 "built-in scenes (freefall, brownian, …), recordings (.aabbs), scene parameters "
+                 "(.json, also the one beside a baked recording) or settings files of the original "
+                 "Broadmark (.json)")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -305,6 +306,11 @@ struct BakeTexts {
 
 void addBakeOptions(CLI::App& app, BakeTexts& texts) {
   addList(app, "--scenes", texts.scenes, "built-in scenes (default: all)", "A[,B...]");
+  app.add_option("--parameters", texts.options.parameter_files,
+                 "bake the scene that this file of scene parameters, or the .json beside a "
+                 "recording, describes; other options override it (repeatable)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
   texts.scene.addTo(app);
   app.add_option("--output", texts.options.output,
                  "directory for the recordings; they go into Recordings_AABBs/ in it")

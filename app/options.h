@@ -57,6 +57,7 @@ struct HeadlessOptions {
 
 struct BakeOptions {
   std::vector<std::string> scenes;
+  std::vector<std::string> parameter_files;  ///< more scenes, described in files
   SceneOptions scene;
   ParameterValues parameters;
   std::filesystem::path output;

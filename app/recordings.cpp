@@ -28,6 +28,26 @@ bool looksLikeFile(const std::string& source) {
          fs::exists(source);
 }
 
+/// Whether a source is a file of scene parameters, or the sidecar of a recording.
+bool isSceneFile(const std::string& source) {
+  return fs::path(source).extension() == ".json" &&
+         describesScene(jsonKind(readTextFile(source), source));
+}
+
+/// The simulation that a scene's name or a file of scene parameters stands for.
+std::unique_ptr<Simulation> simulationOf(const std::string& scene) {
+  if (!looksLikeFile(scene)) return makeSimulation(scene);
+  return parseSceneParameters(readTextFile(scene), scene);
+}
+
+/// Sets those of the values that the object has.
+void setApplicable(Parametrised& object, const ParameterValues& values) {
+  object.visitParameters([&](const Parameter& parameter) {
+    const auto value = values.find(std::string(parameter.name));
+    if (value != values.end()) setParameter(parameter, value->second);
+  });
+}
+
 RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
@@ -55,7 +75,8 @@ Source jsonSource(const fs::path& path) {
   const std::string kind = jsonKind(text, path.string());
   if (kind != "original-settings") {
     throw InputError(fmt::format(
-        "{}: {}: a settings file of the original Broadmark (with m_inputScene) is expected",
+        "{}: {}: scene parameters (\"schema\": \"broadmark-scene-parameters/1\") or a settings "
+        "file of the original Broadmark (with m_inputScene) are expected",
         path.string(), kind.empty() ? "of no known kind" : fmt::format("of the kind '{}'", kind)));
   }
   const OriginalSettings settings = parseOriginalSettings(text, path.string());
@@ -116,11 +137,6 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
                                                          const SceneOptions& options,
                                                          const ParameterValues& parameters) {
   std::vector<std::unique_ptr<Simulation>> simulations;
-  const auto make = [&](const std::string& scene, const ParameterValues& values) {
-    auto simulation = makeSimulation(scene);
-    setParameters(*simulation, values);
-    simulations.push_back(std::move(simulation));
-  };
   // An empty list stands for the scene's own default.
   auto counts = options.objects;
   std::ranges::sort(counts);
@@ -129,11 +145,14 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
   for (const std::string& scene : scenes) {
     for (std::size_t type = 0; type < type_choices; ++type) {
       for (std::size_t count = 0; count < count_choices; ++count) {
-        ParameterValues values = applicable(*makeSimulation(scene), parameters);
-        values.insert(options.parameters.begin(), options.parameters.end());
-        if (!counts.empty()) values["objects"] = fmt::format("{}", counts[count]);
-        if (!options.object_types.empty()) values["object_type"] = options.object_types[type];
-        make(scene, values);
+        ParameterValues axes;
+        if (!counts.empty()) axes["objects"] = fmt::format("{}", counts[count]);
+        if (!options.object_types.empty()) axes["object_type"] = options.object_types[type];
+        auto simulation = simulationOf(scene);
+        setParameters(*simulation, options.parameters);  // the engine first: it brings its own
+        setApplicable(*simulation, parameters);
+        setParameters(*simulation, axes);
+        simulations.push_back(std::move(simulation));
       }
     }
   }
@@ -143,7 +162,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 std::vector<Source> resolveSources(const HeadlessOptions& options) {
   std::vector<Source> sources;
   for (const std::string& name : options.sources) {
-    if (!isSceneName(name)) {
+    if (!isSceneName(name) && !isSceneFile(name)) {
       if (!looksLikeFile(name)) {
         throw InputError(unknownName("scene", name, sceneIds()) + ", and no such file");
       }

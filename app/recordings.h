@@ -23,7 +23,8 @@ struct Source {
 };
 
 /// Every simulation that the options ask for: scenes × object types × object counts, sorted so
-/// that counts ascend within a scene. Throws InputError.
+/// that counts ascend within a scene. A scene is a built-in one's name or a file of scene
+/// parameters, which the options override. Throws InputError.
 std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
                                                          const SceneOptions&,
                                                          const ParameterValues& parameters);

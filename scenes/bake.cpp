@@ -5,12 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
-#include <type_traits>
 
 #include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
-#include "scenes/simulation.h"
+#include "scenes/scene_parameters.h"
 
 namespace broadmark {
 namespace {
@@ -19,42 +18,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 constexpr std::string_view kRecordingExtension = ".aabbs";
-constexpr std::string_view kSchema = "broadmark-bake/1";
 
 std::filesystem::path sidecarPath(std::filesystem::path recording) {
   return recording.replace_extension(".json");
 }
 
-Json parametersJson(Simulation& simulation) {
-  Json parameters = Json::object();
-  simulation.visitParameters([&](const Parameter& parameter) {
-    parameters[std::string(parameter.name)] = std::visit(
-        [](const auto* value) -> Json {
-          if constexpr (std::is_same_v<decltype(value), const Choice*>) {
-            return value->value;
-          } else {
-            return *value;
-          }
-        },
-        parameter.value);
-  });
-  return parameters;
-}
-
-/// The id of the built-in scene with this simulation's name.
-std::string sceneId(const Simulation& simulation) {
-  for (const SceneListing& listing : builtinScenes()) {
-    if (listing.name == simulation.scene().name) return listing.id;
-  }
-  return simulation.scene().name;
-}
-
 /// What stands beside a recording with this hash.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
-  return {{"schema", kSchema},
-          {"scene", sceneId(simulation)},
-          {"parameters", parametersJson(simulation)},
-          {"hash", hash}};
+  Json json = sceneParametersJson(simulation, kBakeSchema);
+  json["hash"] = hash;
+  return json;
 }
 
 /// The hash that a sidecar's text states, if it is the sidecar of a recording of this simulation.
@@ -86,7 +59,7 @@ std::optional<std::string> bakedHash(const std::filesystem::path& recording) {
   if (!std::filesystem::exists(path)) return std::nullopt;
   const std::string text = readTextFile(path, kSidecarLimitBytes);
   const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || json.value("schema", Json()) != kSchema) return std::nullopt;
+  if (!json.is_object() || json.value("schema", Json()) != kBakeSchema) return std::nullopt;
   if (!json.contains("hash") || !json["hash"].is_string()) {
     throw InputError(fmt::format("{}: states no hash: bake anew with --force", path.string()));
   }

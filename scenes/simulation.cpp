@@ -46,6 +46,7 @@ class BuiltinSimulation final : public Simulation {
   void visitParameters(const ParameterVisitor& visit) override {
     settings_.visit(visit);
     scene_->visitParameters(visit);
+    chosenEngine().visitParameters(visit);
   }
 
   [[nodiscard]] const SceneInfo& scene() const override {
@@ -58,8 +59,8 @@ class BuiltinSimulation final : public Simulation {
     info_ = describe();
     random_ = Random(static_cast<std::uint64_t>(settings_.seed));
     bodies_.clear();
-    engine_ =
-        entryOf(engineEntries(), settings_.engine, "physics engine").create(settings_.physics);
+    engine_ = createEngine();
+    setParameters(*engine_, parameterValues(chosenEngine()));
     addWalls();
     addBodies();
     Stage stage = makeStage();
@@ -95,6 +96,19 @@ class BuiltinSimulation final : public Simulation {
             .world = worldBox(settings_.side())};
   }
 
+  [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() const {
+    return entryOf(engineEntries(), settings_.engine, "physics engine").create(settings_.physics);
+  }
+
+  /// Keeps the parameters of the engine that the settings name; another one's are forgotten.
+  PhysicsEngine& chosenEngine() {
+    if (!chosen_engine_ || chosen_id_ != settings_.engine.value) {
+      chosen_engine_ = createEngine();
+      chosen_id_ = settings_.engine.value;
+    }
+    return *chosen_engine_;
+  }
+
   Stage makeStage() { return {settings_, *engine_, bodies_, random_}; }
 
   void addWalls() {
@@ -110,6 +124,7 @@ class BuiltinSimulation final : public Simulation {
   void addBodies() {
     const ObjectType type = objectType();
     bodies_.reserve(info_.objects);
+    scene_->prepare(settings_, random_);
     for (std::size_t i = 0; i < info_.objects; ++i) {
       bodies_.push_back(&engine_->addBody(scene_->body(i, settings_, type, random_)));
     }
@@ -134,7 +149,9 @@ class BuiltinSimulation final : public Simulation {
   Settings settings_;
   mutable SceneInfo info_;
   Random random_{0};
-  std::unique_ptr<PhysicsEngine> engine_;
+  std::unique_ptr<PhysicsEngine> chosen_engine_;  ///< has no bodies
+  std::string chosen_id_;
+  std::unique_ptr<PhysicsEngine> engine_;  ///< the running one
   std::vector<PhysicsBody*> bodies_;
   std::vector<Aabb> boxes_;
   std::uint32_t index_ = 0;
@@ -148,6 +165,12 @@ std::string lowerCase(std::string text) {
 
 }  // namespace
 }  // namespace scenes
+
+std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
+  std::vector<std::string> known;
+  for (const EngineListing& listing : builtinEngines()) known.push_back(listing.id);
+  return scenes::entryOf(scenes::engineEntries(), {id, known}, "physics engine").create({});
+}
 
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene) {
   const std::string wanted = scenes::lowerCase(scene);

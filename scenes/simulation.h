@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -25,7 +26,7 @@ std::vector<SceneListing> builtinScenes();
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
-  scripted,  ///< the engine alone decides where they are: no gravity, no launching, no walls
+  scripted,  ///< by rules of its own: gravity, launching and walls may count for nothing
 };
 struct EngineListing {
   std::string id;  ///< "bullet"
@@ -34,14 +35,29 @@ struct EngineListing {
 };
 std::vector<EngineListing> builtinEngines();
 
+/// The parameters that only the engine with this id has. Throws InputError for an unknown one.
+std::unique_ptr<Parametrised> engineParameters(const std::string& id);
+
 /// A live physics simulation, frame by frame: a FrameSource. Its parameters (objects, frames, seed,
-/// density, object_type, engine, …, and the scene's own) can be set until the first rewind().
-/// Same parameters, same frames, bit for bit. rewind() starts the simulation anew.
+/// density, object_type, engine, …, the scene's own, and those of the engine that is chosen) count
+/// from the next rewind() on. Same parameters, same frames, bit for bit. rewind() starts the
+/// simulation anew.
 class Simulation : public Parametrised, public FrameSource {};
 
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
 /// parameters. Throws InputError for an unknown name, suggesting the nearest.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
+
+/// Whether JSON of this kind (see jsonKind) describes a scene: a file of scene parameters
+/// ("broadmark-scene-parameters/1"), or the sidecar of a baked recording.
+bool describesScene(std::string_view json_kind);
+
+/// The simulation that such a JSON text describes; what it does not state keeps its default. `name`
+/// stands for the text in messages. Throws InputError that names the key and what would be right.
+std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
+
+/// Scene and parameters as such a text: reading it back gives the same simulation.
+std::string formatSceneParameters(Simulation&);
 
 /// Told after each frame that was written; returning false stops.
 using BakeProgress = std::function<bool(std::uint32_t frame)>;
