@@ -1,28 +1,27 @@
 // Recordings of simulations, each with a sidecar that says how it was made.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string_view>
 #include <type_traits>
 
 #include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
+#include "scenes/recorder.h"
 #include "scenes/simulation.h"
 
 namespace broadmark {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
-constexpr std::string_view kRecordingExtension = ".aabbs";
 
-std::filesystem::path sidecarPath(std::filesystem::path recording) {
-  return recording.replace_extension(".json");
-}
+fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
 Json parametersJson(Simulation& simulation) {
   Json parameters = Json::object();
@@ -48,53 +47,110 @@ std::string sceneId(const Simulation& simulation) {
   return simulation.scene().name;
 }
 
-/// What stands beside a recording with this hash.
-Json sidecarJson(Simulation& simulation, const std::string& hash) {
+/// What makes a simulation's frames what they are. Of a replayed recording its contents count, not
+/// where it lies.
+Json identityJson(Simulation& simulation) {
+  Json parameters = parametersJson(simulation);
+  if (const fs::path input = simulation.input(); !input.empty()) {
+    parameters["input"] = openRecordingFile(input)->hash();
+  }
   return {{"schema", "broadmark-bake/1"},
           {"scene", sceneId(simulation)},
-          {"parameters", parametersJson(simulation)},
-          {"hash", hash}};
+          {"parameters", std::move(parameters)}};
 }
 
-/// The hash that a sidecar's text states, if it is the sidecar of a recording of this simulation.
-/// The order of keys does not count.
-std::optional<std::string> statedHash(const std::string& text, Simulation& simulation) {
+/// A recorder's key for the hash of its recording: "hash" for boxes, which always were called so.
+std::string hashKey(const fs::path& recording) {
+  const std::string extension = recording.extension().string();
+  return extension == kAabbsExtension ? "hash" : extension.substr(1) + "_hash";
+}
+
+/// The hashes that the sidecar of `recording` states, by key, if it is one of recordings with this
+/// identity. The order of keys does not count.
+Json statedHashes(const fs::path& recording, const Json& identity) {
+  const std::string text = readTextFile(sidecarPath(recording), kSidecarLimitBytes);
   const auto found = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!found.is_object() || !found.contains("hash") || !found["hash"].is_string()) return {};
-  auto hash = found["hash"].get<std::string>();
-  if (found != nlohmann::json(sidecarJson(simulation, hash))) return {};
-  return hash;
+  if (!found.is_object()) return Json::object();
+  nlohmann::json rest = found;
+  Json hashes = Json::object();
+  for (const auto& [key, value] : found.items()) {
+    if (!key.ends_with("hash") || !value.is_string()) continue;
+    hashes[key] = value.get<std::string>();
+    rest.erase(key);
+  }
+  return rest == nlohmann::json(identity) ? hashes : Json::object();
+}
+
+/// The same; none when there is no sidecar.
+Json olderHashes(const fs::path& recording, const Json& identity) {
+  try {
+    return statedHashes(recording, identity);
+  } catch (const InputError&) {
+    return Json::object();
+  }
+}
+
+scenes::RecorderEntry recorderOf(const fs::path& path) {
+  std::vector<std::string> extensions;
+  for (const scenes::RecorderEntry& entry : scenes::recorderEntries()) {
+    extensions.push_back("." + entry.listing.id);
+    if (path.extension() == extensions.back()) return entry;
+  }
+  throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
+                               fmt::join(extensions, " or ")));
+}
+
+/// A sidecar beside the input would take the place of the input's own.
+void requireApart(const fs::path& path, const fs::path& input) {
+  const auto sidecar = [](const fs::path& recording) {
+    return sidecarPath(fs::weakly_canonical(recording));
+  };
+  if (input.empty() || sidecar(path) != sidecar(input)) return;
+  throw InputError(
+      fmt::format("{}: would be written over the recording that is replayed: another "
+                  "directory is needed",
+                  path.string()));
 }
 
 }  // namespace
 
-bool isBaked(const std::filesystem::path& path, Simulation& simulation) {
+bool isBaked(const fs::path& path, Simulation& simulation) {
   try {
-    const std::string sidecar = readTextFile(sidecarPath(path), kSidecarLimitBytes);
-    const std::optional<std::string> hash = statedHash(sidecar, simulation);
-    if (!hash) return false;
-    RecordingReader recording(path);
-    return recording.scene() == simulation.scene() && recording.hash() == *hash;
+    const Json hashes = statedHashes(path, identityJson(simulation));
+    const auto hash = hashes.find(hashKey(path));
+    if (hash == hashes.end()) return false;
+    const auto recording = openRecordingFile(path);
+    return recording->scene() == simulation.scene() && recording->hash() == *hash;
   } catch (const InputError&) {
     return false;  // missing or damaged: to be baked anew
   }
 }
 
-std::string bake(Simulation& simulation, const std::filesystem::path& path,
-                 const BakeProgress& progress) {
-  if (path.extension() != kRecordingExtension) {
-    throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
-                                 kRecordingExtension));
+std::string bake(Simulation& simulation, const fs::path& path, const FrameProgress& progress,
+                 const std::vector<std::string>& more) {
+  std::vector<fs::path> paths = {path};
+  for (const std::string& recorder : more) {
+    paths.push_back(fs::path(path).replace_extension("." + recorder));
   }
-  RecordingWriter writer(path, simulation.scene());
-  std::optional<Frame> frame = simulation.rewind();
-  for (; frame; frame = simulation.next()) {
-    writer.write(frame->boxes);
-    if (progress && !progress(frame->index)) return {};
+  requireApart(path, simulation.input());
+  std::vector<std::unique_ptr<scenes::Recorder>> recorders;
+  for (const fs::path& each : paths) {
+    recorders.push_back(recorderOf(each).create(each, simulation.scene()));
   }
-  std::string hash = writer.finish();
-  writeTextFile(sidecarPath(path), sidecarJson(simulation, hash).dump(2) + "\n");
-  return hash;
+  const auto record = [&](const Frame& frame) {
+    for (const auto& recorder : recorders) recorder->record(frame, simulation);
+  };
+  if (!recordAll(simulation, record, progress)) return {};
+
+  const Json identity = identityJson(simulation);
+  Json hashes = olderHashes(path, identity);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    hashes[hashKey(paths[i])] = recorders[i]->finish();
+  }
+  Json sidecar = identity;
+  sidecar.update(hashes);
+  writeTextFile(sidecarPath(path), sidecar.dump(2) + "\n");
+  return hashes.at(hashKey(path)).get<std::string>();
 }
 
 }  // namespace broadmark

@@ -2,6 +2,7 @@
 
 #include "scenes/registry.h"
 
+#include "scenes/recorder.h"
 #include "scenes/scene.h"
 
 namespace broadmark::scenes {
@@ -27,6 +28,13 @@ namespace broadmark::scenes {
 #include "object_type_list.inc"
 #undef OBJECT_TYPE
 
+#define RECORDER(name)   \
+  namespace name {       \
+  RecorderEntry entry(); \
+  }
+#include "recorder_list.inc"
+#undef RECORDER
+
 std::vector<SceneEntry> sceneEntries() {
   return {
 #define SCENE(name) name::entry(),
@@ -51,24 +59,31 @@ std::vector<ObjectType> objectTypes() {
   };
 }
 
+std::vector<RecorderEntry> recorderEntries() {
+  return {
+#define RECORDER(name) name::entry(),
+#include "recorder_list.inc"
+#undef RECORDER
+  };
+}
+
 }  // namespace broadmark::scenes
 
 namespace broadmark {
 
-std::vector<SceneListing> builtinScenes() {
-  std::vector<SceneListing> listings;
-  for (scenes::SceneEntry& entry : scenes::sceneEntries()) {
-    listings.push_back(std::move(entry.listing));
-  }
+namespace {
+
+template <class Entry>
+auto listingsOf(const std::vector<Entry>& entries) {
+  std::vector<decltype(Entry::listing)> listings;
+  for (const Entry& entry : entries) listings.push_back(entry.listing);
   return listings;
 }
 
-std::vector<EngineListing> builtinEngines() {
-  std::vector<EngineListing> listings;
-  for (scenes::EngineEntry& entry : scenes::engineEntries()) {
-    listings.push_back(std::move(entry.listing));
-  }
-  return listings;
-}
+}  // namespace
+
+std::vector<SceneListing> builtinScenes() { return listingsOf(scenes::sceneEntries()); }
+std::vector<EngineListing> builtinEngines() { return listingsOf(scenes::engineEntries()); }
+std::vector<RecorderListing> builtinRecorders() { return listingsOf(scenes::recorderEntries()); }
 
 }  // namespace broadmark

@@ -82,6 +82,16 @@ class BuiltinSimulation final : public Simulation {
     return frame;
   }
 
+  std::span<const Aabb> unturnedBoxes() override {
+    unturned_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      unturned_[i] = tightBox(bodies_[i]->shape(), {.position = poses_[i].position});
+    }
+    return unturned_;
+  }
+
+  std::span<const Pose> poses() override { return poses_; }
+
  private:
   [[nodiscard]] ObjectType objectType() const {
     return entryOf(objectTypes(), settings_.object_type, "object type");
@@ -123,9 +133,11 @@ class BuiltinSimulation final : public Simulation {
 
   Frame record() {
     boxes_.resize(bodies_.size());
-    std::ranges::transform(bodies_, boxes_.begin(), [](const PhysicsBody* body) {
-      return tightBox(body->shape(), body->pose());
-    });
+    poses_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      poses_[i] = bodies_[i]->pose();
+      boxes_[i] = tightBox(bodies_[i]->shape(), poses_[i]);
+    }
     return {index_, boxes_};
   }
 
@@ -137,6 +149,8 @@ class BuiltinSimulation final : public Simulation {
   std::unique_ptr<PhysicsEngine> engine_;
   std::vector<PhysicsBody*> bodies_;
   std::vector<Aabb> boxes_;
+  std::vector<Aabb> unturned_;
+  std::vector<Pose> poses_;
   std::uint32_t index_ = 0;
 };
 

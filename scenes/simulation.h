@@ -10,6 +10,8 @@
 
 #include "broadmark/frame.h"
 #include "broadmark/parameters.h"
+#include "broadmark/pose.h"
+#include "broadmark/recording.h"
 
 namespace broadmark {
 
@@ -32,27 +34,36 @@ struct EngineListing {
   Dynamics dynamics = Dynamics::rigid;
 };
 std::vector<EngineListing> builtinEngines();
+struct RecorderListing {
+  std::string id;  ///< "aabbs": also the extension of what it writes
+  std::string summary;
+};
+std::vector<RecorderListing> builtinRecorders();
 
-/// A live physics simulation, frame by frame: a FrameSource. Its parameters (objects, frames, seed,
-/// density, object_type, engine, …, and the scene's own) can be set until the first rewind().
-/// Same parameters, same frames, bit for bit. rewind() starts the simulation anew.
-class Simulation : public Parametrised, public FrameSource {};
+/// A live physics simulation, frame by frame: a FrameSource that knows the poses, too. Its
+/// parameters (objects, frames, seed, density, object_type, engine, …, and the scene's own) can be
+/// set until the first rewind(). Same parameters, same frames, bit for bit. rewind() starts the
+/// simulation anew.
+class Simulation : public Parametrised, public FrameSource, public PoseSource {
+ public:
+  /// The recording that is replayed instead of simulating; "": none. Throws InputError when it is
+  /// not there.
+  [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
+};
 
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
 /// parameters. Throws InputError for an unknown name, suggesting the nearest.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
 
-/// Told after each frame that was written; returning false stops.
-using BakeProgress = std::function<bool(std::uint32_t frame)>;
-
 /// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
-/// says so, and the recording has the stated hash).
+/// says so, and the recording has the stated hash) from what is at `input()` now, if anything.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 
-/// Simulates all frames into an .aabbs recording at `path`, with a .json of the same name that
-/// holds all parameters and the recording's hash ("schema": "broadmark-bake/1"). Returns the hash,
-/// or "" when progress stopped it (then nothing is left). Throws InputError.
+/// Simulates all frames once into a recording at `path`, by the recorder that its extension names,
+/// and by each of `more` into one beside it. A .json of the same name holds all parameters and the
+/// recordings' hashes ("schema": "broadmark-bake/1"). Returns the hash of the one at `path`, or ""
+/// when progress stopped it (then nothing is left). Throws InputError.
 std::string bake(Simulation& simulation, const std::filesystem::path& path,
-                 const BakeProgress& progress = {});
+                 const FrameProgress& progress = {}, const std::vector<std::string>& more = {});
 
 }  // namespace broadmark
