@@ -29,9 +29,10 @@ int runBake(const BakeOptions& options) {
   makeDirectory(options.output);
   const InterruptGuard guard;
   for (const auto& simulation : simulations) {
-    const auto path = bakeInto(*simulation, options.output, options.force, options.quiet);
-    if (path.empty()) throw InputError("interrupted: finished recordings are kept");
-    fmt::print("{}\n", path.string());
+    const auto paths = bakeInto(*simulation, options.output, options.scene.recorders, options.force,
+                                options.quiet);
+    if (paths.empty()) throw InputError("interrupted: finished recordings are kept");
+    for (const auto& path : paths) fmt::print("{}\n", path.string());
     std::fflush(stdout);
   }
   return 0;

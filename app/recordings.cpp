@@ -32,15 +32,19 @@ RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
   reference.scene_parameters = parameterValues(simulation);
-  reference.seed = static_cast<std::uint64_t>(parseInteger(
-      reference.scene_parameters.at("seed"), "seed", 0, std::numeric_limits<long long>::max()));
+  // A replay has none.
+  if (const auto seed = reference.scene_parameters.find("seed");
+      seed != reference.scene_parameters.end()) {
+    reference.seed = static_cast<std::uint64_t>(
+        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
+  }
   return reference;
 }
 
 Source recordingSource(const fs::path& path) {
   Source source;
   source.reference.path = path.string();
-  source.reference.scene = RecordingReader(path).scene();
+  source.reference.scene = openRecordingFile(path)->scene();
   return source;
 }
 
@@ -66,9 +70,6 @@ Source jsonSource(const fs::path& path) {
 
 Source fileSource(const fs::path& path) {
   if (path.extension() == ".json") return jsonSource(path);
-  if (path.extension() == ".posrot") {
-    throw InputError(path.string() + ": .posrot recordings cannot be replayed yet: use .aabbs");
-  }
   return recordingSource(path);
 }
 
@@ -90,7 +91,7 @@ bool simulateWithProgress(Simulation& simulation, bool quiet, Record&& record) {
   });
 }
 
-std::unique_ptr<RecordingReader> simulateTemporary(Simulation& simulation, bool quiet) {
+std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet) {
   RecordingWriter writer(simulation.scene());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
     return recordAll(simulation, writer, progress);
@@ -148,28 +149,34 @@ std::vector<Source> resolveSources(const HeadlessOptions& options) {
   return sources;
 }
 
-std::unique_ptr<RecordingReader> openRecording(Source& source, const fs::path& directory,
-                                               bool quiet) {
-  std::unique_ptr<RecordingReader> recording;
+std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet) {
+  std::unique_ptr<Recording> recording;
   if (!source.simulation) {
-    recording = std::make_unique<RecordingReader>(fs::path(source.reference.path));
+    recording = openRecordingFile(source.reference.path);
   } else if (directory.empty()) {
     recording = simulateTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(*source.simulation, directory, false, quiet);
-             !path.empty()) {
-    recording = std::make_unique<RecordingReader>(path);
+  } else if (const auto paths = bakeInto(*source.simulation, directory, recorders, false, quiet);
+             !paths.empty()) {
+    recording = openRecordingFile(paths.front());
   }
   if (recording) source.reference.hash = recording->hash();
   return recording;
 }
 
-fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool force, bool quiet) {
-  fs::path path = directory / recordingFileName(simulation.scene());
-  if (!force && isBaked(path, simulation)) return path;
+std::vector<fs::path> bakeInto(Simulation& simulation, const fs::path& directory,
+                               const std::vector<std::string>& recorders, bool force, bool quiet) {
+  std::vector<fs::path> paths;
+  for (const std::string& recorder : recorders) {
+    paths.push_back(directory / recordingFileName(simulation.scene(), "." + recorder));
+  }
+  const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
+  if (!force && std::ranges::all_of(paths, there)) return paths;
+  const std::vector<std::string> more(recorders.begin() + 1, recorders.end());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
-    return !bake(simulation, path, progress).empty();
+    return !bake(simulation, paths.front(), progress, more).empty();
   });
-  return whole ? path : fs::path();
+  return whole ? paths : std::vector<fs::path>();
 }
 
 void makeDirectory(const fs::path& directory) {

@@ -31,15 +31,17 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 
-/// Opens a source's recording, simulating it first if need be: into `directory`, or, if that is
-/// empty, into an unnamed temporary file. Null when interrupted.
-std::unique_ptr<RecordingReader> openRecording(Source&, const std::filesystem::path& directory,
-                                               bool quiet);
+/// Opens a source's recording, simulating it first if need be: into `directory`, as bakeInto does,
+/// or, if that is empty, into an unnamed temporary file. Null when interrupted.
+std::unique_ptr<Recording> openRecording(Source&, const std::filesystem::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet);
 
-/// Bakes a simulation into `directory` under the name that belongs to it, unless it is already
-/// there (and not `force`). Returns the path, or "" when interrupted.
-std::filesystem::path bakeInto(Simulation&, const std::filesystem::path& directory, bool force,
-                               bool quiet);
+/// Bakes a simulation into `directory` under the name that belongs to it, one recording by each of
+/// `recorders`, unless they are already there (and not `force`). Returns their paths, or none when
+/// interrupted.
+std::vector<std::filesystem::path> bakeInto(Simulation&, const std::filesystem::path& directory,
+                                            const std::vector<std::string>& recorders, bool force,
+                                            bool quiet);
 
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);

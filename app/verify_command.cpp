@@ -13,13 +13,13 @@ namespace {
 
 /// Reads every frame. Throws InputError at the first fault.
 void verify(const std::filesystem::path& file) {
-  RecordingReader recording(file);
-  const SceneInfo& scene = recording.scene();
+  const auto recording = openRecordingFile(file);
+  const SceneInfo& scene = recording->scene();
   Progress progress("verifying " + file.string(), scene.frames, scene.frames < 100);
-  recording.rewind();
-  while (const auto frame = recording.next()) progress.update(frame->index);
+  recording->rewind();
+  while (const auto frame = recording->next()) progress.update(frame->index);
   fmt::print("{}: ok: {} {}, {} bodies, {} frames, hash {}\n", file.string(), scene.name,
-             scene.object_type, scene.objects, scene.frames, recording.hash());
+             scene.object_type, scene.objects, scene.frames, recording->hash());
 }
 
 }  // namespace

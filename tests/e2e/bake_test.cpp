@@ -8,6 +8,7 @@ namespace {
 using Bake = EndToEnd;
 
 constexpr const char* kBaked = "out dir/FreeFall Cubes N40 F8frames.aabbs";
+constexpr const char* kBakedPoses = "out dir/FreeFall Cubes N40 F8frames.posrot";
 
 Arguments bakeCall(const Arguments& more = {}) {
   Arguments call = {"bake",     "--scenes", "freefall", "--objects", "40",
@@ -89,6 +90,49 @@ TEST_F(Bake, WhatAKilledBakeLeftIsTakenOver) {
   EXPECT_EQ(fs::file_size(file(kBaked)), 304U + 32 * 40 * 9);
   EXPECT_FALSE(fs::exists(file(std::string(kBaked) + ".part")));
   EXPECT_EQ(run({"verify", kBaked}).status, 0);
+}
+
+TEST_F(Bake, PosesAreRecordedBesideBoxesWhenAskedFor) {
+  runQuietly(bakeCall());
+  EXPECT_FALSE(fs::exists(file(kBakedPoses)));
+  const std::string boxes = readFile(file(kBaked));
+  const Ended baked = runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
+  EXPECT_THAT(linesOf(baked.out), ElementsAre(kBaked, kBakedPoses));
+  EXPECT_EQ(readFile(file(kBaked)), boxes);
+  EXPECT_EQ(fs::file_size(file(kBakedPoses)), boxes.size());
+
+  const Ended verified = run({"verify", kBakedPoses});
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  const Json sidecar = readJson(file("out dir/FreeFall Cubes N40 F8frames.json"));
+  EXPECT_THAT(verified.out, HasSubstr(sidecar.at("posrot_hash").get<std::string>()));
+  EXPECT_THAT(run({"verify", kBaked}).out, HasSubstr(sidecar.at("hash").get<std::string>()));
+
+  const auto long_ago = fs::last_write_time(file(kBakedPoses)) - std::chrono::hours(1);
+  fs::last_write_time(file(kBakedPoses), long_ago);
+  runQuietly(bakeCall({"--recorder", "posrot"}));
+  runQuietly(bakeCall({"--recorder", "posrot,aabbs"}));
+  EXPECT_EQ(fs::last_write_time(file(kBakedPoses)), long_ago) << "kept";
+}
+
+TEST_F(Bake, APosrotRecordingIsASource) {
+  runQuietly(bakeCall({"--recorder", "posrot,aabbs"}));
+  const auto pairsOf = [&](const char* source) {
+    runQuietly({"--headless", source, "--algorithm", "bf,sap", "--json", "r.json"});
+    Json pairs;
+    for (const Json& result : readJson(file("r.json")).at("cases")) {
+      EXPECT_EQ(result.at("status"), "ok");
+      pairs.push_back(result.at("pairs"));
+    }
+    return pairs;
+  };
+  EXPECT_EQ(pairsOf(kBakedPoses), pairsOf(kBaked));
+}
+
+TEST_F(Bake, HeadlessKeepsTheRecordingsAskedFor) {
+  runQuietly({"--headless", "freefall", "--objects", "40", "--frames", "8", "--algorithm", "sap",
+              "--record", "out dir", "--recorder", "posrot,aabbs"});
+  EXPECT_TRUE(fs::exists(file(kBaked)));
+  EXPECT_EQ(run({"verify", kBakedPoses}).status, 0);
 }
 
 TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {
