@@ -126,11 +126,12 @@ struct SceneTexts {
     const char* doc;
     std::string value;
   };
-  std::array<Shortcut, 4> shortcuts = {{
+  std::array<Shortcut, 5> shortcuts = {{
       {"--frames", "frames", "F", "frames to simulate, the initial pose not counted", ""},
       {"--seed", "seed", "S", "seed: same seed, same recording", ""},
       {"--density", "density", "D", "share of the world's volume that bodies fill", ""},
-      {"--engine", "engine", "NAME", "physics engine (see 'broadmark list engines')", ""},
+      {"--engine", "engine", "NAME", "what moves the bodies (see 'broadmark list engines')", ""},
+      {"--input", "input", "PATH", "recording, or directory of those, that an engine replays", ""},
   }};
 
   void addTo(CLI::App& app) {

@@ -99,14 +99,23 @@ std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet)
   return whole ? writer.finishTemporary() : nullptr;
 }
 
+/// The engine asked for, by its own option or by --param; "": the default.
+std::string engineOf(const SceneOptions& options, const ParameterValues& parameters) {
+  for (const ParameterValues& values : {options.parameters, parameters}) {
+    if (const auto engine = values.find("engine"); engine != values.end()) return engine->second;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
                                                          const SceneOptions& options,
                                                          const ParameterValues& parameters) {
   std::vector<std::unique_ptr<Simulation>> simulations;
+  const std::string engine = engineOf(options, parameters);
   const auto make = [&](const std::string& scene, const ParameterValues& values) {
-    auto simulation = makeSimulation(scene);
+    auto simulation = makeSimulation(scene, engine);
     setParameters(*simulation, values);
     simulations.push_back(std::move(simulation));
   };
@@ -118,7 +127,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
   for (const std::string& scene : scenes) {
     for (std::size_t type = 0; type < type_choices; ++type) {
       for (std::size_t count = 0; count < count_choices; ++count) {
-        ParameterValues values = applicable(*makeSimulation(scene), parameters);
+        ParameterValues values = applicable(*makeSimulation(scene, engine), parameters);
         values.insert(options.parameters.begin(), options.parameters.end());
         if (!counts.empty()) values["objects"] = fmt::format("{}", counts[count]);
         if (!options.object_types.empty()) values["object_type"] = options.object_types[type];

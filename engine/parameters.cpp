@@ -58,6 +58,7 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 std::string parameterText(const Parameter& parameter) {
   return std::visit(Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
                                [](const Choice* v) { return v->value; },
+                               [](const std::string* v) { return *v; },
                                [](const auto* v) { return fmt::format("{}", *v); }},
                     parameter.value);
 }
@@ -69,6 +70,7 @@ std::string parameterRange(const Parameter& parameter) {
   return std::visit(
       Overloaded{[](const bool*) -> std::string { return "on|off"; },
                  [](const Choice* v) { return fmt::format("{}", fmt::join(v->options, "|")); },
+                 [](const std::string*) -> std::string { return "TEXT"; },
                  range},
       parameter.value);
 }
@@ -76,6 +78,7 @@ std::string parameterRange(const Parameter& parameter) {
 void setParameter(const Parameter& parameter, std::string_view text) {
   std::visit(Overloaded{[&](bool* v) { setSwitch(parameter, text, *v); },
                         [&](Choice* v) { setChoice(parameter, text, *v); },
+                        [&](std::string* v) { *v = text; },
                         [&](auto* v) { setNumber(parameter, text, *v); }},
              parameter.value);
 }

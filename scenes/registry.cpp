@@ -2,7 +2,11 @@
 
 #include "scenes/registry.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "scenes/recorder.h"
+#include "scenes/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark::scenes {
@@ -27,6 +31,13 @@ namespace broadmark::scenes {
   }
 #include "object_type_list.inc"
 #undef OBJECT_TYPE
+
+#define REPLAY(name)   \
+  namespace name {     \
+  ReplayEntry entry(); \
+  }
+#include "replay_list.inc"
+#undef REPLAY
 
 #define RECORDER(name)   \
   namespace name {       \
@@ -59,6 +70,14 @@ std::vector<ObjectType> objectTypes() {
   };
 }
 
+std::vector<ReplayEntry> replayEntries() {
+  return {
+#define REPLAY(name) name::entry(),
+#include "replay_list.inc"
+#undef REPLAY
+  };
+}
+
 std::vector<RecorderEntry> recorderEntries() {
   return {
 #define RECORDER(name) name::entry(),
@@ -83,7 +102,11 @@ auto listingsOf(const std::vector<Entry>& entries) {
 }  // namespace
 
 std::vector<SceneListing> builtinScenes() { return listingsOf(scenes::sceneEntries()); }
-std::vector<EngineListing> builtinEngines() { return listingsOf(scenes::engineEntries()); }
+std::vector<EngineListing> builtinEngines() {
+  auto listings = listingsOf(scenes::engineEntries());
+  std::ranges::move(listingsOf(scenes::replayEntries()), std::back_inserter(listings));
+  return listings;
+}
 std::vector<RecorderListing> builtinRecorders() { return listingsOf(scenes::recorderEntries()); }
 
 }  // namespace broadmark

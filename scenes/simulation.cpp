@@ -8,6 +8,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "scenes/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark {
@@ -154,6 +155,20 @@ class BuiltinSimulation final : public Simulation {
   std::uint32_t index_ = 0;
 };
 
+std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::string& engine) {
+  for (const ReplayEntry& replay : replayEntries()) {
+    if (replay.listing.id == engine) return makeReplay(scene.listing, replay);
+  }
+  std::vector<std::string> known;
+  for (const EngineListing& listing : builtinEngines()) known.push_back(listing.id);
+  if (!engine.empty() && std::ranges::find(known, engine) == known.end()) {
+    throw InputError(unknownName("engine", engine, known));
+  }
+  auto simulation = std::make_unique<BuiltinSimulation>(scene);
+  if (!engine.empty()) setParameters(*simulation, {{"engine", engine}});
+  return simulation;
+}
+
 std::string lowerCase(std::string text) {
   std::ranges::transform(text, text.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -163,12 +178,12 @@ std::string lowerCase(std::string text) {
 }  // namespace
 }  // namespace scenes
 
-std::unique_ptr<Simulation> makeSimulation(const std::string& scene) {
+std::unique_ptr<Simulation> makeSimulation(const std::string& scene, const std::string& engine) {
   const std::string wanted = scenes::lowerCase(scene);
   std::vector<std::string> known;
   for (const scenes::SceneEntry& entry : scenes::sceneEntries()) {
     if (wanted == entry.listing.id || wanted == scenes::lowerCase(entry.listing.name)) {
-      return std::make_unique<scenes::BuiltinSimulation>(entry);
+      return scenes::simulationOf(entry, engine);
     }
     known.push_back(entry.listing.id);
   }

@@ -26,6 +26,7 @@ std::vector<SceneListing> builtinScenes();
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
+  replayed,  ///< none at all: the frames come from a recording
   scripted,  ///< the engine alone decides where they are: no gravity, no launching, no walls
 };
 struct EngineListing {
@@ -52,8 +53,10 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
 };
 
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
-/// parameters. Throws InputError for an unknown name, suggesting the nearest.
-std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
+/// parameters, but by this engine (""; the default one). One that replays recordings has other
+/// parameters than physics have. Throws InputError for an unknown name, suggesting the nearest.
+std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
+                                           const std::string& engine = {});
 
 /// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
 /// says so, and the recording has the stated hash) from what is at `input()` now, if anything.

@@ -25,7 +25,7 @@ inline constexpr float kRotationTolerance = 1e-3F;
 ///
 /// The initial boxes state sizes only up to the rounding of their corners. A size that could be a
 /// whole number of thousandths is taken to be that: bodies of usual sizes get the very boxes that
-/// they had in the simulation, others differ by a unit in the last place of an initial corner.
+/// they had in the simulation, others differ by a few units in the last place of an initial corner.
 class PosrotReader final : public Recording, public PoseSource {
  public:
   explicit PosrotReader(const std::filesystem::path& path);
