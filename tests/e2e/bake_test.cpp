@@ -128,6 +128,52 @@ TEST_F(Bake, APosrotRecordingIsASource) {
   EXPECT_EQ(pairsOf(kBakedPoses), pairsOf(kBaked));
 }
 
+TEST_F(Bake, ReplaysMakeRecordingsOfRecordings) {
+  runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
+  runQuietly({"bake", "--scenes", "freefall", "--objects", "40", "--engine", "viewer", "--input",
+              "out dir", "--output", "again"});
+  EXPECT_EQ(readFile(file("again/FreeFall Cubes N40 F8frames.aabbs")), readFile(file(kBaked)));
+
+  const Arguments split = {"bake",     "--scenes", "freefall", "--objects",  "320",
+                           "--frames", "6",        "--engine", "splitter",   "--input",
+                           "out dir",  "--output", "out dir",  "--recorder", "aabbs,posrot"};
+  const auto files = linesOf(runQuietly(split).out);
+  EXPECT_THAT(files, ElementsAre("out dir/FreeFall Cubes N320 F6frames.aabbs",
+                                 "out dir/FreeFall Cubes N320 F6frames.posrot"));
+  Arguments verify = {"verify"};
+  verify.insert(verify.end(), files.begin(), files.end());
+  EXPECT_EQ(run(verify).status, 0);
+  const Json sidecar = readJson(file("out dir/FreeFall Cubes N320 F6frames.json"));
+  EXPECT_THAT(run({"verify", kBakedPoses}).out,
+              HasSubstr(sidecar.at("parameters").at("input").get<std::string>()));
+
+  runQuietly({"--headless", "freefall", "--objects", "2560", "--engine", "splitter", "--input",
+              "out dir", "--algorithm", "sap,bf", "--json", "r.json"});
+  for (const Json& result : readJson(file("r.json")).at("cases")) {
+    EXPECT_EQ(result.at("status"), "ok");
+    EXPECT_EQ(result.at("recording").at("objects"), 2560);
+    EXPECT_EQ(result.at("recording").at("frames"), 6);
+  }
+}
+
+TEST_F(Bake, ReplaysSayWhatTheyMiss) {
+  runQuietly(bakeCall({"--recorder", "posrot"}));
+  const auto call = [](const char* engine, const char* objects, const Arguments& more) {
+    Arguments arguments = {"bake",      "--scenes", "freefall", "--engine", engine,
+                           "--objects", objects,    "--output", "out dir"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const Arguments input = {"--input", "out dir"};
+  expectRefusal(call("splitter", "321", input), {"321", "multiple of 8", "N40 F8", "320 bodies"});
+  expectRefusal(call("viewer", "41", input), {"FreeFall Cubes N41", "N40 F8"});
+  expectRefusal(call("viewer", "40", input), {"N40 F8", "another directory"});
+  expectRefusal(call("viewer", "40", {}), {"--input"});
+  expectRefusal(call("viewer", "40", {"--input", "nowhere"}), {"nowhere"});
+  expectRefusal(call("spliter", "40", input), {"did you mean 'splitter'"});
+  expectRefusal(call("bullet", "40", input), {"'input'"});
+}
+
 TEST_F(Bake, HeadlessKeepsTheRecordingsAskedFor) {
   runQuietly({"--headless", "freefall", "--objects", "40", "--frames", "8", "--algorithm", "sap",
               "--record", "out dir", "--recorder", "posrot,aabbs"});
