@@ -351,7 +351,7 @@ TEST_F(Replays, WhatIsNotThereIsSaidWithWhatIs) {
   EXPECT_THAT(refusal("viewer", {{"objects", "63"}, {"input", aabbs.string()}}),
               AllOf(HasSubstr("holds Brownian Cubes N64 F5"), HasSubstr("N63")));
   EXPECT_THAT(inputErrorOf([&] {
-                replay("viewer", {{"seed", "3"}});
+                (void)replay("viewer", {{"seed", "3"}});
               }),
               HasSubstr("unknown parameter 'seed'"));
   EXPECT_THAT(inputErrorOf([&] { makeSimulation("brownian", "viewr"); }),
