@@ -181,7 +181,7 @@ std::vector<fs::path> bakeInto(Simulation& simulation, const fs::path& directory
   }
   const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
   if (!force && std::ranges::all_of(paths, there)) return paths;
-  const std::vector<std::string> more(recorders.begin() + 1, recorders.end());
+  const std::vector<fs::path> more(paths.begin() + 1, paths.end());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
     return !bake(simulation, paths.front(), progress, more).empty();
   });

@@ -81,13 +81,17 @@ Json statedHashes(const fs::path& recording, const Json& identity) {
   return rest == nlohmann::json(identity) ? hashes : Json::object();
 }
 
-/// The same; none when there is no sidecar.
-Json olderHashes(const fs::path& recording, const Json& identity) {
+/// Notes a recording's hash in its sidecar, keeping those of its kin of the same identity.
+void addToSidecar(const fs::path& recording, Json identity, const std::string& hash) {
+  Json hashes = Json::object();
   try {
-    return statedHashes(recording, identity);
+    hashes = statedHashes(recording, identity);
   } catch (const InputError&) {
-    return Json::object();
+    // There is none yet.
   }
+  hashes[hashKey(recording)] = hash;
+  identity.update(hashes);
+  writeTextFile(sidecarPath(recording), identity.dump(2) + "\n");
 }
 
 scenes::RecorderEntry recorderOf(const fs::path& path) {
@@ -127,14 +131,12 @@ bool isBaked(const fs::path& path, Simulation& simulation) {
 }
 
 std::string bake(Simulation& simulation, const fs::path& path, const FrameProgress& progress,
-                 const std::vector<std::string>& more) {
+                 const std::vector<fs::path>& more) {
   std::vector<fs::path> paths = {path};
-  for (const std::string& recorder : more) {
-    paths.push_back(fs::path(path).replace_extension("." + recorder));
-  }
-  requireApart(path, simulation.input());
+  paths.insert(paths.end(), more.begin(), more.end());
   std::vector<std::unique_ptr<scenes::Recorder>> recorders;
   for (const fs::path& each : paths) {
+    requireApart(each, simulation.input());
     recorders.push_back(recorderOf(each).create(each, simulation.scene()));
   }
   const auto record = [&](const Frame& frame) {
@@ -143,14 +145,13 @@ std::string bake(Simulation& simulation, const fs::path& path, const FrameProgre
   if (!recordAll(simulation, record, progress)) return {};
 
   const Json identity = identityJson(simulation);
-  Json hashes = olderHashes(path, identity);
+  std::string first;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    hashes[hashKey(paths[i])] = recorders[i]->finish();
+    const std::string hash = recorders[i]->finish();
+    addToSidecar(paths[i], identity, hash);
+    if (i == 0) first = hash;
   }
-  Json sidecar = identity;
-  sidecar.update(hashes);
-  writeTextFile(sidecarPath(path), sidecar.dump(2) + "\n");
-  return hashes.at(hashKey(path)).get<std::string>();
+  return first;
 }
 
 }  // namespace broadmark

@@ -170,16 +170,29 @@ class ReplaySimulation final : public Simulation {
     return a.preference < b.preference;
   }
 
-  /// All recordings of this scene and object type in the input directory, by size.
+  /// The input directory, and the folders in it where the original kept its recordings.
+  [[nodiscard]] std::vector<fs::path> directories() const {
+    std::vector<fs::path> all = {input_};
+    for (const char* folder : {"Recordings_PositionRotation", "Recordings_AABBs"}) {
+      if (fs::is_directory(all.front() / folder)) all.push_back(all.front() / folder);
+    }
+    return all;
+  }
+
+  /// All recordings of this scene and object type that are there, by size.
   [[nodiscard]] std::vector<Candidate> candidates() const {
     if (fs::is_regular_file(input_)) return {};
     std::vector<Candidate> found;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(input_, error)) {
-      const auto candidate = understand(entry.path(), scene_, objectTypeName(), entry_.extensions);
-      if (candidate) found.push_back(*candidate);
+    for (const fs::path& directory : directories()) {
+      std::error_code error;
+      for (const auto& file : fs::directory_iterator(directory, error)) {
+        const auto candidate = understand(file.path(), scene_, objectTypeName(), entry_.extensions);
+        if (candidate) found.push_back(*candidate);
+      }
+      if (error) {
+        throw InputError(fmt::format("{}: cannot read: {}", directory.string(), error.message()));
+      }
     }
-    if (error) throw InputError(fmt::format("{}: cannot read: {}", input_, error.message()));
     std::ranges::sort(found, [](const Candidate& a, const Candidate& b) {
       return std::tie(a.objects, a.frames, a.path) < std::tie(b.objects, b.frames, b.path);
     });

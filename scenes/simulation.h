@@ -62,11 +62,12 @@ std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
 /// says so, and the recording has the stated hash) from what is at `input()` now, if anything.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 
-/// Simulates all frames once into a recording at `path`, by the recorder that its extension names,
-/// and by each of `more` into one beside it. A .json of the same name holds all parameters and the
-/// recordings' hashes ("schema": "broadmark-bake/1"). Returns the hash of the one at `path`, or ""
-/// when progress stopped it (then nothing is left). Throws InputError.
+/// Simulates all frames once into a recording at `path` and further ones at `more`, each by the
+/// recorder that its extension names. Beside each a .json of the same name holds all parameters and
+/// the hash ("schema": "broadmark-bake/1"); recordings that share a name share it. Returns the hash
+/// of the one at `path`, or "" when progress stopped it (then nothing is left). Throws InputError.
 std::string bake(Simulation& simulation, const std::filesystem::path& path,
-                 const FrameProgress& progress = {}, const std::vector<std::string>& more = {});
+                 const FrameProgress& progress = {},
+                 const std::vector<std::filesystem::path>& more = {});
 
 }  // namespace broadmark

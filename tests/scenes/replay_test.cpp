@@ -80,7 +80,7 @@ class Replays : public testing::Test {
   static fs::path bakeBoth(Simulation& simulation, const fs::path& directory) {
     fs::create_directories(directory);
     fs::path path = directory / recordingFileName(simulation.scene());
-    bake(simulation, path, {}, {"posrot"});
+    bake(simulation, path, {}, {fs::path(path).replace_extension(kPosrotExtension)});
     return path;
   }
 
