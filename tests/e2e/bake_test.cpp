@@ -117,7 +117,8 @@ TEST_F(Bake, PosesAreRecordedBesideBoxesWhenAskedFor) {
 TEST_F(Bake, APosrotRecordingIsASource) {
   runQuietly(bakeCall({"--recorder", "posrot,aabbs"}));
   const auto pairsOf = [&](const char* source) {
-    runQuietly({"--headless", source, "--algorithm", "bf,sap", "--json", "r.json"});
+    runQuietly(
+        {"--headless", source, "--algorithm", "bf,sap", "--time-limit", "100", "--json", "r.json"});
     Json pairs;
     for (const Json& result : readJson(file("r.json")).at("cases")) {
       EXPECT_EQ(result.at("status"), "ok");
@@ -148,7 +149,7 @@ TEST_F(Bake, ReplaysMakeRecordingsOfRecordings) {
               HasSubstr(sidecar.at("parameters").at("input").get<std::string>()));
 
   runQuietly({"--headless", "freefall", "--objects", "2560", "--engine", "splitter", "--input",
-              "out dir", "--algorithm", "sap,bf", "--json", "r.json"});
+              "out dir", "--algorithm", "sap,bf", "--time-limit", "100", "--json", "r.json"});
   for (const Json& result : readJson(file("r.json")).at("cases")) {
     EXPECT_EQ(result.at("status"), "ok");
     EXPECT_EQ(result.at("recording").at("objects"), 2560);
@@ -164,7 +165,7 @@ TEST_F(Bake, ReplaysSayWhatTheyMiss) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
   };
-  const Arguments input = {"--input", "out dir"};
+  const Arguments input = {"--input", "out dir", "--quiet"};
   expectRefusal(call("splitter", "321", input), {"321", "multiple of 8", "N40 F8", "320 bodies"});
   expectRefusal(call("viewer", "41", input), {"FreeFall Cubes N41", "N40 F8"});
   expectRefusal(call("viewer", "40", input), {"N40 F8", "another directory"});
