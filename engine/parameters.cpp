@@ -56,11 +56,11 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 }  // namespace
 
 std::string parameterText(const Parameter& parameter) {
-  return std::visit(Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
-                               [](const Choice* v) { return v->value; },
-                               [](const std::string* v) { return *v; },
-                               [](const auto* v) { return fmt::format("{}", *v); }},
-                    parameter.value);
+  return std::visit(
+      Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
+                 [](const Choice* v) { return v->value; }, [](const std::string* v) { return *v; },
+                 [](const auto* v) { return fmt::format("{}", *v); }},
+      parameter.value);
 }
 
 std::string parameterRange(const Parameter& parameter) {
@@ -70,8 +70,7 @@ std::string parameterRange(const Parameter& parameter) {
   return std::visit(
       Overloaded{[](const bool*) -> std::string { return "on|off"; },
                  [](const Choice* v) { return fmt::format("{}", fmt::join(v->options, "|")); },
-                 [](const std::string*) -> std::string { return "TEXT"; },
-                 range},
+                 [](const std::string*) -> std::string { return "TEXT"; }, range},
       parameter.value);
 }
 
