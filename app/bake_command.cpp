@@ -41,7 +41,7 @@ void requireKnownParameters(const BakeOptions& options, const std::vector<BakeJo
   }
 }
 
-/// The whole matrix, each recording once.
+/// The whole matrix, each combination once.
 std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<std::string> scenes = options.scenes;
   scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
@@ -49,12 +49,12 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
     for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
   }
   std::vector<BakeJob> jobs;
-  std::set<fs::path> paths;
+  std::set<std::vector<fs::path>> taken;
   for (auto& simulation : makeSimulations(scenes, options.scene, options.parameters)) {
-    BakeJob job{.simulation = {}, .scene = simulation->scene(), .path = {}};
+    BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
     job.simulation = std::move(simulation);
-    job.path = recordingPath(options.output, job.scene);
-    if (paths.insert(job.path).second) jobs.push_back(std::move(job));
+    job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
+    if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
   }
   requireKnownParameters(options, jobs);
   return jobs;
@@ -62,31 +62,42 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
 
 /// A batch before it begins.
 struct Plan {
-  std::vector<BakeJob> pending;
-  std::vector<BakeJob> kept;
+  std::vector<BakeJob> pending;  ///< only with the recordings that are to be written
+  std::vector<fs::path> kept;
 
+  /// Recordings to be written.
+  [[nodiscard]] std::size_t recordings() const {
+    std::size_t sum = 0;
+    for (const BakeJob& job : pending) sum += job.paths.size();
+    return sum;
+  }
   [[nodiscard]] std::uint64_t bytes() const {
     std::uint64_t sum = 0;
-    for (const BakeJob& job : pending) sum += recordingBytes(job.scene);
+    for (const BakeJob& job : pending) sum += job.paths.size() * recordingBytes(job.scene);
     return sum;
   }
 };
 
 Plan makePlan(std::vector<BakeJob> jobs, const BakeOptions& options) {
   Plan plan;
-  const auto exists = [](const BakeJob& job) { return fs::exists(job.path); };
-  const auto there = static_cast<std::uint64_t>(std::ranges::count_if(jobs, exists));
+  std::uint64_t there = 0;
+  for (const BakeJob& job : jobs) {
+    there += static_cast<std::uint64_t>(
+        std::ranges::count_if(job.paths, [](const fs::path& path) { return fs::exists(path); }));
+  }
   Progress progress("checking what is there", there, options.quiet || options.force || there == 0);
   std::uint64_t checked = 0;
   for (BakeJob& job : jobs) {
-    if (InterruptGuard::requested()) throw interruption();
-    const bool check = !options.force && exists(job);
-    if (check) {
-      progress.detail(job.path.string());
+    std::erase_if(job.paths, [&](const fs::path& path) {
+      if (InterruptGuard::requested()) throw interruption();
+      if (options.force || !fs::exists(path)) return false;
+      progress.detail(path.string());
       progress.update(++checked);
-    }
-    const bool kept = check && isBaked(job.path, *job.simulation);
-    (kept ? plan.kept : plan.pending).push_back(std::move(job));
+      const bool whole = isBaked(path, *job.simulation);
+      if (whole) plan.kept.push_back(path);
+      return whole;
+    });
+    if (!job.paths.empty()) plan.pending.push_back(std::move(job));
   }
   return plan;
 }
@@ -99,29 +110,33 @@ void requireRoom(const Plan& plan, const fs::path& output) {
   while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
   std::error_code unknown;
   const std::uint64_t free = fs::space(there, unknown).available;
-  const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.pending.size();
+  const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
   if (unknown || needed <= free) return;
   throw InputError(
       fmt::format("{}: not enough room: {} recordings take {} bytes, but only {} are free",
-                  output.string(), plan.pending.size(), needed, free));
+                  output.string(), plan.recordings(), needed, free));
 }
 
 /// Fails now rather than after hours: when a file cannot be written.
 void requireWritable(const Plan& plan) {
   for (const BakeJob& job : plan.pending) {
-    makeDirectory(job.path.parent_path());
-    const AtomicFile probe(job.path);
+    for (const fs::path& path : job.paths) {
+      makeDirectory(path.parent_path());
+      const AtomicFile probe(path);
+    }
   }
 }
 
 int listPlan(const Plan& plan) {
-  const auto print = [](const char* what, const BakeJob& job) {
-    fmt::print("{}  {:>14}  {}\n", what, recordingBytes(job.scene), job.path.string());
+  const auto print = [](const char* what, std::uint64_t bytes, const fs::path& path) {
+    fmt::print("{}  {:>14}  {}\n", what, bytes, path.string());
   };
-  for (const BakeJob& job : plan.kept) print("kept ", job);
-  for (const BakeJob& job : plan.pending) print("bake ", job);
+  for (const fs::path& path : plan.kept) print("kept ", fs::file_size(path), path);
+  for (const BakeJob& job : plan.pending) {
+    for (const fs::path& path : job.paths) print("bake ", recordingBytes(job.scene), path);
+  }
   fmt::print("{} recordings: {} to bake ({} bytes), {} kept\n",
-             plan.kept.size() + plan.pending.size(), plan.pending.size(), plan.bytes(),
+             plan.kept.size() + plan.recordings(), plan.recordings(), plan.bytes(),
              plan.kept.size());
   return 0;
 }
@@ -144,14 +159,11 @@ struct Tally {
 
 /// Bakes all that is pending and tells of each recording as it ends. Returns those that are whole.
 std::vector<fs::path> performPlan(Plan plan, const BakeOptions& options, Tally& tally) {
-  std::vector<fs::path> whole;
-  for (const BakeJob& job : plan.kept) {
-    fmt::print("kept   {}\n", job.path.string());
-    whole.push_back(job.path);
-  }
+  std::vector<fs::path> whole = plan.kept;
+  for (const fs::path& path : whole) fmt::print("kept   {}\n", path.string());
   std::fflush(stdout);
   tally.kept = plan.kept.size();
-  tally.unfinished = plan.pending.size();
+  tally.unfinished = plan.recordings();
   if (plan.pending.empty()) return whole;
 
   BakeBatch batch(std::move(plan.pending), options.threads);
@@ -160,15 +172,17 @@ std::vector<fs::path> performPlan(Plan plan, const BakeOptions& options, Tally& 
   while (!batch.ended()) {
     constexpr std::chrono::milliseconds kGlance{50};
     for (const BakedJob& job : batch.await(kGlance)) {
-      --tally.unfinished;
-      if (job.failure.empty()) {
-        ++tally.baked;
-        tally.bytes += fs::file_size(job.path);
-        progress.print("baked  " + job.path.string());
-        whole.push_back(job.path);
-      } else {
-        ++tally.failed;
+      tally.unfinished -= job.paths.size();
+      if (!job.failure.empty()) {
+        tally.failed += job.paths.size();
         progress.complain("broadmark: " + job.failure);
+        continue;
+      }
+      for (const fs::path& path : job.paths) {
+        ++tally.baked;
+        tally.bytes += fs::file_size(path);
+        progress.print("baked  " + path.string());
+        whole.push_back(path);
       }
     }
     const BatchState state = batch.state();
@@ -178,15 +192,21 @@ std::vector<fs::path> performPlan(Plan plan, const BakeOptions& options, Tally& 
   return whole;
 }
 
-/// Draws the movies. False when interrupted.
+/// Draws the movies, one of recordings that differ in nothing but their kind. False when
+/// interrupted.
 bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet) {
   std::ranges::sort(recordings);
+  std::set<fs::path> names;
+  std::erase_if(recordings,
+                [&](const fs::path& path) { return !names.insert(path.stem()).second; });
+  const auto pictures = [&](const fs::path& path) {
+    return maker.pictures(openRecordingFile(path)->scene());
+  };
   std::uint64_t total = 0;
-  for (const fs::path& path : recordings) total += maker.pictures(RecordingReader(path).scene());
+  for (const fs::path& path : recordings) total += pictures(path);
   Progress progress(fmt::format("drawing {} movies", recordings.size()), total, quiet);
   std::uint64_t done = 0;
   for (const fs::path& path : recordings) {
-    const std::uint32_t pictures = maker.pictures(RecordingReader(path).scene());
     progress.detail(path.stem().string());
     const fs::path folder = maker.make(path, [&](std::uint32_t picture) {
       progress.update(done + picture);
@@ -194,7 +214,7 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
     });
     if (folder.empty()) return false;
     progress.print("movie  " + folder.string());
-    progress.update(done += pictures);
+    progress.update(done += pictures(path));
   }
   return true;
 }

@@ -146,20 +146,20 @@ void BakeBatch::perform(Run& run) {
   std::string failure;
   bool whole = false;
   try {
-    whole = !bake(*run.job.simulation, run.job.path, [&](std::uint32_t frame) {
-               run.frame = frame;
-               return !stopped();
-             }).empty();
+    whole = bake(*run.job.simulation, run.job.paths, [&](std::uint32_t frame) {
+      run.frame = frame;
+      return !stopped();
+    });
   } catch (const InputError& error) {
     failure = error.what();
   } catch (const std::bad_alloc&) {
-    failure = run.job.path.string() + ": out of memory";
+    failure = run.job.paths.front().string() + ": out of memory";
   }
   run.job.simulation.reset();
   const std::lock_guard lock(mutex_);
   run.phase = Run::Phase::ended;
   run.end = Clock::now();
-  if (whole || !failure.empty()) ended_.push_back({run.job.path, std::move(failure)});
+  if (whole || !failure.empty()) ended_.push_back({run.job.paths, std::move(failure)});
   changed_.notify_all();
 }
 

@@ -17,17 +17,17 @@
 
 namespace broadmark {
 
-/// A recording to be baked.
+/// A simulation to be baked.
 struct BakeJob {
   std::unique_ptr<Simulation> simulation;  ///< dropped once it is baked
   SceneInfo scene;
-  std::filesystem::path path;
+  std::vector<std::filesystem::path> paths;  ///< a recording each
 };
 
 /// What has become of a job.
 struct BakedJob {
-  std::filesystem::path path;
-  std::string failure;  ///< "": it is baked
+  std::vector<std::filesystem::path> paths;
+  std::string failure;  ///< "": they are baked
 };
 
 /// How far a batch is.
@@ -38,7 +38,7 @@ struct BatchState {
   std::string running;  ///< what is being baked now, in words
 };
 
-/// Bakes recordings on threads of its own, each simulation on one of them, so that a recording does
+/// Bakes simulations on threads of its own, each on one of them, so that a recording does
 /// not depend on their number. The largest come first, lest one of them is left over when all else
 /// is done; and only as many at a time as fit into memory. One that fails stops no other. After an
 /// interruption (InterruptGuard) those that are not whole leave nothing behind.

@@ -64,11 +64,20 @@ void listEngines() {
   }
 }
 
+void listRecorders() {
+  fmt::print("Recorders\n");
+  for (const RecorderListing& recorder : builtinRecorders()) {
+    fmt::print("  {}: {}\n", recorder.id, recorder.summary);
+  }
+}
+
 }  // namespace
 
 int runList(const std::string& what) {
-  const std::pair<std::string, std::function<void()>> kinds[] = {
-      {"algorithms", listAlgorithms}, {"scenes", listScenes}, {"engines", listEngines}};
+  const std::pair<std::string, std::function<void()>> kinds[] = {{"algorithms", listAlgorithms},
+                                                                 {"scenes", listScenes},
+                                                                 {"engines", listEngines},
+                                                                 {"recorders", listRecorders}};
   std::vector<std::string> known = {"all"};
   bool found = false;
   for (const auto& [name, list] : kinds) {

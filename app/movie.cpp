@@ -30,7 +30,7 @@ fs::path picturePath(const fs::path& folder, std::uint32_t number) {
 }
 
 /// Says of a finished movie what it shows and how.
-std::string label(RecordingReader& recording, const MovieOptions& options) {
+std::string label(Recording& recording, const MovieOptions& options) {
   return fmt::format(
       R"({{"schema": "broadmark-movie/1", "recording": "{}", "every": {}, "size": "{}x{}"}})"
       "\n",
@@ -68,7 +68,8 @@ std::uint32_t MovieMaker::pictures(const SceneInfo& scene) const {
 }
 
 fs::path MovieMaker::make(const fs::path& path, const PictureProgress& progress) {
-  RecordingReader recording(path);
+  const auto opened = openRecordingFile(path);
+  Recording& recording = *opened;
   const SceneInfo& scene = recording.scene();
   const fs::path folder = options_.directory / path.stem();
   const fs::path label_path = folder / "movie.json";

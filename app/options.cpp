@@ -14,6 +14,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "scenes/simulation.h"
 
 namespace broadmark {
 namespace {
@@ -86,10 +87,36 @@ ParameterValues keyValues(const std::vector<std::string>& texts) {
   return values;
 }
 
+std::vector<std::string> recorderIds() {
+  std::vector<std::string> ids;
+  for (const RecorderListing& recorder : builtinRecorders()) ids.push_back(recorder.id);
+  return ids;
+}
+
+std::string recorderDoc() {
+  return fmt::format("kinds of recordings to keep: {} (default: {})",
+                     fmt::join(recorderIds(), ", "), recorderIds().front());
+}
+
+/// Each once, in the order given.
+std::vector<std::string> parseRecorders(const std::vector<std::string>& texts) {
+  const std::vector<std::string> known = recorderIds();
+  std::vector<std::string> recorders;
+  for (const std::string& text : splitList(texts)) {
+    if (std::ranges::find(known, text) == known.end()) {
+      throw InputError("--recorder: " + unknownName("recorder", text, known));
+    }
+    if (std::ranges::find(recorders, text) == recorders.end()) recorders.push_back(text);
+  }
+  if (recorders.empty()) recorders.push_back(known.front());
+  return recorders;
+}
+
 /// Scene options as typed, before they are understood; the same for --headless and bake.
 struct SceneTexts {
   std::vector<std::string> objects;
   std::vector<std::string> object_types;
+  std::vector<std::string> recorders;
   std::vector<std::string> parameters;
   /// Options that are nothing but a shorter way to set a scene parameter.
   struct Shortcut {
@@ -99,11 +126,12 @@ struct SceneTexts {
     const char* doc;
     std::string value;
   };
-  std::array<Shortcut, 4> shortcuts = {{
+  std::array<Shortcut, 5> shortcuts = {{
       {"--frames", "frames", "F", "frames to simulate, the initial pose not counted", ""},
       {"--seed", "seed", "S", "seed: same seed, same recording", ""},
       {"--density", "density", "D", "share of the world's volume that bodies fill", ""},
-      {"--engine", "engine", "NAME", "physics engine (see 'broadmark list engines')", ""},
+      {"--engine", "engine", "NAME", "what moves the bodies (see 'broadmark list engines')", ""},
+      {"--input", "input", "PATH", "recording, or directory of those, that an engine replays", ""},
   }};
 
   void addTo(CLI::App& app) {
@@ -112,6 +140,7 @@ struct SceneTexts {
     for (Shortcut& shortcut : shortcuts) {
       app.add_option(shortcut.option, shortcut.value, shortcut.doc)->type_name(shortcut.type);
     }
+    addList(app, "--recorder", recorders, recorderDoc(), "KIND[,KIND...]");
     app.add_option("--param", parameters,
                    "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
         ->type_name("KEY=VALUE")
@@ -128,6 +157,7 @@ struct SceneTexts {
     options.objects.erase(std::unique(options.objects.begin(), options.objects.end()),
                           options.objects.end());
     options.object_types = splitList(object_types);
+    options.recorders = parseRecorders(recorders);
     for (const Shortcut& shortcut : shortcuts) {
       if (!shortcut.value.empty()) options.parameters[shortcut.parameter] = shortcut.value;
     }
@@ -203,9 +233,9 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
 
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
-                 "built-in scenes (freefall, brownian, …), recordings (.aabbs), scene parameters "
-                 "(.json, also the one beside a baked recording) or settings files of the original "
-                 "Broadmark (.json)")
+                 "built-in scenes (freefall, brownian, …), recordings (.aabbs, .posrot), scene "
+                 "parameters (.json, also the one beside a baked recording) or settings files of "
+                 "the original Broadmark (.json)")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -313,7 +343,8 @@ void addBakeOptions(CLI::App& app, BakeTexts& texts) {
       ->allow_extra_args(false);
   texts.scene.addTo(app);
   app.add_option("--output", texts.options.output,
-                 "directory for the recordings; they go into Recordings_AABBs/ in it")
+                 "directory for the recordings; they go into folders of their kind in it, such as "
+                 "Recordings_AABBs/")
       ->type_name("DIR")
       ->required();
   app.add_option("--threads", texts.threads,
@@ -356,7 +387,9 @@ BakeOptions understand(const BakeTexts& texts) {
 }
 
 void addVerifyOptions(CLI::App& app, VerifyOptions& options) {
-  app.add_option("files", options.files, "recordings (.aabbs)")->type_name("FILE")->required();
+  app.add_option("files", options.files, "recordings (.aabbs, .posrot)")
+      ->type_name("FILE")
+      ->required();
   CLI::Option* describe =
       app.add_flag("--describe", options.describe,
                    "also print what each is like, over time: density, pairs per body, share of "
@@ -439,7 +472,8 @@ int runCommandLine(int argc, char** argv) {
 
   std::string what = "all";
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
-  list->add_option("what", what, "algorithms, scenes, engines or all")->capture_default_str();
+  list->add_option("what", what, "algorithms, scenes, engines, recorders or all")
+      ->capture_default_str();
 
   VerifyOptions verify_options;
   CLI::App* verify = app.add_subcommand(

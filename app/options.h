@@ -21,6 +21,7 @@ struct SceneOptions {
   std::vector<std::string> object_types;  ///< likewise
   /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
   ParameterValues parameters;
+  std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on
 };
 
 /// One part of a run that is divided among machines: cases whose number is index (mod count).

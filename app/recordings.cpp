@@ -34,9 +34,10 @@ bool isSceneFile(const std::string& source) {
          describesScene(jsonKind(readTextFile(source), source));
 }
 
-/// The simulation that a scene's name or a file of scene parameters stands for.
-std::unique_ptr<Simulation> simulationOf(const std::string& scene) {
-  if (!looksLikeFile(scene)) return makeSimulation(scene);
+/// The simulation that a scene's name, moved by this engine ("": the default one), or a file of
+/// scene parameters stands for.
+std::unique_ptr<Simulation> simulationOf(const std::string& scene, const std::string& engine) {
+  if (!looksLikeFile(scene)) return makeSimulation(scene, engine);
   return parseSceneParameters(readTextFile(scene), scene);
 }
 
@@ -52,15 +53,19 @@ RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
   reference.scene_parameters = parameterValues(simulation);
-  reference.seed = static_cast<std::uint64_t>(parseInteger(
-      reference.scene_parameters.at("seed"), "seed", 0, std::numeric_limits<long long>::max()));
+  // A replay has none.
+  if (const auto seed = reference.scene_parameters.find("seed");
+      seed != reference.scene_parameters.end()) {
+    reference.seed = static_cast<std::uint64_t>(
+        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
+  }
   return reference;
 }
 
 Source recordingSource(const fs::path& path) {
   Source source;
   source.reference.path = path.string();
-  source.reference.scene = RecordingReader(path).scene();
+  source.reference.scene = openRecordingFile(path)->scene();
   return source;
 }
 
@@ -87,9 +92,6 @@ Source jsonSource(const fs::path& path) {
 
 Source fileSource(const fs::path& path) {
   if (path.extension() == ".json") return jsonSource(path);
-  if (path.extension() == ".posrot") {
-    throw InputError(path.string() + ": .posrot recordings cannot be replayed yet: use .aabbs");
-  }
   return recordingSource(path);
 }
 
@@ -111,24 +113,34 @@ bool simulateWithProgress(Simulation& simulation, bool quiet, Record&& record) {
   });
 }
 
-/// Bakes a simulation below `directory`, unless it is already there. Returns the path, or "" when
-/// interrupted.
-fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool quiet) {
-  fs::path path = recordingPath(directory, simulation.scene());
-  if (isBaked(path, simulation)) return path;
-  makeDirectory(path.parent_path());
+/// Bakes a simulation below `directory`, unless it is already there. Returns the path of the first
+/// recorder's recording, or "" when interrupted.
+fs::path bakeInto(Simulation& simulation, const fs::path& directory,
+                  const std::vector<std::string>& recorders, bool quiet) {
+  const auto paths = recordingPaths(directory, simulation.scene(), recorders);
+  const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
+  if (std::ranges::all_of(paths, there)) return paths.front();
+  for (const fs::path& path : paths) makeDirectory(path.parent_path());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
-    return !bake(simulation, path, progress).empty();
+    return bake(simulation, paths, progress);
   });
-  return whole ? path : fs::path();
+  return whole ? paths.front() : fs::path();
 }
 
-std::unique_ptr<RecordingReader> simulateTemporary(Simulation& simulation, bool quiet) {
+std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet) {
   RecordingWriter writer(simulation.scene());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
     return recordAll(simulation, writer, progress);
   });
   return whole ? writer.finishTemporary() : nullptr;
+}
+
+/// The engine asked for, by its own option or by --param; "": the default.
+std::string engineOf(const SceneOptions& options, const ParameterValues& parameters) {
+  for (const ParameterValues& values : {options.parameters, parameters}) {
+    if (const auto engine = values.find("engine"); engine != values.end()) return engine->second;
+  }
+  return {};
 }
 
 }  // namespace
@@ -137,6 +149,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
                                                          const SceneOptions& options,
                                                          const ParameterValues& parameters) {
   std::vector<std::unique_ptr<Simulation>> simulations;
+  const std::string engine = engineOf(options, parameters);
   // An empty list stands for the scene's own default.
   auto counts = options.objects;
   std::ranges::sort(counts);
@@ -148,7 +161,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
         ParameterValues axes;
         if (!counts.empty()) axes["objects"] = fmt::format("{}", counts[count]);
         if (!options.object_types.empty()) axes["object_type"] = options.object_types[type];
-        auto simulation = simulationOf(scene);
+        auto simulation = simulationOf(scene, engine);
         setParameters(*simulation, options.parameters);  // the engine first: it brings its own
         setApplicable(*simulation, parameters);
         setParameters(*simulation, axes);
@@ -179,22 +192,30 @@ std::vector<Source> resolveSources(const HeadlessOptions& options) {
   return sources;
 }
 
-std::unique_ptr<RecordingReader> openRecording(Source& source, const fs::path& directory,
-                                               bool quiet) {
-  std::unique_ptr<RecordingReader> recording;
+std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet) {
+  std::unique_ptr<Recording> recording;
   if (!source.simulation) {
-    recording = std::make_unique<RecordingReader>(fs::path(source.reference.path));
+    recording = openRecordingFile(source.reference.path);
   } else if (directory.empty()) {
     recording = simulateTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(*source.simulation, directory, quiet); !path.empty()) {
-    recording = std::make_unique<RecordingReader>(path);
+  } else if (const fs::path path = bakeInto(*source.simulation, directory, recorders, quiet);
+             !path.empty()) {
+    recording = openRecordingFile(path);
   }
   if (recording) source.reference.hash = recording->hash();
   return recording;
 }
 
-fs::path recordingPath(const fs::path& directory, const SceneInfo& scene) {
-  return directory / "Recordings_AABBs" / recordingFileName(scene);
+std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo& scene,
+                                     const std::vector<std::string>& recorders) {
+  std::vector<fs::path> paths;
+  const std::vector<RecorderListing> listings = builtinRecorders();
+  for (const std::string& id : recorders) {
+    const auto listing = std::ranges::find(listings, id, &RecorderListing::id);
+    paths.push_back(directory / listing->folder / recordingFileName(scene, "." + id));
+  }
+  return paths;
 }
 
 void makeDirectory(const fs::path& directory) {

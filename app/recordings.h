@@ -32,14 +32,17 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 
-/// Where a recording lies below a directory of recordings, laid out as the original's:
-/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs".
-std::filesystem::path recordingPath(const std::filesystem::path& directory, const SceneInfo&);
+/// Where recordings by these recorders lie below a directory, laid out as the original's:
+/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", ….
+std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
+                                                  const SceneInfo&,
+                                                  const std::vector<std::string>& recorders);
 
-/// Opens a source's recording, simulating it first if need be: into `directory`, or, if that is
-/// empty, into an unnamed temporary file. Null when interrupted.
-std::unique_ptr<RecordingReader> openRecording(Source&, const std::filesystem::path& directory,
-                                               bool quiet);
+/// Opens a source's recording, simulating it first if need be: below `directory`, one recording by
+/// each of `recorders`, the first being opened; or, if that is empty, into an unnamed temporary
+/// file. Null when interrupted.
+std::unique_ptr<Recording> openRecording(Source&, const std::filesystem::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet);
 
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);

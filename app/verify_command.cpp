@@ -53,7 +53,7 @@ std::string formatDescription(const SceneDescription& description) {
 
 /// Reads every frame, describing the scene if asked to. Nothing when interrupted. Throws InputError
 /// at the first fault.
-std::optional<SceneDescription> readThrough(RecordingReader& recording, bool describe_it,
+std::optional<SceneDescription> readThrough(Recording& recording, bool describe_it,
                                             const FrameProgress& progress) {
   if (describe_it) return describe(recording, 10, progress);
   for (std::optional<Frame> frame = recording.rewind(); frame; frame = recording.next()) {
@@ -64,7 +64,8 @@ std::optional<SceneDescription> readThrough(RecordingReader& recording, bool des
 
 /// Checks one recording and tells of it. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verify(const fs::path& file, const VerifyOptions& options) {
-  RecordingReader recording(file);
+  const auto opened = openRecordingFile(file);
+  Recording& recording = *opened;
   const SceneInfo& scene = recording.scene();
   const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
   Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);

@@ -15,14 +15,6 @@
 namespace broadmark {
 namespace {
 
-/// The id of the built-in scene with this simulation's name.
-std::string sceneId(const Simulation& simulation) {
-  for (const SceneListing& listing : builtinScenes()) {
-    if (listing.name == simulation.scene().name) return listing.id;
-  }
-  return simulation.scene().name;
-}
-
 Json parametersJson(Simulation& simulation) {
   Json parameters = Json::object();
   simulation.visitParameters([&](const Parameter& parameter) {
@@ -58,6 +50,12 @@ void setFromJson(const Parameter& parameter, const Json& value) {
                                    textOf(value)));
     }
     *std::get<bool*>(parameter.value) = value.get<bool>();
+  } else if (std::holds_alternative<std::string*>(parameter.value)) {
+    if (!value.is_string()) {
+      throw InputError(
+          fmt::format("parameter {}: '{}' is not a text", parameter.name, textOf(value)));
+    }
+    *std::get<std::string*>(parameter.value) = value.get<std::string>();
   } else if (std::holds_alternative<Choice*>(parameter.value) && value.is_string()) {
     setParameter(parameter, onOneLine(value.get<std::string>()));
   } else {
@@ -68,7 +66,7 @@ void setFromJson(const Parameter& parameter, const Json& value) {
 /// Which keys a file of this kind has.
 std::vector<std::string> knownKeys(const std::string& schema) {
   std::vector<std::string> keys = {"schema", "scene", "parameters"};
-  if (schema == kBakeSchema) keys.emplace_back("hash");
+  if (schema == kBakeSchema) keys.insert(keys.end(), {"hash", "input_hash"});
   return keys;
 }
 
@@ -94,10 +92,17 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   }
   for (const auto& [key, value] : json.items()) requireKnown("key", key, knownKeys(schema));
 
-  auto simulation = makeSimulation(onOneLine(text("scene")));
   const auto parameters = json.find("parameters");
+  if (parameters != json.end() && !parameters->is_object()) {
+    throw InputError("parameters: an object is expected");
+  }
+  std::string engine;  // comes first: it decides which parameters there are
+  if (parameters != json.end() && parameters->contains("engine")) {
+    const Json& value = parameters->at("engine");
+    engine = onOneLine(value.is_string() ? value.get<std::string>() : textOf(value));
+  }
+  auto simulation = makeSimulation(onOneLine(text("scene")), engine);
   if (parameters == json.end()) return simulation;
-  if (!parameters->is_object()) throw InputError("parameters: an object is expected");
   std::vector<std::string> known;
   simulation->visitParameters([&](const Parameter& parameter) {
     known.emplace_back(parameter.name);
@@ -112,7 +117,7 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
 
 nlohmann::ordered_json sceneParametersJson(Simulation& simulation, std::string_view schema) {
   return {{"schema", schema},
-          {"scene", sceneId(simulation)},
+          {"scene", simulation.listing().id},
           {"parameters", parametersJson(simulation)}};
 }
 

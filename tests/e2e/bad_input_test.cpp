@@ -122,7 +122,8 @@ TEST_F(BadInput, SourcesThatAreNone) {
   ASSERT_EQ(::mkfifo(file("fifo.aabbs").c_str(), 0600), 0);
   expectRefusal({"--headless", "fifo.aabbs"}, {"fifo.aabbs", "not a regular file"});
   writeFile(file("old.posrot"), "");
-  expectRefusal({"--headless", "old.posrot"}, {"old.posrot", ".aabbs"});
+  expectRefusal({"--headless", "freefall", "--recorder", "posrat"}, {"--recorder", "'posrot'"});
+  expectRefusal({"--headless", "old.posrot"}, {"old.posrot", "0 bytes is too short"});
 
   for (const auto& [name, text] :
        std::map<std::string, std::string>{{"broken.json", "{"},

@@ -11,6 +11,7 @@ namespace {
 using Bake = EndToEnd;
 
 const std::string kBaked = recordingIn("out dir", "FreeFall Cubes N40 F8frames");
+const std::string kBakedPoses = posesIn("out dir", "FreeFall Cubes N40 F8frames");
 
 Arguments bakeCall(const Arguments& more = {}) {
   Arguments call = {"bake",     "--scenes", "freefall", "--objects", "40",
@@ -166,6 +167,104 @@ TEST_F(Bake, WhatAKilledBakeLeftIsTakenOver) {
   EXPECT_EQ(fs::file_size(file(kBaked)), 304U + 32 * 40 * 9);
   EXPECT_FALSE(fs::exists(file(kBaked + ".part")));
   EXPECT_EQ(run({"verify", kBaked}).status, 0);
+}
+
+TEST_F(Bake, PosesAreRecordedBesideBoxesWhenAskedFor) {
+  runQuietly(bakeCall());
+  EXPECT_FALSE(fs::exists(file(kBakedPoses)));
+  const std::string boxes = readFile(file(kBaked));
+  const Ended baked = runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
+  EXPECT_THAT(baked.out,
+              StartsWith("kept   " + kBaked + "\nbaked  " + kBakedPoses + "\n1 baked, 1 kept; "));
+  EXPECT_EQ(readFile(file(kBaked)), boxes);
+  EXPECT_EQ(fs::file_size(file(kBakedPoses)), boxes.size());
+
+  const Ended verified = run({"verify", kBakedPoses});
+  EXPECT_EQ(verified.status, 0) << verified.err;
+  EXPECT_THAT(verified.out, HasSubstr(", as baked\n"));
+  const Json sidecar = readJson(file(fs::path(kBakedPoses).replace_extension(".json")));
+  EXPECT_THAT(verified.out, HasSubstr(sidecar.at("hash").get<std::string>()));
+
+  const auto long_ago = fs::last_write_time(file(kBakedPoses)) - std::chrono::hours(1);
+  fs::last_write_time(file(kBakedPoses), long_ago);
+  runQuietly(bakeCall({"--recorder", "posrot"}));
+  runQuietly(bakeCall({"--recorder", "posrot,aabbs"}));
+  EXPECT_EQ(fs::last_write_time(file(kBakedPoses)), long_ago) << "kept";
+}
+
+TEST_F(Bake, APosrotRecordingIsASource) {
+  runQuietly(bakeCall({"--recorder", "posrot,aabbs"}));
+  const auto pairsOf = [&](const std::string& source) {
+    runQuietly(
+        {"--headless", source, "--algorithm", "bf,sap", "--time-limit", "100", "--json", "r.json"});
+    Json pairs;
+    for (const Json& result : readJson(file("r.json")).at("cases")) {
+      EXPECT_EQ(result.at("status"), "ok");
+      pairs.push_back(result.at("pairs"));
+    }
+    return pairs;
+  };
+  EXPECT_EQ(pairsOf(kBakedPoses), pairsOf(kBaked));
+}
+
+TEST_F(Bake, ReplaysMakeRecordingsOfRecordings) {
+  runQuietly(bakeCall({"--recorder", "aabbs,posrot"}));
+  runQuietly({"bake", "--scenes", "freefall", "--objects", "40", "--engine", "viewer", "--input",
+              "out dir", "--output", "again"});
+  EXPECT_EQ(readFile(file(recordingIn("again", "FreeFall Cubes N40 F8frames"))),
+            readFile(file(kBaked)));
+
+  const Arguments split = {"bake",     "--scenes", "freefall", "--objects",  "320",
+                           "--frames", "6",        "--engine", "splitter",   "--input",
+                           "out dir",  "--output", "out dir",  "--recorder", "aabbs,posrot"};
+  const auto files = pathsAfter("baked  ", runQuietly(split).out);
+  EXPECT_THAT(files, ElementsAre(recordingIn("out dir", "FreeFall Cubes N320 F6frames"),
+                                 posesIn("out dir", "FreeFall Cubes N320 F6frames")));
+  Arguments verify = {"verify"};
+  verify.insert(verify.end(), files.begin(), files.end());
+  EXPECT_EQ(run(verify).status, 0);
+  const fs::path sidecar = file(fs::path(files.front()).replace_extension(".json"));
+  EXPECT_THAT(run({"verify", kBakedPoses}).out,
+              HasSubstr(readJson(sidecar).at("input_hash").get<std::string>()));
+  // As a scene it lacks only its input.
+  expectRefusal({"bake", "--parameters", sidecar.string(), "--output", "new"}, {"--input"});
+  runQuietly({"bake", "--parameters", sidecar.string(), "--input", "out dir", "--output", "new"});
+  EXPECT_EQ(readFile(file(recordingIn("new", "FreeFall Cubes N320 F6frames"))),
+            readFile(file(files.front())));
+
+  runQuietly({"--headless", "freefall", "--objects", "2560", "--engine", "splitter", "--input",
+              "out dir", "--algorithm", "sap,bf", "--time-limit", "100", "--json", "r.json"});
+  for (const Json& result : readJson(file("r.json")).at("cases")) {
+    EXPECT_EQ(result.at("status"), "ok");
+    EXPECT_EQ(result.at("recording").at("objects"), 2560);
+    EXPECT_EQ(result.at("recording").at("frames"), 6);
+  }
+}
+
+TEST_F(Bake, ReplaysSayWhatTheyMiss) {
+  runQuietly(bakeCall({"--recorder", "posrot"}));
+  const auto call = [](const char* engine, const char* objects, const Arguments& more) {
+    Arguments arguments = {"bake",      "--scenes", "freefall", "--engine", engine,
+                           "--objects", objects,    "--output", "out dir"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  };
+  const Arguments input = {"--input", "out dir", "--quiet"};
+  expectRefusal(call("splitter", "321", input), {"321", "multiple of 8", "N40 F8", "320 bodies"});
+  expectRefusal(call("viewer", "41", input), {"FreeFall Cubes N41", "N40 F8"});
+  expectRefusal(call("viewer", "40", {"--input", "out dir", "--quiet", "--recorder", "posrot"}),
+                {"N40 F8", "another directory"});
+  expectRefusal(call("viewer", "40", {}), {"--input"});
+  expectRefusal(call("viewer", "40", {"--input", "nowhere"}), {"nowhere"});
+  expectRefusal(call("spliter", "40", input), {"did you mean 'splitter'"});
+  expectRefusal(call("bullet", "40", input), {"'input'"});
+}
+
+TEST_F(Bake, HeadlessKeepsTheRecordingsAskedFor) {
+  runQuietly({"--headless", "freefall", "--objects", "40", "--frames", "8", "--algorithm", "sap",
+              "--record", "out dir", "--recorder", "posrot,aabbs"});
+  EXPECT_TRUE(fs::exists(file(kBaked)));
+  EXPECT_EQ(run({"verify", kBakedPoses}).status, 0);
 }
 
 TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {

@@ -82,6 +82,11 @@ inline std::string recordingIn(const std::string& directory, const std::string& 
   return directory + "/Recordings_AABBs/" + name + ".aabbs";
 }
 
+/// Likewise for one of positions and rotations.
+inline std::string posesIn(const std::string& directory, const std::string& name) {
+  return directory + "/Recordings_PositionRotation/" + name + ".posrot";
+}
+
 class EndToEnd : public ::testing::Test {
  protected:
   EndToEnd() {

@@ -1,5 +1,6 @@
 // Any text is either scene parameters that survive a round trip unchanged, or an InputError.
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -7,6 +8,18 @@
 
 #include "broadmark/error.h"
 #include "scenes/simulation.h"
+
+namespace {
+
+/// Of a replay nothing more is known without its recording.
+bool isSimulated(broadmark::Simulation& simulation) {
+  const std::string engine = broadmark::parameterValues(simulation).at("engine");
+  return std::ranges::none_of(broadmark::builtinEngines(), [&](const auto& listing) {
+    return listing.id == engine && listing.dynamics == broadmark::Dynamics::replayed;
+  });
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;
@@ -21,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string text = formatSceneParameters(*simulation);
   const auto again = parseSceneParameters(text, "written");
   if (parameterValues(*again) != parameterValues(*simulation)) std::abort();
-  if (again->scene() != simulation->scene()) std::abort();
+  if (again->listing().id != simulation->listing().id) std::abort();
+  if (isSimulated(*simulation) && again->scene() != simulation->scene()) std::abort();
   return 0;
 }
