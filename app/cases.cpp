@@ -65,6 +65,8 @@ constexpr OriginalParameter kOriginalParameters[] = {
      [](const OriginalSettings& s) { return std::to_string(s.kd_objects_per_leaf); }},
     {"KD", "margin",  // one for all axes here
      [](const OriginalSettings& s) { return fmt::format("{}", std::ranges::max(s.margin)); }},
+    {"Tracy", "objects_per_cell",  // its own key is never read there
+     [](const OriginalSettings& s) { return std::to_string(s.grid_objects_per_cell); }},
 };
 
 ParameterValues originalParameters(const OriginalSettings& settings, const Algorithm& algorithm) {

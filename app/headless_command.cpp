@@ -20,6 +20,7 @@
 #include "app/screenshot.h"
 #include "app/table.h"
 #include "broadmark/algorithms.h"
+#include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 
@@ -84,6 +85,7 @@ std::vector<Job> makeJobs(const HeadlessOptions& options) {
     } else {
       throw InputError("--algorithm: a settings file of the original names its own algorithm");
     }
+    for (Case& run : job.cases) run.device = options.device;
     jobs.push_back(std::move(job));
   }
   requireKnownParameters(options, jobs);
@@ -212,6 +214,20 @@ void requireWritable(const HeadlessOptions& options, const std::vector<Job>& job
   }
 }
 
+/// The machine, with the compute device that is used in front of the others.
+Environment environmentOf(const HeadlessOptions& options) {
+  Environment environment = thisEnvironment();
+  std::vector<ComputeDevice> devices = computeDevices();
+  if (devices.empty() && options.device.empty()) return environment;
+  const auto chosen =
+      devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, options.device));
+  std::rotate(devices.begin(), chosen, chosen + 1);
+  for (const ComputeDevice& device : devices) {
+    environment.compute_devices.push_back(describe(device));
+  }
+  return environment;
+}
+
 /// The frame of the screenshot is in every recording.
 void requireFrame(const HeadlessOptions& options, const std::vector<Job>& jobs) {
   for (const Job& job : jobs) {
@@ -283,7 +299,8 @@ int runHeadless(const HeadlessOptions& options) {
   if (!options.record.empty()) makeDirectory(options.record);
 
   const InterruptGuard guard;
-  Results results{.environment = thisEnvironment(), .options = options.command_line, .cases = {}};
+  Results results{
+      .environment = environmentOf(options), .options = options.command_line, .cases = {}};
   Exhausted exhausted;
   Outcome outcome;
   for (Job& job : jobs) {

@@ -9,6 +9,7 @@
 #include "app/options.h"
 #include "app/table.h"
 #include "broadmark/algorithms.h"
+#include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "scenes/simulation.h"
@@ -71,13 +72,23 @@ void listRecorders() {
   }
 }
 
+void listDevices() {
+  fmt::print("Compute devices (OpenCL); the first is used unless --device names another\n");
+  const std::vector<ComputeDevice> devices = computeDevices();
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    fmt::print("  {}: {}\n", i, describe(devices[i]));
+  }
+  if (devices.empty()) fmt::print("  none\n");
+}
+
 }  // namespace
 
 int runList(const std::string& what) {
   const std::pair<std::string, std::function<void()>> kinds[] = {{"algorithms", listAlgorithms},
                                                                  {"scenes", listScenes},
                                                                  {"engines", listEngines},
-                                                                 {"recorders", listRecorders}};
+                                                                 {"recorders", listRecorders},
+                                                                 {"devices", listDevices}};
   std::vector<std::string> known = {"all"};
   bool found = false;
   for (const auto& [name, list] : kinds) {

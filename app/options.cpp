@@ -247,6 +247,10 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
           "instruction sets of vectorised variants: auto (default), scalar, sse2, avx2, avx512",
           "ISA[,ISA...]");
 
+  app.add_option("--device", options.device,
+                 "OpenCL device, by number or part of its name (see 'broadmark list devices'; "
+                 "default: the first, GPUs before CPUs)")
+      ->type_name("NAME");
   app.add_option("--repetitions", texts.repetitions, "measured passes over each recording")
       ->capture_default_str()
       ->type_name("R");
@@ -472,7 +476,7 @@ int runCommandLine(int argc, char** argv) {
 
   std::string what = "all";
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
-  list->add_option("what", what, "algorithms, scenes, engines, recorders or all")
+  list->add_option("what", what, "algorithms, scenes, engines, recorders, devices or all")
       ->capture_default_str();
 
   VerifyOptions verify_options;

@@ -36,6 +36,7 @@ struct HeadlessOptions {
   std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
   std::vector<int> threads;
   std::vector<Isa> isas;
+  std::string device;          ///< compute device: "" for the first
   ParameterValues parameters;  ///< --param: of algorithms or scenes, whoever has them
   int repetitions = 1;
   int warmup = 0;

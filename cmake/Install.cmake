@@ -14,4 +14,4 @@ configure_package_config_file(cmake/broadmarkConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
-  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake cmake/Bullet.cmake DESTINATION ${package_dir})

@@ -28,7 +28,8 @@ Json toJson(const Environment& e) {
           {"compiler_flags", e.compiler_flags},
           {"build_type", e.build_type},
           {"version", e.version},
-          {"started", e.started}};
+          {"started", e.started},
+          {"compute_devices", e.compute_devices}};
 }
 
 std::vector<std::string> textsFrom(const Json& array, const std::string& name) {
@@ -41,20 +42,25 @@ std::vector<std::string> textsFrom(const Json& array, const std::string& name) {
 }
 
 Environment environmentFrom(const JsonFields& json) {
-  return {.cpu = json.text("cpu"),
-          .logical_cores = json.integer<int>("logical_cores", 0),
-          .physical_cores = json.integer<int>("physical_cores", 0),
-          .caches = textsFrom(json.array("caches"), json.path("caches")),
-          .isa = json.text("isa"),
-          .memory_bytes = json.integer<std::uint64_t>("memory_bytes"),
-          .governor = json.text("governor"),
-          .load_average = json.number("load_average"),
-          .os = json.text("os"),
-          .compiler = json.text("compiler"),
-          .compiler_flags = json.text("compiler_flags"),
-          .build_type = json.text("build_type"),
-          .version = json.text("version"),
-          .started = json.text("started")};
+  Environment environment = {.cpu = json.text("cpu"),
+                             .logical_cores = json.integer<int>("logical_cores", 0),
+                             .physical_cores = json.integer<int>("physical_cores", 0),
+                             .caches = textsFrom(json.array("caches"), json.path("caches")),
+                             .isa = json.text("isa"),
+                             .memory_bytes = json.integer<std::uint64_t>("memory_bytes"),
+                             .governor = json.text("governor"),
+                             .load_average = json.number("load_average"),
+                             .os = json.text("os"),
+                             .compiler = json.text("compiler"),
+                             .compiler_flags = json.text("compiler_flags"),
+                             .build_type = json.text("build_type"),
+                             .version = json.text("version"),
+                             .started = json.text("started")};
+  if (json.has("compute_devices")) {
+    environment.compute_devices =
+        textsFrom(json.array("compute_devices"), json.path("compute_devices"));
+  }
+  return environment;
 }
 
 Json toJson(const ParameterValues& values) {
@@ -176,10 +182,22 @@ Json toJson(const Summary& summary) {
   return json;
 }
 
+/// Whether any frame spent time in a phase.
+bool isUsed(Phase phase, const std::vector<Repetition>& repetitions) {
+  return std::ranges::any_of(repetitions, [&](const Repetition& repetition) {
+    return std::ranges::any_of(repetition.frames,
+                               [&](const FrameTimes& frame) { return frame[phase] != 0; });
+  });
+}
+
+/// Phases of compute devices only, left out where there is none.
+bool isOptional(Phase phase) { return phase == Phase::upload || phase == Phase::download; }
+
 /// One array of nanoseconds per phase and repetition.
 Json framesToJson(const std::vector<Repetition>& repetitions) {
   Json json = Json::object();
   for (const Phase phase : kAllPhases) {
+    if (isOptional(phase) && !isUsed(phase, repetitions)) continue;
     Json& arrays = json[std::string(phaseName(phase))] = Json::array();
     for (const Repetition& repetition : repetitions) {
       Json& times = arrays.emplace_back(Json::array());
@@ -197,6 +215,7 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   }
   for (const Phase phase : kAllPhases) {
     const std::string key(phaseName(phase));
+    if (isOptional(phase) && !json.has(key.c_str())) continue;
     const Json& arrays = json.array(key.c_str());
     const std::string name = json.path(key.c_str());
     if (arrays.size() != repetitions.size()) {
@@ -236,6 +255,7 @@ Json toJson(const CaseResult& result) {
                {"invalid", result.invalid},
                {"differences", Json::array()},
                {"peak_bytes", nullptr},
+               {"counters", result.counters},
                {"summary", toJson(result.summary())},
                {"initialize_ns", Json::array()},
                {"frames", framesToJson(result.repetitions)}};
@@ -282,6 +302,12 @@ CaseResult caseFrom(const JsonFields& json) {
   json.eachObject("differences", [&](const JsonFields& difference) {
     result.differences.push_back(differenceFrom(difference));
   });
+  if (json.has("counters")) {
+    const JsonFields counters = json.object("counters");
+    for (const auto& [name, count] : json.at("counters").items()) {
+      result.counters[name] = counters.number(name.c_str());
+    }
+  }
   if (json.has("peak_bytes")) result.peak_bytes = json.integer<std::uint64_t>("peak_bytes");
   result.repetitions =
       framesFrom(json.object("frames"), json.array("initialize_ns"), json.path("initialize_ns"));

@@ -16,6 +16,10 @@ std::string_view phaseName(Phase phase) {
       return "update_structures";
     case Phase::search_overlaps:
       return "search_overlaps";
+    case Phase::upload:
+      return "upload";
+    case Phase::download:
+      return "download";
     case Phase::total:
       return "total";
   }

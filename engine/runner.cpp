@@ -31,7 +31,7 @@ constexpr std::size_t kFramesBeforeLimit = 3;
 class Instance {
  public:
   Instance(const Case& run, const SceneInfo& scene)
-      : execution_(run.threads, run.isa), algorithm_(run.algorithm.create()) {
+      : execution_(run.threads, run.isa, run.device), algorithm_(run.algorithm.create()) {
     setParameters(*algorithm_, run.parameters);
     capabilities_ = algorithm_->capabilities();
     if (run.algorithm.vectorised && !isaSupported(run.isa)) {
@@ -90,16 +90,24 @@ void fail(CaseResult& result, Status status, std::string reason) {
   result.reason = std::move(reason);
 }
 
-/// Running count of pairs per frame.
-void countPairs(CaseResult& result, std::uint64_t pairs, std::uint64_t frames_before) {
-  const auto n = static_cast<double>(frames_before);
-  result.pairs_mean += (static_cast<double>(pairs) - result.pairs_mean) / (n + 1);
+/// Takes one more value into the mean of `count_before`.
+void addToMean(double& mean, std::uint64_t value, std::uint64_t count_before) {
+  mean += (static_cast<double>(value) - mean) / static_cast<double>(count_before + 1);
+}
+
+/// Counts of pairs and of work, of the first repetition: the others do the same.
+void countFrame(CaseResult& result, const BroadPhase& algorithm, std::uint64_t frames_before) {
+  const std::uint64_t pairs = pairCount(algorithm.overlaps());
+  addToMean(result.pairs_mean, pairs, frames_before);
   result.pairs_max = std::max(result.pairs_max, pairs);
+  algorithm.visitCounters([&](std::string_view name, std::uint64_t count) {
+    addToMean(result.counters[std::string(name)], count, frames_before);
+  });
 }
 
 /// One pass; false when cancelled.
 bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, FrameSource& source,
-               Oracle& oracle, const RunOptions& options, bool count_pairs) {
+               Oracle& oracle, const RunOptions& options, bool count) {
   std::int64_t total_ns = 0;
   const int number = static_cast<int>(result.repetitions.size()) + 1;
   while (const std::optional<Frame> frame = source.next()) {
@@ -110,9 +118,7 @@ bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, F
       checkFrame(result, instance.algorithm(), *frame, instance.capabilities().margin, oracle,
                  options.check, number);
     }
-    if (count_pairs) {
-      countPairs(result, pairCount(instance.algorithm().overlaps()), repetition.frames.size() - 1);
-    }
+    if (count) countFrame(result, instance.algorithm(), repetition.frames.size() - 1);
     if (options.progress) options.progress(frame->index);
 
     total_ns += times[Phase::total];
@@ -162,6 +168,9 @@ FrameTimes runFrame(BroadPhase& algorithm, const Frame& frame) {
   times[Phase::clean_cache] = nanoseconds(cleaned - updated);
   times[Phase::update_structures] = nanoseconds(structured - cleaned);
   times[Phase::search_overlaps] = nanoseconds(end - structured);
+  const TransferTimes transfers = algorithm.transfers();
+  times[Phase::upload] = transfers.upload_ns;
+  times[Phase::download] = transfers.download_ns;
   times[Phase::total] = nanoseconds(end - start);
   return times;
 }

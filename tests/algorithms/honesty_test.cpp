@@ -76,22 +76,19 @@ TEST_P(HonestClocks, SamePairsHoweverRun) {
 INSTANTIATE_TEST_SUITE_P(Algorithms, HonestClocks, testing::ValuesIn(pairFinders()),
                          [](const auto& tested) { return testName(tested.param); });
 
-Algorithm find(const std::string& id) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
-  return *std::ranges::find(all, id, &Algorithm::id);
-}
-
 TEST(SelfChecks, NoneFindsNothing) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
   Execution execution(1, Isa::scalar);
   EXPECT_EQ(
-      pairCount(Instance(find("none"), execution, sceneOf(frames), frames[0]).step(frames[1])), 0);
+      pairCount(
+          Instance(algorithmOf("none"), execution, sceneOf(frames), frames[0]).step(frames[1])),
+      0);
 }
 
 TEST(SelfChecks, TimeValidatorTakesItsTime) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
   Execution execution(1, Isa::scalar);
-  const std::unique_ptr<BroadPhase> validator = find("time-validator").create();
+  const std::unique_ptr<BroadPhase> validator = algorithmOf("time-validator").create();
   setParameters(*validator, {{"phase_us", "2000"}});
   validator->initialize(sceneOf(frames), {0, frames[0]}, execution);
   const FrameTimes times = runFrame(*validator, {1, frames[1]});

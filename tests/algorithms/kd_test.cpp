@@ -16,8 +16,7 @@ using inputs::Vec3;
 
 /// "kd" or "kd-mt", whose instances are made with these parameters.
 Algorithm kd(const ParameterValues& parameters, const std::string& id = "kd") {
-  const std::vector<Algorithm> all = builtinAlgorithms();
-  Algorithm algorithm = *std::ranges::find(all, id, &Algorithm::id);
+  Algorithm algorithm = algorithmOf(id);
   algorithm.create = [create = algorithm.create, parameters] {
     std::unique_ptr<BroadPhase> made = create();
     setParameters(*made, parameters);
@@ -27,13 +26,6 @@ Algorithm kd(const ParameterValues& parameters, const std::string& id = "kd") {
 }
 
 ParameterValues leaf(int objects) { return {{"objects_per_leaf", std::to_string(objects)}}; }
-
-std::map<std::string, std::uint64_t> countersOf(const BroadPhase& broad_phase) {
-  std::map<std::string, std::uint64_t> counters;
-  broad_phase.visitCounters(
-      [&](std::string_view name, std::uint64_t count) { counters[std::string(name)] = count; });
-  return counters;
-}
 
 /// All that an update may do to the tree.
 std::uint64_t structuralWork(const BroadPhase& broad_phase) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -54,6 +56,12 @@ inline std::vector<Algorithm> pairFinders() {
   return all;
 }
 
+/// The listed algorithm of that id, which must be there.
+inline Algorithm algorithmOf(const std::string& id) {
+  const std::vector<Algorithm> all = builtinAlgorithms();
+  return *std::ranges::find(all, id, &Algorithm::id);
+}
+
 /// "sap-simd" as a name that GoogleTest accepts.
 inline std::string testName(const Algorithm& algorithm) {
   std::string name = algorithm.id;
@@ -92,6 +100,14 @@ inline std::vector<Pair> sorted(PairRuns runs) {
   for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
   std::ranges::sort(pairs);
   return pairs;
+}
+
+/// The work counters of the last frame.
+inline std::map<std::string, std::uint64_t, std::less<>> countersOf(const BroadPhase& algorithm) {
+  std::map<std::string, std::uint64_t, std::less<>> counters;
+  algorithm.visitCounters(
+      [&](std::string_view name, std::uint64_t count) { counters.emplace(name, count); });
+  return counters;
 }
 
 /// An instance at work.

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -226,9 +226,7 @@ bool measure(const Scene& scene, const Options& options) {
   return met;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   const std::vector<Scene> scenes = allScenes();
   std::vector<std::string> scene_names;
   for (const Scene& scene : scenes) scene_names.emplace_back(scene.name);
@@ -247,16 +245,22 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
+  bool met = true;
+  for (const Scene& scene : scenes) {
+    const bool wanted =
+        options.scenes.empty() || std::ranges::count(options.scenes, scene.name) > 0;
+    if (wanted) met &= measure(scene, options);
+  }
+  return met ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
   try {
-    bool met = true;
-    for (const Scene& scene : scenes) {
-      const bool wanted =
-          options.scenes.empty() || std::ranges::count(options.scenes, scene.name) > 0;
-      if (wanted) met &= measure(scene, options);
-    }
-    return met ? EXIT_SUCCESS : EXIT_FAILURE;
-  } catch (const InputError& error) {
-    fmt::print(stderr, "cgal_ratios: {}\n", error.what());
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "cgal_ratios: %s\n", error.what());
     return 2;
   }
 }

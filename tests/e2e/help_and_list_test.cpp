@@ -78,6 +78,10 @@ TEST_F(List, NamesEverything) {
     expectWords(all, {engine.id, engine.summary});
     expectWords(run({"list", "engines"}), {engine.id});
   }
+  for (const RecorderListing& recorder : builtinRecorders()) {
+    expectWords(all, {recorder.id, recorder.summary});
+    expectWords(run({"list", "recorders"}), {recorder.id});
+  }
 }
 
 TEST_F(List, WhatCannotBePrintedIsAnError) {

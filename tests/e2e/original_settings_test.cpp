@@ -101,6 +101,19 @@ TEST_F(OriginalSettings, InputIsFoundBesideTheSettings) {
   EXPECT_TRUE(fs::exists(file("the log.json")));
 }
 
+// There, Tracy reads the grids' key and nobody reads its own.
+TEST_F(OriginalSettings, TracysCellsAreThoseOfTheGrids) {
+  settings_["m_algorithm"] = "Tracy_Parallel";
+  settings_["m_Grid_ObjectsPerCell"] = 7;
+  settings_["m_Tracy_ObjectsPerCell"] = 8;
+  writeSettings("settings.json", settings_);
+  runQuietly({"--headless", "settings.json", "--json", "results.json"});
+  const Json one = readJson(file("results.json")).at("cases").at(0);
+  EXPECT_EQ(one.at("algorithm"), "tracy-mt");
+  EXPECT_EQ(one.at("status"), "ok");
+  EXPECT_EQ(one.at("params").at("objects_per_cell"), "7");
+}
+
 TEST_F(OriginalSettings, FaultsAreNamed) {
   for (const std::string key : {"m_outputLog", "m_algorithm"}) {
     Json lacking = settings_;

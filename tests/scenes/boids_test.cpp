@@ -269,7 +269,7 @@ TEST(EngineParameters, CountFromTheCommandLineOnAndClashWithNone) {
   for (const SceneListing& scene : builtinScenes()) {
     for (const EngineListing& engine : builtinEngines()) {
       std::vector<std::string> names;
-      sceneWith(scene.id, {{"engine", engine.id}})->visitParameters([&](const Parameter& p) {
+      makeSimulation(scene.id, engine.id)->visitParameters([&](const Parameter& p) {
         names.emplace_back(p.name);
       });
       std::ranges::sort(names);

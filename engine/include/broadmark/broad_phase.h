@@ -32,6 +32,12 @@ struct Capabilities {
 /// Shows one count of work done in the present frame ("swaps", "moves", "skipped subtrees").
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
+/// How much of a frame went into copying to and from a compute device, in nanoseconds.
+struct TransferTimes {
+  std::int64_t upload_ns = 0;
+  std::int64_t download_ns = 0;
+};
+
 /// A broad-phase collision detection algorithm.
 ///
 /// Per run: setParameters, initialize, then for every frame 1…F the four phases in the order below,
@@ -57,6 +63,9 @@ class BroadPhase : public Parametrised {
   /// The answer for this frame: every overlapping pair once, a < b, in any order. Owned by the
   /// algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairRuns overlaps() const = 0;
+
+  /// Copying within the phases of the last frame (algorithms on a compute device).
+  [[nodiscard]] virtual TransferTimes transfers() const { return {}; }
 
   /// Draws the acceleration structure as it is now.
   virtual void drawStructure(DebugDraw&) const {}

@@ -1,4 +1,4 @@
-// How a case is executed: which instruction set, how many threads.
+// How a case is executed: which instruction set, how many threads, which compute device.
 #pragma once
 
 #include <atomic>
@@ -6,6 +6,7 @@
 #include <exception>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <type_traits>
@@ -74,14 +75,18 @@ constexpr std::pair<std::size_t, std::size_t> share(std::size_t count, int parts
 /// What the runner gives to an algorithm. Lives as long as the algorithm's instance.
 class Execution {
  public:
-  Execution(int threads, Isa isa) : isa_(isa), team_(threads) {}
+  Execution(int threads, Isa isa, std::string device = {})
+      : isa_(isa), device_(std::move(device)), team_(threads) {}
 
   [[nodiscard]] Isa isa() const { return isa_; }
   [[nodiscard]] int threads() const { return team_.size(); }
   ThreadTeam& team() { return team_; }
+  /// Which compute device is wanted: its number or part of its name; "" for the first.
+  [[nodiscard]] const std::string& device() const { return device_; }
 
  private:
   Isa isa_;
+  std::string device_;
   ThreadTeam team_;
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,10 +19,23 @@
 namespace broadmark {
 
 /// The timed phases of a frame. A phase names the call, not the work: only the total compares
-/// across algorithm families.
-enum class Phase { update_objects, clean_cache, update_structures, search_overlaps, total };
-inline constexpr std::array kAllPhases = {Phase::update_objects, Phase::clean_cache,
-                                          Phase::update_structures, Phase::search_overlaps,
+/// across algorithm families. Upload and download are the parts of the four calls before them that
+/// went into copying to and from a compute device; without a device they are 0.
+enum class Phase {
+  update_objects,
+  clean_cache,
+  update_structures,
+  search_overlaps,
+  upload,
+  download,
+  total
+};
+inline constexpr std::array kAllPhases = {Phase::update_objects,
+                                          Phase::clean_cache,
+                                          Phase::update_structures,
+                                          Phase::search_overlaps,
+                                          Phase::upload,
+                                          Phase::download,
                                           Phase::total};
 std::string_view phaseName(Phase);
 
@@ -72,6 +86,8 @@ struct CaseResult {
   std::uint64_t invalid = 0;
   std::vector<FrameDifference> differences;
   std::optional<std::uint64_t> peak_bytes;
+  /// The algorithm's own counts of work, mean per frame.
+  std::map<std::string, double> counters;
 
   std::vector<Repetition> repetitions;
 

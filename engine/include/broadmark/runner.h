@@ -21,6 +21,7 @@ struct Case {
   Algorithm algorithm;
   Isa isa = Isa::scalar;
   int threads = 1;
+  std::string device;          ///< as Execution::device()
   ParameterValues parameters;  ///< those that differ from the default
 };
 

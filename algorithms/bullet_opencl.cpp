@@ -1,0 +1,371 @@
+// Bullet 3's three broad phases on OpenCL: a uniform grid of 128³ wrapping cells (O(n) for bodies
+// of about one size), a linear BVH (O(n log n + k)) and a sweep along one axis (about n^(5/3)).
+// They are the paper's GPU families. Library: Debian's libBullet3OpenCL_clew.
+//
+// Each loses pairs when it is used as it comes; what is done about it here:
+// - the grid's cells are as large as its largest small body, and hold any number of bodies; bodies
+//   far larger than most are handed over as large ones, which it tests against all small ones;
+// - pairs of two large bodies are found by none of them: they are tested here, on the host;
+// - the linear BVH's kernel reads past its end unless n = 1 (mod 64): inverted boxes, which meet
+//   nothing, fill up;
+// - a full pair buffer cuts the answer silently: it is doubled and the search done again;
+// - the sweep's sort overflows from 2^19 bodies on: refused;
+// - the radix sort counts on groups of 64 running in lockstep, which a GPU need not do: on anything
+//   but a CPU the right answer on a known scene is asked for first.
+//
+// Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark", Computer Graphics Forum, 2019; T. Karras,
+// "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012 (the BVH);
+// F. Liu, T. Harada, Y. Lee, Y. J. Kim, "Real-Time Collision Culling of a Million Bodies on
+// Graphics Processing Units", SIGGRAPH Asia 2010 (the sweep).
+
+#include <Bullet3Common/b3Logging.h>
+#include <Bullet3OpenCL/BroadphaseCollision/b3GpuGridBroadphase.h>
+#include <Bullet3OpenCL/BroadphaseCollision/b3GpuParallelLinearBvhBroadphase.h>
+#include <Bullet3OpenCL/BroadphaseCollision/b3GpuSapBroadphase.h>
+#include <Bullet3OpenCL/Initialize/b3OpenCLUtils.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "algorithms/opencl/device_context.h"
+#include "algorithms/opencl/timer.h"
+#include "broadmark/algorithm.h"
+#include "broadmark/error.h"
+#include "broadmark/oracle.h"
+
+// Exported by the library, declared in none of its headers.
+int b3OpenCLUtils_clewInit();
+extern bool gDebugSkipLoadingBinary;
+
+namespace broadmark::bullet_opencl {
+namespace {
+
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+/// Bullet tells of errors by this callback only.
+thread_local std::string library_error;
+
+/// Loads the library's OpenCL and keeps it quiet, once for the process. Throws UnsupportedError.
+void initializeLibrary() {
+  static const int status = [] {
+    gDebugSkipLoadingBinary = true;  // or it writes a cache of its own beside the program
+    b3OpenCLUtils_setCachePath("/dev/null");
+    const auto ignore = [](const char*) {};
+    b3SetCustomPrintfFunc(ignore);
+    b3SetCustomWarningMessageFunc(ignore);
+    b3SetCustomErrorMessageFunc([](const char* message) { library_error = message; });
+    return b3OpenCLUtils_clewInit();
+  }();
+  if (status != 0) throw UnsupportedError("libOpenCL cannot be loaded");
+}
+
+/// Turns what the callback has heard into an exception.
+void requireNoError() {
+  if (library_error.empty()) return;
+  std::string message = std::exchange(library_error, {});
+  std::ranges::replace(message, '\n', ' ');
+  throw std::runtime_error("Bullet: " + message);
+}
+
+b3SapAabb toBullet(const Aabb& box, int id) {
+  b3SapAabb result;
+  std::copy_n(box.min.begin(), 3, result.m_min);
+  std::copy_n(box.max.begin(), 3, result.m_max);
+  result.m_minIndices[3] = id;
+  result.m_signedMaxIndices[3] = id;
+  return result;
+}
+
+/// Which bodies a broad phase gets as small and as large ones.
+struct Sizes {
+  b3AlignedObjectArray<int> small;
+  b3AlignedObjectArray<int> large;
+  float largest_small = 0;  ///< longest edge of a small body
+};
+
+/// The library's grid with the two settings that it keeps to itself.
+class Grid final : public b3GpuGridBroadphase {
+ public:
+  using b3GpuGridBroadphase::b3GpuGridBroadphase;
+
+  void setCellSize(float size) {
+    constexpr int kUnlimited = 1 << 20;
+    for (int axis = 0; axis < 3; ++axis) m_paramsCPU.m_invCellSize[axis] = 1 / size;
+    m_paramsCPU.setMaxBodiesPerCell(kUnlimited);
+    m_paramsGPU.resize(1);
+    m_paramsGPU.copyFromHostPointer(&m_paramsCPU, 1);
+  }
+};
+
+// What differs between the three. Each: the library's class, its limits, and how it wants bodies.
+
+struct GridTraits {
+  using BroadPhase = Grid;
+  static constexpr std::uint64_t kMaxObjects = 1 << 26;
+  /// The grid's kernels are global variables of the library.
+  static constexpr std::string_view kExclusive = "Bullet 3's OpenCL grid";
+  static constexpr bool kHasLarge = true;
+
+  static std::unique_ptr<Grid> create(const opencl::DeviceContext& context) {
+    return std::make_unique<Grid>(context.context()(), context.device()(), context.queue()());
+  }
+  static int padded(int count) { return count; }
+  static void prepare(Grid& grid, const Sizes& sizes) {
+    // A little larger, lest rounding puts a body into three cells of a row.
+    grid.setCellSize(std::max(sizes.largest_small * 1.001F, 1e-30F));
+  }
+};
+
+struct BvhTraits {
+  using BroadPhase = b3GpuParallelLinearBvhBroadphase;
+  static constexpr std::uint64_t kMaxObjects = 1 << 26;
+  static constexpr std::string_view kExclusive = {};
+  static constexpr bool kHasLarge = false;
+
+  static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
+    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()());
+  }
+  static int padded(int count) { return (count + 62) / 64 * 64 + 1; }
+  static void prepare(BroadPhase&, const Sizes&) {}
+};
+
+struct SapTraits {
+  using BroadPhase = b3GpuSapBroadphase;
+  static constexpr std::uint64_t kMaxObjects = (1 << 19) - 1;
+  static constexpr std::string_view kExclusive = {};
+  static constexpr bool kHasLarge = false;
+
+  static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
+    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()(),
+                                        BroadPhase::B3_GPU_SAP_KERNEL_ORIGINAL);
+  }
+  static int padded(int count) { return count; }
+  static void prepare(BroadPhase& sap, const Sizes& sizes) {
+    sap.m_smallAabbsMappingCPU.resize(sizes.small.size());
+  }
+};
+
+template <class Traits>
+class BulletOpenCl final : public BroadPhase {
+ public:
+  [[nodiscard]] Capabilities capabilities() const override {
+    return {.max_objects = Traits::kMaxObjects, .exclusive = Traits::kExclusive};
+  }
+
+  void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
+    context_.emplace(execution);
+    initializeLibrary();
+    {
+      const opencl::ScopedTimer timer(build_ns_);
+      broad_phase_ = Traits::create(*context_);
+    }
+    requireNoError();
+    if (!context_->onCpu()) requireSelfCheck();
+    run(first);
+  }
+
+  void updateObjects(const Frame& frame) override {
+    transfers_ = {};
+    count_ = static_cast<int>(frame.boxes.size());
+    host_boxes_.resize(Traits::padded(count_));
+    for (int i = 0; i < count_; ++i) host_boxes_[i] = toBullet(frame.boxes[i], i);
+    const Aabb inverted = {{kLargest, kLargest, kLargest, 0}, {-kLargest, -kLargest, -kLargest, 0}};
+    for (int i = count_; i < host_boxes_.size(); ++i) host_boxes_[i] = toBullet(inverted, i);
+    divideBySize(frame.boxes);
+
+    const opencl::ScopedTimer timer(transfers_.upload_ns);
+    broad_phase_->getAllAabbsGPU().copyFromHost(host_boxes_);
+    broad_phase_->getSmallAabbIndicesGPU().copyFromHost(sizes_.small);
+    broad_phase_->getLargeAabbIndicesGPU().copyFromHost(sizes_.large);
+    Traits::prepare(*broad_phase_, sizes_);
+    requireNoError();
+  }
+
+  void cleanCache() override { pairs_.clear(); }
+
+  void searchOverlaps() override {
+    if (count_ >= 2) {
+      searchOnDevice();
+      download();
+      addLargePairs();
+    }
+    run_ = pairs_.run();
+  }
+
+  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
+  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
+
+  void visitCounters(const CounterVisitor& visit) const override {
+    visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));
+    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
+  }
+
+ private:
+  static float longestEdge(const Aabb& box) {
+    float edge = 0;
+    for (int axis = 0; axis < 3; ++axis) edge = std::max(edge, box.max[axis] - box.min[axis]);
+    return edge;
+  }
+
+  /// Large are the bodies that would make the cells of a grid far too large for most.
+  void divideBySize(std::span<const Aabb> boxes) {
+    edges_.clear();
+    if constexpr (Traits::kHasLarge) {
+      for (const Aabb& box : boxes) edges_.push_back(longestEdge(box));
+    }
+    const float limit = largestSmallEdge();
+    sizes_.small.resize(0);
+    sizes_.large.resize(0);
+    sizes_.largest_small = 0;
+    for (int i = 0; i < host_boxes_.size(); ++i) {
+      const bool is_body = i < count_;
+      if (is_body && Traits::kHasLarge && !isSmall(boxes[i], edges_[i], limit)) {
+        sizes_.large.push_back(i);
+        continue;
+      }
+      sizes_.small.push_back(i);
+      if (Traits::kHasLarge) sizes_.largest_small = std::max(sizes_.largest_small, edges_[i]);
+    }
+  }
+
+  /// Four times the median, unless that leaves more than one body in 16 out.
+  float largestSmallEdge() {
+    if (edges_.empty()) return kLargest;
+    ordered_ = edges_;
+    const auto quantile = [&](std::size_t sixteenths) {
+      const auto at =
+          ordered_.begin() + static_cast<std::ptrdiff_t>((ordered_.size() - 1) * sixteenths / 16);
+      std::ranges::nth_element(ordered_, at);
+      return *at;
+    };
+    return std::max(4 * quantile(8), quantile(15));
+  }
+
+  /// Cells are counted in 32-bit integers: what is too many cells away goes with the large.
+  static bool isSmall(const Aabb& box, float edge, float limit) {
+    if (!(edge <= limit)) return false;
+    const float farthest = std::max(limit, 1e-30F) * static_cast<float>(1 << 28);
+    return std::ranges::all_of(std::span(box.min).first(3),
+                               [&](float x) { return std::abs(x) < farthest; });
+  }
+
+  void searchOnDevice() {
+    max_pairs_ = std::max(max_pairs_, 4 * count_ + 1024);
+    for (;;) {
+      broad_phase_->calculateOverlappingPairs(max_pairs_);
+      if (broad_phase_->getNumOverlap() < max_pairs_) break;
+      library_error.clear();  // it may have complained of the full buffer
+      if (max_pairs_ > std::numeric_limits<int>::max() / 2) {
+        throw UnsupportedError("more pairs than the library can count");
+      }
+      max_pairs_ *= 2;
+    }
+    requireNoError();
+  }
+
+  void download() {
+    {
+      const opencl::ScopedTimer timer(transfers_.download_ns);
+      host_pairs_.resize(broad_phase_->getNumOverlap());
+      if (host_pairs_.size() > 0) broad_phase_->getOverlappingPairsGPU().copyToHost(host_pairs_);
+    }
+    for (int i = 0; i < host_pairs_.size(); ++i) {
+      pairs_.add(static_cast<std::uint32_t>(host_pairs_[i].x),
+                 static_cast<std::uint32_t>(host_pairs_[i].y));
+    }
+  }
+
+  void addLargePairs() {
+    const auto overlap = [](const b3SapAabb& a, const b3SapAabb& b) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (a.m_min[axis] > b.m_max[axis] || b.m_min[axis] > a.m_max[axis]) return false;
+      }
+      return true;
+    };
+    const auto& large = sizes_.large;
+    for (int i = 0; i < large.size(); ++i) {
+      for (int j = i + 1; j < large.size(); ++j) {
+        if (overlap(host_boxes_[large[i]], host_boxes_[large[j]])) {
+          pairs_.add(static_cast<std::uint32_t>(large[i]), static_cast<std::uint32_t>(large[j]));
+        }
+      }
+    }
+  }
+
+  void run(const Frame& frame) {
+    updateObjects(frame);
+    cleanCache();
+    searchOverlaps();
+  }
+
+  /// Unit cubes on a lattice that is a little too narrow for them: each meets its neighbours.
+  void requireSelfCheck() {
+    std::vector<Aabb> boxes;
+    constexpr int kSide = 12;
+    for (int i = 0; i < kSide * kSide * kSide; ++i) {
+      Aabb& box = boxes.emplace_back();
+      const int cell[] = {i % kSide, i / kSide % kSide, i / (kSide * kSide)};
+      for (int axis = 0; axis < 3; ++axis) {
+        box.min[axis] = 0.9F * static_cast<float>(cell[axis]);
+        box.max[axis] = box.min[axis] + 1;
+      }
+    }
+    run({0, boxes});
+    const std::vector<Pair> right = bruteForcePairs(boxes);
+    const PairRun right_run = right;
+    if (digest(overlaps()) != digest({&right_run, 1})) {
+      throw UnsupportedError(
+          fmt::format("wrong pairs on this device in a start-up check ({} instead of {})",
+                      pairs_.size(), right.size()));
+    }
+  }
+
+  std::optional<opencl::DeviceContext> context_;
+  std::unique_ptr<typename Traits::BroadPhase> broad_phase_;
+  std::int64_t build_ns_ = 0;
+  TransferTimes transfers_;
+  int count_ = 0;      ///< bodies, those that fill up not counted
+  int max_pairs_ = 0;  ///< what the pair buffer is made for
+  Sizes sizes_;
+  std::vector<float> edges_;  ///< longest edge of each body
+  std::vector<float> ordered_;
+  b3AlignedObjectArray<b3SapAabb> host_boxes_;
+  b3AlignedObjectArray<b3Int4> host_pairs_;
+  PairBuffer pairs_;
+  PairRun run_;
+};
+
+template <class Traits>
+Algorithm variant(std::string id, std::string original_id, std::string summary,
+                  std::string principle, std::string time) {
+  return {.id = std::move(id),
+          .family = "GPU",
+          .summary = std::move(summary),
+          .parallel = true,
+          .original_ids = {{std::move(original_id), {}}},
+          .create = [] { return std::make_unique<BulletOpenCl<Traits>>(); },
+          .library_allocates = true,
+          .principle = std::move(principle),
+          .optimisations = "OpenCL (Bullet 3)",
+          .time = std::move(time),
+          .space = "O(n + k)",
+          .source = "Bullet 3.24; Serpa and Rodrigues 2019; Karras 2012; Liu et al. 2010"};
+}
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  return {variant<GridTraits>("b3-grid", "GPU_Grid", "Bullet 3's uniform grid on an OpenCL device",
+                              "grid", "O(n) for bodies of about one size"),
+          variant<BvhTraits>("b3-lbvh", "GPU_LBVH", "Bullet 3's linear BVH on an OpenCL device",
+                             "tree", "O(n log n + k)"),
+          variant<SapTraits>("b3-sap", "GPU_SAP", "Bullet 3's sweep on an OpenCL device", "sorting",
+                             "O(n + w), w pairs that overlap on the sort axis")};
+}
+
+}  // namespace broadmark::bullet_opencl

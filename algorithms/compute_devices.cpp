@@ -1,0 +1,56 @@
+// Choosing among compute devices; asking for them is opencl/device_context.cpp's.
+
+#include "broadmark/compute_devices.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+bool containsAnyCase(std::string_view text, std::string_view part) {
+  const auto equal = [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  };
+  return std::ranges::search(text, part, equal).begin() != text.end();
+}
+
+std::string listOf(const std::vector<ComputeDevice>& devices) {
+  if (devices.empty()) return "there is none";
+  std::string list = "there are";
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    list += fmt::format("{} {}: {}", i == 0 ? "" : ",", i, devices[i].name);
+  }
+  return list;
+}
+
+}  // namespace
+
+std::string describe(const ComputeDevice& device) {
+  constexpr double kGibibyte = 1 << 30;
+  return fmt::format("{} ({}, {}, {} units, {:.1f} GiB, driver {})", device.name, device.platform,
+                     device.gpu ? "GPU" : "CPU", device.units,
+                     static_cast<double>(device.memory_bytes) / kGibibyte, device.driver);
+}
+
+std::size_t chooseDevice(const std::vector<ComputeDevice>& devices, std::string_view wanted) {
+  if (wanted.empty() && !devices.empty()) return 0;
+  std::size_t position = 0;
+  const char* const end = wanted.data() + wanted.size();
+  const auto number = std::from_chars(wanted.data(), end, position);
+  if (number.ec == std::errc() && number.ptr == end && position < devices.size()) return position;
+  const auto found = std::ranges::find_if(devices, [&](const ComputeDevice& device) {
+    return containsAnyCase(device.name, wanted) || containsAnyCase(device.platform, wanted);
+  });
+  if (found == devices.end()) {
+    throw InputError(fmt::format("no compute device '{}': {}", wanted, listOf(devices)));
+  }
+  return static_cast<std::size_t>(found - devices.begin());
+}
+
+}  // namespace broadmark

@@ -1,0 +1,172 @@
+// Hierarchical grid on a compute device: each body in one cell, of a level that fits its size;
+// bodies sorted by cell; each searches the cells around it on its own level and the coarser ones.
+// O(n + k) for bodies of any sizes, as long as few lie in one cell; memory is O(n), however far
+// apart they are.
+//
+// Papers: S. Le Grand, "Broad-Phase Collision Detection with CUDA", GPU Gems 3, 2007 (the sorted
+// grid); M. Teschner, B. Heidelberger, M. Müller, D. Pomeranets, M. Gross, "Optimized Spatial
+// Hashing for Collision Detection of Deformable Objects", VMV 2003; C. Ericson, "Real-Time
+// Collision Detection", 2005, 7.2 (the hierarchy).
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "algorithms/opencl/device_broad_phase.h"
+#include "broadmark/algorithm.h"
+#include "opencl_kernels.h"
+
+namespace broadmark::gpu_grid {
+namespace {
+
+// As grid.cl has them.
+constexpr int kLevels = 21;
+struct Grid {
+  cl_float4 scale;
+  cl_float4 origin;
+  cl_uint4 bits;
+};
+
+class GpuGrid final : public opencl::DeviceBroadPhase {
+ public:
+  /// Reads the boxes back and draws the cells that bodies live in.
+  void drawStructure(DebugDraw& draw) const override {
+    constexpr Rgb kCellColour = 0x40FF80;
+    constexpr std::size_t kMostCells = 20'000;
+    if (count() < 2) return;
+    std::vector<Cell> cells;
+    for (const Aabb& box : read<Aabb>(sorted_, count())) cells.push_back(cellOf(box));
+    std::ranges::sort(cells);
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    cells.resize(std::min(cells.size(), kMostCells));
+    for (const Cell& cell : cells) draw.box(boxOf(cell), kCellColour, cell.level);
+  }
+
+ protected:
+  [[nodiscard]] std::string_view kernelSource() const override { return opencl_kernels::grid_cl(); }
+
+  void makeKernels(const cl::Program& program) override {
+    make_keys_ = cl::Kernel(program, "make_keys");
+    gather_ = cl::Kernel(program, "gather");
+    search_ = cl::Kernel(program, "search");
+    used_levels_ = context().buffer(sizeof(cl_uint));
+  }
+
+  void reserve(std::size_t count) override {
+    sorted_ = context().buffer(count * sizeof(Aabb));
+    starts_ = context().buffer((std::bit_ceil(count) + 1) * sizeof(cl_uint));
+  }
+
+  void build() override {
+    chooseGrid(summarise());
+    context().queue().enqueueFillBuffer(used_levels_, cl_uint{0}, 0, sizeof(cl_uint));
+    forBodies(make_keys_, count(), boxes(), n(), grid_, sorter().keys(), sorter().values(),
+              used_levels_);
+    sorter().sort(tableBits());
+    const auto buckets = cl_uint{1} << tableBits();
+    forBodies(gather_, count(), boxes(), sorter().keys(), sorter().values(), n(), buckets, sorted_,
+              starts_);
+  }
+
+  void search(const opencl::PairSink& sink) override {
+    forBodies(search_, count(), sorted_, sorter().values(), starts_, n(), grid_, used_levels_,
+              sink.pairs, sink.count, sink.capacity);
+  }
+
+ private:
+  struct Cell {
+    int level = 0;
+    std::array<std::uint32_t, 3> at{};
+    friend auto operator<=>(const Cell&, const Cell&) = default;
+  };
+
+  [[nodiscard]] int tableBits() const {
+    return static_cast<int>(grid_.bits.s[0] + grid_.bits.s[1] + grid_.bits.s[2]);
+  }
+
+  /// Units about as large as a typical body; larger where a coordinate would take too many of them.
+  void chooseGrid(const opencl::FrameSummary& summary) {
+    constexpr double kMostUnits = 1 << (kLevels - 1);
+    double unit = std::max(summary.mean_edge * 1.01, 1e-30);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double low = summary.bounds.min[axis];
+      const double high = summary.bounds.max[axis];
+      unit = std::max({unit, (high - low) / (kMostUnits - 2),
+                       std::max(std::abs(low), std::abs(high)) / (1 << 23)});
+    }
+    std::array<int, 3> bits{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double low = summary.bounds.min[axis];
+      const double cells = (summary.bounds.max[axis] - low) / unit + 1;
+      bits[axis] = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(cells)));
+      grid_.scale.s[axis] = static_cast<float>(1 / unit);
+      grid_.origin.s[axis] = summary.bounds.min[axis] * grid_.scale.s[axis];
+    }
+    grid_.scale.s[3] = grid_.origin.s[3] = 0;
+    // No more buckets than bodies.
+    const auto most = static_cast<int>(std::bit_width(count() - 1));
+    while (bits[0] + bits[1] + bits[2] > most) --*std::ranges::max_element(bits);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      grid_.bits.s[axis] = static_cast<cl_uint>(bits[axis]);
+    }
+    grid_.bits.s[3] = 0;
+  }
+
+  /// As unit_of in grid.cl.
+  [[nodiscard]] std::uint32_t unitOf(float coordinate, std::size_t axis) const {
+    constexpr float kLast = (1 << (kLevels - 1)) - 1;
+    return static_cast<std::uint32_t>(
+        std::clamp(coordinate * grid_.scale.s[axis] - grid_.origin.s[axis], 0.0F, kLast));
+  }
+
+  [[nodiscard]] Cell cellOf(const Aabb& box) const {
+    Cell cell;
+    const auto fits = [&](std::size_t axis) {
+      return (unitOf(box.max[axis], axis) >> cell.level) -
+                 (unitOf(box.min[axis], axis) >> cell.level) <=
+             1;
+    };
+    while (!(fits(0) && fits(1) && fits(2))) ++cell.level;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      cell.at[axis] = unitOf(box.min[axis], axis) >> cell.level;
+    }
+    return cell;
+  }
+
+  [[nodiscard]] Aabb boxOf(const Cell& cell) const {
+    Aabb box;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto edge = static_cast<float>(1U << cell.level);
+      const float low = static_cast<float>(cell.at[axis]) * edge + grid_.origin.s[axis];
+      box.min[axis] = low / grid_.scale.s[axis];
+      box.max[axis] = (low + edge) / grid_.scale.s[axis];
+    }
+    return box;
+  }
+
+  cl::Kernel make_keys_;
+  cl::Kernel gather_;
+  cl::Kernel search_;
+  cl::Buffer used_levels_;
+  cl::Buffer sorted_;
+  cl::Buffer starts_;
+  Grid grid_{};
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  return {{.id = "gpu-grid",
+           .family = "GPU",
+           .summary = "hierarchical grid on an OpenCL device",
+           .parallel = true,
+           .create = [] { return std::make_unique<GpuGrid>(); },
+           .library_allocates = true,
+           .principle = "grid",
+           .optimisations = "OpenCL, radix sort, levels by size",
+           .time = "O(n + k) with few bodies per cell",
+           .space = "O(n + k)",
+           .source = "Le Grand 2007; Teschner et al. 2003; Ericson 2005, 7.2"}};
+}
+
+}  // namespace broadmark::gpu_grid

@@ -1,0 +1,107 @@
+// What our own algorithms on a compute device share: boxes go up, pairs come down, and both have
+// buffers there that stay and grow.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "algorithms/opencl/device_context.h"
+#include "algorithms/opencl/device_sorter.h"
+#include "algorithms/opencl/launch.h"
+#include "broadmark/broad_phase.h"
+
+namespace broadmark::opencl {
+
+/// Bounds, mean size and spread of a frame's boxes.
+struct FrameSummary {
+  Aabb bounds;
+  double mean_edge = 0;              ///< mean of the bodies' longest edges
+  std::array<double, 3> variance{};  ///< of the centres, per axis
+};
+
+/// Where a searching kernel puts pairs: its last three arguments.
+struct PairSink {
+  cl::Buffer pairs;
+  cl::Buffer count;
+  cl_uint capacity = 0;
+};
+
+/// The frame's work is done when each phase returns: the times are honest.
+class DeviceBroadPhase : public BroadPhase {
+ public:
+  void visitParameters(const ParameterVisitor&) override;
+  [[nodiscard]] Capabilities capabilities() const override;
+
+  void initialize(const SceneInfo&, const Frame& first, Execution&) override;
+  void updateObjects(const Frame&) override;
+  void cleanCache() override;
+  void updateStructures() override;
+  void searchOverlaps() override;
+
+  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
+  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
+  void visitCounters(const CounterVisitor&) const override;
+
+ protected:
+  // What an algorithm adds. All are called with at least two bodies.
+
+  /// The kernels, with common.cl put before them.
+  [[nodiscard]] virtual std::string_view kernelSource() const = 0;
+  virtual void makeKernels(const cl::Program&) = 0;
+  /// Makes buffers for `count` bodies; called when there are more than ever before.
+  virtual void reserve(std::size_t count) = 0;
+  /// Enqueues building the structure from boxes().
+  virtual void build() = 0;
+  /// Enqueues the search. It may be called again, with a larger sink.
+  virtual void search(const PairSink&) = 0;
+
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] cl_uint n() const { return static_cast<cl_uint>(count_); }
+  /// Bodies' boxes, as Aabb.
+  [[nodiscard]] const cl::Buffer& boxes() const { return boxes_; }
+  DeviceSorter& sorter() { return *sorter_; }
+  DeviceContext& context() { return *context_; }
+  [[nodiscard]] const DeviceContext& context() const { return *context_; }
+
+  /// Enqueues a kernel for as many work items as FOR_EACH_BODY needs for `bodies`.
+  template <class... Arguments>
+  void forBodies(cl::Kernel& kernel, std::size_t bodies, const Arguments&... arguments) {
+    const std::size_t items = (bodies + bodies_per_item_ - 1) / bodies_per_item_;
+    launch(context_->queue(), kernel, items, group_, arguments...);
+  }
+
+  /// Looks at all boxes; waits for the answer.
+  FrameSummary summarise();
+
+  /// Reads a buffer of `size` elements back: for drawing and checks, not within a phase.
+  template <class T>
+  [[nodiscard]] std::vector<T> read(const cl::Buffer& buffer, std::size_t size) const {
+    std::vector<T> elements(size);
+    if (size > 0) {
+      context_->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, size * sizeof(T), elements.data());
+    }
+    return elements;
+  }
+
+ private:
+  [[nodiscard]] bool likeGpu() const;
+  cl_uint searchOnce();
+
+  Choice way_{"auto", {"auto", "cpu", "gpu"}};
+  std::optional<DeviceContext> context_;
+  std::optional<DeviceSorter> sorter_;
+  std::size_t bodies_per_item_ = 1;
+  std::size_t group_ = 1;
+  cl::Kernel summarise_;
+  cl::Buffer summaries_;
+  std::size_t count_ = 0;
+  std::size_t capacity_ = 0;  ///< bodies that all buffers have room for
+  cl::Buffer boxes_;
+  PairSink sink_;
+  PairBuffer pairs_;
+  PairRun run_;
+  TransferTimes transfers_;
+};
+
+}  // namespace broadmark::opencl

@@ -1,0 +1,73 @@
+#include "algorithms/opencl/device_sorter.h"
+
+#include <algorithm>
+
+#include "algorithms/opencl/launch.h"
+#include "opencl_kernels.h"
+
+namespace broadmark::opencl {
+namespace {
+
+// As sort.cl has them.
+constexpr int kSerialDigitBits = 8;
+constexpr int kGroupDigitBits = 4;
+constexpr std::size_t kGroupSize = 128;
+constexpr std::size_t kGroupBlock = kGroupSize * 4;
+/// Blocks for each thread of a CPU: more even out what else the machine does.
+constexpr std::size_t kBlocksPerUnit = 4;
+
+}  // namespace
+
+DeviceSorter::DeviceSorter(DeviceContext& context, bool by_groups)
+    : context_(context), by_groups_(by_groups) {
+  const cl::Program program = context.build(opencl_kernels::sort_cl());
+  count_ = cl::Kernel(program, by_groups ? "group_count" : "serial_count");
+  places_ = cl::Kernel(program, by_groups ? "group_places" : "serial_places");
+  scatter_ = cl::Kernel(program, by_groups ? "group_scatter" : "serial_scatter");
+}
+
+void DeviceSorter::resize(std::size_t count) {
+  size_ = count;
+  if (count <= capacity_ && capacity_ > 0) return;
+  capacity_ = count;
+  for (int side = 0; side < 2; ++side) {
+    keys_[side] = context_.buffer(count * sizeof(cl_uint));
+    values_[side] = context_.buffer(count * sizeof(cl_uint));
+  }
+  const std::size_t serial_blocks =
+      kBlocksPerUnit * context_.device().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  const std::size_t counts =
+      by_groups_ ? (count / kGroupBlock + 1) << kGroupDigitBits : serial_blocks << kSerialDigitBits;
+  counts_ = context_.buffer(counts * sizeof(cl_uint));
+}
+
+void DeviceSorter::sort(int bits) {
+  const int digit_bits = by_groups_ ? kGroupDigitBits : kSerialDigitBits;
+  for (int shift = 0; shift < bits; shift += digit_bits) pass(static_cast<cl_uint>(shift));
+}
+
+void DeviceSorter::pass(cl_uint shift) {
+  const cl::CommandQueue& queue = context_.queue();
+  const auto n = static_cast<cl_uint>(size_);
+  const int to = 1 - current_;
+  if (by_groups_) {
+    const std::size_t groups = (size_ + kGroupBlock - 1) / kGroupBlock;
+    const auto counts = static_cast<cl_uint>(groups << kGroupDigitBits);
+    launch(queue, count_, groups * kGroupSize, kGroupSize, keys(), n, shift, counts_);
+    launch(queue, places_, kGroupSize, kGroupSize, counts_, counts);
+    launch(queue, scatter_, groups * kGroupSize, kGroupSize, keys(), values(), n, shift, counts_,
+           keys_[to], values_[to]);
+  } else {
+    const std::size_t blocks =
+        kBlocksPerUnit * context_.device().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+    const auto block_size = static_cast<cl_uint>((size_ + blocks - 1) / blocks);
+    const auto counts = static_cast<cl_uint>(blocks << kSerialDigitBits);
+    launch(queue, count_, blocks, 1, keys(), n, shift, block_size, counts_);
+    launch(queue, places_, 1, 1, counts_, counts);
+    launch(queue, scatter_, blocks, 1, keys(), values(), n, shift, block_size, counts_, keys_[to],
+           values_[to]);
+  }
+  current_ = to;
+}
+
+}  // namespace broadmark::opencl

@@ -1,0 +1,468 @@
+// Tracy: a uniform grid whose every cell is an incremental sweep and prune. A body that stays where
+// it is costs one comparison; what moves is sorted anew, from its last place to the new one, and
+// each swap of a start and an end is an event at which a pair may begin or end. Pairs are kept from
+// frame to frame. O(n + s), s the swaps: for each moved body about the distance times the endpoints
+// per unit of length in a cell. The grid does what no incremental sweep can: keep apart bodies that
+// share but a coordinate or two.
+//
+// A frame: find out which bodies have moved and which cells they touch now; tell the cells; let
+// each cell find the pairs that began and ended in it (tracy/cell.h, with the proof that each
+// change is told once, so that no witnesses have to be counted); apply these to the pair set. All
+// of it is shared out: first bodies, then cells, then pairs by their lower body. No two workers
+// touch the same cell or the same part of the set.
+//
+// Many bodies that each touch very many cells would make the cells' lists as long as the product of
+// both. When the average body touches more than kMostCellsPerBody cells, the grid is rebuilt with
+// half the cells per axis, or fewer; once they fit again, with more.
+//
+// Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
+// AABB Insertion and Removal", IEEE VR 2009.
+
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "algorithms/tracy/cell.h"
+#include "algorithms/tracy/grid.h"
+#include "algorithms/tracy/pair_set.h"
+#include "broadmark/algorithm.h"
+
+namespace broadmark::tracy {
+namespace {
+
+/// On average; evenly spread small bodies touch 1 to 3.
+constexpr std::uint64_t kMostCellsPerBody = 8;
+
+/// Letters to cells, from the worker who found out to those who have to know.
+class Mailbox {
+ public:
+  void resize(std::size_t cells) {
+    concerned_.assign(cells, 0);
+    latest_.assign(cells, kNone);
+    arrivals_.clear();
+  }
+  /// Before the first letter of a frame, once all have been read.
+  void clear() { arrivals_.clear(); }
+
+  /// A body of this cell has moved.
+  void notify(std::size_t cell) { concerned_[cell] = 1; }
+  /// A body enters this cell.
+  void announce(std::size_t cell, std::uint32_t body) {
+    notify(cell);
+    const auto letter = static_cast<std::uint32_t>(arrivals_.size());
+    arrivals_.push_back({body, std::exchange(latest_[cell], letter)});
+  }
+
+  [[nodiscard]] bool concerns(std::size_t cell) const { return concerned_[cell] != 0; }
+  /// Calls visit(body) for those that enter the cell.
+  template <class Visit>
+  void read(std::size_t cell, Visit visit) const {
+    for (std::uint32_t i = latest_[cell]; i != kNone; i = arrivals_[i].next) {
+      visit(arrivals_[i].body);
+    }
+  }
+  /// Forgets the letters to this cell. Workers may do so for different cells at once.
+  void empty(std::size_t cell) {
+    concerned_[cell] = 0;
+    latest_[cell] = kNone;
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  struct Arrival {
+    std::uint32_t body;
+    std::uint32_t next;  ///< of those to the same cell
+  };
+
+  std::vector<std::uint8_t> concerned_;  ///< by cell; bytes, since workers empty neighbours at once
+  std::vector<std::uint32_t> latest_;    ///< by cell
+  std::vector<Arrival> arrivals_;
+};
+
+struct alignas(64) Worker {
+  CellWork work;
+  Mailbox mailbox;
+  std::uint64_t cells_touched = 0;  ///< by the worker's share of the bodies
+};
+
+class Tracy final : public BroadPhase {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"objects_per_cell", "bodies per grid cell, were they evenly spread", &objects_per_cell_,
+           1, 1e9});
+  }
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    team_ = &execution.team();
+    world_ = scene.world;
+    const std::size_t count = first.boxes.size();
+    const auto team_size = static_cast<std::size_t>(team_->size());
+    workers_ = std::vector<Worker>(team_size);
+    for (Worker& worker : workers_) {
+      worker.work.begun = std::vector<PairBuffer>(team_size);
+      worker.work.ended = std::vector<PairBuffer>(team_size);
+    }
+    pairs_.resize(team_size);
+    runs_.reserve(team_size);
+    first_cells_.resize(team_size + 1);
+
+    bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
+    bodies_.boxes[kNow] = bodies_.boxes[kBefore];
+    for (std::vector<CellRange>& ranges : bodies_.ranges) ranges.resize(count);
+    bodies_.moved.assign((count + kWordBits - 1) / kWordBits, 0);
+
+    const double wanted =
+        std::ceil(std::cbrt(static_cast<double>(count) / static_cast<double>(objects_per_cell_)));
+    wanted_cells_ = static_cast<std::uint32_t>(
+        std::clamp(wanted, 1.0, static_cast<double>(Grid::kMostCellsPerAxis)));
+    rebuild(affordable(wanted_cells_));
+    searchOverlaps();
+    cleanCache();
+  }
+
+  void updateObjects(const Frame& frame) override {
+    team_->run([&](int worker) {
+      const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
+      for (std::size_t word = begin; word < end; ++word) {
+        bodies_.moved[word] = takeOver(frame.boxes, word * kWordBits);
+      }
+    });
+  }
+
+  void cleanCache() override {
+    for (Worker& worker : workers_) {
+      for (PairBuffer& pairs : worker.work.begun) pairs.clear();
+      for (PairBuffer& pairs : worker.work.ended) pairs.clear();
+      worker.work.counts = {};
+      worker.mailbox.clear();
+    }
+    rebuilds_ = 0;
+  }
+
+  void updateStructures() override {
+    if (std::ranges::none_of(bodies_.moved, [](std::uint64_t word) { return word != 0; })) return;
+    team_->run([this](int worker) { findCells(worker); });
+    if (const std::uint32_t cells = suitableCellsPerAxis(); cells != grid_.cellsPerAxis()) {
+      rebuild(cells);
+      return;
+    }
+    team_->run([this](int worker) { tellCells(worker); });
+    shareOutCells();
+    team_->run([this](int worker) { updateCells(worker); });
+  }
+
+  void searchOverlaps() override {
+    team_->run([this](int part) {
+      PairSet& pairs = pairs_[static_cast<std::size_t>(part)];
+      for (const Worker& worker : workers_) {
+        for (const Pair pair : worker.work.ended[static_cast<std::size_t>(part)].run()) {
+          pairs.erase(pair);
+        }
+      }
+      for (const Worker& worker : workers_) {
+        for (const Pair pair : worker.work.begun[static_cast<std::size_t>(part)].run()) {
+          pairs.insert(pair);
+        }
+      }
+    });
+    runs_.clear();
+    for (const PairSet& pairs : pairs_) runs_.push_back(pairs.run());
+  }
+
+  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+
+  void drawStructure(DebugDraw& draw) const override;
+  void visitCounters(const CounterVisitor& visit) const override;
+  [[nodiscard]] std::string validate() const override;
+
+ private:
+  static constexpr std::size_t kWordBits = 64;
+
+  Worker& workerOf(int worker) { return workers_[static_cast<std::size_t>(worker)]; }
+
+  /// Takes over the boxes of the bodies of one word of bits; which of them have moved.
+  std::uint64_t takeOver(std::span<const Aabb> boxes, std::size_t begin) {
+    const std::size_t end = std::min(begin + kWordBits, boxes.size());
+    std::uint64_t moved = 0;
+    for (std::size_t body = begin; body < end; ++body) {
+      Aabb& now = bodies_.boxes[kNow][body];
+      if (boxes[body] == now) continue;
+      bodies_.boxes[kBefore][body] = std::exchange(now, boxes[body]);
+      moved |= std::uint64_t{1} << (body - begin);
+    }
+    return moved;
+  }
+
+  /// Calls visit(body) for the bodies of a worker's share that have moved.
+  template <class Visit>
+  void forEachMoved(int worker, Visit visit) {
+    const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
+    for (std::size_t word = begin; word < end; ++word) {
+      for (std::uint64_t bits = bodies_.moved[word]; bits != 0; bits &= bits - 1) {
+        visit(static_cast<std::uint32_t>(word * kWordBits) +
+              static_cast<std::uint32_t>(std::countr_zero(bits)));
+      }
+    }
+  }
+
+  void findCells(int worker) {
+    std::uint64_t& touched = workerOf(worker).cells_touched;
+    forEachMoved(worker, [&](std::uint32_t body) {
+      CellRange& now = bodies_.ranges[kNow][body];
+      bodies_.ranges[kBefore][body] = std::exchange(now, grid_.range(bodies_.boxes[kNow][body]));
+      touched += now.size();
+      touched -= bodies_.ranges[kBefore][body].size();
+    });
+  }
+
+  /// The merge of a body's old cells and its new ones.
+  void tellCells(int worker) {
+    Mailbox& mailbox = workerOf(worker).mailbox;
+    forEachMoved(worker, [&](std::uint32_t body) {
+      const CellRange& before = bodies_.ranges[kBefore][body];
+      const CellRange& now = bodies_.ranges[kNow][body];
+      grid_.forEachCell(before,
+                        [&](const CellPosition&, std::size_t cell) { mailbox.notify(cell); });
+      if (now == before) return;
+      grid_.forEachCell(now, [&](const CellPosition& position, std::size_t cell) {
+        if (!before.contains(position)) mailbox.announce(cell, body);
+      });
+    });
+  }
+
+  void updateCells(int worker) {
+    forEachCellOf(worker, [&](std::size_t cell) {
+      if (!isConcerned(cell)) return;
+      cells_[cell].update(bodies_, workerOf(worker).work, [&](auto enter) {
+        for (const Worker& from : workers_) from.mailbox.read(cell, enter);
+      });
+      for (Worker& from : workers_) from.mailbox.empty(cell);
+    });
+  }
+
+  /// Calls visit(cell) for the cells of a worker's share.
+  template <class Visit>
+  void forEachCellOf(int worker, Visit visit) const {
+    const auto share = first_cells_.begin() + worker;
+    for (std::size_t cell = share[0]; cell < share[1]; ++cell) visit(cell);
+  }
+
+  [[nodiscard]] bool isConcerned(std::size_t cell) const {
+    return std::ranges::any_of(workers_,
+                               [&](const Worker& worker) { return worker.mailbox.concerns(cell); });
+  }
+
+  /// Contiguous shares of the cells, all with about the same work. Fixed shares rather than a
+  /// common queue: who does what, and so the memory that each needs, is the same in every run.
+  void shareOutCells() {
+    // A body that moves passes a fixed part of those in its cell.
+    const auto cost = [&](std::size_t cell) {
+      const std::uint64_t size = isConcerned(cell) ? cells_[cell].size() : 0;
+      return 1 + size * (64 + size);
+    };
+    std::uint64_t total = 0;
+    for (std::size_t cell = 0; cell < cells_.size(); ++cell) total += cost(cell);
+    shareOut(cost, total);
+  }
+
+  template <class Cost>
+  void shareOut(Cost cost, std::uint64_t total) {
+    const std::uint64_t each = total / workers_.size() + 1;
+    std::size_t cell = 0;
+    std::uint64_t done = 0;
+    for (std::size_t worker = 0; worker < workers_.size(); ++worker) {
+      first_cells_[worker] = cell;
+      for (; cell < cells_.size() && done < each * (worker + 1); ++cell) done += cost(cell);
+    }
+    first_cells_.back() = cells_.size();
+  }
+
+  /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
+  std::uint64_t cellsTouchedIn(const Grid& grid) {
+    std::atomic<std::uint64_t> all = 0;
+    team_->run([&](int worker) {
+      std::uint64_t touched = 0;
+      const auto [begin, end] = share(bodies_.boxes[kNow].size(), team_->size(), worker);
+      for (std::size_t i = begin; i < end; ++i)
+        touched += grid.range(bodies_.boxes[kNow][i]).size();
+      all += touched;
+    });
+    return all;
+  }
+
+  [[nodiscard]] std::uint64_t mostCellsTouched() const {
+    return kMostCellsPerBody * bodies_.boxes[kNow].size();
+  }
+
+  /// `cells_per_axis`, or as often halved as it takes.
+  std::uint32_t affordable(std::uint32_t cells_per_axis) {
+    while (cells_per_axis > 1 &&
+           cellsTouchedIn(Grid(world_, cells_per_axis)) > mostCellsTouched()) {
+      cells_per_axis /= 2;
+    }
+    return cells_per_axis;
+  }
+
+  std::uint32_t suitableCellsPerAxis() {
+    const std::uint32_t present = grid_.cellsPerAxis();
+    std::uint64_t touched = 0;
+    for (const Worker& worker : workers_) touched += worker.cells_touched;
+    if (touched > mostCellsTouched()) return affordable(present / 2);
+    if (present == wanted_cells_) return present;
+    // Well below the limit, or the next frame might be above it again.
+    const std::uint32_t more = std::min(2 * present + 1, wanted_cells_);
+    return 2 * cellsTouchedIn(Grid(world_, more)) <= mostCellsTouched() ? more : present;
+  }
+
+  /// Starts over with another grid, all pairs told anew.
+  void rebuild(std::uint32_t cells_per_axis) {
+    ++rebuilds_;
+    grid_ = Grid(world_, cells_per_axis);
+    cells_.clear();
+    cells_.resize(grid_.cellCount());
+    for (Worker& worker : workers_) {
+      worker.mailbox.resize(cells_.size());
+      worker.cells_touched = 0;
+    }
+    for (PairSet& pairs : pairs_) pairs.clear();
+
+    // Bodies by cell: counted, then filled in from the back.
+    std::vector<std::size_t> ends(cells_.size() + 1, 0);
+    for (std::size_t body = 0; body < bodies_.boxes[kNow].size(); ++body) {
+      CellRange& range = bodies_.ranges[kNow][body];
+      range = grid_.range(bodies_.boxes[kNow][body]);
+      bodies_.ranges[kBefore][body] = range;
+      grid_.forEachCell(range, [&](const CellPosition&, std::size_t cell) { ++ends[cell]; });
+      workers_.front().cells_touched += range.size();
+    }
+    std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
+    std::vector<std::uint32_t> bodies(ends.back());
+    for (auto body = static_cast<std::uint32_t>(bodies_.boxes[kNow].size()); body-- > 0;) {
+      grid_.forEachCell(bodies_.ranges[kNow][body], [&](const CellPosition&, std::size_t cell) {
+        bodies[--ends[cell]] = body;
+      });
+    }
+    const auto bodiesIn = [&](std::size_t cell) {
+      return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);
+    };
+    shareOut([&](std::size_t cell) { return 1 + bodiesIn(cell).size(); },
+             cells_.size() + bodies.size());
+    team_->run([&](int worker) {
+      forEachCellOf(worker, [&](std::size_t cell) {
+        cells_[cell].build(grid_.position(cell), bodiesIn(cell), bodies_, workerOf(worker).work);
+      });
+    });
+  }
+
+  std::int64_t objects_per_cell_ = 200;
+  ThreadTeam* team_ = nullptr;
+  Aabb world_;
+  std::uint32_t wanted_cells_ = 1;  ///< per axis, bodies permitting
+  Grid grid_;
+  Bodies bodies_;
+  std::vector<Cell> cells_;
+  std::vector<std::size_t> first_cells_;  ///< of each worker's share, and the end of the last
+  std::vector<Worker> workers_;
+  std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
+  std::vector<PairRun> runs_;
+  std::uint64_t rebuilds_ = 0;
+};
+
+/// Level 0: the occupied cells; level 1: how the first axis is cut into chunks in each of them.
+void Tracy::drawStructure(DebugDraw& draw) const {
+  constexpr Rgb kCellColour = 0x4080FF;
+  constexpr Rgb kSegmentColour = 0x808080;
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (cells_[cell].size() == 0) continue;
+    const Aabb bounds = grid_.bounds(grid_.position(cell));
+    draw.box(bounds, kCellColour, 0);
+    Aabb segment = bounds;
+    cells_[cell].forEachSegment([&](float begin) {
+      segment.max[0] = std::clamp(begin, bounds.min[0], bounds.max[0]);
+      if (segment.max[0] > segment.min[0]) draw.box(segment, kSegmentColour, 1);
+      segment.min[0] = segment.max[0];
+    });
+    segment.max[0] = bounds.max[0];
+    draw.box(segment, kSegmentColour, 1);
+  }
+}
+
+void Tracy::visitCounters(const CounterVisitor& visit) const {
+  WorkCounts all;
+  std::uint64_t begun = 0;
+  std::uint64_t ended = 0;
+  for (const Worker& worker : workers_) {
+    const WorkCounts& counts = worker.work.counts;
+    all.moves += counts.moves;
+    all.swaps += counts.swaps;
+    all.cell_changes += counts.cell_changes;
+    all.jumps += counts.jumps;
+    for (const PairBuffer& pairs : worker.work.begun) begun += pairs.size();
+    for (const PairBuffer& pairs : worker.work.ended) ended += pairs.size();
+  }
+  visit("moves", all.moves);
+  visit("swaps", all.swaps);
+  visit("cell changes", all.cell_changes);
+  visit("jumps", all.jumps);
+  visit("pairs begun", begun);
+  visit("pairs ended", ended);
+  visit("grid rebuilds", rebuilds_);
+}
+
+std::string Tracy::validate() const {
+  std::vector<std::uint64_t> cells_of_body(bodies_.boxes[kNow].size(), 0);
+  std::vector<std::size_t> last_cell(cells_of_body.size(), cells_.size());
+  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+    if (const std::string fault = cells_[cell].validate(bodies_); !fault.empty()) return fault;
+    bool twice = false;
+    cells_[cell].forEachBody([&](std::uint32_t body) {
+      twice = twice || std::exchange(last_cell[body], cell) == cell;
+      ++cells_of_body[body];
+    });
+    if (twice) return "body twice in a cell";
+    if (isConcerned(cell)) return "letters left unread";
+  }
+  std::uint64_t touched = 0;
+  for (const Worker& worker : workers_) touched += worker.cells_touched;
+  for (std::size_t body = 0; body < cells_of_body.size(); ++body) {
+    const CellRange range = grid_.range(bodies_.boxes[kNow][body]);
+    if (bodies_.ranges[kNow][body] != range) return "cells of a body out of date";
+    if (cells_of_body[body] != range.size()) return "body missing from a cell that it touches";
+    touched -= range.size();
+  }
+  if (touched != 0) return "cells miscounted";
+  return {};
+}
+
+Algorithm variant(std::string id, std::string summary, std::string optimisations,
+                  std::string original_id) {
+  return {.id = id,
+          .family = "Tracy",
+          .summary = std::move(summary),
+          .parallel = id.ends_with("-mt"),
+          .original_ids = {{std::move(original_id), {}}},
+          .create = [] { return std::make_unique<Tracy>(); },
+          .principle = "grid, sorting",
+          .optimisations = std::move(optimisations),
+          .incremental = true,
+          .time = "O(n + s), s swaps of endpoints",
+          .space = "O(n + k)",
+          .source = "Tracy, Buss and Woods 2009"};
+}
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  return {variant("tracy", "incremental sweep and prune in the cells of a grid",
+                  "segmented interval lists", "Tracy"),
+          variant("tracy-mt", "incremental sweep and prune in a grid, on several threads",
+                  "segmented interval lists, threads", "Tracy_Parallel")};
+}
+
+}  // namespace broadmark::tracy

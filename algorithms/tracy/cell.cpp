@@ -1,0 +1,274 @@
+#include "algorithms/tracy/cell.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "algorithms/axis_overlap.h"
+
+namespace broadmark::tracy {
+namespace {
+
+constexpr std::uint32_t kFewestSlots = 64;
+
+void tell(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
+  shares[std::min(a, b) % shares.size()].add(a, b);
+}
+
+}  // namespace
+
+void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bodies,
+                 const Bodies& all, CellWork& work) {
+  position_ = position;
+  size_ = static_cast<std::uint32_t>(bodies.size());
+  if (bodies.empty()) return;
+  capacity_ = std::max(kFewestSlots, std::bit_ceil(size_));
+  bodies_.reserve(capacity_);
+  slots_.reserve(capacity_);
+  crossings_.reserve(capacity_);
+  free_.reserve(capacity_);
+  for (const std::uint32_t body : bodies) {
+    const Aabb& box = all.boxes[kNow][body];
+    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    bodies_.push_back(body);
+    slots_.push_back({{box, box}});
+    crossings_.push_back({crossing, crossing});
+  }
+  std::vector<Endpoint>& sorted = work.endpoints;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    sorted.clear();
+    for (std::uint32_t slot = 0; slot < size_; ++slot) {
+      const auto [start, end] = ends(slot, kNow)[axis];
+      sorted.push_back(start);
+      sorted.push_back(end);
+    }
+    std::ranges::sort(sorted);
+    lists_[axis].build(sorted, capacity_);
+    if (axis == 0) tellFirstPairs(sorted, work);
+  }
+}
+
+/// The sweep that everything else avoids: each body against those that begin before it ends.
+void Cell::tellFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const {
+  for (std::size_t i = 0; i < endpoints.size(); ++i) {
+    if (endpoints[i].isEnd()) continue;
+    const std::uint32_t slot = endpoints[i].slot();
+    for (std::size_t j = i + 1; endpoints[j].slot() != slot; ++j) {
+      if (endpoints[j].isEnd()) continue;
+      const std::uint32_t other = endpoints[j].slot();
+      if (overlaps(box(slot, kNow), box(other, kNow)) && isOurs(slot, other, kNow)) {
+        tellBegun(slot, other, work);
+      }
+    }
+  }
+}
+
+Cell::Ends Cell::ends(std::uint32_t slot, Moment moment) const {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Crossing crossing = crossings_[slot][moment];
+  const Aabb& aabb = box(slot, moment);
+  Ends all;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool below = (crossing & crossesBelow(axis)) != 0;
+    const bool above = (crossing & crossesAbove(axis)) != 0;
+    all[axis] = {Endpoint::start(below ? -kInfinity : aabb.min[axis], slot),
+                 Endpoint::end(above ? kInfinity : aabb.max[axis], slot)};
+  }
+  return all;
+}
+
+/// Takes over the new boxes of those that have moved, and tells where they are going.
+void Cell::sortOutMoved(const Bodies& all, CellWork& work) {
+  work.leaving.clear();
+  work.jumping.clear();
+  work.staying.clear();
+  work.entered.clear();
+  for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot) {
+    const std::uint32_t body = bodies_[slot];
+    if (body == kNobody || !all.hasMoved(body)) continue;
+    slots_[slot].boxes[kNow] = all.boxes[kNow][body];
+    const CellRange& range = all.ranges[kNow][body];
+    if (!range.contains(position_)) {
+      work.leaving.push_back(slot);
+      continue;
+    }
+    crossings_[slot][kNow] = range.crossing(position_);
+    (jumps(slot) ? work.jumping : work.staying).push_back(slot);
+  }
+}
+
+/// Whether it is cheaper to remove a body and insert it anew than to sort it from here to there.
+bool Cell::jumps(std::uint32_t slot) const {
+  // The usual case, quickly told: it has not gone further than it is long.
+  if (overlaps(box(slot, kBefore), box(slot, kNow))) return false;
+  const Ends from = ends(slot, kBefore);
+  const Ends to = ends(slot, kNow);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t end = 0; end < 2; ++end) {
+      if (!lists_[axis].isNear(from[axis][end], to[axis][end])) return true;
+    }
+  }
+  return false;
+}
+
+void Cell::leave(std::uint32_t slot, CellWork& work) {
+  depart(slot, work);
+  bodies_[slot] = kNobody;
+  free_.push_back(slot);
+  --size_;
+}
+
+void Cell::enter(std::uint32_t body, const Bodies& all, CellWork& work) {
+  const std::uint32_t slot = takeSlot(body);
+  slots_[slot].boxes = {all.boxes[kBefore][body], all.boxes[kNow][body]};
+  crossings_[slot][kNow] = all.ranges[kNow][body].crossing(position_);
+  arrive(slot, work);
+  work.entered.push_back(slot);
+}
+
+std::uint32_t Cell::takeSlot(std::uint32_t body) {
+  ++size_;
+  if (!free_.empty()) {
+    const std::uint32_t slot = free_.back();
+    free_.pop_back();
+    bodies_[slot] = body;
+    return slot;
+  }
+  if (bodies_.size() == capacity_) grow();
+  bodies_.push_back(body);
+  slots_.emplace_back();
+  crossings_.emplace_back();
+  return static_cast<std::uint32_t>(bodies_.size() - 1);
+}
+
+void Cell::grow() {
+  capacity_ = std::max(kFewestSlots, 2 * capacity_);
+  bodies_.reserve(capacity_);
+  slots_.reserve(capacity_);
+  crossings_.reserve(capacity_);
+  free_.reserve(capacity_);
+  for (SegmentedList& list : lists_) list.build(list.endpoints(), capacity_);
+}
+
+void Cell::depart(std::uint32_t slot, CellWork& work) {
+  tellMeeting(slot, kNow, kBefore, [&](std::uint32_t other) { tellEnded(slot, other, work); });
+  const Ends from = ends(slot, kBefore);
+  for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].remove(from[axis][0], from[axis][1]);
+}
+
+void Cell::arrive(std::uint32_t slot, CellWork& work) {
+  const Ends to = ends(slot, kNow);
+  for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].insert(to[axis][0], to[axis][1]);
+  tellMeeting(slot, kBefore, kNow, [&](std::uint32_t other) { tellBegun(slot, other, work); });
+}
+
+/// Tells of all that the body overlaps at one moment and not at the other.
+template <class Tell>
+void Cell::tellMeeting(std::uint32_t slot, Moment without, Moment with, Tell tell_of) const {
+  lists_[0].forEachMeeting(slot, [&](std::uint32_t other) {
+    if (overlaps(box(slot, with), box(other, with)) && isOurs(slot, other, with) &&
+        !overlaps(box(slot, without), box(other, without))) {
+      tell_of(other);
+    }
+  });
+}
+
+void Cell::move(std::uint32_t slot, CellWork& work) {
+  const Ends from = ends(slot, kBefore);
+  const Ends to = ends(slot, kNow);
+  for (int axis = 0; axis < 3; ++axis) {
+    // Such that the start is never beyond the end.
+    const std::size_t first = from[axis][1] < to[axis][1] ? 1 : 0;
+    for (const std::size_t end : {first, 1 - first}) {
+      if (from[axis][end] != to[axis][end]) movePoint(axis, from[axis][end], to[axis][end], work);
+    }
+  }
+}
+
+void Cell::movePoint(int axis, Endpoint from, Endpoint to, CellWork& work) {
+  const bool may_begin = from.isEnd() == (from < to);
+  std::uint64_t swaps = 0;
+  lists_[axis].move(from, to, [&](Endpoint passed) {
+    ++swaps;
+    if (passed.isEnd() == from.isEnd()) return;
+    const std::uint32_t starts = from.isEnd() ? passed.slot() : from.slot();
+    const std::uint32_t ends = from.isEnd() ? from.slot() : passed.slot();
+    if (may_begin) {
+      if (tells(starts, ends, axis, kBefore, kNow)) tellBegun(starts, ends, work);
+    } else {
+      if (tells(starts, ends, axis, kNow, kBefore)) tellEnded(starts, ends, work);
+    }
+  });
+  work.counts.swaps += swaps;
+}
+
+/// Of a swap of one body's start and another's end: whether the two overlap at the moment `with`
+/// and not at the moment `without`, and this is the occasion to tell.
+bool Cell::tells(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
+                 Moment with) const {
+  // Most are apart on another axis.
+  if (!overlapsOnAxis(box(starts, with), box(ends, with), axis == 0 ? 1 : 0)) return false;
+  if (!overlaps(box(starts, with), box(ends, with)) || !isOurs(starts, ends, with)) return false;
+  for (int lower = 0; lower < axis; ++lower) {
+    if (!overlapsOnAxis(box(starts, without), box(ends, without), lower)) return false;
+  }
+  return box(starts, without).min[axis] > box(ends, without).max[axis];
+}
+
+void Cell::tellBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
+  tell(work.begun, bodies_[p], bodies_[q]);
+}
+
+void Cell::tellEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
+  tell(work.ended, bodies_[p], bodies_[q]);
+}
+
+/// What is now has been, by the next frame.
+void Cell::settle(const CellWork& work) {
+  for (const auto* slots : {&work.staying, &work.jumping, &work.entered}) {
+    for (const std::uint32_t slot : *slots) {
+      slots_[slot].boxes[kBefore] = slots_[slot].boxes[kNow];
+      crossings_[slot][kBefore] = crossings_[slot][kNow];
+    }
+  }
+}
+
+void Cell::forEachSegment(const std::function<void(float)>& visit) const {
+  if (size_ == 0) return;
+  lists_[0].forEachChunk([&](std::span<const Endpoint> chunk) {
+    const Endpoint first = chunk.front();
+    const Crossing outside = first.isEnd() ? crossesAbove(0) : crossesBelow(0);
+    if ((crossings_[first.slot()][kNow] & outside) != 0) return;
+    const Aabb& body = box(first.slot(), kNow);
+    visit(first.isEnd() ? body.max[0] : body.min[0]);
+  });
+}
+
+std::string Cell::validate(const Bodies& all) const {
+  std::uint32_t occupied = 0;
+  for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot) {
+    const std::uint32_t body = bodies_[slot];
+    if (body == kNobody) continue;
+    ++occupied;
+    if (!all.ranges[kNow][body].contains(position_)) return "body in a cell that it does not touch";
+    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    if (crossings_[slot] != Crossings{crossing, crossing}) return "wrong sides of a cell crossed";
+    for (const Aabb& kept : slots_[slot].boxes) {
+      if (kept != all.boxes[kNow][body]) return "box out of date";
+    }
+  }
+  if (occupied != size_ || occupied + free_.size() != bodies_.size()) return "slots lost";
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (size_ == 0) continue;
+    if (const std::string fault = lists_[axis].validate(); !fault.empty()) return fault;
+    const std::vector<Endpoint> endpoints = lists_[axis].endpoints();
+    if (endpoints.size() != 2 * std::size_t{size_}) return "endpoints lost";
+    for (const Endpoint endpoint : endpoints) {
+      if (endpoint != ends(endpoint.slot(), kNow)[axis][endpoint.isEnd() ? 1 : 0]) {
+        return "endpoint out of date";
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace broadmark::tracy

@@ -1,0 +1,92 @@
+// What all kernels share. Written for OpenCL C 1.2.
+//
+// BODIES_PER_ITEM  bodies that one work item takes, one after the other: hundreds on a CPU, whose
+//                  work items are cheap only by the group; 1 on a GPU
+// PAIRS_HELD       pairs that a work item keeps to itself before it takes room for all of them with
+//                  one atomic operation
+
+// A multiplication and an addition must round alike in every kernel: cells depend on it.
+#pragma OPENCL FP_CONTRACT OFF
+
+/// The bodies i of [0, n) of this work item.
+#define FOR_EACH_BODY(i, n)                                                  \
+  for (uint i = get_global_id(0) * BODIES_PER_ITEM,                          \
+            end_ = min(i + (uint)BODIES_PER_ITEM, (uint)(n));                \
+       i < end_; ++i)
+
+/// A box: its lower and its upper corner; the fourth components are free for use.
+typedef struct {
+  float4 low;
+  float4 high;
+} Box;
+
+/// Closed intersection: touching counts.
+static inline int meet(float4 a_low, float4 a_high, float4 b_low, float4 b_high) {
+  return (a_low.x <= b_high.x) & (b_low.x <= a_high.x) & (a_low.y <= b_high.y) &
+         (b_low.y <= a_high.y) & (a_low.z <= b_high.z) & (b_low.z <= a_high.z);
+}
+
+/// Counting stops about here: 32 bits must not wrap around.
+#define MOST_PAIRS 0x80000000u
+
+/// Where a work item puts the pairs that it finds. What does not fit is only counted.
+typedef struct {
+  __global uint2* pairs;
+  volatile __global uint* count;
+  uint capacity;
+  uint held;
+  uint2 buffer[PAIRS_HELD];
+} Sink;
+
+static inline void flush(Sink* sink) {
+  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;
+  const uint at = atomic_add(sink->count, sink->held);
+  for (uint k = 0; k < sink->held && at + k < sink->capacity; ++k) {
+    sink->pairs[at + k] = sink->buffer[k];
+  }
+  sink->held = 0;
+}
+
+static inline void report(Sink* sink, uint a, uint b) {
+  if (sink->held == PAIRS_HELD) flush(sink);
+  if (sink->held < PAIRS_HELD) sink->buffer[sink->held++] = (uint2)(min(a, b), max(a, b));
+}
+
+/// For searching kernels: a sink of the arguments `pairs`, `count` and `capacity`.
+#define MAKE_SINK(name) \
+  Sink name;            \
+  name.pairs = pairs;   \
+  name.count = count;   \
+  name.capacity = capacity; \
+  name.held = 0;
+
+/// Over the strips [s * strip, (s + 1) * strip) of the boxes, for work item s: the bounds of all
+/// corners, the sums of the longest edges, and of the centres and their squares relative to the
+/// first box's centre. Five float4 each.
+__kernel void summarise(__global const Box* boxes, const uint n, const uint strip,
+                        __global float4* summaries) {
+  const uint s = get_global_id(0);
+  const uint begin = min(s * strip, n);
+  const uint end = min(begin + strip, n);
+  float4 low = (float4)(FLT_MAX);
+  float4 high = (float4)(-FLT_MAX);
+  float4 edges = (float4)(0);
+  float4 sum = (float4)(0);
+  float4 squares = (float4)(0);
+  const float4 origin = n > 0 ? 0.5f * boxes[0].low + 0.5f * boxes[0].high : (float4)(0);
+  for (uint i = begin; i < end; ++i) {
+    const Box box = boxes[i];
+    low = fmin(low, box.low);
+    high = fmax(high, box.high);
+    const float4 size = box.high - box.low;
+    edges.x += fmin(fmax(size.x, fmax(size.y, size.z)), 1e30f);
+    const float4 centre = (0.5f * box.low + 0.5f * box.high) - origin;
+    sum += centre;
+    squares += centre * centre;
+  }
+  summaries[5 * s] = low;
+  summaries[5 * s + 1] = high;
+  summaries[5 * s + 2] = edges;
+  summaries[5 * s + 3] = sum;
+  summaries[5 * s + 4] = squares;
+}

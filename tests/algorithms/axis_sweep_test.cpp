@@ -1,0 +1,138 @@
+// Bullet's sweep: what our beginning and our positions change about it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/algorithms/runs.h"
+
+namespace broadmark::tests {
+namespace {
+
+class AxisSweep : public testing::Test {
+ protected:
+  Instance start(const std::vector<Aabb>& first) { return start(first, sceneOf({first})); }
+  Instance start(const std::vector<Aabb>& first, const SceneInfo& scene) {
+    return {algorithmOf("axis-sweep"), execution_, scene, first};
+  }
+
+ private:
+  Execution execution_{1, Isa::scalar};
+};
+
+std::vector<Aabb> shifted(std::vector<Aabb> boxes, float way) {
+  for (Aabb& box : boxes) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min[axis] += way;
+      box.max[axis] += way;
+    }
+  }
+  return boxes;
+}
+
+// Bullet would insert them one by one: about n²/3 swaps on each axis.
+TEST_F(AxisSweep, TakesInManyBodiesAtOnce) {
+  constexpr std::uint64_t kCount = 20'000;
+  const std::vector<Aabb> boxes = inputs::uniform(kCount, 0, 1);
+  Instance run = start(boxes);
+  auto counters = countersOf(run.broadPhase());
+  EXPECT_EQ(counters.at("swaps"), 0U);
+  EXPECT_GT(counters.at("first tests"), 0U);
+  EXPECT_LT(counters.at("first tests"), kCount * kCount / 20);
+  EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+}
+
+// One axis on which all boxes meet must not be the one that is swept.
+TEST_F(AxisSweep, SweepsFirstAlongTheBestAxis) {
+  for (std::size_t best = 0; best < 3; ++best) {
+    std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      boxes[i].min[best] = static_cast<float>(2 * i);
+      boxes[i].max[best] = static_cast<float>(2 * i + 1);
+    }
+    EXPECT_EQ(countersOf(start(boxes).broadPhase()).at("first tests"), 0U) << best;
+  }
+}
+
+TEST_F(AxisSweep, WorksOnlyForWhatMoves) {
+  std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
+  Instance run = start(boxes);
+  run.step(boxes);
+  EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 0U);
+  EXPECT_EQ(countersOf(run.broadPhase()).at("swaps"), 0U);
+
+  boxes[7] = shifted({boxes[7]}, 0.01F)[0];
+  EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
+  EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 1U);
+  EXPECT_LT(countersOf(run.broadPhase()).at("swaps"), 100U);
+
+  // All of them alike: nobody passes anybody but for a moment.
+  boxes = shifted(boxes, 50);
+  EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
+  EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 1000U);
+  EXPECT_GT(countersOf(run.broadPhase()).at("swaps"), 0U);
+}
+
+// Bullet's own positions end at the borders of a world given beforehand.
+TEST_F(AxisSweep, HasNoWorldToLeave) {
+  std::vector<Aabb> boxes = inputs::uniform(300, 0, 1);
+  SceneInfo scene = sceneOf({boxes});
+  scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};
+  Instance run = start(boxes, scene);
+  for (const float way : {5.0F, -1e3F, 1e6F, -3e6F, 0.0F}) {
+    boxes = shifted(inputs::uniform(300, 1, 1), way);
+    EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << way;
+    EXPECT_EQ(run.broadPhase().validate(), "") << way;
+  }
+  // One body off to nearly infinity does not drive the others together.
+  boxes[0] = {{3e38F, 3e38F, 3e38F, 0}, {3.1e38F, 3.1e38F, 3.1e38F, 0}};
+  EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
+  boxes[1] = shifted({boxes[1]}, 0.01F)[0];
+  EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
+  EXPECT_LT(countersOf(run.broadPhase()).at("swaps"), 50U);
+}
+
+// Positions lack the last bit of the floats; the answer must not.
+TEST_F(AxisSweep, TellsNeighbouringFloatsApart) {
+  for (const float place : {1.0F, -1.0F, 100.0F, -0.3F, 1e-40F, 1e30F}) {
+    const float next = std::nextafter(place, 1e38F);
+    const float after = std::nextafter(next, 1e38F);
+    for (const float begin : {place, next, after}) {
+      for (const float end : {place, next, after}) {
+        const std::vector<Aabb> boxes = {{{place - 1, 0, 0, 0}, {end, 1, 1, 0}},
+                                         {{begin, 0, 0, 0}, {begin + 1, 1, 1, 0}}};
+        Instance run = start(inputs::uniform(2, 0, 1));
+        EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << begin << " " << end;
+      }
+    }
+  }
+}
+
+TEST_F(AxisSweep, SurvivesTheLimitsOfFloats) {
+  Instance run = start(inputs::limits(300, 0, 1));
+  for (std::uint32_t frame = 1; frame < 4; ++frame) {
+    const std::vector<Aabb> boxes = inputs::limits(300, frame, 1);
+    EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
+    EXPECT_EQ(run.broadPhase().validate(), "");
+  }
+}
+
+TEST_F(AxisSweep, InstancesDoNotDisturbEachOther) {
+  const std::vector<Aabb> some = inputs::clustered(200, 0, 1);
+  const std::vector<Aabb> others = inputs::clustered(100, 0, 2);
+  Instance a = start(some);
+  Instance b = start(others);
+  for (std::uint32_t frame = 1; frame < 4; ++frame) {
+    const std::vector<Aabb> some_next = inputs::clustered(200, frame, 1);
+    const std::vector<Aabb> others_next = inputs::clustered(100, frame, 2);
+    EXPECT_EQ(sorted(a.step(some_next)), bruteForcePairs(some_next));
+    EXPECT_EQ(sorted(b.step(others_next)), bruteForcePairs(others_next));
+  }
+}
+
+TEST_F(AxisSweep, StatesHowManyBodiesItsHandlesAllow) {
+  EXPECT_EQ(algorithmOf("axis-sweep").create()->capabilities().max_objects, 0x7FFF'FFFDU);
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,164 @@
+// What algorithms on a compute device promise beyond the right pairs: both ways to divide work,
+// buffers that grow, transfers within the total, bounded threads, clear words where there is no
+// device. Runs on whatever device there is, PoCL among them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadmark/compute_devices.h"
+#include "broadmark/runner.h"
+#include "tests/algorithms/runs.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<Algorithm> onDevice(const std::string& prefix) {
+  std::vector<Algorithm> chosen = pairFinders();
+  std::erase_if(chosen, [&](const Algorithm& a) { return !a.id.starts_with(prefix); });
+  return chosen;
+}
+
+std::vector<Algorithm> allOnDevice() {
+  std::vector<Algorithm> all = onDevice("gpu-");
+  std::ranges::move(onDevice("b3-"), std::back_inserter(all));
+  return all;
+}
+
+class OnDevice : public testing::TestWithParam<Algorithm> {
+ protected:
+  void SetUp() override {
+    if (computeDevices().empty()) GTEST_SKIP() << "no OpenCL device";
+  }
+};
+
+/// Frames as a source, in memory.
+class Frames final : public FrameSource {
+ public:
+  explicit Frames(std::vector<std::vector<Aabb>> frames)
+      : frames_(std::move(frames)), scene_(sceneOf(frames_)) {}
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+  Frame rewind() override {
+    index_ = 0;
+    return {0, frames_[0]};
+  }
+  std::optional<Frame> next() override {
+    if (index_ + 1 == frames_.size()) return {};
+    ++index_;
+    return Frame{index_, frames_[index_]};
+  }
+
+ private:
+  std::vector<std::vector<Aabb>> frames_;
+  SceneInfo scene_;
+  std::uint32_t index_ = 0;
+};
+
+TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
+  Frames frames(framesOf({"uniform", inputs::uniform}, 20'000, 3));
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames);
+  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_GT(result.pairs_mean, 1000);
+}
+
+TEST_P(OnDevice, PairBuffersGrow) {
+  // Two million pairs of two thousand bodies, after a frame with none.
+  std::vector<std::vector<Aabb>> frames = framesOf({"uniform", inputs::uniform}, 2000, 2);
+  frames.push_back(inputs::identical(2000, 0, 0));
+  frames.push_back(frames[1]);
+  Frames source(frames);
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, source);
+  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_EQ(result.pairs_max, 2000U * 1999 / 2);
+}
+
+TEST_P(OnDevice, TransfersAreWithinTheTotal) {
+  Frames frames(framesOf({"uniform", inputs::uniform}, 2000, 4));
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames);
+  ASSERT_EQ(result.status, Status::ok) << result.reason;
+  for (const FrameTimes& times : result.repetitions.at(0).frames) {
+    EXPECT_GT(times[Phase::upload], 0);
+    EXPECT_GT(times[Phase::download], 0);
+    EXPECT_LE(times[Phase::upload] + times[Phase::download], times[Phase::total]);
+  }
+  EXPECT_GT(result.counters.at("kernel_build_ns"), 0);
+}
+
+TEST_P(OnDevice, AnUnknownDeviceIsUnsupported) {
+  Frames frames(framesOf({"uniform", inputs::uniform}, 10, 2));
+  const CaseResult result =
+      runCase({.algorithm = GetParam(), .threads = 1, .device = "no such device"}, frames);
+  EXPECT_EQ(result.status, Status::unsupported);
+  EXPECT_THAT(result.reason, HasSubstr("no such device"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, OnDevice, testing::ValuesIn(allOnDevice()),
+                         [](const auto& tested) { return testName(tested.param); });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OnDevice);
+
+/// Our own kernels, on either kind of device.
+class OwnKernels : public OnDevice {};
+
+TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
+  for (const inputs::Input& input : inputs::kAll) {
+    for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
+      for (const char* way : {"cpu", "gpu"}) {
+        Frames frames(framesOf(input, n, 3));
+        const CaseResult result =
+            runCase({.algorithm = GetParam(), .threads = 2, .parameters = {{"way", way}}}, frames);
+        ASSERT_EQ(result.status, Status::ok)
+            << result.reason << " on " << input.name << ", n = " << n << ", way " << way;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, OwnKernels, testing::ValuesIn(onDevice("gpu-")),
+                         [](const auto& tested) { return testName(tested.param); });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OwnKernels);
+
+TEST(BulletSap, RefusesWhatItsSortCannotHold) {
+  const std::vector<Algorithm> found = onDevice("b3-sap");
+  if (found.empty()) GTEST_SKIP() << "built without OpenCL";
+  EXPECT_EQ(found.front().create()->capabilities().max_objects, 524'287U);
+}
+
+std::vector<ComputeDevice> threeDevices() {
+  return {{.name = "Big GPU", .platform = "Vendor A", .gpu = true},
+          {.name = "Small GPU", .platform = "Vendor B", .gpu = true},
+          {.name = "Processor", .platform = "PoCL", .units = 2}};
+}
+
+TEST(ChooseDevice, ByNumberOrPartOfNameOrPlatform) {
+  EXPECT_EQ(chooseDevice(threeDevices(), ""), 0U);
+  EXPECT_EQ(chooseDevice(threeDevices(), "1"), 1U);
+  EXPECT_EQ(chooseDevice(threeDevices(), "small"), 1U);
+  EXPECT_EQ(chooseDevice(threeDevices(), "pocl"), 2U);
+}
+
+TEST(ChooseDevice, UnknownNamesListWhatThereIs) {
+  for (const std::string wanted : {"3", "-1", "nothing"}) {
+    try {
+      chooseDevice(threeDevices(), wanted);
+      FAIL() << wanted;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("'" + wanted + "'"));
+      EXPECT_THAT(error.what(), HasSubstr("1: Small GPU"));
+    }
+  }
+  EXPECT_THROW(chooseDevice({}, ""), InputError);
+}
+
+TEST(ComputeDevices, GpusComeFirst) {
+  const std::vector<ComputeDevice> devices = computeDevices();
+  EXPECT_TRUE(std::ranges::is_partitioned(devices, &ComputeDevice::gpu));
+  for (const ComputeDevice& device : devices) {
+    EXPECT_THAT(describe(device), HasSubstr(device.name));
+    EXPECT_GT(device.units, 0);
+    EXPECT_GT(device.memory_bytes, 0U);
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests

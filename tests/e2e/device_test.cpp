@@ -1,0 +1,65 @@
+// Compute devices from outside: listed, chosen, absent.
+
+#include "broadmark/compute_devices.h"
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+class Device : public EndToEnd {
+ protected:
+  void SetUp() override {
+    if (computeDevices().empty()) GTEST_SKIP() << "no OpenCL device";
+  }
+  /// A short run of an algorithm on a device and of one that needs none.
+  const Arguments short_run_ = {"--headless", "freefall", "--objects",   "50",
+                                "--frames",   "2",        "--algorithm", "gpu-sap,sap",
+                                "--json",     "r.json",   "--quiet"};
+};
+
+TEST_F(Device, AreListed) {
+  const Ended ended = run({"list", "devices"});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.out, HasSubstr("0: " + describe(computeDevices().front())));
+}
+
+TEST_F(Device, IsChosenByNumberOrNameAndRecorded) {
+  const std::string name = computeDevices().front().name;
+  for (const std::string wanted : {std::string("0"), name}) {
+    Arguments arguments = short_run_;
+    arguments.insert(arguments.end(), {"--device", wanted});
+    EXPECT_EQ(run(arguments).status, 0);
+    const Json devices = readJson(file("r.json")).at("environment").at("compute_devices");
+    EXPECT_EQ(devices.at(0), describe(computeDevices().front()));
+  }
+}
+
+TEST_F(Device, UnknownOnesAreRefused) {
+  Arguments arguments = short_run_;
+  arguments.insert(arguments.end(), {"--device", "nothing like it"});
+  expectRefusal(arguments, {"no compute device 'nothing like it'", "0: "});
+}
+
+TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
+  const Ended ended = run(short_run_, {.environment = {{"OCL_ICD_VENDORS", "/nonexistent/"}}});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const Json results = readJson(file("r.json"));
+  EXPECT_THAT(results.at("environment").at("compute_devices"), IsEmpty());
+  for (const Json& result : results.at("cases")) {
+    const bool on_device = result.at("algorithm") == "gpu-sap";
+    EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
+    if (on_device) EXPECT_THAT(result.at("reason"), HasSubstr("no OpenCL platform"));
+  }
+}
+
+TEST_F(Device, TransfersAreInTheResults) {
+  EXPECT_EQ(run(short_run_).status, 0);
+  for (const Json& result : readJson(file("r.json")).at("cases")) {
+    const bool on_device = result.at("algorithm") == "gpu-sap";
+    EXPECT_EQ(result.at("frames").contains("upload"), on_device);
+    EXPECT_EQ(result.at("frames").contains("download"), on_device);
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::testing
