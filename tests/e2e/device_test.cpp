@@ -25,7 +25,7 @@ TEST_F(Device, AreListed) {
 
 TEST_F(Device, IsChosenByNumberOrNameAndRecorded) {
   const std::string name = computeDevices().front().name;
-  for (const std::string wanted : {std::string("0"), name}) {
+  for (const std::string& wanted : {std::string("0"), name}) {
     Arguments arguments = short_run_;
     arguments.insert(arguments.end(), {"--device", wanted});
     EXPECT_EQ(run(arguments).status, 0);
@@ -48,7 +48,9 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
   for (const Json& result : results.at("cases")) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
-    if (on_device) EXPECT_THAT(result.at("reason"), HasSubstr("no OpenCL platform"));
+    if (on_device) {
+      EXPECT_THAT(result.at("reason"), HasSubstr("no OpenCL platform"));
+    }
   }
 }
 
