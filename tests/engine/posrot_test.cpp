@@ -130,7 +130,10 @@ class Bodies {
     float squared = 0;
     do {
       squared = 0;
-      for (float& x : pose.rotation) squared += (x = uniform(-1, 1)) * x;
+      for (float& x : pose.rotation) {
+        x = uniform(-1, 1);
+        squared += x * x;
+      }
     } while (squared < 0.01F || squared > 1);
     for (float& x : pose.rotation) x /= std::sqrt(squared);
     return pose;

@@ -12,9 +12,7 @@ namespace {
 using scenes::PhysicsBody;
 using scenes::PhysicsEngine;
 using scenes::PhysicsSettings;
-using scenes::Pose;
 using scenes::Random;
-using scenes::Vec3;
 
 const scenes::BoxShape kUnitCube{{0.5F, 0.5F, 0.5F}};
 

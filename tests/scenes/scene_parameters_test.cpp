@@ -55,7 +55,9 @@ TEST(SceneParameters, SurviveARoundTripForEverySceneAndEngine) {
       const auto again = parseSceneParameters(text, "written");
       EXPECT_EQ(again->listing().id, scene.id);
       EXPECT_EQ(parameterValues(*again), parameterValues(*simulation)) << text;
-      if (!replay) EXPECT_EQ(again->scene(), simulation->scene());
+      if (!replay) {
+        EXPECT_EQ(again->scene(), simulation->scene());
+      }
     }
   }
 }
