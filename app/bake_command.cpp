@@ -54,6 +54,7 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
     BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
     job.simulation = std::move(simulation);
     job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
+    requireApart(*job.simulation, job.paths);
     if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
   }
   requireKnownParameters(options, jobs);

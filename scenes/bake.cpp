@@ -55,20 +55,6 @@ scenes::RecorderEntry recorderOf(const fs::path& path) {
                                fmt::join(extensions, " or ")));
 }
 
-/// A sidecar must not take the place of another's, be it the input's.
-void requireApart(const std::vector<fs::path>& paths, const fs::path& input) {
-  const auto place = [](const fs::path& path) { return sidecarPath(fs::weakly_canonical(path)); };
-  std::set<fs::path> taken;
-  if (!input.empty()) taken.insert(place(input));
-  for (const fs::path& path : paths) {
-    if (taken.insert(place(path)).second) continue;
-    throw InputError(
-        fmt::format("{}: would be written over {}: another directory is needed", path.string(),
-                    input.empty() ? "the .json beside another recording"
-                                  : "the recording that is replayed, or the .json beside it"));
-  }
-}
-
 }  // namespace
 
 bool isBaked(const fs::path& path, Simulation& simulation) {
@@ -95,9 +81,23 @@ std::optional<std::string> bakedHash(const fs::path& recording) {
   return json["hash"].get<std::string>();
 }
 
+void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
+  const fs::path input = simulation.input();
+  const auto place = [](const fs::path& path) { return sidecarPath(fs::weakly_canonical(path)); };
+  std::set<fs::path> taken;
+  if (!input.empty()) taken.insert(place(input));
+  for (const fs::path& path : paths) {
+    if (taken.insert(place(path)).second) continue;
+    throw InputError(
+        fmt::format("{}: would be written over {}: another directory is needed", path.string(),
+                    input.empty() ? "the .json beside another recording"
+                                  : "the recording that is replayed, or the .json beside it"));
+  }
+}
+
 bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
           const FrameProgress& progress) {
-  requireApart(paths, simulation.input());
+  requireApart(simulation, paths);
   std::vector<std::unique_ptr<scenes::Recorder>> recorders;
   for (const fs::path& path : paths) {
     recorders.push_back(recorderOf(path).create(path, simulation.scene()));

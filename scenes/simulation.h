@@ -91,6 +91,10 @@ bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 /// of a baked recording. Throws InputError when a sidecar states no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
+/// Throws InputError if bake() to these paths would write over the recording that is replayed, or
+/// over the .json beside that or another of them.
+void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
+
 /// Simulates all frames once into recordings at `paths`, each by the recorder that its extension
 /// names. Beside each a .json of the same name, which no two may share, holds all parameters and
 /// the hash ("schema": "broadmark-bake/1"). Returns false when progress stopped it: then nothing is
