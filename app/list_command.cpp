@@ -58,7 +58,7 @@ void listScenes() {
 }
 
 void listEngines() {
-  fmt::print("Physics engines, with the parameters that only they have (default, range)\n");
+  fmt::print("Engines, with the parameters that come with them (default, range)\n");
   for (const EngineListing& engine : builtinEngines()) {
     fmt::print("  {}: {}\n{}", engine.id, engine.summary,
                parameterLines(*engineParameters(engine.id)));
