@@ -136,7 +136,7 @@ struct JobResult {
 };
 
 /// Runs all repetitions of all cases, interleaved.
-JobResult runJob(const Job& job, RecordingReader& recording, Oracle& oracle,
+JobResult runJob(const Job& job, Recording& recording, Oracle& oracle,
                  const HeadlessOptions& options, Exhausted& exhausted) {
   JobResult outcome;
   for (const Case& run : job.cases) outcome.cases.push_back(beginCase(run, job.source.reference));
@@ -254,7 +254,8 @@ bool isFailure(const CaseResult& result) {
 /// One job from recording to report.
 void performJob(Job& job, const HeadlessOptions& options, Results& results, Exhausted& exhausted,
                 Outcome& outcome) {
-  const auto recording = openRecording(job.source, options.record, options.quiet);
+  const auto recording =
+      openRecording(job.source, options.record, options.scene.recorders, options.quiet);
   if (!recording) {
     outcome.interrupted = true;
     return;

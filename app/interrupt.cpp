@@ -2,22 +2,25 @@
 
 #include "app/interrupt.h"
 
+#include <atomic>
 #include <csignal>
 
 namespace broadmark {
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+// Several threads ask, and any of them may be the one that the signal interrupts.
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait");
 
 void onSignal(int signal) {
-  interrupted = 1;
+  interrupted = true;
   std::signal(signal, SIG_DFL);
 }
 
 }  // namespace
 
 InterruptGuard::InterruptGuard() {
-  interrupted = 0;
+  interrupted = false;
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
 }
@@ -27,6 +30,6 @@ InterruptGuard::~InterruptGuard() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-bool InterruptGuard::requested() { return interrupted != 0; }
+bool InterruptGuard::requested() { return interrupted; }
 
 }  // namespace broadmark

@@ -11,7 +11,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  /// Whether a clean end has been asked for.
+  /// Whether a clean end has been asked for. May be called from any thread.
   [[nodiscard]] static bool requested();
 };
 

@@ -58,9 +58,17 @@ void listScenes() {
 }
 
 void listEngines() {
-  fmt::print("Physics engines\n");
+  fmt::print("Engines, with the parameters that come with them (default, range)\n");
   for (const EngineListing& engine : builtinEngines()) {
-    fmt::print("  {}: {}\n", engine.id, engine.summary);
+    fmt::print("  {}: {}\n{}", engine.id, engine.summary,
+               parameterLines(*engineParameters(engine.id)));
+  }
+}
+
+void listRecorders() {
+  fmt::print("Recorders\n");
+  for (const RecorderListing& recorder : builtinRecorders()) {
+    fmt::print("  {}: {}\n", recorder.id, recorder.summary);
   }
 }
 
@@ -79,6 +87,7 @@ int runList(const std::string& what) {
   const std::pair<std::string, std::function<void()>> kinds[] = {{"algorithms", listAlgorithms},
                                                                  {"scenes", listScenes},
                                                                  {"engines", listEngines},
+                                                                 {"recorders", listRecorders},
                                                                  {"devices", listDevices}};
   std::vector<std::string> known = {"all"};
   bool found = false;

@@ -14,6 +14,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "scenes/simulation.h"
 
 namespace broadmark {
 namespace {
@@ -86,10 +87,36 @@ ParameterValues keyValues(const std::vector<std::string>& texts) {
   return values;
 }
 
+std::vector<std::string> recorderIds() {
+  std::vector<std::string> ids;
+  for (const RecorderListing& recorder : builtinRecorders()) ids.push_back(recorder.id);
+  return ids;
+}
+
+std::string recorderDoc() {
+  return fmt::format("kinds of recordings to keep: {} (default: {})",
+                     fmt::join(recorderIds(), ", "), recorderIds().front());
+}
+
+/// Each once, in the order given.
+std::vector<std::string> parseRecorders(const std::vector<std::string>& texts) {
+  const std::vector<std::string> known = recorderIds();
+  std::vector<std::string> recorders;
+  for (const std::string& text : splitList(texts)) {
+    if (std::ranges::find(known, text) == known.end()) {
+      throw InputError("--recorder: " + unknownName("recorder", text, known));
+    }
+    if (std::ranges::find(recorders, text) == recorders.end()) recorders.push_back(text);
+  }
+  if (recorders.empty()) recorders.push_back(known.front());
+  return recorders;
+}
+
 /// Scene options as typed, before they are understood; the same for --headless and bake.
 struct SceneTexts {
   std::vector<std::string> objects;
   std::vector<std::string> object_types;
+  std::vector<std::string> recorders;
   std::vector<std::string> parameters;
   /// Options that are nothing but a shorter way to set a scene parameter.
   struct Shortcut {
@@ -99,11 +126,12 @@ struct SceneTexts {
     const char* doc;
     std::string value;
   };
-  std::array<Shortcut, 4> shortcuts = {{
+  std::array<Shortcut, 5> shortcuts = {{
       {"--frames", "frames", "F", "frames to simulate, the initial pose not counted", ""},
       {"--seed", "seed", "S", "seed: same seed, same recording", ""},
       {"--density", "density", "D", "share of the world's volume that bodies fill", ""},
-      {"--engine", "engine", "NAME", "physics engine (see 'broadmark list engines')", ""},
+      {"--engine", "engine", "NAME", "what moves the bodies (see 'broadmark list engines')", ""},
+      {"--input", "input", "PATH", "recording, or directory of those, that an engine replays", ""},
   }};
 
   void addTo(CLI::App& app) {
@@ -112,6 +140,7 @@ struct SceneTexts {
     for (Shortcut& shortcut : shortcuts) {
       app.add_option(shortcut.option, shortcut.value, shortcut.doc)->type_name(shortcut.type);
     }
+    addList(app, "--recorder", recorders, recorderDoc(), "KIND[,KIND...]");
     app.add_option("--param", parameters,
                    "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
         ->type_name("KEY=VALUE")
@@ -128,6 +157,7 @@ struct SceneTexts {
     options.objects.erase(std::unique(options.objects.begin(), options.objects.end()),
                           options.objects.end());
     options.object_types = splitList(object_types);
+    options.recorders = parseRecorders(recorders);
     for (const Shortcut& shortcut : shortcuts) {
       if (!shortcut.value.empty()) options.parameters[shortcut.parameter] = shortcut.value;
     }
@@ -163,14 +193,20 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
-void parseSize(const std::string& text, HeadlessOptions& options) {
+/// The size of a picture, where it is given as "WxH".
+void parseSize(const std::string& text, int& width, int& height) {
   const auto x = text.find('x');
   if (x == std::string::npos) {
     throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
   }
-  options.screenshot_width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, 16384));
-  options.screenshot_height =
-      static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, 16384));
+  width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, 16384));
+  height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, 16384));
+}
+
+GlSource parseGl(const std::string& text) {
+  return named<GlSource>(
+      "--gl", text,
+      {{"auto", GlSource::automatic}, {"egl", GlSource::egl}, {"osmesa", GlSource::osmesa}});
 }
 
 std::vector<Isa> parseIsas(const std::vector<std::string>& texts) {
@@ -182,21 +218,24 @@ std::vector<Isa> parseIsas(const std::vector<std::string>& texts) {
   return isas;
 }
 
+int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int parseThreadCount(const std::string& text) {
+  return static_cast<int>(parseInteger(text, "--threads", 1, 1024));
+}
+
 std::vector<int> parseThreads(const std::vector<std::string>& texts) {
   std::vector<int> threads;
-  for (const std::string& text : splitList(texts)) {
-    threads.push_back(static_cast<int>(parseInteger(text, "--threads", 1, 1024)));
-  }
-  if (threads.empty()) {
-    threads.push_back(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  }
+  for (const std::string& text : splitList(texts)) threads.push_back(parseThreadCount(text));
+  if (threads.empty()) threads.push_back(allCores());
   return threads;
 }
 
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
-                 "built-in scenes (freefall, brownian, gravity), recordings (.aabbs) or settings "
-                 "files of the original Broadmark (.json)")
+                 "built-in scenes (freefall, brownian, …), recordings (.aabbs, .posrot), scene "
+                 "parameters (.json, also the one beside a baked recording) or settings files of "
+                 "the original Broadmark (.json)")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -274,10 +313,8 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   options.check = named<CheckMode>(
       "--check", texts.check,
       {{"full", CheckMode::full}, {"hash", CheckMode::hash}, {"off", CheckMode::off}});
-  options.gl = named<GlSource>(
-      "--gl", texts.gl,
-      {{"auto", GlSource::automatic}, {"egl", GlSource::egl}, {"osmesa", GlSource::osmesa}});
-  parseSize(texts.size, options);
+  options.gl = parseGl(texts.gl);
+  parseSize(texts.size, options.screenshot_width, options.screenshot_height);
   options.shard = parseShard(texts.shard);
   for (const auto& [name, path] : texts.outputs) {
     if (!path.empty()) options.outputs[name] = path;
@@ -287,6 +324,84 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
         "no source: name a built-in scene (freefall, brownian, gravity) or a recording");
   }
   return options;
+}
+
+/// bake options as typed.
+struct BakeTexts {
+  BakeOptions options;  ///< those that need no understanding
+  SceneTexts scene;
+  std::vector<std::string> scenes;
+  std::string threads;
+  MovieOptions movie;
+  std::string movie_every = "1";
+  std::string size = "1280x720";
+  std::string gl = "auto";
+};
+
+void addBakeOptions(CLI::App& app, BakeTexts& texts) {
+  addList(app, "--scenes", texts.scenes, "built-in scenes (default: all)", "A[,B...]");
+  app.add_option("--parameters", texts.options.parameter_files,
+                 "bake the scene that this file of scene parameters, or the .json beside a "
+                 "recording, describes; other options override it (repeatable)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  texts.scene.addTo(app);
+  app.add_option("--output", texts.options.output,
+                 "directory for the recordings; they go into folders of their kind in it, such as "
+                 "Recordings_AABBs/")
+      ->type_name("DIR")
+      ->required();
+  app.add_option("--threads", texts.threads,
+                 "recordings baked at the same time (default: all cores); they do not depend on it")
+      ->type_name("T");
+  CLI::Option* movie =
+      app.add_option("--movie", texts.movie.directory,
+                     "draw each recording into numbered pictures, in a folder of its name in this "
+                     "directory")
+          ->type_name("DIR");
+  const auto add_movie_option = [&](const char* name, std::string& text, const char* doc,
+                                    const char* type) {
+    app.add_option(name, text, doc)->capture_default_str()->type_name(type)->needs(movie);
+  };
+  add_movie_option("--movie-every", texts.movie_every, "frames from one picture to the next", "K");
+  add_movie_option("--size", texts.size, "size of the pictures", "WxH");
+  add_movie_option("--gl", texts.gl, "where off-screen OpenGL comes from: auto, egl, osmesa",
+                   "SOURCE");
+  app.add_flag("--list", texts.options.list_only,
+               "print what would be baked or kept, with sizes; bake nothing");
+  app.add_flag("--force", texts.options.force,
+               "bake anew what is already there (default: complete recordings are kept)");
+  app.add_flag("--quiet", texts.options.quiet, "no progress");
+}
+
+BakeOptions understand(const BakeTexts& texts) {
+  BakeOptions options = texts.options;
+  options.scenes = splitList(texts.scenes);
+  options.scene = texts.scene.parse();
+  options.parameters = keyValues(texts.scene.parameters);
+  options.threads = texts.threads.empty() ? allCores() : parseThreadCount(texts.threads);
+  if (!texts.movie.directory.empty()) {
+    options.movie = texts.movie;
+    options.movie->every =
+        static_cast<std::uint32_t>(parseInteger(texts.movie_every, "--movie-every", 1, 1'000'000));
+    parseSize(texts.size, options.movie->width, options.movie->height);
+    options.movie->gl = parseGl(texts.gl);
+  }
+  return options;
+}
+
+void addVerifyOptions(CLI::App& app, VerifyOptions& options) {
+  app.add_option("files", options.files, "recordings (.aabbs, .posrot)")
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* describe =
+      app.add_flag("--describe", options.describe,
+                   "also print what each is like, over time: density, pairs per body, share of "
+                   "moving bodies, sizes (longest edge of a box), most bodies outside the world");
+  app.add_option("--json", options.json, "write that as JSON, too")
+      ->type_name("FILE")
+      ->needs(describe);
+  app.add_flag("--quiet", options.quiet, "no progress");
 }
 
 /// Complains about an argument that `app` does not know, with the nearest of what it does.
@@ -355,26 +470,20 @@ int runCommandLine(int argc, char** argv) {
   addHeadlessOptions(app, options, texts);
   scene.addTo(app);
 
-  BakeOptions bake_options;
-  SceneTexts bake_scene;
-  std::vector<std::string> bake_scenes;
+  BakeTexts bake_texts;
   CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
-  addList(*bake, "--scenes", bake_scenes, "built-in scenes", "A[,B...]");
-  bake_scene.addTo(*bake);
-  bake->add_option("--output", bake_options.output, "directory for the recordings")
-      ->type_name("DIR")
-      ->required();
-  bake->add_flag("--force", bake_options.force, "bake anew what is already there");
-  bake->add_flag("--quiet", bake_options.quiet, "no progress");
+  addBakeOptions(*bake, bake_texts);
 
   std::string what = "all";
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
-  list->add_option("what", what, "algorithms, scenes, engines, devices or all")
+  list->add_option("what", what, "algorithms, scenes, engines, recorders, devices or all")
       ->capture_default_str();
 
-  std::vector<std::filesystem::path> files;
-  CLI::App* verify = app.add_subcommand("verify", "Checks recordings and says what is wrong.");
-  verify->add_option("files", files, "recordings (.aabbs)")->type_name("FILE")->required();
+  VerifyOptions verify_options;
+  CLI::App* verify = app.add_subcommand(
+      "verify",
+      "Checks recordings, also against what their sidecars say, and tells what is wrong.");
+  addVerifyOptions(*verify, verify_options);
 
   CompareOptions compare_options;
   std::string fail_above = "0.05";
@@ -402,14 +511,9 @@ int runCommandLine(int argc, char** argv) {
   }
   requireNothingBefore(app);
 
-  if (bake->parsed()) {
-    bake_options.scenes = splitList(bake_scenes);
-    bake_options.scene = bake_scene.parse();
-    bake_options.parameters = keyValues(bake_scene.parameters);
-    return runBake(bake_options);
-  }
+  if (bake->parsed()) return runBake(understand(bake_texts));
   if (list->parsed()) return runList(what);
-  if (verify->parsed()) return runVerify(files);
+  if (verify->parsed()) return runVerify(verify_options);
   if (compare->parsed()) {
     compare_options.fail_above = parseNumber(fail_above, "--fail-above", 0, false);
     return runCompare(compare_options);

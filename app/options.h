@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/movie.h"
 #include "broadmark/parameters.h"
 #include "broadmark/runner.h"
 #include "render/picture.h"
@@ -20,6 +21,7 @@ struct SceneOptions {
   std::vector<std::string> object_types;  ///< likewise
   /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
   ParameterValues parameters;
+  std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on
 };
 
 /// One part of a run that is divided among machines: cases whose number is index (mod count).
@@ -57,10 +59,21 @@ struct HeadlessOptions {
 
 struct BakeOptions {
   std::vector<std::string> scenes;
+  std::vector<std::string> parameter_files;  ///< more scenes, described in files
   SceneOptions scene;
   ParameterValues parameters;
   std::filesystem::path output;
+  int threads = 1;
+  std::optional<MovieOptions> movie;
+  bool list_only = false;
   bool force = false;
+  bool quiet = false;
+};
+
+struct VerifyOptions {
+  std::vector<std::filesystem::path> files;
+  bool describe = false;
+  std::filesystem::path json;  ///< "": none
   bool quiet = false;
 };
 
@@ -78,7 +91,7 @@ int runCommandLine(int argc, char** argv);
 int runHeadless(const HeadlessOptions&);
 int runBake(const BakeOptions&);
 int runList(const std::string& what);
-int runVerify(const std::vector<std::filesystem::path>& files);
+int runVerify(const VerifyOptions&);
 int runCompare(const CompareOptions&);
 
 }  // namespace broadmark

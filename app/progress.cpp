@@ -4,20 +4,13 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace broadmark {
 namespace {
-
-std::string duration(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
-}
 
 double seconds(std::chrono::steady_clock::duration d) {
   return std::chrono::duration<double>(d).count();
@@ -25,7 +18,30 @@ double seconds(std::chrono::steady_clock::duration d) {
 
 constexpr const char* kEraseLine = "\r\033[K";
 
+/// Columns of the terminal that standard error is.
+std::size_t terminalWidth() {
+  winsize size{};
+  constexpr std::size_t kUsual = 80;
+  return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
+}
+
+/// At most `bytes` of a text, dots in place of the rest.
+std::string shortened(const std::string& text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  std::size_t end = bytes > 3 ? bytes - 3 : 0;
+  // Not within a character of UTF-8.
+  while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
+  return text.substr(0, end) + std::string(std::min<std::size_t>(bytes, 3), '.');
+}
+
 }  // namespace
+
+std::string waitingTime(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
 
 Progress::Progress(std::string task, std::uint64_t steps, bool quiet)
     : task_(std::move(task)), steps_(steps), quiet_(quiet), terminal_(::isatty(2) != 0) {}
@@ -33,29 +49,58 @@ Progress::Progress(std::string task, std::uint64_t steps, bool quiet)
 Progress::~Progress() {
   if (quiet_) return;
   fmt::print(stderr, "{}{}: {} ({})\n", terminal_ ? kEraseLine : "", task_,
-             done_ >= steps_ ? "done" : fmt::format("stopped at {} of {}", done_, steps_),
-             duration(seconds(Clock::now() - start_)));
+             done_ >= steps_ ? "done"
+                             : fmt::format("stopped at {:.0f} %", 100 * static_cast<double>(done_) /
+                                                                      static_cast<double>(steps_)),
+             waitingTime(seconds(Clock::now() - start_)));
 }
 
 void Progress::update(std::uint64_t done) {
   done_ = done;
-  if (quiet_) return;
-  // Often enough to look alive on a terminal; in a log, a sign of life now and then.
-  const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(15);
-  const auto now = Clock::now();
-  if (now - drawn_ < interval) return;
-  draw(now);
+  if (!isDue()) return;
+  const double so_far = seconds(Clock::now() - start_);
+  const double ratio = static_cast<double>(steps_ - std::min(done, steps_)) /
+                       static_cast<double>(std::max<std::uint64_t>(done, 1));
+  draw(so_far * ratio);
 }
 
-void Progress::draw(Clock::time_point now) {
-  drawn_ = now;
+void Progress::update(std::uint64_t done, double seconds_left) {
+  done_ = done;
+  if (isDue()) draw(seconds_left);
+}
+
+void Progress::print(std::FILE* stream, std::string_view line) {
+  if (terminal_ && !quiet_) {
+    fmt::print(stderr, "{}", kEraseLine);
+    std::fflush(stderr);
+  }
+  fmt::print(stream, "{}\n", line);
+  std::fflush(stream);
+}
+
+bool Progress::isDue() const {
+  // Often enough to look alive on a terminal; in a log, a sign of life now and then.
+  const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(15);
+  return !quiet_ && Clock::now() - drawn_ >= interval;
+}
+
+void Progress::draw(double seconds_left) {
+  drawn_ = Clock::now();
   const double share =
       static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>(steps_, 1));
-  const double left = share > 0 ? seconds(now - start_) * (1 - share) / share : 0;
-  const std::string line =
-      fmt::format("{}{}: {:.0f} %, about {} left", task_, detail_.empty() ? "" : " " + detail_,
-                  100 * share, duration(left));
-  fmt::print(stderr, "{}{}{}", terminal_ ? kEraseLine : "", line, terminal_ ? "" : "\n");
+  // Before the first step nobody knows.
+  const std::string left =
+      done_ == 0 ? "" : fmt::format(", about {} left", waitingTime(seconds_left));
+  const std::string state = fmt::format(": {:.0f} %{}", 100 * share, left);
+  std::string what = task_ + (detail_.empty() ? "" : " " + detail_);
+  if (terminal_) {
+    // A line that wraps could not be erased.
+    const std::size_t room = terminalWidth() - 1;
+    what = shortened(what, room > state.size() ? room - state.size() : 0);
+    fmt::print(stderr, "{}{}{}", kEraseLine, what, state);
+  } else {
+    fmt::print(stderr, "{}{}\n", what, state);
+  }
   std::fflush(stderr);
 }
 

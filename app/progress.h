@@ -3,12 +3,18 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <string>
+#include <string_view>
 
 namespace broadmark {
 
-/// Shows on standard error how far a task is. On a terminal one line is rewritten; elsewhere each
-/// task gets a plain line when it ends. Shows nothing when `quiet`.
+/// A time that a person waits, in words: "2 min 05 s".
+std::string waitingTime(double seconds);
+
+/// Shows on standard error how far a task is. On a terminal one line is rewritten, never longer
+/// than the terminal is wide; elsewhere there is a plain line now and then, and one when the task
+/// ends. Shows nothing when `quiet`.
 class Progress {
  public:
   Progress(std::string task, std::uint64_t steps, bool quiet);
@@ -18,13 +24,21 @@ class Progress {
 
   /// Names what is being done now.
   void detail(std::string text) { detail_ = std::move(text); }
-  /// `done` of the steps are done.
+  /// `done` of the steps are done. The time left is judged by the pace so far.
   void update(std::uint64_t done);
-  void step() { update(done_ + 1); }
+  /// The same for one who knows better how long it will take.
+  void update(std::uint64_t done, double seconds_left);
+
+  /// Prints a line on standard output or error, beside whatever is shown.
+  void print(std::string_view line) { print(stdout, line); }
+  void complain(std::string_view line) { print(stderr, line); }
 
  private:
   using Clock = std::chrono::steady_clock;
-  void draw(Clock::time_point now);
+  void print(std::FILE* stream, std::string_view line);
+  /// Whether it is time to draw again.
+  [[nodiscard]] bool isDue() const;
+  void draw(double seconds_left);
 
   std::string task_;
   std::string detail_;

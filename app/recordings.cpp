@@ -28,19 +28,44 @@ bool looksLikeFile(const std::string& source) {
          fs::exists(source);
 }
 
+/// Whether a source is a file of scene parameters, or the sidecar of a recording.
+bool isSceneFile(const std::string& source) {
+  return fs::path(source).extension() == ".json" &&
+         describesScene(jsonKind(readTextFile(source), source));
+}
+
+/// The simulation that a scene's name, moved by this engine ("": the default one), or a file of
+/// scene parameters stands for.
+std::unique_ptr<Simulation> simulationOf(const std::string& scene, const std::string& engine) {
+  if (!looksLikeFile(scene)) return makeSimulation(scene, engine);
+  return parseSceneParameters(readTextFile(scene), scene);
+}
+
+/// Sets those of the values that the object has.
+void setApplicable(Parametrised& object, const ParameterValues& values) {
+  object.visitParameters([&](const Parameter& parameter) {
+    const auto value = values.find(std::string(parameter.name));
+    if (value != values.end()) setParameter(parameter, value->second);
+  });
+}
+
 RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
   reference.scene_parameters = parameterValues(simulation);
-  reference.seed = static_cast<std::uint64_t>(parseInteger(
-      reference.scene_parameters.at("seed"), "seed", 0, std::numeric_limits<long long>::max()));
+  // A replay has none.
+  if (const auto seed = reference.scene_parameters.find("seed");
+      seed != reference.scene_parameters.end()) {
+    reference.seed = static_cast<std::uint64_t>(
+        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
+  }
   return reference;
 }
 
 Source recordingSource(const fs::path& path) {
   Source source;
   source.reference.path = path.string();
-  source.reference.scene = RecordingReader(path).scene();
+  source.reference.scene = openRecordingFile(path)->scene();
   return source;
 }
 
@@ -55,7 +80,8 @@ Source jsonSource(const fs::path& path) {
   const std::string kind = jsonKind(text, path.string());
   if (kind != "original-settings") {
     throw InputError(fmt::format(
-        "{}: {}: a settings file of the original Broadmark (with m_inputScene) is expected",
+        "{}: {}: scene parameters (\"schema\": \"broadmark-scene-parameters/1\") or a settings "
+        "file of the original Broadmark (with m_inputScene) are expected",
         path.string(), kind.empty() ? "of no known kind" : fmt::format("of the kind '{}'", kind)));
   }
   const OriginalSettings settings = parseOriginalSettings(text, path.string());
@@ -66,9 +92,6 @@ Source jsonSource(const fs::path& path) {
 
 Source fileSource(const fs::path& path) {
   if (path.extension() == ".json") return jsonSource(path);
-  if (path.extension() == ".posrot") {
-    throw InputError(path.string() + ": .posrot recordings cannot be replayed yet: use .aabbs");
-  }
   return recordingSource(path);
 }
 
@@ -90,12 +113,34 @@ bool simulateWithProgress(Simulation& simulation, bool quiet, Record&& record) {
   });
 }
 
-std::unique_ptr<RecordingReader> simulateTemporary(Simulation& simulation, bool quiet) {
+/// Bakes a simulation below `directory`, unless it is already there. Returns the path of the first
+/// recorder's recording, or "" when interrupted.
+fs::path bakeInto(Simulation& simulation, const fs::path& directory,
+                  const std::vector<std::string>& recorders, bool quiet) {
+  const auto paths = recordingPaths(directory, simulation.scene(), recorders);
+  const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
+  if (std::ranges::all_of(paths, there)) return paths.front();
+  for (const fs::path& path : paths) makeDirectory(path.parent_path());
+  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
+    return bake(simulation, paths, progress);
+  });
+  return whole ? paths.front() : fs::path();
+}
+
+std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet) {
   RecordingWriter writer(simulation.scene());
   const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
     return recordAll(simulation, writer, progress);
   });
   return whole ? writer.finishTemporary() : nullptr;
+}
+
+/// The engine asked for, by its own option or by --param; "": the default.
+std::string engineOf(const SceneOptions& options, const ParameterValues& parameters) {
+  for (const ParameterValues& values : {options.parameters, parameters}) {
+    if (const auto engine = values.find("engine"); engine != values.end()) return engine->second;
+  }
+  return {};
 }
 
 }  // namespace
@@ -104,11 +149,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
                                                          const SceneOptions& options,
                                                          const ParameterValues& parameters) {
   std::vector<std::unique_ptr<Simulation>> simulations;
-  const auto make = [&](const std::string& scene, const ParameterValues& values) {
-    auto simulation = makeSimulation(scene);
-    setParameters(*simulation, values);
-    simulations.push_back(std::move(simulation));
-  };
+  const std::string engine = engineOf(options, parameters);
   // An empty list stands for the scene's own default.
   auto counts = options.objects;
   std::ranges::sort(counts);
@@ -117,11 +158,14 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
   for (const std::string& scene : scenes) {
     for (std::size_t type = 0; type < type_choices; ++type) {
       for (std::size_t count = 0; count < count_choices; ++count) {
-        ParameterValues values = applicable(*makeSimulation(scene), parameters);
-        values.insert(options.parameters.begin(), options.parameters.end());
-        if (!counts.empty()) values["objects"] = fmt::format("{}", counts[count]);
-        if (!options.object_types.empty()) values["object_type"] = options.object_types[type];
-        make(scene, values);
+        ParameterValues axes;
+        if (!counts.empty()) axes["objects"] = fmt::format("{}", counts[count]);
+        if (!options.object_types.empty()) axes["object_type"] = options.object_types[type];
+        auto simulation = simulationOf(scene, engine);
+        setParameters(*simulation, options.parameters);  // the engine first: it brings its own
+        setApplicable(*simulation, parameters);
+        setParameters(*simulation, axes);
+        simulations.push_back(std::move(simulation));
       }
     }
   }
@@ -131,7 +175,7 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 std::vector<Source> resolveSources(const HeadlessOptions& options) {
   std::vector<Source> sources;
   for (const std::string& name : options.sources) {
-    if (!isSceneName(name)) {
+    if (!isSceneName(name) && !isSceneFile(name)) {
       if (!looksLikeFile(name)) {
         throw InputError(unknownName("scene", name, sceneIds()) + ", and no such file");
       }
@@ -148,28 +192,30 @@ std::vector<Source> resolveSources(const HeadlessOptions& options) {
   return sources;
 }
 
-std::unique_ptr<RecordingReader> openRecording(Source& source, const fs::path& directory,
-                                               bool quiet) {
-  std::unique_ptr<RecordingReader> recording;
+std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet) {
+  std::unique_ptr<Recording> recording;
   if (!source.simulation) {
-    recording = std::make_unique<RecordingReader>(fs::path(source.reference.path));
+    recording = openRecordingFile(source.reference.path);
   } else if (directory.empty()) {
     recording = simulateTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(*source.simulation, directory, false, quiet);
+  } else if (const fs::path path = bakeInto(*source.simulation, directory, recorders, quiet);
              !path.empty()) {
-    recording = std::make_unique<RecordingReader>(path);
+    recording = openRecordingFile(path);
   }
   if (recording) source.reference.hash = recording->hash();
   return recording;
 }
 
-fs::path bakeInto(Simulation& simulation, const fs::path& directory, bool force, bool quiet) {
-  fs::path path = directory / recordingFileName(simulation.scene());
-  if (!force && isBaked(path, simulation)) return path;
-  const bool whole = simulateWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
-    return !bake(simulation, path, progress).empty();
-  });
-  return whole ? path : fs::path();
+std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo& scene,
+                                     const std::vector<std::string>& recorders) {
+  std::vector<fs::path> paths;
+  const std::vector<RecorderListing> listings = builtinRecorders();
+  for (const std::string& id : recorders) {
+    const auto listing = std::ranges::find(listings, id, &RecorderListing::id);
+    paths.push_back(directory / listing->folder / recordingFileName(scene, "." + id));
+  }
+  return paths;
 }
 
 void makeDirectory(const fs::path& directory) {

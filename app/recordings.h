@@ -23,7 +23,8 @@ struct Source {
 };
 
 /// Every simulation that the options ask for: scenes × object types × object counts, sorted so
-/// that counts ascend within a scene. Throws InputError.
+/// that counts ascend within a scene. A scene is a built-in one's name or a file of scene
+/// parameters, which the options override. Throws InputError.
 std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
                                                          const SceneOptions&,
                                                          const ParameterValues& parameters);
@@ -31,15 +32,17 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 
-/// Opens a source's recording, simulating it first if need be: into `directory`, or, if that is
-/// empty, into an unnamed temporary file. Null when interrupted.
-std::unique_ptr<RecordingReader> openRecording(Source&, const std::filesystem::path& directory,
-                                               bool quiet);
+/// Where recordings by these recorders lie below a directory, laid out as the original's:
+/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", ….
+std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
+                                                  const SceneInfo&,
+                                                  const std::vector<std::string>& recorders);
 
-/// Bakes a simulation into `directory` under the name that belongs to it, unless it is already
-/// there (and not `force`). Returns the path, or "" when interrupted.
-std::filesystem::path bakeInto(Simulation&, const std::filesystem::path& directory, bool force,
-                               bool quiet);
+/// Opens a source's recording, simulating it first if need be: below `directory`, one recording by
+/// each of `recorders`, the first being opened; or, if that is empty, into an unnamed temporary
+/// file. Null when interrupted.
+std::unique_ptr<Recording> openRecording(Source&, const std::filesystem::path& directory,
+                                         const std::vector<std::string>& recorders, bool quiet);
 
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);

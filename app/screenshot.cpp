@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-void takeScreenshot(const HeadlessOptions& options, RecordingReader& recording, Oracle& oracle,
+void takeScreenshot(const HeadlessOptions& options, Recording& recording, Oracle& oracle,
                     const std::filesystem::path& path) {
   const SceneInfo& scene = recording.scene();
   const Frame frame = recording.read(options.screenshot_frame.value_or(scene.frames));

@@ -56,10 +56,11 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 }  // namespace
 
 std::string parameterText(const Parameter& parameter) {
-  return std::visit(Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
-                               [](const Choice* v) { return v->value; },
-                               [](const auto* v) { return fmt::format("{}", *v); }},
-                    parameter.value);
+  return std::visit(
+      Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },
+                 [](const Choice* v) { return v->value; }, [](const std::string* v) { return *v; },
+                 [](const auto* v) { return fmt::format("{}", *v); }},
+      parameter.value);
 }
 
 std::string parameterRange(const Parameter& parameter) {
@@ -69,13 +70,14 @@ std::string parameterRange(const Parameter& parameter) {
   return std::visit(
       Overloaded{[](const bool*) -> std::string { return "on|off"; },
                  [](const Choice* v) { return fmt::format("{}", fmt::join(v->options, "|")); },
-                 range},
+                 [](const std::string*) -> std::string { return "TEXT"; }, range},
       parameter.value);
 }
 
 void setParameter(const Parameter& parameter, std::string_view text) {
   std::visit(Overloaded{[&](bool* v) { setSwitch(parameter, text, *v); },
                         [&](Choice* v) { setChoice(parameter, text, *v); },
+                        [&](std::string* v) { *v = text; },
                         [&](auto* v) { setNumber(parameter, text, *v); }},
              parameter.value);
 }

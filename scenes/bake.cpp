@@ -1,59 +1,38 @@
 // Recordings of simulations, each with a sidecar that says how it was made.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string_view>
-#include <type_traits>
+#include <set>
 
 #include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
-#include "scenes/simulation.h"
+#include "scenes/recorder.h"
+#include "scenes/scene_parameters.h"
 
 namespace broadmark {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
-constexpr std::string_view kRecordingExtension = ".aabbs";
 
-std::filesystem::path sidecarPath(std::filesystem::path recording) {
-  return recording.replace_extension(".json");
-}
+fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
-Json parametersJson(Simulation& simulation) {
-  Json parameters = Json::object();
-  simulation.visitParameters([&](const Parameter& parameter) {
-    parameters[std::string(parameter.name)] = std::visit(
-        [](const auto* value) -> Json {
-          if constexpr (std::is_same_v<decltype(value), const Choice*>) {
-            return value->value;
-          } else {
-            return *value;
-          }
-        },
-        parameter.value);
-  });
-  return parameters;
-}
-
-/// The id of the built-in scene with this simulation's name.
-std::string sceneId(const Simulation& simulation) {
-  for (const SceneListing& listing : builtinScenes()) {
-    if (listing.name == simulation.scene().name) return listing.id;
-  }
-  return simulation.scene().name;
-}
-
-/// What stands beside a recording with this hash.
+/// What stands beside a recording with this hash. Of a replayed recording its contents count, not
+/// where it lies.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
-  return {{"schema", "broadmark-bake/1"},
-          {"scene", sceneId(simulation)},
-          {"parameters", parametersJson(simulation)},
-          {"hash", hash}};
+  Json json = sceneParametersJson(simulation, kBakeSchema);
+  if (const fs::path input = simulation.input(); !input.empty()) {
+    json["parameters"].erase("input");
+    json["input_hash"] = openRecordingFile(input)->hash();
+  }
+  json["hash"] = hash;
+  return json;
 }
 
 /// The hash that a sidecar's text states, if it is the sidecar of a recording of this simulation.
@@ -66,35 +45,72 @@ std::optional<std::string> statedHash(const std::string& text, Simulation& simul
   return hash;
 }
 
+scenes::RecorderEntry recorderOf(const fs::path& path) {
+  std::vector<std::string> extensions;
+  for (const scenes::RecorderEntry& entry : scenes::recorderEntries()) {
+    extensions.push_back("." + entry.listing.id);
+    if (path.extension() == extensions.back()) return entry;
+  }
+  throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
+                               fmt::join(extensions, " or ")));
+}
+
 }  // namespace
 
-bool isBaked(const std::filesystem::path& path, Simulation& simulation) {
+bool isBaked(const fs::path& path, Simulation& simulation) {
   try {
     const std::string sidecar = readTextFile(sidecarPath(path), kSidecarLimitBytes);
     const std::optional<std::string> hash = statedHash(sidecar, simulation);
     if (!hash) return false;
-    RecordingReader recording(path);
-    return recording.scene() == simulation.scene() && recording.hash() == *hash;
+    const auto recording = openRecordingFile(path);
+    return recording->scene() == simulation.scene() && recording->hash() == *hash;
   } catch (const InputError&) {
     return false;  // missing or damaged: to be baked anew
   }
 }
 
-std::string bake(Simulation& simulation, const std::filesystem::path& path,
-                 const BakeProgress& progress) {
-  if (path.extension() != kRecordingExtension) {
-    throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
-                                 kRecordingExtension));
+std::optional<std::string> bakedHash(const fs::path& recording) {
+  const fs::path path = sidecarPath(recording);
+  if (!fs::exists(path)) return std::nullopt;
+  const std::string text = readTextFile(path, kSidecarLimitBytes);
+  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("schema", Json()) != kBakeSchema) return std::nullopt;
+  if (!json.contains("hash") || !json["hash"].is_string()) {
+    throw InputError(fmt::format("{}: states no hash: bake anew with --force", path.string()));
   }
-  RecordingWriter writer(path, simulation.scene());
-  std::optional<Frame> frame = simulation.rewind();
-  for (; frame; frame = simulation.next()) {
-    writer.write(frame->boxes);
-    if (progress && !progress(frame->index)) return {};
+  return json["hash"].get<std::string>();
+}
+
+void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
+  const fs::path input = simulation.input();
+  const auto place = [](const fs::path& path) { return sidecarPath(fs::weakly_canonical(path)); };
+  std::set<fs::path> taken;
+  if (!input.empty()) taken.insert(place(input));
+  for (const fs::path& path : paths) {
+    if (taken.insert(place(path)).second) continue;
+    throw InputError(
+        fmt::format("{}: would be written over {}: another directory is needed", path.string(),
+                    input.empty() ? "the .json beside another recording"
+                                  : "the recording that is replayed, or the .json beside it"));
   }
-  std::string hash = writer.finish();
-  writeTextFile(sidecarPath(path), sidecarJson(simulation, hash).dump(2) + "\n");
-  return hash;
+}
+
+bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
+          const FrameProgress& progress) {
+  requireApart(simulation, paths);
+  std::vector<std::unique_ptr<scenes::Recorder>> recorders;
+  for (const fs::path& path : paths) {
+    recorders.push_back(recorderOf(path).create(path, simulation.scene()));
+  }
+  const auto record = [&](const Frame& frame) {
+    for (const auto& recorder : recorders) recorder->record(frame, simulation);
+  };
+  if (!recordAll(simulation, record, progress)) return false;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::string hash = recorders[i]->finish();
+    writeTextFile(sidecarPath(paths[i]), sidecarJson(simulation, hash).dump(2) + "\n");
+  }
+  return true;
 }
 
 }  // namespace broadmark

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "broadmark/parameters.h"
 #include "scenes/pose.h"
 
 namespace broadmark::scenes {
@@ -57,12 +58,11 @@ class PhysicsBody {
   virtual void freeze() = 0;
 };
 
-/// A world of rigid bodies. Deterministic: the same calls give the same bits. Instances do not
-/// influence each other.
-class PhysicsEngine {
+/// A world of bodies. Deterministic: the same calls give the same bits. Instances do not influence
+/// each other. Visits the parameters that only this engine has; their names must not clash with
+/// those of the settings or of any scene.
+class PhysicsEngine : public Parametrised {
  public:
-  virtual ~PhysicsEngine() = default;
-
   /// Adds a body. The reference stays valid as long as the engine lives.
   virtual PhysicsBody& addBody(const BodyDescription&) = 0;
   virtual void addWall(const HalfSpace&) = 0;

@@ -1,22 +1,11 @@
-// Poses and shapes of bodies, and the boxes around them.
+// Shapes of bodies, and the boxes around them when they are posed.
 #pragma once
 
-#include <array>
 #include <variant>
 
-#include "broadmark/aabb.h"
+#include "broadmark/pose.h"
 
 namespace broadmark::scenes {
-
-using Vec3 = std::array<float, 3>;
-
-/// Where a body is and how it is turned.
-struct Pose {
-  Vec3 position{};                            ///< of the centre
-  std::array<float, 4> rotation{0, 0, 0, 1};  ///< unit quaternion x y z w
-
-  friend bool operator==(const Pose&, const Pose&) = default;
-};
 
 struct BoxShape {
   Vec3 half_extents{};

@@ -2,6 +2,11 @@
 
 #include "scenes/registry.h"
 
+#include <algorithm>
+#include <iterator>
+
+#include "scenes/recorder.h"
+#include "scenes/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark::scenes {
@@ -27,6 +32,20 @@ namespace broadmark::scenes {
 #include "object_type_list.inc"
 #undef OBJECT_TYPE
 
+#define REPLAY(name)   \
+  namespace name {     \
+  ReplayEntry entry(); \
+  }
+#include "replay_list.inc"
+#undef REPLAY
+
+#define RECORDER(name)   \
+  namespace name {       \
+  RecorderEntry entry(); \
+  }
+#include "recorder_list.inc"
+#undef RECORDER
+
 std::vector<SceneEntry> sceneEntries() {
   return {
 #define SCENE(name) name::entry(),
@@ -51,24 +70,43 @@ std::vector<ObjectType> objectTypes() {
   };
 }
 
+std::vector<ReplayEntry> replayEntries() {
+  return {
+#define REPLAY(name) name::entry(),
+#include "replay_list.inc"
+#undef REPLAY
+  };
+}
+
+std::vector<RecorderEntry> recorderEntries() {
+  return {
+#define RECORDER(name) name::entry(),
+#include "recorder_list.inc"
+#undef RECORDER
+  };
+}
+
 }  // namespace broadmark::scenes
 
 namespace broadmark {
 
-std::vector<SceneListing> builtinScenes() {
-  std::vector<SceneListing> listings;
-  for (scenes::SceneEntry& entry : scenes::sceneEntries()) {
-    listings.push_back(std::move(entry.listing));
-  }
+namespace {
+
+template <class Entry>
+auto listingsOf(const std::vector<Entry>& entries) {
+  std::vector<decltype(Entry::listing)> listings;
+  for (const Entry& entry : entries) listings.push_back(entry.listing);
   return listings;
 }
 
+}  // namespace
+
+std::vector<SceneListing> builtinScenes() { return listingsOf(scenes::sceneEntries()); }
 std::vector<EngineListing> builtinEngines() {
-  std::vector<EngineListing> listings;
-  for (scenes::EngineEntry& entry : scenes::engineEntries()) {
-    listings.push_back(std::move(entry.listing));
-  }
+  auto listings = listingsOf(scenes::engineEntries());
+  std::ranges::move(listingsOf(scenes::replayEntries()), std::back_inserter(listings));
   return listings;
 }
+std::vector<RecorderListing> builtinRecorders() { return listingsOf(scenes::recorderEntries()); }
 
 }  // namespace broadmark

@@ -3,7 +3,7 @@
 namespace broadmark::scenes {
 
 BodyDescription Scene::body(std::size_t index, const Settings& settings, const ObjectType& type,
-                            Random& random) const {
+                            Random& random) {
   BodyDescription body;
   body.shape = type.shape(index, settings.scale, random);
   body.mass = settings.mass;

@@ -26,10 +26,12 @@ class Scene : public Parametrised {
   /// Changes defaults of the shared parameters that do not suit this scene.
   virtual void setDefaults(Settings&) const {}
 
+  /// Called before the first body is asked for: what concerns all of them is decided here.
+  virtual void prepare(const Settings&, Random&) {}
+
   /// Body `index` as it starts. By default: uniformly in a ball around the origin, unturned, with a
   /// random velocity. Called once for each body, in order.
-  virtual BodyDescription body(std::size_t index, const Settings&, const ObjectType&,
-                               Random&) const;
+  virtual BodyDescription body(std::size_t index, const Settings&, const ObjectType&, Random&);
 
   /// Called when all bodies stand in their initial pose. By default gravity points down.
   virtual void start(Stage& stage);

@@ -8,6 +8,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "scenes/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark {
@@ -39,13 +40,14 @@ bool contains(const Aabb& box, const Vec3& point) {
 class BuiltinSimulation final : public Simulation {
  public:
   explicit BuiltinSimulation(const SceneEntry& entry)
-      : name_(entry.listing.name), scene_(entry.create()) {
+      : Simulation(entry.listing), scene_(entry.create()) {
     scene_->setDefaults(settings_);
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
     settings_.visit(visit);
     scene_->visitParameters(visit);
+    chosenEngine().visitParameters(visit);
   }
 
   [[nodiscard]] const SceneInfo& scene() const override {
@@ -58,8 +60,8 @@ class BuiltinSimulation final : public Simulation {
     info_ = describe();
     random_ = Random(static_cast<std::uint64_t>(settings_.seed));
     bodies_.clear();
-    engine_ =
-        entryOf(engineEntries(), settings_.engine, "physics engine").create(settings_.physics);
+    engine_ = createEngine();
+    setParameters(*engine_, parameterValues(chosenEngine()));
     addWalls();
     addBodies();
     Stage stage = makeStage();
@@ -82,17 +84,40 @@ class BuiltinSimulation final : public Simulation {
     return frame;
   }
 
+  std::span<const Aabb> unturnedBoxes() override {
+    unturned_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      unturned_[i] = tightBox(bodies_[i]->shape(), {.position = poses_[i].position});
+    }
+    return unturned_;
+  }
+
+  std::span<const Pose> poses() override { return poses_; }
+
  private:
   [[nodiscard]] ObjectType objectType() const {
     return entryOf(objectTypes(), settings_.object_type, "object type");
   }
 
   [[nodiscard]] SceneInfo describe() const {
-    return {.name = name_,
+    return {.name = listing().name,
             .object_type = objectType().listing.name,
             .objects = static_cast<std::uint32_t>(settings_.objects),
             .frames = static_cast<std::uint32_t>(settings_.frames),
             .world = worldBox(settings_.side())};
+  }
+
+  [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() const {
+    return entryOf(engineEntries(), settings_.engine, "physics engine").create(settings_.physics);
+  }
+
+  /// Keeps the parameters of the engine that the settings name; another one's are forgotten.
+  PhysicsEngine& chosenEngine() {
+    if (!chosen_engine_ || chosen_id_ != settings_.engine.value) {
+      chosen_engine_ = createEngine();
+      chosen_id_ = settings_.engine.value;
+    }
+    return *chosen_engine_;
   }
 
   Stage makeStage() { return {settings_, *engine_, bodies_, random_}; }
@@ -110,6 +135,7 @@ class BuiltinSimulation final : public Simulation {
   void addBodies() {
     const ObjectType type = objectType();
     bodies_.reserve(info_.objects);
+    scene_->prepare(settings_, random_);
     for (std::size_t i = 0; i < info_.objects; ++i) {
       bodies_.push_back(&engine_->addBody(scene_->body(i, settings_, type, random_)));
     }
@@ -123,22 +149,53 @@ class BuiltinSimulation final : public Simulation {
 
   Frame record() {
     boxes_.resize(bodies_.size());
-    std::ranges::transform(bodies_, boxes_.begin(), [](const PhysicsBody* body) {
-      return tightBox(body->shape(), body->pose());
-    });
+    poses_.resize(bodies_.size());
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      poses_[i] = bodies_[i]->pose();
+      boxes_[i] = tightBox(bodies_[i]->shape(), poses_[i]);
+    }
     return {index_, boxes_};
   }
 
-  std::string name_;
   std::unique_ptr<Scene> scene_;
   Settings settings_;
   mutable SceneInfo info_;
   Random random_{0};
-  std::unique_ptr<PhysicsEngine> engine_;
+  std::unique_ptr<PhysicsEngine> chosen_engine_;  ///< has no bodies
+  std::string chosen_id_;
+  std::unique_ptr<PhysicsEngine> engine_;  ///< the running one
   std::vector<PhysicsBody*> bodies_;
   std::vector<Aabb> boxes_;
+  std::vector<Aabb> unturned_;
+  std::vector<Pose> poses_;
   std::uint32_t index_ = 0;
 };
+
+std::vector<std::string> engineIds() {
+  std::vector<std::string> ids;
+  for (const EngineListing& listing : builtinEngines()) ids.push_back(listing.id);
+  return ids;
+}
+
+/// A replay by the engine of this id; null if that one simulates.
+std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneListing& scene) {
+  for (const ReplayEntry& entry : replayEntries()) {
+    if (entry.listing.id == engine) return makeReplay(scene, entry);
+  }
+  return nullptr;
+}
+
+std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::string& engine) {
+  if (auto replay = replayBy(engine, scene.listing)) return replay;
+  auto simulation = std::make_unique<BuiltinSimulation>(scene);
+  if (engine.empty()) return simulation;
+  const std::vector<std::string> known = engineIds();
+  if (std::ranges::find(known, engine) == known.end()) {
+    throw InputError(unknownName("engine", engine, known));
+  }
+  setParameters(*simulation, {{"engine", engine}});
+  return simulation;
+}
 
 std::string lowerCase(std::string text) {
   std::ranges::transform(text, text.begin(),
@@ -149,12 +206,17 @@ std::string lowerCase(std::string text) {
 }  // namespace
 }  // namespace scenes
 
-std::unique_ptr<Simulation> makeSimulation(const std::string& scene) {
+std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
+  if (auto replay = scenes::replayBy(id, {})) return replay;
+  return scenes::entryOf(scenes::engineEntries(), {id, scenes::engineIds()}, "engine").create({});
+}
+
+std::unique_ptr<Simulation> makeSimulation(const std::string& scene, const std::string& engine) {
   const std::string wanted = scenes::lowerCase(scene);
   std::vector<std::string> known;
   for (const scenes::SceneEntry& entry : scenes::sceneEntries()) {
     if (wanted == entry.listing.id || wanted == scenes::lowerCase(entry.listing.name)) {
-      return std::make_unique<scenes::BuiltinSimulation>(entry);
+      return scenes::simulationOf(entry, engine);
     }
     known.push_back(entry.listing.id);
   }

@@ -5,11 +5,15 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
 #include "broadmark/parameters.h"
+#include "broadmark/pose.h"
+#include "broadmark/recording.h"
 
 namespace broadmark {
 
@@ -24,7 +28,8 @@ std::vector<SceneListing> builtinScenes();
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
-  scripted,  ///< the engine alone decides where they are: no gravity, no launching, no walls
+  scripted,  ///< by rules of its own: gravity, launching and walls may count for nothing
+  replayed,  ///< none at all: the frames come from a recording
 };
 struct EngineListing {
   std::string id;  ///< "bullet"
@@ -32,27 +37,69 @@ struct EngineListing {
   Dynamics dynamics = Dynamics::rigid;
 };
 std::vector<EngineListing> builtinEngines();
+struct RecorderListing {
+  std::string id;  ///< "aabbs": also the extension of what it writes
+  std::string summary;
+  std::string folder;  ///< where the original keeps such recordings: "Recordings_AABBs"
+};
+std::vector<RecorderListing> builtinRecorders();
 
-/// A live physics simulation, frame by frame: a FrameSource. Its parameters (objects, frames, seed,
-/// density, object_type, engine, …, and the scene's own) can be set until the first rewind().
-/// Same parameters, same frames, bit for bit. rewind() starts the simulation anew.
-class Simulation : public Parametrised, public FrameSource {};
+/// The parameters that come with the engine of this id: besides those of a scene, or, if it replays
+/// recordings, in their place. Throws InputError for an unknown one.
+std::unique_ptr<Parametrised> engineParameters(const std::string& id);
+
+/// A live physics simulation, frame by frame: a FrameSource that knows the poses, too. Its
+/// parameters (objects, frames, seed, density, object_type, engine, …, the scene's own, and those
+/// of the engine that is chosen) count from the next rewind() on. Same parameters, same frames, bit
+/// for bit. rewind() starts the simulation anew.
+class Simulation : public Parametrised, public FrameSource, public PoseSource {
+ public:
+  explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
+
+  /// The built-in scene it is one of.
+  [[nodiscard]] const SceneListing& listing() const { return listing_; }
+  /// The recording that is replayed instead of simulating; "": none. Throws InputError when it is
+  /// not there.
+  [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
+
+ private:
+  SceneListing listing_;
+};
 
 /// The simulation of a built-in scene, by id or recorded name, any case, with its default
-/// parameters. Throws InputError for an unknown name, suggesting the nearest.
-std::unique_ptr<Simulation> makeSimulation(const std::string& scene);
+/// parameters, but by this engine ("": the default one). One that replays recordings has other
+/// parameters than physics have. Throws InputError for an unknown name, suggesting the nearest.
+std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
+                                           const std::string& engine = {});
 
-/// Told after each frame that was written; returning false stops.
-using BakeProgress = std::function<bool(std::uint32_t frame)>;
+/// Whether JSON of this kind (see jsonKind) describes a scene: a file of scene parameters
+/// ("broadmark-scene-parameters/1"), or the sidecar of a baked recording.
+bool describesScene(std::string_view json_kind);
+
+/// The simulation that such a JSON text describes; what it does not state keeps its default. `name`
+/// stands for the text in messages. Throws InputError that names the key and what would be right.
+std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
+
+/// Scene and parameters as such a text: reading it back gives the same simulation.
+std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
-/// says so, and the recording has the stated hash).
+/// says so, and the recording has the stated hash) from what is at `input()` now, if anything.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 
-/// Simulates all frames into an .aabbs recording at `path`, with a .json of the same name that
-/// holds all parameters and the recording's hash ("schema": "broadmark-bake/1"). Returns the hash,
-/// or "" when progress stopped it (then nothing is left). Throws InputError.
-std::string bake(Simulation& simulation, const std::filesystem::path& path,
-                 const BakeProgress& progress = {});
+/// The hash that the .json beside a recording states; nothing if there is none, or it is no sidecar
+/// of a baked recording. Throws InputError when a sidecar states no hash.
+std::optional<std::string> bakedHash(const std::filesystem::path& recording);
+
+/// Throws InputError if bake() to these paths would write over the recording that is replayed, or
+/// over the .json beside that or another of them.
+void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
+
+/// Simulates all frames once into recordings at `paths`, each by the recorder that its extension
+/// names. Beside each a .json of the same name, which no two may share, holds all parameters and
+/// the hash ("schema": "broadmark-bake/1"). Returns false when progress stopped it: then nothing is
+/// left. Throws InputError.
+bool bake(Simulation& simulation, const std::vector<std::filesystem::path>& paths,
+          const FrameProgress& progress = {});
 
 }  // namespace broadmark

@@ -1,23 +1,33 @@
 // Measures what the Bullet engine costs beside a plain loop over Bullet's world with its defaults:
 // the same bodies, walls, time step and iterations, and what Brownian and Gravity do in each frame.
-// The two take turns frame by frame, so that whatever else slows the machine slows both. Exit
-// status 1 where the engine is the slower one.
+// Or, with --settings, what single settings of Bullet cost and bring, in the plain loop. All take
+// turns frame by frame and are measured by the processor time of their thread, so that whatever
+// else slows the machine slows all. Exit status 1 where the engine is slower than the plain loop.
 //
-//   plain_bullet [OBJECTS [FRAMES]]
+//   plain_bullet [--settings] [OBJECTS [FRAMES]]
 
+#include <BulletCollision/BroadphaseCollision/btAxisSweep3.h>
+#include <BulletDynamics/ConstraintSolver/btNNCGConstraintSolver.h>
 #include <btBulletDynamicsCommon.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <deque>
+#include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scenes/scene.h"
+
+// Margins are settings of the whole process: whoever steps sets them.
+extern btScalar gContactBreakingThreshold;
+extern btScalar gDbvtMargin;
 
 namespace {
 
@@ -65,12 +75,90 @@ class PlainBody final : public PhysicsBody {
   btRigidBody body;
 };
 
-/// Bullet as its manual shows it.
+/// How Bullet is set up. By default as its manual shows it.
+struct Setup {
+  std::string name;
+  bool sweep_and_prune = false;     ///< as broad phase, instead of the tree
+  bool pairs_at_once = false;       ///< sought by one pass over the tree (m_deferedcollide)
+  int tree_improvement = 0;         ///< per cent of the tree in each step (m_dupdates)
+  bool sleepers_keep_box = false;   ///< bodies asleep are left alone in the broad phase
+  btScalar tree_margin = 0.05F;     ///< how far a body may move before the tree is told
+  btScalar contact_margin = 0.02F;  ///< contacts are kept up to this distance
+  bool conjugate_gradients = false;
+  bool warm_start = true;
+  bool two_friction_directions = false;
+  bool split_impulse = true;  ///< bodies are pushed apart without gaining speed
+  bool continuous = true;     ///< the pass for fast bodies
+  bool gyroscopic = true;
+};
+
+/// The settings of the engine `bullet`.
+const Setup kInUse = {.name = "as in use",
+                      .pairs_at_once = true,
+                      .tree_improvement = 1,
+                      .sleepers_keep_box = true,
+                      .two_friction_directions = true};
+
+/// What is measured against them: one change each.
+std::vector<Setup> variations() {
+  std::vector<Setup> all = {kInUse};
+  const auto add = [&](const char* name, const std::function<void(Setup&)>& change) {
+    Setup setup = kInUse;
+    setup.name = name;
+    change(setup);
+    all.push_back(setup);
+  };
+  add("sweep and prune (bt32BitAxisSweep3)", [](Setup& s) { s.sweep_and_prune = true; });
+  add("pairs sought body by body", [](Setup& s) { s.pairs_at_once = false; });
+  add("tree not improved", [](Setup& s) { s.tree_improvement = 0; });
+  add("tree improved by 5 % per step", [](Setup& s) { s.tree_improvement = 5; });
+  add("boxes of sleepers updated, too", [](Setup& s) { s.sleepers_keep_box = false; });
+  add("tree margin 0.01 instead of 0.05", [](Setup& s) { s.tree_margin = 0.01F; });
+  add("tree margin 0.2", [](Setup& s) { s.tree_margin = 0.2F; });
+  add("contact margin 0.005 instead of 0.02", [](Setup& s) { s.contact_margin = 0.005F; });
+  add("contact margin 0.08", [](Setup& s) { s.contact_margin = 0.08F; });
+  add("nonsmooth conjugate gradients", [](Setup& s) { s.conjugate_gradients = true; });
+  add("no warm start", [](Setup& s) { s.warm_start = false; });
+  add("one friction direction", [](Setup& s) { s.two_friction_directions = false; });
+  add("no split impulse", [](Setup& s) { s.split_impulse = false; });
+  add("no continuous pass", [](Setup& s) { s.continuous = false; });
+  add("no gyroscopic term", [](Setup& s) { s.gyroscopic = false; });
+  return all;
+}
+
+std::unique_ptr<btBroadphaseInterface> broadPhase(const Setup& setup, double side) {
+  if (setup.sweep_and_prune) {
+    const auto half = static_cast<btScalar>(side);
+    return std::make_unique<bt32BitAxisSweep3>(btVector3(-half, -half, -half),
+                                               btVector3(half, half, half));
+  }
+  auto tree = std::make_unique<btDbvtBroadphase>();
+  tree->m_deferedcollide = setup.pairs_at_once;
+  tree->m_dupdates = setup.tree_improvement;
+  return tree;
+}
+
+std::unique_ptr<btSequentialImpulseConstraintSolver> solver(const Setup& setup) {
+  if (setup.conjugate_gradients) return std::make_unique<btNNCGConstraintSolver>();
+  return std::make_unique<btSequentialImpulseConstraintSolver>();
+}
+
+/// A plain loop over Bullet's own world.
 class PlainBullet final : public PhysicsEngine {
  public:
-  explicit PlainBullet(const PhysicsSettings& settings) : settings_(settings) {
+  explicit PlainBullet(const Settings& settings, const Setup& setup = {})
+      : settings_(settings.physics),
+        setup_(setup),
+        broad_phase_(broadPhase(setup, settings.side())),
+        solver_(solver(setup)) {
     world_.setGravity(btVector3(0, 0, 0));
-    world_.getSolverInfo().m_numIterations = static_cast<int>(settings.solver_iterations);
+    world_.setForceUpdateAllAabbs(!setup.sleepers_keep_box);
+    world_.getDispatchInfo().m_useContinuous = setup.continuous;
+    btContactSolverInfo& info = world_.getSolverInfo();
+    info.m_numIterations = static_cast<int>(settings_.solver_iterations);
+    info.m_splitImpulse = setup.split_impulse ? 1 : 0;
+    if (setup.two_friction_directions) info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+    if (!setup.warm_start) info.m_solverMode &= ~SOLVER_USE_WARMSTARTING;
   }
   ~PlainBullet() override {
     for (PlainBody& body : bodies_) world_.removeRigidBody(&body.body);
@@ -92,6 +180,7 @@ class PlainBullet final : public PhysicsEngine {
     info.m_friction = static_cast<btScalar>(std::sqrt(settings_.friction));
     info.m_angularDamping = static_cast<btScalar>(settings_.angular_damping);
     PlainBody& body = bodies_.emplace_back(description, info);
+    if (!setup_.gyroscopic) body.body.setFlags(0);
     world_.addRigidBody(&body.body);
     return body;
   }
@@ -109,6 +198,8 @@ class PlainBullet final : public PhysicsEngine {
   }
 
   void step() override {
+    gContactBreakingThreshold = setup_.contact_margin;
+    gDbvtMargin = setup_.tree_margin;
     const auto substeps = static_cast<int>(settings_.substeps);
     const auto time = static_cast<btScalar>(settings_.time_step);
     world_.stepSimulation(time, substeps, time / static_cast<btScalar>(substeps));
@@ -116,18 +207,42 @@ class PlainBullet final : public PhysicsEngine {
 
   [[nodiscard]] bool allAsleep() const override { return false; }
 
+  /// How deep bodies are in each other, on average over all points where they are.
+  [[nodiscard]] double meanPenetration() {
+    double sum = 0;
+    int points = 0;
+    for (int i = 0; i < dispatcher_.getNumManifolds(); ++i) {
+      const btPersistentManifold& manifold = *dispatcher_.getManifoldByIndexInternal(i);
+      for (int k = 0; k < manifold.getNumContacts(); ++k) {
+        const btScalar distance = manifold.getContactPoint(k).getDistance();
+        if (distance >= 0) continue;
+        sum -= double{distance};
+        ++points;
+      }
+    }
+    return points > 0 ? sum / points : 0;
+  }
+
  private:
   PhysicsSettings settings_;
+  Setup setup_;
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_{&configuration_};
-  btDbvtBroadphase broad_phase_;
-  btSequentialImpulseConstraintSolver solver_;
+  std::unique_ptr<btBroadphaseInterface> broad_phase_;
+  std::unique_ptr<btSequentialImpulseConstraintSolver> solver_;
   std::unique_ptr<btBoxShape> shape_;
   std::deque<btStaticPlaneShape> wall_shapes_;
   std::deque<btRigidBody> walls_;
   std::deque<PlainBody> bodies_;
-  btDiscreteDynamicsWorld world_{&dispatcher_, &broad_phase_, &solver_, &configuration_};
+  btDiscreteDynamicsWorld world_{&dispatcher_, broad_phase_.get(), solver_.get(), &configuration_};
 };
+
+/// Processor time that this thread has used.
+double threadSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 /// One engine at work on a scene.
 class Contestant {
@@ -140,7 +255,7 @@ class Contestant {
     }
     scene_->setDefaults(settings_);
     settings_.objects = objects;
-    engine_ = make_engine(settings_.physics);
+    engine_ = make_engine(settings_);
     for (int axis = 0; axis < 3; ++axis) {
       for (const float sign : {1.0F, -1.0F}) {
         HalfSpace wall{.offset = static_cast<float>(-settings_.side() / 2)};
@@ -158,15 +273,16 @@ class Contestant {
   }
 
   void advance(std::uint32_t frame) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = threadSeconds();
     engine_->step();
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_ += threadSeconds() - start;
     Stage stage = makeStage();
     scene_->act(stage, frame);
   }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] double seconds() const { return seconds_; }
+  [[nodiscard]] PhysicsEngine& engine() { return *engine_; }
 
  private:
   Stage makeStage() { return {settings_, *engine_, bodies_, random_}; }
@@ -181,14 +297,14 @@ class Contestant {
 };
 
 bool contest(const std::string& scene, std::int64_t objects, std::uint32_t frames) {
-  Contestant plain("plain loop", scene, objects, [](const PhysicsSettings& settings) {
+  Contestant plain("plain loop", scene, objects, [](const Settings& settings) {
     return std::make_unique<PlainBullet>(settings);
   });
-  Contestant ours("bullet", scene, objects, [](const PhysicsSettings& settings) {
+  Contestant ours("bullet", scene, objects, [](const Settings& settings) {
     const std::vector<EngineEntry> entries = engineEntries();
     return std::ranges::find(entries, "bullet",
                              [](const EngineEntry& entry) { return entry.listing.id; })
-        ->create(settings);
+        ->create(settings.physics);
   });
   for (std::uint32_t frame = 1; frame <= frames; ++frame) {
     plain.advance(frame);
@@ -202,12 +318,45 @@ bool contest(const std::string& scene, std::int64_t objects, std::uint32_t frame
   return ratio >= 1;
 }
 
+/// Prints what each variation costs in terms of the settings in use, and how well it keeps bodies
+/// apart.
+void compareSettings(const std::string& scene, std::int64_t objects, std::uint32_t frames) {
+  std::deque<Contestant> contestants;
+  for (const Setup& setup : variations()) {
+    contestants.emplace_back(setup.name, scene, objects, [&](const Settings& settings) {
+      return std::make_unique<PlainBullet>(settings, setup);
+    });
+  }
+  for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+    for (Contestant& contestant : contestants) contestant.advance(frame);
+  }
+  fmt::print("{}, {} cubes, {} frames\n", scene, objects, frames);
+  for (Contestant& contestant : contestants) {
+    fmt::print("  {:38} {:7.2f} s  {:5.2f}x  mean penetration {:.4f}\n", contestant.name(),
+               contestant.seconds(), contestant.seconds() / contestants.front().seconds(),
+               dynamic_cast<PlainBullet&>(contestant.engine()).meanPenetration());
+  }
+}
+
+int number(std::span<char*> arguments, std::size_t index, int otherwise) {
+  return index < arguments.size() ? std::max(1, std::atoi(arguments[index])) : otherwise;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int objects = argc > 1 ? std::max(1, std::atoi(argv[1])) : 8000;
-  const int frames = argc > 2 ? std::max(1, std::atoi(argv[2])) : 200;
-  bool met = contest("brownian", objects, static_cast<std::uint32_t>(frames));
-  met &= contest("gravity", objects, static_cast<std::uint32_t>(frames));
+  std::span<char*> arguments(argv + 1, static_cast<std::size_t>(argc - 1));
+  const bool settings = !arguments.empty() && arguments[0] == std::string_view("--settings");
+  if (settings) arguments = arguments.subspan(1);
+  const int objects = number(arguments, 0, settings ? 2000 : 8000);
+  const auto frames = static_cast<std::uint32_t>(number(arguments, 1, settings ? 60 : 200));
+  bool met = true;
+  for (const char* scene : {"brownian", "gravity"}) {
+    if (settings) {
+      compareSettings(scene, objects, frames);
+    } else {
+      met &= contest(scene, objects, frames);
+    }
+  }
   return met ? EXIT_SUCCESS : EXIT_FAILURE;
 }

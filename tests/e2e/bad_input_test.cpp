@@ -53,6 +53,9 @@ TEST_F(BadInput, UnknownNamesAreSuggested) {
   expectRefusal({"bake", "--scenes", "brownain", "--output", "no"}, {"'brownain'", "'brownian'"});
   expectRefusal({"bake", "--sceness", "brownian", "--output", "no"}, {"bake", "'--scenes'"});
   expectRefusal({"bake", "--param", "masss=1", "--output", "no"}, {"'masss'", "'mass'"});
+  expectRefusal({"bake", "--object-type", "cube", "--output", "no"}, {"'cube'", "'cubes'"});
+  expectRefusal({"bake", "--engine", "bulet", "--output", "no"}, {"'bulet'", "'bullet'"});
+  expectRefusal({"bake", "--thread", "2", "--output", "no"}, {"bake", "'--threads'"});
   expectRefusal({"compare", "a", "b", "--fail-abov", "1"}, {"compare", "'--fail-above'"});
   expectRefusal({"verfy", "a.aabbs"}, {"'verify'"});
 }
@@ -78,6 +81,8 @@ TEST_F(BadInput, NumbersOutOfRange) {
   }
   for (const std::string threads : {"0", "1025", "two"}) {
     expectRunRefused({"--threads", threads}, {"--threads", "'" + threads + "'", "from 1"});
+    expectRefusal({"bake", "--output", "no", "--threads", threads},
+                  {"--threads", "'" + threads + "'", "from 1"});
   }
   expectRunRefused({"--size", "0x0"}, {"--size", "'0'", "from 1"});
   expectRunRefused({"--size", "640"}, {"--size", "'640'", "WxH"});
@@ -117,7 +122,8 @@ TEST_F(BadInput, SourcesThatAreNone) {
   ASSERT_EQ(::mkfifo(file("fifo.aabbs").c_str(), 0600), 0);
   expectRefusal({"--headless", "fifo.aabbs"}, {"fifo.aabbs", "not a regular file"});
   writeFile(file("old.posrot"), "");
-  expectRefusal({"--headless", "old.posrot"}, {"old.posrot", ".aabbs"});
+  expectRefusal({"--headless", "freefall", "--recorder", "posrat"}, {"--recorder", "'posrot'"});
+  expectRefusal({"--headless", "old.posrot"}, {"old.posrot", "0 bytes is too short"});
 
   for (const auto& [name, text] :
        std::map<std::string, std::string>{{"broken.json", "{"},

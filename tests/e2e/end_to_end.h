@@ -77,6 +77,16 @@ inline constexpr Aabb kUnitBox{{0, 0, 0, 0}, {1, 1, 1, 0}};
 /// `count` times the unit box.
 inline std::vector<Aabb> unitBoxes(std::size_t count) { return {count, kUnitBox}; }
 
+/// Where a recording of this name lies in a directory that was baked into.
+inline std::string recordingIn(const std::string& directory, const std::string& name) {
+  return directory + "/Recordings_AABBs/" + name + ".aabbs";
+}
+
+/// Likewise for one of positions and rotations.
+inline std::string posesIn(const std::string& directory, const std::string& name) {
+  return directory + "/Recordings_PositionRotation/" + name + ".posrot";
+}
+
 class EndToEnd : public ::testing::Test {
  protected:
   EndToEnd() {
@@ -114,6 +124,13 @@ class EndToEnd : public ::testing::Test {
     return names;
   }
 
+  /// Those of them that are no directories.
+  [[nodiscard]] std::set<std::string> files() const {
+    std::set<std::string> names = entries();
+    std::erase_if(names, [&](const std::string& name) { return fs::is_directory(file(name)); });
+    return names;
+  }
+
   /// The program must refuse: exit status 2, nothing printed, nothing written, and one line of
   /// complaint that holds all of `words`.
   void expectRefusal(const Arguments& arguments, const std::vector<std::string>& words,
@@ -136,7 +153,7 @@ class EndToEnd : public ::testing::Test {
                      const std::string& frames = "5", const std::string& seed = "1") const {
     const Ended ended = runQuietly({"bake", "--scenes", "freefall", "--objects", objects,
                                     "--frames", frames, "--seed", seed, "--output", "baked"});
-    fs::rename(file("baked") / ("FreeFall Cubes N" + objects + " F" + frames + "frames.aabbs"),
+    fs::rename(file(recordingIn("baked", "FreeFall Cubes N" + objects + " F" + frames + "frames")),
                file(name));
     fs::remove_all(file("baked"));
   }

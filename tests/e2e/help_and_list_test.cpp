@@ -50,9 +50,10 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                      "compare",
                      "Exit status"});
   expectWords(run({"bake", "--help"}), session);
-  expectWords(run({"bake", "--help"}), {"--scenes", "--output", "--force", "--quiet"});
+  expectWords(run({"bake", "--help"}), {"--scenes", "--output", "--threads", "--movie ",
+                                        "--movie-every", "--size", "--list", "--force", "--quiet"});
   expectWords(run({"compare", "--help"}), {"--fail-above", "A.json", "B.json"});
-  expectWords(run({"verify", "--help"}), {"FILE"});
+  expectWords(run({"verify", "--help"}), {"FILE", "--describe", "--json", "--quiet"});
   expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines"});
   expectWords(run({"--help-all"}), {"--headless", "--scenes", "--fail-above"});
 }
@@ -76,6 +77,10 @@ TEST_F(List, NamesEverything) {
   for (const EngineListing& engine : builtinEngines()) {
     expectWords(all, {engine.id, engine.summary});
     expectWords(run({"list", "engines"}), {engine.id});
+  }
+  for (const RecorderListing& recorder : builtinRecorders()) {
+    expectWords(all, {recorder.id, recorder.summary});
+    expectWords(run({"list", "recorders"}), {recorder.id});
   }
 }
 

@@ -20,7 +20,7 @@ class Interruption : public EndToEnd {
   }
 };
 
-const std::string kEndlessFile = "out/Brownian Cubes N100 F1000000frames.aabbs";
+const std::string kEndlessFile = recordingIn("out", "Brownian Cubes N100 F1000000frames");
 const Arguments kEndlessBake = {"bake",     "--scenes", "brownian", "--objects", "100",
                                 "--frames", kEndless,   "--output", "out",       "--quiet"};
 
@@ -33,25 +33,46 @@ TEST_F(Interruption, OfABakeLeavesNothingHalf) {
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, StartsWith("broadmark: interrupted"));
-    EXPECT_EQ(ended.out, "");
-    EXPECT_EQ(entries(), std::set<std::string>{"out"});
+    EXPECT_THAT(ended.out, StartsWith("0 baked, 0 kept, 1 not finished"));
+    EXPECT_THAT(files(), IsEmpty());
   }
 }
 
 TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
-  Program bake(directory_, {"bake", "--scenes", "freefall", "--objects", "2,5000", "--frames",
-                            "1500", "--output", "out"});
-  const std::string second = "out/FreeFall Cubes N5000 F1500frames.aabbs";
-  ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(second + ".part"); }));
-  bake.signal(SIGINT);
-  const Ended ended = bake.wait();
-  EXPECT_EQ(ended.status, 2);
-  EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
-  const std::string first = "out/FreeFall Cubes N2 F1500frames.aabbs";
-  EXPECT_EQ(linesOf(ended.out), std::vector{first});
-  EXPECT_EQ(run({"verify", first}).status, 0);
-  EXPECT_FALSE(fs::exists(file(second)));
-  EXPECT_FALSE(fs::exists(file(second + ".part")));
+  // Two threads: the endless one is begun first, the small ones are baked beside it.
+  const Arguments call = {"bake", "--scenes", "freefall", "--objects", "2,3,5000", "--frames",
+                          "1500", "--output", "out",      "--threads", "2"};
+  const auto path = [](int n) {
+    return recordingIn("out", fmt::format("FreeFall Cubes N{} F1500frames", n));
+  };
+  const auto baked = [&] { return fs::exists(file(path(2))) && fs::exists(file(path(3))); };
+  for (const int signal : {SIGINT, SIGKILL}) {
+    Program bake(directory_, call);
+    ASSERT_TRUE(bake.waitUntil([&] {
+      return baked() && fs::exists(file("out/Recordings_AABBs/FreeFall Cubes N2 F1500frames.json"));
+    }));
+    bake.signal(signal);
+    const Ended ended = bake.wait();
+    if (signal == SIGKILL) continue;
+    EXPECT_EQ(ended.status, 2);
+    EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
+    EXPECT_THAT(ended.out, HasSubstr("baked  " + path(3) + "\n"));
+    EXPECT_THAT(linesOf(ended.out).back(), StartsWith("2 baked, 0 kept, 1 not finished; "));
+    EXPECT_FALSE(fs::exists(file(path(5000) + ".part")));
+  }
+  EXPECT_FALSE(fs::exists(file(path(5000))));
+  EXPECT_EQ(run({"verify", path(2), path(3)}).status, 0);
+
+  // The same call goes on: what is whole is not touched.
+  const auto long_ago = fs::last_write_time(file(path(3))) - std::chrono::hours(1);
+  fs::last_write_time(file(path(3)), long_ago);
+  Program again(directory_, call);
+  ASSERT_TRUE(again.waitUntil([&] { return hasGrown(path(5000) + ".part"); }));
+  again.signal(SIGINT);
+  const Ended ended = again.wait();
+  EXPECT_THAT(linesOf(ended.out), ElementsAre("kept   " + path(2), "kept   " + path(3),
+                                              StartsWith("0 baked, 2 kept, 1 not finished; ")));
+  EXPECT_EQ(fs::last_write_time(file(path(3))), long_ago);
 }
 
 TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
@@ -71,7 +92,7 @@ TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
   }));
   again.signal(SIGINT);
   EXPECT_EQ(again.wait().status, 2);
-  EXPECT_EQ(entries(), std::set<std::string>{"out"});
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Interruption, TwoBakesOfOneNameExcludeEachOther) {
@@ -111,7 +132,7 @@ TEST_F(Interruption, OfARunsFirstSimulationWritesNothing) {
   EXPECT_EQ(ended.status, 2);
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
   EXPECT_THAT(ended.out, Not(HasSubstr("results.json")));
-  EXPECT_EQ(entries(), std::set<std::string>{"out"});
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Interruption, AKilledRunLeavesWholeResultsOrNone) {
@@ -136,12 +157,12 @@ class FullDisc : public EndToEnd {
   /// One line that names the file; nothing left but what was there.
   void expectNoSpace(const Arguments& arguments, const std::vector<std::string>& words,
                      const Surroundings& around) const {
-    const auto before = entries();
+    const auto before = files();
     const Ended ended = run(arguments, around);
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     for (const std::string& word : words) EXPECT_THAT(ended.err, HasSubstr(word));
-    EXPECT_EQ(entries(), before);
+    EXPECT_EQ(files(), before);
   }
 };
 
@@ -156,7 +177,7 @@ const Arguments kLargeBake = {"bake",     "--scenes", "freefall", "--objects", "
 TEST_F(FullDisc, AsALimitOnFiles) {
   fs::create_directory(file("disc"));
   const Surroundings small{.largest_file = 8000};
-  expectNoSpace(kLargeBake, {"disc/FreeFall Cubes N200", "cannot write", "File too large"}, small);
+  expectNoSpace(kLargeBake, {"FreeFall Cubes N200", "cannot write", "File too large"}, small);
   expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "File too large"}, small);
 }
 
@@ -165,7 +186,7 @@ TEST_F(FullDisc, AsASmallFileSystem) {
   if (::mount("tmpfs", file("disc").c_str(), "tmpfs", 0, "size=16k") != 0) {
     GTEST_SKIP() << "cannot mount a file system: " << std::strerror(errno);
   }
-  expectNoSpace(kLargeBake, {"disc/FreeFall Cubes N200", "cannot write", "No space left"}, {});
+  expectNoSpace(kLargeBake, {"disc: not enough room", "1 recordings take", "bytes"}, {});
   expectNoSpace(kLargeRun, {"disc/results.json", "cannot write", "No space left"}, {});
   // Recordings that are simulated for one run lie in the temporary directory.
   expectNoSpace({"--headless", "freefall", "--objects", "200", "--frames", "40", "--algorithm",

@@ -97,19 +97,20 @@ TEST_F(Run, MainJob) {
     const Picture picture = readPng(file("picture " + scene + " Cubes N80.png"));
     EXPECT_EQ(picture.width, 160);
     EXPECT_EQ(picture.height, 90);
-    EXPECT_EQ(fs::file_size(file("recordings/" + scene + " Cubes N80 F6frames.aabbs")),
+    EXPECT_EQ(fs::file_size(file(recordingIn("recordings", scene + " Cubes N80 F6frames"))),
               304U + 32 * 80 * 7);
   }
 }
 
 TEST_F(Run, ARecordingGivesTheSameAnswersAsItsSimulation) {
   const Json simulated = casesOf({"--record", "kept", "--algorithm", "sap"});
-  runQuietly({"--headless", "kept/FreeFall Cubes N60 F5frames.aabbs", "--algorithm", "sap",
-              "--json", "results.json"});
+  runQuietly({"--headless", recordingIn("kept", "FreeFall Cubes N60 F5frames"), "--algorithm",
+              "sap", "--json", "results.json"});
   const Json replayed = cases();
   EXPECT_EQ(replayed[0].at("pairs"), simulated[0].at("pairs"));
   EXPECT_EQ(replayed[0].at("recording").at("hash"), simulated[0].at("recording").at("hash"));
-  EXPECT_EQ(replayed[0].at("recording").at("source"), "kept/FreeFall Cubes N60 F5frames.aabbs");
+  EXPECT_EQ(replayed[0].at("recording").at("source"),
+            recordingIn("kept", "FreeFall Cubes N60 F5frames"));
 }
 
 TEST_F(Run, FewBodies) {

@@ -23,6 +23,7 @@ class Knobs final : public Parametrised {
   double margin = 0.01;
   double scale = 1;
   Choice shape{"cubes", {"cubes", "spheres"}};
+  std::string input;
 
   void visitParameters(const ParameterVisitor& visit) override {
     visit({.name = "verbose", .doc = "says more", .value = &verbose});
@@ -30,6 +31,7 @@ class Knobs final : public Parametrised {
     visit({.name = "margin", .doc = "world units", .value = &margin, .min = 0, .max = 1});
     visit({.name = "scale", .doc = "any", .value = &scale, .min = -DBL_MAX, .max = DBL_MAX});
     visit({.name = "shape", .doc = "what bodies are", .value = &shape});
+    visit({.name = "input", .doc = "a path", .value = &input});
   }
 };
 
@@ -39,12 +41,14 @@ TEST(Parameters, AllTypesAreSetFromText) {
                         {"cells", "1000"},
                         {"margin", "2.5e-1"},
                         {"scale", "-3"},
-                        {"shape", "spheres"}});
+                        {"shape", "spheres"},
+                        {"input", "a b=c"}});
   EXPECT_TRUE(knobs.verbose);
   EXPECT_EQ(knobs.cells, 1000);
   EXPECT_EQ(knobs.margin, 0.25);
   EXPECT_EQ(knobs.scale, -3);
   EXPECT_EQ(knobs.shape.value, "spheres");
+  EXPECT_EQ(knobs.input, "a b=c");
 }
 
 TEST(Parameters, SwitchesTakeTheUsualWords) {
@@ -68,7 +72,8 @@ TEST(Parameters, WhatIsNotSetKeepsItsDefault) {
                                                      {"cells", "200"},
                                                      {"margin", "0.01"},
                                                      {"scale", "1"},
-                                                     {"shape", "cubes"}}));
+                                                     {"shape", "cubes"},
+                                                     {"input", ""}}));
 }
 
 TEST(Parameters, TextReadsBackAsTheSameValue) {
@@ -134,6 +139,7 @@ TEST(Parameters, RangesAsText) {
   EXPECT_EQ(ranges["cells"], "1…1000");
   EXPECT_EQ(ranges["margin"], "0…1");
   EXPECT_EQ(ranges["shape"], "cubes|spheres");
+  EXPECT_EQ(ranges["input"], "TEXT");
 }
 
 }  // namespace

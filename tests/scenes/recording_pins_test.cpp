@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -19,9 +18,6 @@
 
 namespace broadmark {
 namespace {
-
-/// Engines that replay a recording, and move nothing without one.
-const std::set<std::string> kReplayingEngines = {"viewer", "splitter"};
 
 struct Combination {
   std::string scene;
@@ -44,7 +40,7 @@ std::vector<Combination> allCombinations() {
   for (const SceneListing& scene : builtinScenes()) {
     for (const std::string& object_type : objectTypeIds()) {
       for (const EngineListing& engine : builtinEngines()) {
-        if (kReplayingEngines.contains(engine.id)) continue;
+        if (engine.dynamics == Dynamics::replayed) continue;
         all.push_back({scene.id, object_type, engine.id});
       }
     }

@@ -23,7 +23,7 @@ struct Choice {
 struct Parameter {
   std::string_view name;  ///< snake_case; its key on the command line and in JSON
   std::string_view doc;   ///< one sentence, with the unit
-  std::variant<bool*, std::int64_t*, double*, Choice*> value;
+  std::variant<bool*, std::int64_t*, double*, Choice*, std::string*> value;
   double min = 0;  ///< inclusive range; numbers only
   double max = 0;
 };
@@ -42,7 +42,7 @@ using ParameterValues = std::map<std::string, std::string>;
 
 /// A parameter's value as text; reading it back gives the same value.
 std::string parameterText(const Parameter&);
-/// Its range or choices as text: "1…1000", "on|off", "cubes|spheres".
+/// Its range or choices as text: "1…1000", "on|off", "cubes|spheres", "TEXT".
 std::string parameterRange(const Parameter&);
 
 /// Sets `parameter` from text. Throws InputError that names it, the text and what would be right.

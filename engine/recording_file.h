@@ -1,0 +1,141 @@
+// What recordings of all kinds share: the header, the checks, and the file being written.
+#pragma once
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "broadmark/frame.h"
+#include "broadmark/posrot.h"
+
+namespace broadmark {
+
+/// Bytes that a body takes in a set, be it a box or a pose.
+inline constexpr std::size_t kRecordBytes = 32;
+
+/// The header as it lies in the file.
+struct RecordingHeader {
+  char name[128];
+  char object_type[128];
+  std::int32_t objects;
+  std::int32_t frames;
+  std::int32_t zero[2];
+  Aabb world;
+};
+
+/// What a header states. Throws InputError naming `name` and the byte offset of what is wrong.
+SceneInfo parseHeader(const RecordingHeader&, const std::string& name);
+
+/// Where set `set` begins.
+std::uint64_t setOffset(const SceneInfo&, std::uint64_t set);
+
+/// XXH3-128.
+class Hasher {
+ public:
+  Hasher() { XXH3_128bits_reset(&state_); }
+  void add(std::span<const std::byte> bytes) {
+    XXH3_128bits_update(&state_, bytes.data(), bytes.size());
+  }
+  [[nodiscard]] std::string hex() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
+    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  }
+
+ private:
+  XXH3_state_t state_{};
+};
+
+/// "" or what is wrong with a record.
+std::string fault(const Aabb&);
+std::string fault(const Pose&);
+
+// The same question, without branches: what nearly all records need. Comparisons with NaN are
+// false.
+inline bool isSound(const Aabb& box) {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  bool sound = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    sound &= box.min[axis] <= box.max[axis] && box.min[axis] >= -kHuge && box.max[axis] <= kHuge;
+  }
+  return sound;
+}
+
+inline float squaredLength(const Quaternion& q) {
+  return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+}
+
+inline bool isSound(const Pose& pose) {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  bool sound = std::abs(squaredLength(pose.rotation) - 1) <= kRotationTolerance;
+  for (const float coordinate : pose.position) sound &= std::abs(coordinate) <= kHuge;
+  return sound;
+}
+
+/// Throws InputError naming the first broken record of a set: one of which isSound() is false.
+template <class Record>
+void requireSound(std::span<const Record> records, std::uint64_t set, const SceneInfo& scene,
+                  const std::string& name, std::string_view what) {
+  const auto broken =
+      std::ranges::find_if_not(records, [](const Record& record) { return isSound(record); });
+  if (broken == records.end()) return;
+  const auto body = static_cast<std::uint64_t>(broken - records.begin());
+  throw InputError(fmt::format("{}: frame {}, body {} (byte {}): the {} {}", name, set, body,
+                               setOffset(scene, set) + body * kRecordBytes, what, fault(*broken)));
+}
+
+/// A recording being written, of whatever kind: hashed as it grows, whole only in the end.
+class RecordingFile {
+ public:
+  /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
+  RecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
+  /// Writes to an unnamed file in the temporary directory instead.
+  explicit RecordingFile(const SceneInfo& scene);
+
+  /// Appends a set. Throws InputError when one of its records is broken; then nothing is written.
+  template <class Record>
+  void append(std::span<const Record> records, std::string_view what) {
+    append(records, what, std::as_bytes(records));
+  }
+  /// The same for records that lie differently in the file.
+  template <class Record>
+  void append(std::span<const Record> records, std::string_view what,
+              std::span<const std::byte> bytes) {
+    requireSize(bytes.size());
+    requireSound(records, sets_, scene_, name_, what);
+    write(bytes);
+    ++sets_;
+  }
+
+  /// Gives the file its name, once all sets are written. Returns the hash.
+  std::string finish();
+  /// Hands over the unnamed file, once all sets are written.
+  FileDescriptor finishTemporary();
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  void requireSize(std::size_t bytes) const;
+  void requireWhole() const;
+  void write(std::span<const std::byte> bytes);
+
+  SceneInfo scene_;
+  std::string name_;
+  std::unique_ptr<AtomicFile> named_;
+  FileDescriptor unnamed_;
+  Hasher hasher_;
+  std::uint64_t sets_ = 0;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,223 @@
+// City: buildings of very different sizes on the ground, which never move, and a few bodies that
+// drive and fly along the streets between them. Broad phases meet big ratios of size, pairs that
+// stay (annexes), and hardly any motion.
+//
+// Blocks stand in a square pattern, with streets between them. A block is divided into four lots,
+// these into four again, and so on; some lots are built on at each stage, so that large buildings
+// stand among small ones. The more bodies, the finer the division: the rest looks the same.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "scenes/course.h"
+#include "scenes/scene.h"
+
+namespace broadmark::scenes::city {
+namespace {
+
+/// A square of ground, in world units.
+struct Lot {
+  double x = 0;  ///< of its centre
+  double z = 0;
+  double edge = 0;
+};
+
+/// A shape made as wide as `width`, and, if it has corners, as high as it then is times `stretch`,
+/// within limits.
+Shape fitted(BoxShape box, double width, double stretch) {
+  const double factor = width / (2 * std::max(box.half_extents[0], box.half_extents[2]));
+  const double half_height = factor * stretch * box.half_extents[1];
+  box.half_extents = {static_cast<float>(factor * box.half_extents[0]),
+                      static_cast<float>(std::clamp(half_height, 0.02 * width, 2.0 * width)),
+                      static_cast<float>(factor * box.half_extents[2])};
+  return box;
+}
+
+Shape fitted(const SphereShape&, double width, double) {
+  return SphereShape{static_cast<float>(width / 2)};
+}
+
+Shape fitted(const Shape& shape, double width, double stretch) {
+  return std::visit([&](const auto& kind) { return fitted(kind, width, stretch); }, shape);
+}
+
+class City final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.density = 0.001;
+    settings.initial_speed = 0.15;
+    settings.gravity = 0;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"movers", "share of the bodies that drive or fly", &movers_, 0, 1});
+    visit({"fliers", "share of the movers that fly", &fliers_, 0, 1});
+    visit({"blocks", "number of blocks along each side of the city", &blocks_, 1, 100});
+    visit({"street_width", "width of the streets, in blocks", &street_width_, 0, 0.9});
+    visit({"large", "share of the lots that are not divided further, at each stage", &large_, 0,
+           0.5});
+    visit({"crowding", "largest width of a building, in widths of its lot", &crowding_, 0.1, 2});
+  }
+
+  void prepare(const Settings& settings, Random& random) override {
+    const auto count = static_cast<std::size_t>(settings.objects);
+    const auto moving =
+        static_cast<std::size_t>(std::ceil(movers_ * static_cast<double>(count) - 1e-9));
+    kinds_.assign(count, Kind::building);
+    std::fill_n(kinds_.begin(), moving, Kind::mover);
+    random.shuffle(kinds_);  // lest an id tells what the body is
+    lots_ = buildingLots(count - moving, settings.side(), random);
+    drivers_.clear();
+  }
+
+  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
+                       Random& random) override {
+    const Shape base = type.shape(index, settings.scale, random);
+    return kinds_[index] == Kind::mover ? mover(index, base, settings, random)
+                                        : building(base, settings, random);
+  }
+
+  void start(Stage& stage) override {
+    Scene::start(stage);
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+      if (kinds_[i] == Kind::building) stage.bodies[i]->freeze();
+    }
+  }
+
+  void act(Stage& stage, std::uint32_t) override {
+    for (Driver& driver : drivers_) drive(*stage.bodies[driver.id], driver);
+  }
+
+ private:
+  enum class Kind : std::uint8_t { building, mover };
+
+  struct Driver {
+    std::size_t id = 0;
+    Course course;
+    float limit = 0;          ///< where the street ends, on both sides of the origin
+    float to_other_lane = 0;  ///< across the street
+  };
+
+  /// As many lots as there are buildings, in random order.
+  [[nodiscard]] std::vector<Lot> buildingLots(std::size_t count, double side,
+                                              Random& random) const {
+    std::deque<Lot> open;
+    const double pitch = side / static_cast<double>(blocks_);
+    for (std::int64_t i = 0; i < blocks_; ++i) {
+      for (std::int64_t k = 0; k < blocks_; ++k) {
+        open.push_back({(static_cast<double>(i) + 0.5) * pitch - side / 2,
+                        (static_cast<double>(k) + 0.5) * pitch - side / 2,
+                        pitch * (1 - street_width_)});
+      }
+    }
+    std::vector<Lot> closed;
+    while (open.size() + closed.size() < count) {
+      const Lot lot = open.front();
+      open.pop_front();
+      if (!open.empty() && random.uniform() < large_) {
+        closed.push_back(lot);
+        continue;
+      }
+      const double quarter = lot.edge / 4;
+      for (const double x : {-quarter, quarter}) {
+        for (const double z : {-quarter, quarter}) {
+          open.push_back({lot.x + x, lot.z + z, lot.edge / 2});
+        }
+      }
+    }
+    closed.insert(closed.end(), open.begin(), open.end());
+    random.shuffle(closed);
+    closed.resize(count);  // the others are parks
+    return closed;
+  }
+
+  BodyDescription building(const Shape& base, const Settings& settings, Random& random) {
+    const Lot lot = lots_.back();
+    lots_.pop_back();
+    const double wanted = lot.edge * random.between(std::min(0.6, crowding_), crowding_);
+    const double width = std::min(wanted, lot.edge + 0.2 * street(settings));  // lanes stay free
+    const double stretch = 0.4 + 3 * std::pow(random.uniform(), 2);
+    BodyDescription body{.shape = fitted(base, width, stretch), .mass = settings.mass};
+    body.pose.position = {static_cast<float>(lot.x), onGround(body.shape, settings),
+                          static_cast<float>(lot.z)};
+    return body;
+  }
+
+  BodyDescription mover(std::size_t index, const Shape& base, const Settings& settings,
+                        Random& random) {
+    const double side = settings.side();
+    BodyDescription body{.shape = fitted(base, 0.25 * street(settings), 1), .mass = settings.mass};
+    const float limit = farthestInside(body.shape, side);
+    const auto somewhere = [&] { return static_cast<float>(random.between(-limit, limit)); };
+
+    Driver driver{.id = index, .limit = limit};
+    Course& course = driver.course;
+    course.axis = random.uniform() < 0.5 ? 0 : 2;
+    const double direction = random.uniform() < 0.5 ? 1 : -1;
+    const double speed = settings.initial_speed * side * random.between(0.3, 1);
+    course.speed = static_cast<float>(direction * speed);
+    course.lane[1] = onGround(body.shape, settings);
+    if (random.uniform() < fliers_) course.lane[1] = static_cast<float>(random.between(-limit, 0));
+
+    // They keep to the right, and turn where the street ends.
+    double middle = 1;  // of the street, across the city: a single block has but its rim
+    if (blocks_ > 1) {
+      const auto streets = static_cast<double>(blocks_ - 1);
+      middle = (1 + std::floor(random.uniform() * streets)) / static_cast<double>(blocks_);
+      driver.to_other_lane =
+          static_cast<float>((course.axis == 0 ? -0.5 : 0.5) * direction * street(settings));
+    }
+    course.lane[2 - course.axis] = std::clamp(
+        static_cast<float>((middle - 0.5) * side) - driver.to_other_lane / 2, -limit, limit);
+
+    body.pose = course.poseAt(somewhere());
+    body.linear_velocity = course.velocityAt(body.pose.position);
+    drivers_.push_back(driver);
+    return body;
+  }
+
+  static void drive(PhysicsBody& body, Driver& driver) {
+    Course& course = driver.course;
+    const Vec3 position = body.pose().position;
+    if (std::copysign(1.0F, course.speed) * position[course.axis] >= driver.limit) {
+      course.speed = -course.speed;
+      float& lane = course.lane[2 - course.axis];
+      lane = std::clamp(lane + driver.to_other_lane, -driver.limit, driver.limit);
+      driver.to_other_lane = -driver.to_other_lane;
+    }
+    body.setVelocity(course.velocityAt(position), body.angularVelocity());
+  }
+
+  /// Width of a street in world units.
+  [[nodiscard]] double street(const Settings& settings) const {
+    return street_width_ * settings.side() / static_cast<double>(blocks_);
+  }
+
+  /// Height of the centre of a body that stands on the ground.
+  static float onGround(const Shape& shape, const Settings& settings) {
+    return tightBox(shape, {}).max[1] - static_cast<float>(settings.side() / 2);
+  }
+
+  double movers_ = 0.02;
+  double fliers_ = 0.5;
+  std::int64_t blocks_ = 8;
+  double street_width_ = 0.2;
+  double large_ = 0.12;
+  double crowding_ = 1.1;
+  std::vector<Kind> kinds_;      ///< by body
+  std::vector<Lot> lots_;        ///< not yet built on
+  std::vector<Driver> drivers_;  ///< the movers
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {.listing = {"city", "City",
+                      "buildings of all sizes that never move, and traffic in the streets"},
+          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<City>(); }};
+}
+
+}  // namespace broadmark::scenes::city

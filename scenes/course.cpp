@@ -1,0 +1,28 @@
+#include "scenes/course.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace broadmark::scenes {
+
+Pose Course::poseAt(float along) const {
+  Pose pose{.position = lane};
+  pose.position[axis] = along;
+  return pose;
+}
+
+Vec3 Course::velocityAt(const Vec3& position) const {
+  constexpr float kPull = 2;  // per second: back on the line in about a second
+  Vec3 velocity;
+  for (int i = 0; i < 3; ++i) velocity[i] = kPull * (lane[i] - position[i]);
+  velocity[axis] = speed;
+  return velocity;
+}
+
+float farthestInside(const Shape& shape, double side) {
+  const auto corner = tightBox(shape, {}).max;
+  const double reach = std::hypot(corner[0], corner[1], corner[2]);
+  return static_cast<float>(std::max(0.0, side / 2 - reach));
+}
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,95 @@
+// Explosion: a dense ball of tumbling bodies flies apart until the walls stop it. At first all of
+// them are in a small part of the world, with a density that falls in every frame.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace broadmark::scenes::explosion {
+namespace {
+
+using Point = std::array<int, 3>;
+
+int lengthSquared(const Point& p) { return p[0] * p[0] + p[1] * p[1] + p[2] * p[2]; }
+
+/// The `count` points of the integer lattice that are nearest to the origin, nearest first.
+std::vector<Point> ballOfPoints(std::size_t count) {
+  const double radius = std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
+  const int reach = static_cast<int>(radius) + 2;  // holds a ball of more than `count` points
+  std::vector<Point> points;
+  for (int x = -reach; x <= reach; ++x) {
+    for (int y = -reach; y <= reach; ++y) {
+      for (int z = -reach; z <= reach; ++z) {
+        if (lengthSquared({x, y, z}) <= reach * reach) points.push_back({x, y, z});
+      }
+    }
+  }
+  std::ranges::stable_sort(points, {}, lengthSquared);
+  points.resize(count);
+  return points;
+}
+
+class Explosion final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.density = 0.005;
+    settings.initial_radius = 0.13;  // unit cubes just do not touch
+    settings.initial_speed = 0.25;
+    settings.gravity = 0.03;
+    settings.physics.restitution = 0.5;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"jitter", "how far bodies start off their places in the lattice, per its spacing",
+           &jitter_, 0, 1});
+    visit({"slowest", "least outward speed, as a share of the largest at that distance", &slowest_,
+           0, 1});
+    visit({"tumbling", "largest angular speed at the start, in radians per second", &tumbling_, 0,
+           1000});
+  }
+
+  void prepare(const Settings& settings, Random& random) override {
+    const auto count = static_cast<std::size_t>(settings.objects);
+    places_ = ballOfPoints(count);
+    outermost_ = count > 1 ? std::sqrt(lengthSquared(places_.back())) : 1;
+    // As many lattice cells as bodies have the ball's volume.
+    const double lattice_radius =
+        std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
+    spacing_ = settings.initial_radius * settings.side() / lattice_radius;
+    random.shuffle(places_);  // lest an id tells where the body is
+  }
+
+  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
+                       Random& random) override {
+    BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
+    const double speed = settings.initial_speed * settings.side() * random.between(slowest_, 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = places_[index][axis] + jitter_ * random.between(-0.5, 0.5);
+      body.pose.position[axis] = static_cast<float>(spacing_ * place);
+      body.linear_velocity[axis] = static_cast<float>(speed * places_[index][axis] / outermost_);
+    }
+    body.angular_velocity = random.inBall(tumbling_);
+    return body;
+  }
+
+ private:
+  double jitter_ = 0.15;
+  double slowest_ = 0.4;
+  double tumbling_ = 4;
+  std::vector<Point> places_;  ///< by body, in the lattice
+  double outermost_ = 1;       ///< distance of the farthest place
+  double spacing_ = 1;
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {.listing = {"explosion", "Explosion", "a dense ball of bodies flies apart"},
+          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Explosion>(); }};
+}
+
+}  // namespace broadmark::scenes::explosion

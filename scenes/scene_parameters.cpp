@@ -1,0 +1,142 @@
+// Scene parameters as JSON and back. Values have the types of the parameters; what is not stated
+// keeps its default.
+
+#include "scenes/scene_parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "engine/json_fields.h"
+
+namespace broadmark {
+namespace {
+
+Json parametersJson(Simulation& simulation) {
+  Json parameters = Json::object();
+  simulation.visitParameters([&](const Parameter& parameter) {
+    parameters[std::string(parameter.name)] = std::visit(
+        [](const auto* value) -> Json {
+          if constexpr (std::is_same_v<decltype(value), const Choice*>) {
+            return value->value;
+          } else {
+            return *value;
+          }
+        },
+        parameter.value);
+  });
+  return parameters;
+}
+
+/// A text on one line, control characters escaped.
+std::string onOneLine(const std::string& text) {
+  const std::string quoted = Json(text).dump();
+  return quoted.substr(1, quoted.size() - 2);
+}
+
+/// A value as text for messages and numbers; a list or an object is only hinted at.
+std::string textOf(const Json& value) {
+  if (value.is_array()) return "[…]";
+  return value.is_object() ? "{…}" : value.dump();
+}
+
+void setFromJson(const Parameter& parameter, const Json& value) {
+  if (std::holds_alternative<bool*>(parameter.value)) {
+    if (!value.is_boolean()) {
+      throw InputError(fmt::format("parameter {}: '{}' is neither true nor false", parameter.name,
+                                   textOf(value)));
+    }
+    *std::get<bool*>(parameter.value) = value.get<bool>();
+  } else if (std::holds_alternative<std::string*>(parameter.value)) {
+    if (!value.is_string()) {
+      throw InputError(
+          fmt::format("parameter {}: '{}' is not a text", parameter.name, textOf(value)));
+    }
+    *std::get<std::string*>(parameter.value) = value.get<std::string>();
+  } else if (std::holds_alternative<Choice*>(parameter.value) && value.is_string()) {
+    setParameter(parameter, onOneLine(value.get<std::string>()));
+  } else {
+    setParameter(parameter, textOf(value));  // of a JSON text the quotes, which no number has
+  }
+}
+
+/// Which keys a file of this kind has.
+std::vector<std::string> knownKeys(const std::string& schema) {
+  std::vector<std::string> keys = {"schema", "scene", "parameters"};
+  if (schema == kBakeSchema) keys.insert(keys.end(), {"hash", "input_hash"});
+  return keys;
+}
+
+void requireKnown(const std::string& kind, const std::string& name,
+                  const std::vector<std::string>& known) {
+  if (std::ranges::find(known, name) == known.end()) {
+    throw InputError(unknownName(kind, onOneLine(name), known));
+  }
+}
+
+std::unique_ptr<Simulation> simulationFrom(const Json& json) {
+  // Problems are named without the file here: the caller puts its name before them.
+  const auto text = [&](const char* key) {
+    const auto field = json.find(key);
+    if (field == json.end()) throw InputError(fmt::format("'{}' is missing", key));
+    if (!field->is_string()) throw InputError(fmt::format("{}: a text is expected", key));
+    return field->get<std::string>();
+  };
+  const std::string schema = text("schema");
+  if (!describesScene(schema)) {
+    throw InputError(fmt::format("schema: '{}' is not {} or {}", onOneLine(schema),
+                                 kSceneParametersSchema, kBakeSchema));
+  }
+  for (const auto& [key, value] : json.items()) requireKnown("key", key, knownKeys(schema));
+
+  const auto parameters = json.find("parameters");
+  if (parameters != json.end() && !parameters->is_object()) {
+    throw InputError("parameters: an object is expected");
+  }
+  std::string engine;  // comes first: it decides which parameters there are
+  if (parameters != json.end() && parameters->contains("engine")) {
+    const Json& value = parameters->at("engine");
+    engine = onOneLine(value.is_string() ? value.get<std::string>() : textOf(value));
+  }
+  auto simulation = makeSimulation(onOneLine(text("scene")), engine);
+  if (parameters == json.end()) return simulation;
+  std::vector<std::string> known;
+  simulation->visitParameters([&](const Parameter& parameter) {
+    known.emplace_back(parameter.name);
+    const auto value = parameters->find(known.back());
+    if (value != parameters->end()) setFromJson(parameter, *value);
+  });
+  for (const auto& [key, value] : parameters->items()) requireKnown("parameter", key, known);
+  return simulation;
+}
+
+}  // namespace
+
+nlohmann::ordered_json sceneParametersJson(Simulation& simulation, std::string_view schema) {
+  return {{"schema", schema},
+          {"scene", simulation.listing().id},
+          {"parameters", parametersJson(simulation)}};
+}
+
+bool describesScene(std::string_view json_kind) {
+  return json_kind == kSceneParametersSchema || json_kind == kBakeSchema;
+}
+
+std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name) {
+  const Json parsed = parseJson(json, name);
+  try {
+    if (!parsed.is_object()) throw InputError("a JSON object is expected");
+    return simulationFrom(parsed);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", name, error.what()));
+  }
+}
+
+std::string formatSceneParameters(Simulation& simulation) {
+  return sceneParametersJson(simulation, kSceneParametersSchema).dump(2) + "\n";
+}
+
+}  // namespace broadmark

@@ -1,0 +1,79 @@
+// Swarm: flocks that gather, wander about, turn at the walls and meet. Moving clusters in an
+// otherwise empty world. Made for the boids engine; with others the flocks fly apart.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace broadmark::scenes::swarm {
+namespace {
+
+Vec3 sum(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
+Vec3 inDirection(const Vec3& direction, double length) {
+  const double present = std::hypot(direction[0], direction[1], direction[2]);
+  const auto factor = static_cast<float>(present > 0 ? length / present : 0);
+  return {factor * direction[0], factor * direction[1], factor * direction[2]};
+}
+
+class Swarm final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.engine.value = "boids";
+    settings.density = 0.003;
+    settings.initial_radius = 0.09;
+    settings.initial_speed = 0.2;
+    settings.gravity = 0;
+    settings.physics.substeps = 1;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"flocks", "number of flocks at the start, each in a ball of the initial radius",
+           &flocks_, 1, 1'000'000});
+    visit({"disorder",
+           "how much bodies of a flock differ in velocity at the start, per initial speed",
+           &disorder_, 0, 1});
+  }
+
+  void prepare(const Settings& settings, Random& random) override {
+    starts_.resize(static_cast<std::size_t>(std::min(flocks_, settings.objects)));
+    const double room = std::max(0.0, 0.5 - settings.initial_radius) * settings.side();
+    for (Start& start : starts_) {
+      start.centre = random.inBall(room);
+      start.velocity = inDirection(random.inBall(1), settings.initial_speed * settings.side());
+    }
+  }
+
+  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
+                       Random& random) override {
+    const Start& start = starts_[index % starts_.size()];
+    BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
+    body.pose.position =
+        sum(start.centre, random.inBall(settings.initial_radius * settings.side()));
+    body.linear_velocity =
+        sum(start.velocity, random.inBall(disorder_ * settings.initial_speed * settings.side()));
+    return body;
+  }
+
+ private:
+  struct Start {
+    Vec3 centre{};
+    Vec3 velocity{};
+  };
+
+  std::int64_t flocks_ = 6;
+  double disorder_ = 0.3;
+  std::vector<Start> starts_;  ///< by flock
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {.listing = {"swarm", "Swarm", "flocks of boids wander about"},
+          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Swarm>(); }};
+}
+
+}  // namespace broadmark::scenes::swarm

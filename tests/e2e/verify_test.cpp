@@ -1,0 +1,96 @@
+// verify: what was baked is as it was, and what it is like.
+
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+using Verify = EndToEnd;
+
+TEST_F(Verify, ComparesWithWhatTheSidecarStates) {
+  runQuietly(
+      {"bake", "--scenes", "freefall", "--objects", "20", "--frames", "3", "--output", "out"});
+  const std::string path = recordingIn("out", "FreeFall Cubes N20 F3frames");
+  const fs::path sidecar = file(fs::path(path).replace_extension(".json"));
+  const Ended good = run({"verify", path});
+  EXPECT_EQ(good.status, 0);
+  EXPECT_THAT(good.out, HasSubstr(", as baked\n"));
+
+  // One bit of a coordinate: still a sound recording, but not the one that was baked.
+  std::string bytes = readFile(file(path));
+  bytes[304 + 32 * 20] ^= 1;
+  writeFile(file(path), bytes);
+  const Ended changed = run({"verify", path});
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_EQ(changed.out, "");
+  EXPECT_EQ(linesOf(changed.err).size(), 1U) << changed.err;
+  EXPECT_THAT(changed.err, HasSubstr("changed since it was baked"));
+
+  writeFile(sidecar, R"({"schema": "broadmark-bake/1"})");
+  EXPECT_THAT(run({"verify", path}).err, HasSubstr("states no hash"));
+  // A file of another kind beside it is no sidecar.
+  writeFile(sidecar, R"({"schema": "broadmark-results/1"})");
+  const Ended alone = run({"verify", path});
+  EXPECT_EQ(alone.status, 0);
+  EXPECT_THAT(alone.out, Not(HasSubstr("as baked")));
+}
+
+/// A world of 10 × 10 × 10 with a unit cube that rests at 0 and a box of 2 × 2 × 2 that is on top
+/// of it in frames 0 and 1 and outside in frames 2 to 4.
+std::string leavingBox() {
+  const Aabb near = {{1, 0, 0, 0}, {3, 2, 2, 0}};
+  const Aabb far = {{9, 0, 0, 0}, {11, 2, 2, 0}};
+  return recordingOf(2, 4,
+                     {kUnitBox, near, kUnitBox, near, kUnitBox, far, kUnitBox, far, kUnitBox, far},
+                     {{-5, -5, -5, 0}, {5, 5, 5, 0}});
+}
+
+TEST_F(Verify, DescribesAKnownScene) {
+  writeFile(file("known.aabbs"), leavingBox());
+  const Ended ended = runQuietly({"verify", "--describe", "known.aabbs", "--json", "known.json"});
+  const auto lines = linesOf(ended.out);
+  ASSERT_GE(lines.size(), 8U) << ended.out;
+  const auto words = [&](std::size_t line) {
+    std::istringstream stream(lines[line]);
+    return std::vector<std::string>{std::istream_iterator<std::string>(stream), {}};
+  };
+  EXPECT_THAT(lines[0], StartsWith("known.aabbs: ok: Handmade Cubes, 2 bodies, 4 frames"));
+  EXPECT_THAT(words(1), ElementsAre("frames", "density", "pairs/body", "moving", "smallest",
+                                    "median", "largest", "ratio", "outside"));
+  EXPECT_THAT(words(2), ElementsAre("initial", "0.009", "0.5", "–", "1", "1.5", "2", "2", "0"));
+  EXPECT_THAT(words(3), ElementsAre("1", "0.009", "0.5", "0.0", "%", "1", "1.5", "2", "2", "0"));
+  EXPECT_THAT(words(4), ElementsAre("2", "0.009", "0", "50.0", "%", "1", "1.5", "2", "2", "1"));
+  EXPECT_THAT(words(7),
+              ElementsAre("all", "0.009", "0.125", "12.5", "%", "1", "1.5", "2", "2", "1"));
+
+  const Json json = readJson(file("known.json"));
+  EXPECT_EQ(json.at("schema"), "broadmark-descriptions/1");
+  const Json& known = json.at("recordings").at(0);
+  EXPECT_EQ(known.at("source"), "known.aabbs");
+  EXPECT_EQ(known.at("parts").size(), 4U);
+  EXPECT_EQ(known.at("overall").at("pairs_per_body"), 0.125);
+  EXPECT_EQ(known.at("overall").at("moving_share"), 0.125);
+}
+
+TEST_F(Verify, DescribesWhatItCan) {
+  writeFile(file("known.aabbs"), leavingBox());
+  writeFile(file("empty.aabbs"), recordingOf(0, 3, {}));
+  writeFile(file("short.aabbs"), leavingBox().substr(0, 400));
+  const Ended ended = run({"verify", "--describe", "--quiet", "short.aabbs", "empty.aabbs",
+                           "known.aabbs", "--json", "all.json"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("short.aabbs"));
+  EXPECT_EQ(readJson(file("all.json")).at("recordings").size(), 2U);
+}
+
+TEST_F(Verify, BadOptions) {
+  writeFile(file("known.aabbs"), leavingBox());
+  expectRefusal({"verify", "known.aabbs", "--json", "no.json"}, {"--json", "--describe"});
+  expectRefusal({"verify", "known.aabbs", "--describe", "--json", "missing/no.json"},
+                {"missing/no.json", "No such file"});
+  expectRefusal({"verify", "--descrbe", "known.aabbs"}, {"'--describe'"});
+}
+
+}  // namespace
+}  // namespace broadmark::testing
