@@ -133,6 +133,18 @@ TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
   }
 }
 
+// Little enough for an interpreter that watches each access to memory.
+TEST_P(OwnKernels, FewBodiesAreRight) {
+  Execution execution(2, Isa::scalar);
+  for (const std::size_t n : {2, 65, 130}) {
+    const std::vector<std::vector<Aabb>> frames = framesOf({"few", inputs::uniform}, n, 2);
+    for (const char* way : {"cpu", "gpu"}) {
+      ASSERT_TRUE(findsAll(GetParam(), execution, frames, {{"way", way}}))
+          << "n = " << n << ", way " << way;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Algorithms, OwnKernels, testing::ValuesIn(onDevice("gpu-")),
                          [](const auto& tested) { return testName(tested.param); });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OwnKernels);
