@@ -30,7 +30,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 
 #include "algorithms/opencl/device_context.h"
 #include "algorithms/opencl/timer.h"
@@ -85,7 +84,7 @@ b3SapAabb toBullet(const Aabb& box, int id) {
 struct Sizes {
   b3AlignedObjectArray<int> small;
   b3AlignedObjectArray<int> large;
-  float largest_small = 0;  ///< longest edge of a small body
+  float cell = 0;  ///< edge of a cell that is larger than any small body
 };
 
 /// The library's grid with the two settings that it keeps to itself.
@@ -115,10 +114,7 @@ struct GridTraits {
     return std::make_unique<Grid>(context.context()(), context.device()(), context.queue()());
   }
   static int padded(int count) { return count; }
-  static void prepare(Grid& grid, const Sizes& sizes) {
-    // A little larger, lest rounding puts a body into three cells of a row.
-    grid.setCellSize(std::max(sizes.largest_small * 1.001F, 1e-30F));
-  }
+  static void prepare(Grid& grid, const Sizes& sizes) { grid.setCellSize(sizes.cell); }
 };
 
 struct BvhTraits {
@@ -150,6 +146,26 @@ struct SapTraits {
   }
 };
 
+/// The library's object. It is made once for an Execution, as it leaks megabytes and takes a fifth
+/// of a second for its kernels each time. Nothing in it lasts from one answer to the next.
+template <class Traits>
+class SharedLibrary final : public SharedResource {
+ public:
+  explicit SharedLibrary(Execution& execution) {
+    const auto& context = execution.shared<opencl::DeviceContext>();
+    initializeLibrary();
+    const opencl::ScopedTimer timer(build_ns_);
+    broad_phase_ = Traits::create(context);
+    requireNoError();
+  }
+  typename Traits::BroadPhase& broadPhase() { return *broad_phase_; }
+  [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
+
+ private:
+  std::unique_ptr<typename Traits::BroadPhase> broad_phase_;
+  std::int64_t build_ns_ = 0;
+};
+
 template <class Traits>
 class BulletOpenCl final : public BroadPhase {
  public:
@@ -158,14 +174,10 @@ class BulletOpenCl final : public BroadPhase {
   }
 
   void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
-    context_.emplace(execution);
-    initializeLibrary();
-    {
-      const opencl::ScopedTimer timer(build_ns_);
-      broad_phase_ = Traits::create(*context_);
-    }
-    requireNoError();
-    if (!context_->onCpu()) requireSelfCheck();
+    auto& library = execution.shared<SharedLibrary<Traits>>();
+    broad_phase_ = &library.broadPhase();
+    build_ns_ = library.buildNanoseconds();
+    if (!execution.shared<opencl::DeviceContext>().onCpu()) requireSelfCheck();
     run(first);
   }
 
@@ -189,11 +201,11 @@ class BulletOpenCl final : public BroadPhase {
   void cleanCache() override { pairs_.clear(); }
 
   void searchOverlaps() override {
-    if (count_ >= 2) {
+    if (sizes_.small.size() > 0) {  // a grid without bodies answers with anything
       searchOnDevice();
       download();
-      addLargePairs();
     }
+    addLargePairs();
     run_ = pairs_.run();
   }
 
@@ -206,52 +218,56 @@ class BulletOpenCl final : public BroadPhase {
   }
 
  private:
+  /// Beyond, a float hardly tells in which cell it lies.
+  static constexpr float kMostCellsAway = 1 << 20;
+
   static float longestEdge(const Aabb& box) {
     float edge = 0;
     for (int axis = 0; axis < 3; ++axis) edge = std::max(edge, box.max[axis] - box.min[axis]);
     return edge;
   }
 
-  /// Large are the bodies that would make the cells of a grid far too large for most.
+  static float distance(const Aabb& box) {
+    float farthest = 0;
+    for (int axis = 0; axis < 3; ++axis) farthest = std::max(farthest, std::abs(box.min[axis]));
+    return farthest;
+  }
+
+  /// Large are the bodies that would make cells far too large for most, or need too many of them.
   void divideBySize(std::span<const Aabb> boxes) {
-    edges_.clear();
-    if constexpr (Traits::kHasLarge) {
-      for (const Aabb& box : boxes) edges_.push_back(longestEdge(box));
-    }
-    const float limit = largestSmallEdge();
     sizes_.small.resize(0);
     sizes_.large.resize(0);
-    sizes_.largest_small = 0;
+    float edge = 0;
+    float farthest = 0;
+    const bool divides = Traits::kHasLarge && count_ > 0;
+    const float reach = divides ? 2 * quantile(boxes, distance, 15) / kMostCellsAway : 0;
+    const float limit = divides ? std::max(reach, largestSmallEdge(boxes)) : kLargest;
     for (int i = 0; i < host_boxes_.size(); ++i) {
-      const bool is_body = i < count_;
-      if (is_body && Traits::kHasLarge && !isSmall(boxes[i], edges_[i], limit)) {
-        sizes_.large.push_back(i);
-        continue;
-      }
-      sizes_.small.push_back(i);
-      if (Traits::kHasLarge) sizes_.largest_small = std::max(sizes_.largest_small, edges_[i]);
+      const bool fits = !divides || (longestEdge(boxes[i]) <= limit &&
+                                     distance(boxes[i]) / kMostCellsAway < limit);
+      (fits ? sizes_.small : sizes_.large).push_back(i);
+      if (!fits || !divides) continue;
+      edge = std::max({edge, reach, longestEdge(boxes[i])});
+      farthest = std::max(farthest, distance(boxes[i]));
     }
+    // A body's cell is found by two roundings: a little room keeps neighbours neighbours.
+    constexpr float kRounding = 0x1p-21F;
+    sizes_.cell = std::max(edge * 1.001F + farthest * kRounding, 1e-30F);
   }
 
   /// Four times the median, unless that leaves more than one body in 16 out.
-  float largestSmallEdge() {
-    if (edges_.empty()) return kLargest;
-    ordered_ = edges_;
-    const auto quantile = [&](std::size_t sixteenths) {
-      const auto at =
-          ordered_.begin() + static_cast<std::ptrdiff_t>((ordered_.size() - 1) * sixteenths / 16);
-      std::ranges::nth_element(ordered_, at);
-      return *at;
-    };
-    return std::max(4 * quantile(8), quantile(15));
+  float largestSmallEdge(std::span<const Aabb> boxes) {
+    return std::max(4 * quantile(boxes, longestEdge, 8), quantile(boxes, longestEdge, 15));
   }
 
-  /// Cells are counted in 32-bit integers: what is too many cells away goes with the large.
-  static bool isSmall(const Aabb& box, float edge, float limit) {
-    if (!(edge <= limit)) return false;
-    const float farthest = std::max(limit, 1e-30F) * static_cast<float>(1 << 28);
-    return std::ranges::all_of(std::span(box.min).first(3),
-                               [&](float x) { return std::abs(x) < farthest; });
+  template <class Measure>
+  float quantile(std::span<const Aabb> boxes, Measure measure, std::size_t sixteenths) {
+    ordered_.clear();
+    std::ranges::transform(boxes, std::back_inserter(ordered_), measure);
+    const auto at =
+        ordered_.begin() + static_cast<std::ptrdiff_t>((ordered_.size() - 1) * sixteenths / 16);
+    std::ranges::nth_element(ordered_, at);
+    return *at;
   }
 
   void searchOnDevice() {
@@ -325,15 +341,13 @@ class BulletOpenCl final : public BroadPhase {
     }
   }
 
-  std::optional<opencl::DeviceContext> context_;
-  std::unique_ptr<typename Traits::BroadPhase> broad_phase_;
+  typename Traits::BroadPhase* broad_phase_ = nullptr;  ///< the execution's
   std::int64_t build_ns_ = 0;
   TransferTimes transfers_;
   int count_ = 0;      ///< bodies, those that fill up not counted
   int max_pairs_ = 0;  ///< what the pair buffer is made for
   Sizes sizes_;
-  std::vector<float> edges_;  ///< longest edge of each body
-  std::vector<float> ordered_;
+  std::vector<float> ordered_;  ///< room for quantiles
   b3AlignedObjectArray<b3SapAabb> host_boxes_;
   b3AlignedObjectArray<b3Int4> host_pairs_;
   PairBuffer pairs_;

@@ -33,7 +33,7 @@ bool DeviceBroadPhase::likeGpu() const {
 }
 
 void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Execution& execution) {
-  context_.emplace(execution);
+  context_ = &execution.shared<DeviceContext>();
   bodies_per_item_ = likeGpu() ? 1 : 256;
   group_ = likeGpu() ? 64 : 1;
   const std::string source = fmt::format("{}{}", opencl_kernels::common_cl(), kernelSource());

@@ -89,7 +89,7 @@ class DeviceBroadPhase : public BroadPhase {
   cl_uint searchOnce();
 
   Choice way_{"auto", {"auto", "cpu", "gpu"}};
-  std::optional<DeviceContext> context_;
+  DeviceContext* context_ = nullptr;  ///< the execution's
   std::optional<DeviceSorter> sorter_;
   std::size_t bodies_per_item_ = 1;
   std::size_t group_ = 1;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <thread>
 
 #include "algorithms/opencl/timer.h"
 #include "broadmark/compute_devices.h"
@@ -78,7 +80,7 @@ std::vector<cl::Device> devices() {
   return all;
 }
 
-DeviceContext::DeviceContext(const Execution& execution) {
+DeviceContext::DeviceContext(Execution& execution) {
   const std::vector<ComputeDevice> known = computeDevices();
   if (known.empty()) throw UnsupportedError(whyNone());
   try {
@@ -95,10 +97,25 @@ DeviceContext::DeviceContext(const Execution& execution) {
   }
 }
 
-cl::Program DeviceContext::build(std::string_view source, const std::string& options) {
+// PoCL 3.1 says that a command is done before it lets go of the command's event, and that reaches
+// through the queue, which it holds, for the device, which it does not hold. So a part of a device
+// is freed only once no event holds the queue.
+DeviceContext::~DeviceContext() {
+  constexpr auto kPatience = std::chrono::seconds(1);  // others may keep references of their own
+  if (!on_cpu_ || queue_() == nullptr) return;
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (queue_.getInfo<CL_QUEUE_REFERENCE_COUNT>() > 1 &&
+         std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+}
+
+cl::Program DeviceContext::build(const std::string& source, const std::string& options) {
   constexpr std::size_t kLogShown = 1000;
+  const auto known = programs_.find({source, options});
+  if (known != programs_.end()) return known->second;
   const ScopedTimer timer(build_ns_);
-  cl::Program program(context_, std::string(source));
+  cl::Program program(context_, source);
   try {
     program.build(device_, ("-cl-std=CL1.2 " + options).c_str());
   } catch (const cl::Error& error) {
@@ -107,6 +124,7 @@ cl::Program DeviceContext::build(std::string_view source, const std::string& opt
     throw UnsupportedError(fmt::format("kernels do not build (OpenCL error {}): {}", error.err(),
                                        log.substr(0, kLogShown)));
   }
+  programs_.emplace(std::pair(source, options), program);
   return program;
 }
 

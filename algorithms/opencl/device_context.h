@@ -1,9 +1,10 @@
-// An OpenCL device made ready for one run.
+// An OpenCL device made ready.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "algorithms/opencl/opencl.h"
@@ -15,10 +16,15 @@ namespace broadmark::opencl {
 std::vector<cl::Device> devices();
 
 /// Context and in-order queue on the wanted device. On a CPU it uses the execution's threads only.
-class DeviceContext {
+/// One for all instances under an Execution: making a context and building kernels takes far longer
+/// than a frame. Outlives all that is made from it.
+class DeviceContext final : public SharedResource {
  public:
   /// Throws UnsupportedError that says why there is no such device.
-  explicit DeviceContext(const Execution&);
+  explicit DeviceContext(Execution&);
+  ~DeviceContext() override;
+  DeviceContext(const DeviceContext&) = delete;
+  DeviceContext& operator=(const DeviceContext&) = delete;
 
   [[nodiscard]] const cl::Device& device() const { return device_; }
   [[nodiscard]] const cl::Context& context() const { return context_; }
@@ -26,9 +32,10 @@ class DeviceContext {
   /// Whether the device is a CPU: few fast threads, no local memory of its own.
   [[nodiscard]] bool onCpu() const { return on_cpu_; }
 
-  /// Builds OpenCL C 1.2 kernels. Throws UnsupportedError with the start of the compiler's log.
-  cl::Program build(std::string_view source, const std::string& options = {});
-  /// Time that all builds took so far.
+  /// Builds OpenCL C 1.2 kernels, or hands out what it built before. Throws UnsupportedError with
+  /// the start of the compiler's log.
+  cl::Program build(const std::string& source, const std::string& options = {});
+  /// Time that all builds took.
   [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
 
   /// A buffer of at least one byte. Throws UnsupportedError when the device cannot hold it.
@@ -40,6 +47,7 @@ class DeviceContext {
   cl::CommandQueue queue_;
   bool on_cpu_ = false;
   std::int64_t build_ns_ = 0;
+  std::map<std::pair<std::string, std::string>, cl::Program> programs_;  ///< by source and options
 };
 
 }  // namespace broadmark::opencl

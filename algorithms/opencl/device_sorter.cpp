@@ -20,7 +20,7 @@ constexpr std::size_t kBlocksPerUnit = 4;
 
 DeviceSorter::DeviceSorter(DeviceContext& context, bool by_groups)
     : context_(context), by_groups_(by_groups) {
-  const cl::Program program = context.build(opencl_kernels::sort_cl());
+  const cl::Program program = context.build(std::string(opencl_kernels::sort_cl()));
   count_ = cl::Kernel(program, by_groups ? "group_count" : "serial_count");
   places_ = cl::Kernel(program, by_groups ? "group_places" : "serial_places");
   scatter_ = cl::Kernel(program, by_groups ? "group_scatter" : "serial_scatter");

@@ -39,7 +39,7 @@ typedef struct {
 } Sink;
 
 static inline void flush(Sink* sink) {
-  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;
+  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;  // race: an older count does, too
   const uint at = atomic_add(sink->count, sink->held);
   for (uint k = 0; k < sink->held && at + k < sink->capacity; ++k) {
     sink->pairs[at + k] = sink->buffer[k];

@@ -110,8 +110,8 @@ __kernel void refit(__global const Box* leaves, const uint n, volatile __global 
       if (atomic_inc(&visits[node]) == 0) break;
       mem_fence(CLK_GLOBAL_MEM_FENCE);
       volatile __global const float* other = node_floats + 16 * node + 8 * (1 - side);
-      low = fmin(low, (float4)(other[0], other[1], other[2], 0));
-      high = fmax(high, (float4)(other[4], other[5], other[6], 0));
+      low = fmin(low, (float4)(other[0], other[1], other[2], 0));    // race: ordered by visits
+      high = fmax(high, (float4)(other[4], other[5], other[6], 0));  // race: ordered by visits
       if (node == 0) break;
       parent = parents[node];
     }

@@ -93,8 +93,8 @@ TEST(SelfChecks, TimeValidatorTakesItsTime) {
   validator->initialize(sceneOf(frames), {0, frames[0]}, execution);
   const FrameTimes times = runFrame(*validator, {1, frames[1]});
   std::int64_t sum = 0;
-  for (const Phase phase : kAllPhases) {
-    if (phase == Phase::total) continue;
+  for (const Phase phase : {Phase::update_objects, Phase::clean_cache, Phase::update_structures,
+                            Phase::search_overlaps}) {
     EXPECT_GE(times[phase], 2'000'000) << phaseName(phase);
     sum += times[phase];
   }

@@ -26,6 +26,19 @@ std::vector<Algorithm> allOnDevice() {
   return all;
 }
 
+/// Whether the answers of all frames are right.
+testing::AssertionResult findsAll(const Algorithm& algorithm, Execution& execution,
+                                  const std::vector<std::vector<Aabb>>& frames,
+                                  const ParameterValues& parameters = {}) {
+  Instance run(algorithm, execution, sceneOf(frames), frames[0], parameters);
+  for (std::uint32_t i = 1; i < frames.size(); ++i) {
+    const PairRuns answer = run.step(frames[i]);
+    auto right = isRight(answer, bruteForcePairs(frames[i]), {i, frames[i]}, 0);
+    if (!right) return right << " in frame " << i;
+  }
+  return testing::AssertionSuccess();
+}
+
 class OnDevice : public testing::TestWithParam<Algorithm> {
  protected:
   void SetUp() override {
@@ -60,6 +73,13 @@ TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
   const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames);
   EXPECT_EQ(result.status, Status::ok) << result.reason;
   EXPECT_GT(result.pairs_mean, 1000);
+}
+
+TEST_P(OnDevice, OneThreadFindsThemToo) {
+  Execution execution(1, Isa::scalar);
+  for (const inputs::Input& input : inputs::kAll) {
+    ASSERT_TRUE(findsAll(GetParam(), execution, framesOf(input, 257, 3))) << input.name;
+  }
 }
 
 TEST_P(OnDevice, PairBuffersGrow) {
@@ -101,15 +121,26 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OnDevice);
 class OwnKernels : public OnDevice {};
 
 TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
+  Execution execution(2, Isa::scalar);
   for (const inputs::Input& input : inputs::kAll) {
     for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
+      const std::vector<std::vector<Aabb>> frames = framesOf(input, n, 3);
       for (const char* way : {"cpu", "gpu"}) {
-        Frames frames(framesOf(input, n, 3));
-        const CaseResult result =
-            runCase({.algorithm = GetParam(), .threads = 2, .parameters = {{"way", way}}}, frames);
-        ASSERT_EQ(result.status, Status::ok)
-            << result.reason << " on " << input.name << ", n = " << n << ", way " << way;
+        ASSERT_TRUE(findsAll(GetParam(), execution, frames, {{"way", way}}))
+            << "on " << input.name << ", n = " << n << ", way " << way;
       }
+    }
+  }
+}
+
+// Little enough for an interpreter that watches each access to memory.
+TEST_P(OwnKernels, FewBodiesAreRight) {
+  Execution execution(2, Isa::scalar);
+  for (const std::size_t n : {2, 65, 130}) {
+    const std::vector<std::vector<Aabb>> frames = framesOf({"few", inputs::uniform}, n, 2);
+    for (const char* way : {"cpu", "gpu"}) {
+      ASSERT_TRUE(findsAll(GetParam(), execution, frames, {{"way", way}}))
+          << "n = " << n << ", way " << way;
     }
   }
 }

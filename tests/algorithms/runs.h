@@ -1,6 +1,8 @@
 // Running any listed algorithm over given boxes, in every way it can be run.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
@@ -32,10 +34,12 @@ struct Configuration {
 };
 
 /// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
-/// is parallel: among them ones that divide hardly any number of bodies.
+/// is parallel: among them ones that divide hardly any number of bodies. A compute device divides
+/// the work by itself.
 inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
   std::vector<int> teams = {1};
   if (algorithm.parallel) teams = {1, 2, 3, 5};
+  if (algorithm.family == "GPU") teams = {2};
   std::vector<Configuration> all;
   for (const Isa isa : kAllIsas) {
     if (!isaSupported(isa) || (isa != Isa::scalar && !algorithm.vectorised)) continue;
@@ -115,8 +119,9 @@ class Instance {
  public:
   /// Throws UnsupportedError.
   Instance(const Algorithm& algorithm, Execution& execution, const SceneInfo& scene,
-           const std::vector<Aabb>& first)
+           const std::vector<Aabb>& first, const ParameterValues& parameters = {})
       : broad_phase_(algorithm.create()) {
+    setParameters(*broad_phase_, parameters);
     broad_phase_->initialize(scene, {0, first}, execution);
   }
 
@@ -140,5 +145,23 @@ class Instance {
   std::unique_ptr<BroadPhase> broad_phase_;
   std::uint32_t index_ = 0;
 };
+
+/// Whether an answer has all the right pairs, and none that the margin does not excuse.
+inline testing::AssertionResult isRight(PairRuns answer, const std::vector<Pair>& right,
+                                        const Frame& frame, float margin) {
+  // The digest suffices to tell that an exact answer is right, and is much quicker.
+  const PairRun right_run = right;
+  if (margin == 0 && digest(answer) == digest({&right_run, 1})) return testing::AssertionSuccess();
+  const FrameDifference difference = findDifference(answer, right, frame, margin);
+  if (!difference.isMismatch()) return testing::AssertionSuccess();
+  auto failure = testing::AssertionFailure()
+                 << "of " << right.size() << " pairs missed " << difference.missed_count
+                 << ", extra " << difference.extra_count << ", invalid "
+                 << difference.invalid_count;
+  if (!difference.missed.empty()) {
+    failure << "; first missed " << difference.missed[0].a << "-" << difference.missed[0].b;
+  }
+  return failure;
+}
 
 }  // namespace broadmark::tests

@@ -166,7 +166,7 @@ class FullDisc : public EndToEnd {
   }
 };
 
-// Compilers of OpenCL kernels write files, too, and end the program when they cannot.
+// Without the OpenCL families: on a full disc PoCL ends the program when it cannot keep a kernel.
 const Arguments kLargeRun = {
     "--headless", "freefall", "--objects",         "2",      "--frames", "40", "--algorithm",
     "bf*,sap*",   "--json",   "disc/results.json", "--quiet"};

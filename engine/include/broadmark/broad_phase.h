@@ -24,8 +24,8 @@ struct Capabilities {
   float margin = 0;
   /// Largest number of bodies it can handle.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
-  /// Name of the process-wide state it depends on: of all instances with the same name only one
-  /// may live at a time. Empty: none.
+  /// Name of the process-wide state it depends on: of all executions with instances of the same
+  /// name only one may live at a time. Empty: none.
   std::string_view exclusive = {};
 };
 

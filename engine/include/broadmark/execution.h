@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <cstddef>
 #include <exception>
 #include <memory>
@@ -72,11 +73,23 @@ constexpr std::pair<std::size_t, std::size_t> share(std::size_t count, int parts
   return {count * k / n, count * (k + 1) / n};
 }
 
-/// What the runner gives to an algorithm. Lives as long as the algorithm's instance.
+/// Something costly that all instances under one Execution share, such as a device's context.
+class SharedResource {
+ public:
+  virtual ~SharedResource() = default;
+};
+
+/// What the runner gives to an algorithm. Outlives the algorithm's instance.
 class Execution {
  public:
   Execution(int threads, Isa isa, std::string device = {})
       : isa_(isa), device_(std::move(device)), team_(threads) {}
+  /// Ends the latest resource first: it may be made from earlier ones.
+  ~Execution() {
+    while (!resources_.empty()) resources_.pop_back();
+  }
+  Execution(const Execution&) = delete;
+  Execution& operator=(const Execution&) = delete;
 
   [[nodiscard]] Isa isa() const { return isa_; }
   [[nodiscard]] int threads() const { return team_.size(); }
@@ -84,9 +97,19 @@ class Execution {
   /// Which compute device is wanted: its number or part of its name; "" for the first.
   [[nodiscard]] const std::string& device() const { return device_; }
 
+  /// The resource of that type, made from this execution where no instance needed it before.
+  template <std::derived_from<SharedResource> Resource>
+  Resource& shared() {
+    for (const auto& resource : resources_) {
+      if (auto* wanted = dynamic_cast<Resource*>(resource.get())) return *wanted;
+    }
+    return static_cast<Resource&>(*resources_.emplace_back(std::make_unique<Resource>(*this)));
+  }
+
  private:
   Isa isa_;
   std::string device_;
+  std::vector<std::unique_ptr<SharedResource>> resources_;
   ThreadTeam team_;
 };
 
