@@ -157,12 +157,14 @@ RecordingFile::RecordingFile(const SceneInfo& scene)
 
 std::string RecordingFile::finish() {
   requireWhole();
+  settle();
   named_->commit();
   return hasher_.hex();
 }
 
 FileDescriptor RecordingFile::finishTemporary() {
   requireWhole();
+  settle();
   return std::move(unnamed_);
 }
 
@@ -178,6 +180,17 @@ void RecordingFile::requireWhole() const {
     throw std::logic_error(
         fmt::format("{}: {} sets written instead of 1 + {}", name_, sets_, scene_.frames));
   }
+}
+
+void RecordingFile::writeHanded() {
+  constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
+  if (handed_.size() < kLarge) return write(handed_);
+  // Deferred, that is in settle(), where the system grants no more threads.
+  writing_ = std::async(std::launch::async | std::launch::deferred, [this] { write(handed_); });
+}
+
+void RecordingFile::settle() {
+  if (writing_.valid()) writing_.get();
 }
 
 void RecordingFile::write(std::span<const std::byte> bytes) {

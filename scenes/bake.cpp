@@ -106,9 +106,11 @@ bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
     for (const auto& recorder : recorders) recorder->record(frame, simulation);
   };
   if (!recordAll(simulation, record, progress)) return false;
+  // Reads the input of a replay while the recorders may still be writing.
+  Json sidecar = sidecarJson(simulation, {});
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    const std::string hash = recorders[i]->finish();
-    writeTextFile(sidecarPath(paths[i]), sidecarJson(simulation, hash).dump(2) + "\n");
+    sidecar["hash"] = recorders[i]->finish();
+    writeTextFile(sidecarPath(paths[i]), sidecar.dump(2) + "\n");
   }
   return true;
 }

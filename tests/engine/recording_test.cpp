@@ -253,6 +253,27 @@ TEST(RecordingWriter, RefusesBoxesThatNoReaderWouldTake) {
   EXPECT_EQ(writer.finishTemporary()->read(1).boxes.size(), 2U) << "the bad set was not written";
 }
 
+// Large sets are written while the caller makes the next one, in the same place.
+TEST(RecordingWriter, CopiesLargeSets) {
+  constexpr std::uint32_t kBodies = 50'000;
+  RecordingWriter writer(SceneInfo{"Drift", "Cubes", kBodies, 3, unitBox(3)});
+  std::vector<Aabb> boxes;
+  for (std::uint32_t f = 0; f <= 3; ++f) {
+    boxes = inputs::drifting(kBodies, f, 1);
+    const float good = boxes[kBodies - 1].min[1];
+    boxes[kBodies - 1].min[1] = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THAT(inputErrorOf([&] { writer.write(boxes); }),
+                HasSubstr("body 49999 (byte " + std::to_string(304 + 32 * (50'000 * (f + 1) - 1))));
+    boxes[kBodies - 1].min[1] = good;
+    writer.write(boxes);
+    std::ranges::fill(boxes, Aabb{});
+  }
+  const auto reader = writer.finishTemporary();
+  for (std::uint32_t f = 0; f <= 3; ++f) {
+    EXPECT_TRUE(std::ranges::equal(reader->read(f).boxes, inputs::drifting(kBodies, f, 1)));
+  }
+}
+
 TEST(RecordingWriter, SaysWhereItCannotWrite) {
   const TemporaryDirectory directory;
   const auto path = directory / "missing" / "a.aabbs";

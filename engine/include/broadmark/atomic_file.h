@@ -52,6 +52,8 @@ class AtomicFile {
   std::filesystem::path path_;
   std::filesystem::path partial_;
   FileDescriptor file_;
+  std::uint64_t written_ = 0;
+  std::uint64_t handed_over_ = 0;  ///< of those bytes, what the system has been asked to store
   bool committed_ = false;
 };
 
