@@ -112,6 +112,8 @@ class RecordingFile {
   RecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
   /// Writes to an unnamed file in the temporary directory instead.
   explicit RecordingFile(const SceneInfo& scene);
+  RecordingFile(const RecordingFile&) = delete;  // a set on its way refers to this
+  RecordingFile& operator=(const RecordingFile&) = delete;
 
   /// Appends a set. Throws InputError when one of its records is broken, and then it is not
   /// written, or when the disc was full, at the latest in finish().
