@@ -133,6 +133,29 @@ TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
   }
 }
 
+class Drawn final : public DebugDraw {
+ public:
+  void box(const Aabb& box, Rgb, int) override { boxes.push_back(box); }
+  void line(const std::array<float, 3>&, const std::array<float, 3>&, Rgb) override { ++lines; }
+  std::vector<Aabb> boxes;
+  int lines = 0;
+};
+
+TEST_P(OwnKernels, DrawCellsOrNodesRoundEveryBodyOrTheAxis) {
+  Execution execution(2, Isa::scalar);
+  const auto frames = framesOf({"assorted", inputs::assorted}, 500, 3);
+  Instance run(GetParam(), execution, sceneOf(frames), frames[0]);
+  run.step(frames[1]);
+  run.step(frames[2]);
+  Drawn drawn;
+  run.broadPhase().drawStructure(drawn);
+  if (drawn.lines == 1 && drawn.boxes.empty()) return;  // the axis of a sweep
+  EXPECT_GT(drawn.boxes.size(), 10U);
+  for (const Aabb& body : frames[2]) {
+    EXPECT_TRUE(std::ranges::any_of(drawn.boxes, [&](const Aabb& b) { return overlaps(b, body); }));
+  }
+}
+
 // Little enough for an interpreter that watches each access to memory.
 TEST_P(OwnKernels, FewBodiesAreRight) {
   Execution execution(2, Isa::scalar);
