@@ -198,7 +198,8 @@ TEST_F(Bake, APosrotRecordingIsASource) {
     runQuietly(
         {"--headless", source, "--algorithm", "bf,sap", "--time-limit", "100", "--json", "r.json"});
     Json pairs;
-    for (const Json& result : readJson(file("r.json")).at("cases")) {
+    const Json results = readJson(file("r.json"));
+    for (const Json& result : results.at("cases")) {
       EXPECT_EQ(result.at("status"), "ok");
       pairs.push_back(result.at("pairs"));
     }
@@ -234,7 +235,8 @@ TEST_F(Bake, ReplaysMakeRecordingsOfRecordings) {
 
   runQuietly({"--headless", "freefall", "--objects", "2560", "--engine", "splitter", "--input",
               "out dir", "--algorithm", "sap,bf", "--time-limit", "100", "--json", "r.json"});
-  for (const Json& result : readJson(file("r.json")).at("cases")) {
+  const Json results = readJson(file("r.json"));
+  for (const Json& result : results.at("cases")) {
     EXPECT_EQ(result.at("status"), "ok");
     EXPECT_EQ(result.at("recording").at("objects"), 2560);
     EXPECT_EQ(result.at("recording").at("frames"), 6);

@@ -56,7 +56,8 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
 
 TEST_F(Device, TransfersAreInTheResults) {
   EXPECT_EQ(run(short_run_).status, 0);
-  for (const Json& result : readJson(file("r.json")).at("cases")) {
+  const Json results = readJson(file("r.json"));
+  for (const Json& result : results.at("cases")) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("frames").contains("upload"), on_device);
     EXPECT_EQ(result.at("frames").contains("download"), on_device);
