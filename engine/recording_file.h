@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadmark/atomic_file.h"
@@ -126,16 +127,17 @@ class RecordingFile {
   void append(std::span<const Record> records, std::string_view what,
               std::span<const std::byte> bytes) {
     requireSize(bytes.size());
-    settle();
-    handed_.resize(bytes.size());
+    filling_.resize(bytes.size());
     // In pieces, so that what was checked is still in the cache when it is copied.
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
       requireSound(piece, sets_, scene_, name_, what, first);
       std::ranges::copy(bytes.subspan(first * kRecordBytes, piece.size() * kRecordBytes),
-                        handed_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
+                        filling_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
     }
+    settle();
+    std::swap(filling_, handed_);
     writeHanded();
     ++sets_;
   }
@@ -161,8 +163,9 @@ class RecordingFile {
   FileDescriptor unnamed_;
   Hasher hasher_;
   std::uint64_t sets_ = 0;
-  std::vector<std::byte> handed_;  ///< the last set
-  std::future<void> writing_;      ///< last: its thread uses all of the above
+  std::vector<std::byte> filling_;  ///< the set that is being appended
+  std::vector<std::byte> handed_;   ///< the last one, perhaps being written
+  std::future<void> writing_;       ///< last: its thread uses all of the above
 };
 
 }  // namespace broadmark
