@@ -39,6 +39,9 @@ testing::AssertionResult findsAll(const Algorithm& algorithm, Execution& executi
   return testing::AssertionSuccess();
 }
 
+/// A slow machine fails no test.
+const RunOptions kPatient = {.frame_limit_seconds = 1e6, .initialize_limit_seconds = 1e6};
+
 class OnDevice : public testing::TestWithParam<Algorithm> {
  protected:
   void SetUp() override {
@@ -70,7 +73,7 @@ class Frames final : public FrameSource {
 
 TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
   Frames frames(framesOf({"uniform", inputs::uniform}, 20'000, 3));
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames);
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames, kPatient);
   EXPECT_EQ(result.status, Status::ok) << result.reason;
   EXPECT_GT(result.pairs_mean, 1000);
 }
@@ -88,14 +91,14 @@ TEST_P(OnDevice, PairBuffersGrow) {
   frames.push_back(inputs::identical(2000, 0, 0));
   frames.push_back(frames[1]);
   Frames source(frames);
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, source);
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, source, kPatient);
   EXPECT_EQ(result.status, Status::ok) << result.reason;
   EXPECT_EQ(result.pairs_max, 2000U * 1999 / 2);
 }
 
 TEST_P(OnDevice, TransfersAreWithinTheTotal) {
   Frames frames(framesOf({"uniform", inputs::uniform}, 2000, 4));
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames);
+  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames, kPatient);
   ASSERT_EQ(result.status, Status::ok) << result.reason;
   for (const FrameTimes& times : result.repetitions.at(0).frames) {
     EXPECT_GT(times[Phase::upload], 0);
