@@ -266,7 +266,7 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
       ->capture_default_str()
       ->type_name("MODE");
   app.add_flag("--memory", options.memory,
-               "measure each case's memory in a separate untimed process");
+               "measure each case's memory in a separate untimed process (not on OpenCL devices)");
   for (const ResultWriter& writer : resultWriters()) {
     app.add_option(fmt::format("--{}", writer.name), texts.outputs[std::string(writer.name)],
                    std::string(writer.doc))

@@ -54,6 +54,16 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
   }
 }
 
+TEST_F(Device, MemoryOnADeviceIsNotMeasured) {
+  Arguments arguments = short_run_;
+  arguments.push_back("--memory");
+  EXPECT_EQ(run(arguments).status, 0);
+  const Json results = readJson(file("r.json"));
+  for (const Json& result : results.at("cases")) {
+    EXPECT_EQ(result.at("peak_bytes").is_null(), result.at("algorithm") == "gpu-sap");
+  }
+}
+
 TEST_F(Device, TransfersAreInTheResults) {
   EXPECT_EQ(run(short_run_).status, 0);
   const Json results = readJson(file("r.json"));
