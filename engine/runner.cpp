@@ -27,38 +27,6 @@ std::int64_t nanoseconds(Clock::duration duration) {
 /// Judged on the running mean once this many frames are known.
 constexpr std::size_t kFramesBeforeLimit = 3;
 
-/// A BroadPhase that is ready to run, with all that must outlive it.
-class Instance {
- public:
-  Instance(const Case& run, const SceneInfo& scene)
-      : execution_(run.threads, run.isa, run.device), algorithm_(run.algorithm.create()) {
-    setParameters(*algorithm_, run.parameters);
-    capabilities_ = algorithm_->capabilities();
-    if (run.algorithm.vectorised && !isaSupported(run.isa)) {
-      throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
-    }
-    if (scene.objects > capabilities_.max_objects) {
-      throw UnsupportedError(fmt::format("at most {} bodies, the scene has {}",
-                                         capabilities_.max_objects, scene.objects));
-    }
-  }
-
-  BroadPhase& algorithm() { return *algorithm_; }
-  [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
-
-  /// Returns its duration in nanoseconds.
-  std::int64_t initialize(const SceneInfo& scene, const Frame& first) {
-    const auto start = Clock::now();
-    algorithm_->initialize(scene, first, execution_);
-    return nanoseconds(Clock::now() - start);
-  }
-
- private:
-  Execution execution_;
-  std::unique_ptr<BroadPhase> algorithm_;
-  Capabilities capabilities_;
-};
-
 /// Adds what the check of one frame found to the case.
 void addDifference(CaseResult& result, FrameDifference difference) {
   result.missed += difference.missed_count;
@@ -72,15 +40,6 @@ void addDifference(CaseResult& result, FrameDifference difference) {
                     difference.missed_count, difference.forbidden_count, difference.invalid_count);
   }
   result.differences.push_back(std::move(difference));
-}
-
-void checkFrame(CaseResult& result, const BroadPhase& algorithm, const Frame& frame, float margin,
-                Oracle& oracle, CheckMode mode, int repetition) {
-  const PairRuns answer = algorithm.overlaps();
-  if (mode == CheckMode::hash && margin == 0 && digest(answer) == oracle.pairDigest(frame)) return;
-  FrameDifference difference = findDifference(answer, oracle.pairs(frame), frame, margin);
-  difference.repetition = repetition;
-  addDifference(result, std::move(difference));
 }
 
 /// A case that failed in one way stays failed: later repetitions do not mend it.
@@ -106,8 +65,8 @@ void countFrame(CaseResult& result, const BroadPhase& algorithm, std::uint64_t f
 }
 
 /// One pass; false when cancelled.
-bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, FrameSource& source,
-               Oracle& oracle, const RunOptions& options, bool count) {
+bool runFrames(CaseResult& result, Repetition& repetition, CaseInstance& instance,
+               FrameSource& source, Oracle& oracle, const RunOptions& options, bool count) {
   std::int64_t total_ns = 0;
   const int number = static_cast<int>(result.repetitions.size()) + 1;
   while (const std::optional<Frame> frame = source.next()) {
@@ -115,8 +74,9 @@ bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, F
     const FrameTimes times = runFrame(instance.algorithm(), *frame);
     repetition.frames.push_back(times);
     if (result.checked) {
-      checkFrame(result, instance.algorithm(), *frame, instance.capabilities().margin, oracle,
-                 options.check, number);
+      FrameDifference difference = instance.check(*frame, oracle, options.check);
+      difference.repetition = number;
+      addDifference(result, std::move(difference));
     }
     if (count) countFrame(result, instance.algorithm(), repetition.frames.size() - 1);
     if (options.progress) options.progress(frame->index);
@@ -135,21 +95,12 @@ bool runFrames(CaseResult& result, Repetition& repetition, Instance& instance, F
 }
 
 /// Libraries with process-wide state run one at a time, each under its own lock.
-class ExclusiveLock {
- public:
-  explicit ExclusiveLock(std::string_view name) {
-    if (!name.empty()) lock_ = std::unique_lock(mutexOf(name));
-  }
-
- private:
-  static std::mutex& mutexOf(std::string_view name) {
-    static std::mutex guard;
-    static std::map<std::string, std::mutex, std::less<>> mutexes;
-    const std::lock_guard hold(guard);
-    return mutexes[std::string(name)];
-  }
-  std::unique_lock<std::mutex> lock_;
-};
+std::mutex& mutexOf(std::string_view name) {
+  static std::mutex guard;
+  static std::map<std::string, std::mutex, std::less<>> mutexes;
+  const std::lock_guard hold(guard);
+  return mutexes[std::string(name)];
+}
 
 }  // namespace
 
@@ -173,6 +124,34 @@ FrameTimes runFrame(BroadPhase& algorithm, const Frame& frame) {
   times[Phase::download] = transfers.download_ns;
   times[Phase::total] = nanoseconds(end - start);
   return times;
+}
+
+CaseInstance::CaseInstance(const Case& run, const SceneInfo& scene)
+    : execution_(run.threads, run.isa, run.device), algorithm_(run.algorithm.create()) {
+  setParameters(*algorithm_, run.parameters);
+  capabilities_ = algorithm_->capabilities();
+  if (run.algorithm.vectorised && !isaSupported(run.isa)) {
+    throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
+  }
+  if (scene.objects > capabilities_.max_objects) {
+    throw UnsupportedError(fmt::format("at most {} bodies, the scene has {}",
+                                       capabilities_.max_objects, scene.objects));
+  }
+}
+
+std::int64_t CaseInstance::initialize(const SceneInfo& scene, const Frame& first) {
+  const auto start = Clock::now();
+  algorithm_->initialize(scene, first, execution_);
+  return nanoseconds(Clock::now() - start);
+}
+
+FrameDifference CaseInstance::check(const Frame& frame, Oracle& oracle, CheckMode mode) const {
+  const PairRuns answer = algorithm_->overlaps();
+  if (mode == CheckMode::hash && capabilities_.margin == 0 &&
+      digest(answer) == oracle.pairDigest(frame)) {
+    return {.frame = frame.index};
+  }
+  return findDifference(answer, oracle.pairs(frame), frame, capabilities_.margin);
 }
 
 std::string caseName(const Case& run) {
@@ -211,8 +190,10 @@ bool runRepetition(CaseResult& result, const Case& run, FrameSource& source, Ora
   Repetition repetition;
   repetition.frames.reserve(source.scene().frames);
   try {
-    const ExclusiveLock lock(run.algorithm.create()->capabilities().exclusive);
-    Instance instance(run, source.scene());
+    std::unique_lock<std::mutex> alone;
+    const std::string_view exclusive = run.algorithm.create()->capabilities().exclusive;
+    if (!exclusive.empty()) alone = std::unique_lock(mutexOf(exclusive));
+    CaseInstance instance(run, source.scene());
     const Frame first = source.rewind();
     repetition.initialize_ns = instance.initialize(source.scene(), first);
     const double initialize_s = static_cast<double>(repetition.initialize_ns) * 1e-9;
@@ -267,7 +248,7 @@ std::optional<std::uint64_t> measurePeakBytes(const Case& run, FrameSource& sour
     try {
       const Frame first = source.rewind();
       const std::uint64_t before = peak_kib();
-      Instance instance(run, source.scene());
+      CaseInstance instance(run, source.scene());
       instance.initialize(source.scene(), first);
       while (const auto frame = source.next()) runFrame(instance.algorithm(), *frame);
       growth = (peak_kib() - before) * 1024;

@@ -38,7 +38,10 @@ namespace broadmark {
   X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample)                            \
   X(SHADERSOURCE, ShaderSource) X(TEXBUFFER, TexBuffer) X(UNIFORM1F, Uniform1f)                \
   X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f) X(UNIFORMMATRIX4FV, UniformMatrix4fv)        \
-  X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)
+  X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)                                              \
+  X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                                          \
+  X(VERTEXATTRIBPOINTER, VertexAttribPointer) X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex) \
+  X(SCISSOR, Scissor) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)
 // clang-format on
 
 /// Address of a GL function, or null.

@@ -30,7 +30,32 @@ std::string caseName(const Case&);
 /// "FreeFall/Cubes/N2000/F100/" + caseName; with the seed "/s7" when it is known.
 std::string caseId(const RecordingReference&, const Case&);
 
+/// How answers are compared with the oracle's: as sets, or by count and hash (sets all the same
+/// for a conservative algorithm, and where the hashes differ), or not at all.
 enum class CheckMode { full, hash, off };
+
+/// An instance of a case's algorithm with all that must outlive it.
+class CaseInstance {
+ public:
+  /// Throws UnsupportedError when it cannot run here on so many bodies, InputError for bad
+  /// parameters.
+  CaseInstance(const Case&, const SceneInfo&);
+
+  BroadPhase& algorithm() { return *algorithm_; }
+  [[nodiscard]] const BroadPhase& algorithm() const { return *algorithm_; }
+  [[nodiscard]] const Capabilities& capabilities() const { return capabilities_; }
+
+  /// Returns its duration in nanoseconds.
+  std::int64_t initialize(const SceneInfo&, const Frame& first);
+  /// How the present answer differs from the right one for this frame, the last one run. Not for
+  /// CheckMode::off.
+  [[nodiscard]] FrameDifference check(const Frame&, Oracle&, CheckMode) const;
+
+ private:
+  Execution execution_;
+  std::unique_ptr<BroadPhase> algorithm_;
+  Capabilities capabilities_;
+};
 
 struct RunOptions {
   CheckMode check = CheckMode::full;
