@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 
 #include "broadmark/error.h"
@@ -40,6 +41,20 @@ bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
 
 FileDescriptor::~FileDescriptor() {
   if (fd_ >= 0) ::close(fd_);
+}
+
+FileDescriptor unnamedFile() {
+  const std::filesystem::path directory = std::filesystem::temp_directory_path();
+  std::string name = (directory / "broadmark-XXXXXX").string();
+  FileDescriptor file(::mkstemp(name.data()));
+  if (file.get() < 0) {
+    throw InputError(
+        fmt::format("{}: cannot write a temporary recording: {} (TMPDIR names the "
+                    "directory)",
+                    directory.string(), std::strerror(errno)));
+  }
+  ::unlink(name.c_str());
+  return file;
 }
 
 FileDescriptor openForReading(const std::filesystem::path& path) {

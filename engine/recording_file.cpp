@@ -1,13 +1,8 @@
 #include "recording_file.h"
 
-#include <unistd.h>
-
 #include <bit>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
-#include <cstring>
 #include <limits>
 
 #include "broadmark/recording.h"
@@ -79,20 +74,6 @@ RecordingHeader makeHeader(const SceneInfo& scene) {
   return header;
 }
 
-/// An unnamed file in the temporary directory; it vanishes with its descriptor.
-FileDescriptor unnamedFile(const std::filesystem::path& directory) {
-  std::string name = (directory / "broadmark-XXXXXX").string();
-  FileDescriptor file(::mkstemp(name.data()));
-  if (file.get() < 0) {
-    throw InputError(
-        fmt::format("{}: cannot write a temporary recording: {} (TMPDIR names the "
-                    "directory)",
-                    directory.string(), std::strerror(errno)));
-  }
-  ::unlink(name.c_str());
-  return file;
-}
-
 }  // namespace
 
 SceneInfo parseHeader(const RecordingHeader& header, const std::string& name) {
@@ -151,7 +132,7 @@ RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo&
 RecordingFile::RecordingFile(const SceneInfo& scene)
     : scene_(scene), name_(recordingFileName(scene) + " (temporary)") {
   const RecordingHeader header = makeHeader(scene);
-  unnamed_ = unnamedFile(std::filesystem::temp_directory_path());
+  unnamed_ = unnamedFile();
   write(std::as_bytes(std::span(&header, 1)));
 }
 

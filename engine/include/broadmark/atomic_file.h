@@ -29,6 +29,9 @@ class FileDescriptor {
 
 /// Opens a regular file for reading. Throws InputError.
 FileDescriptor openForReading(const std::filesystem::path& path);
+/// An unnamed file in the temporary directory, to write and read; it vanishes with its descriptor.
+/// Throws InputError.
+FileDescriptor unnamedFile();
 /// Reads a whole text file of at most `limit_bytes`. Throws InputError.
 std::string readTextFile(const std::filesystem::path& path,
                          std::uint64_t limit_bytes = std::uint64_t{1} << 30);

@@ -1,0 +1,52 @@
+// A drawn structure, kept to be shown later.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "broadmark/debug_draw.h"
+
+namespace broadmark {
+
+/// Keeps what an algorithm draws, up to `kMost` boxes and as many lines.
+class RecordedDrawing final : public DebugDraw {
+ public:
+  static constexpr std::size_t kMost = 500'000;
+
+  struct Box {
+    Aabb box;
+    Rgb colour = 0;
+    int level = 0;
+  };
+  struct Line {
+    std::array<float, 3> from{};
+    std::array<float, 3> to{};
+    Rgb colour = 0;
+  };
+
+  void box(const Aabb& box, Rgb colour, int level) override { keep(boxes_, {box, colour, level}); }
+  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
+    keep(lines_, {from, to, colour});
+  }
+
+  [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
+  [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
+  /// How many boxes and lines were too many.
+  [[nodiscard]] std::size_t leftOut() const { return left_out_; }
+
+ private:
+  template <class Item>
+  void keep(std::vector<Item>& items, Item item) {
+    if (items.size() < kMost) {
+      items.push_back(item);
+    } else {
+      ++left_out_;
+    }
+  }
+
+  std::vector<Box> boxes_;
+  std::vector<Line> lines_;
+  std::size_t left_out_ = 0;
+};
+
+}  // namespace broadmark
