@@ -15,11 +15,11 @@
 #include "app/cases.h"
 #include "app/interrupt.h"
 #include "app/options.h"
+#include "app/plugins.h"
 #include "app/progress.h"
 #include "app/recordings.h"
 #include "app/screenshot.h"
 #include "app/table.h"
-#include "broadmark/algorithms.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -73,7 +73,7 @@ void nameScreenshots(const HeadlessOptions& options, std::vector<Job>& jobs) {
 
 /// All jobs, already divided among shards and filtered; jobs without cases are left out.
 std::vector<Job> makeJobs(const HeadlessOptions& options) {
-  const std::vector<Algorithm> algorithms = builtinAlgorithms();
+  const std::vector<Algorithm> algorithms = availableAlgorithms(options.plugins);
   const std::regex filter = compiledFilter(options.filter);
   std::vector<Job> jobs;
   for (Source& source : resolveSources(options)) {

@@ -7,8 +7,8 @@
 
 #include "app/cases.h"
 #include "app/options.h"
+#include "app/plugins.h"
 #include "app/table.h"
-#include "broadmark/algorithms.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -27,11 +27,10 @@ std::string parameterLines(Parametrised& object) {
   return alignColumns(rows, {false, false, true, false, false});
 }
 
-void listAlgorithms() {
+void listAlgorithms(const std::vector<Algorithm>& algorithms) {
   fmt::print(
       "Algorithms (id, family, principle, optimisations, pairs kept over frames, answer, "
       "time, space)\n");
-  const std::vector<Algorithm> algorithms = builtinAlgorithms();
   std::vector<std::vector<std::string>> rows;
   for (const Algorithm& a : algorithms) {
     rows.push_back({" ", a.id, a.family, a.principle, a.optimisations,
@@ -45,6 +44,7 @@ void listAlgorithms() {
       fmt::print("{}{}", &original == &a.original_ids.front() ? ". In the original: " : ", ",
                  original.name);
     }
+    if (!a.plugin.empty()) fmt::print(". From {}", a.plugin);
     fmt::print("\n{}", parameterLines(*a.create()));
   }
 }
@@ -83,12 +83,15 @@ void listDevices() {
 
 }  // namespace
 
-int runList(const std::string& what) {
-  const std::pair<std::string, std::function<void()>> kinds[] = {{"algorithms", listAlgorithms},
-                                                                 {"scenes", listScenes},
-                                                                 {"engines", listEngines},
-                                                                 {"recorders", listRecorders},
-                                                                 {"devices", listDevices}};
+int runList(const ListOptions& options) {
+  const std::vector<Algorithm> algorithms = availableAlgorithms(options.plugins);
+  const std::string& what = options.what;
+  const std::pair<std::string, std::function<void()>> kinds[] = {
+      {"algorithms", [&] { listAlgorithms(algorithms); }},
+      {"scenes", listScenes},
+      {"engines", listEngines},
+      {"recorders", listRecorders},
+      {"devices", listDevices}};
   std::vector<std::string> known = {"all"};
   bool found = false;
   for (const auto& [name, list] : kinds) {

@@ -74,6 +74,14 @@ void addList(CLI::App& app, const std::string& name, std::vector<std::string>& t
   app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
 }
 
+void addPlugins(CLI::App& app, std::vector<std::string>& plugins) {
+  app.add_option("--plugin", plugins,
+                 "shared library with more algorithms, which runs as part of the program "
+                 "(repeatable)")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+}
+
 /// KEY=VALUE texts as parameter values.
 ParameterValues keyValues(const std::vector<std::string>& texts) {
   ParameterValues values;
@@ -241,6 +249,7 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
           "only by name)",
           "ID[,ID...]");
+  addPlugins(app, options.plugins);
   addList(app, "--threads", texts.threads, "threads of parallel variants (default: all cores)",
           "T[,T...]");
   addList(app, "--isa", texts.isas,
@@ -474,10 +483,12 @@ int runCommandLine(int argc, char** argv) {
   CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
   addBakeOptions(*bake, bake_texts);
 
-  std::string what = "all";
+  ListOptions list_options;
   CLI::App* list = app.add_subcommand("list", "Lists what there is, with its parameters.");
-  list->add_option("what", what, "algorithms, scenes, engines, recorders, devices or all")
+  list->add_option("what", list_options.what,
+                   "algorithms, scenes, engines, recorders, devices or all")
       ->capture_default_str();
+  addPlugins(*list, list_options.plugins);
 
   VerifyOptions verify_options;
   CLI::App* verify = app.add_subcommand(
@@ -512,7 +523,7 @@ int runCommandLine(int argc, char** argv) {
   requireNothingBefore(app);
 
   if (bake->parsed()) return runBake(understand(bake_texts));
-  if (list->parsed()) return runList(what);
+  if (list->parsed()) return runList(list_options);
   if (verify->parsed()) return runVerify(verify_options);
   if (compare->parsed()) {
     compare_options.fail_above = parseNumber(fail_above, "--fail-above", 0, false);

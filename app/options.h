@@ -33,6 +33,7 @@ struct Shard {
 struct HeadlessOptions {
   std::vector<std::string> sources;
   SceneOptions scene;
+  std::vector<std::string> plugins;     ///< libraries with more algorithms
   std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
   std::vector<int> threads;
   std::vector<Isa> isas;
@@ -55,6 +56,11 @@ struct HeadlessOptions {
   bool list_only = false;
   bool quiet = false;
   std::vector<std::string> command_line;
+};
+
+struct ListOptions {
+  std::string what = "all";
+  std::vector<std::string> plugins;
 };
 
 struct BakeOptions {
@@ -90,7 +96,7 @@ int runCommandLine(int argc, char** argv);
 // The commands. Each returns the exit status and throws InputError.
 int runHeadless(const HeadlessOptions&);
 int runBake(const BakeOptions&);
-int runList(const std::string& what);
+int runList(const ListOptions&);
 int runVerify(const VerifyOptions&);
 int runCompare(const CompareOptions&);
 

@@ -1,9 +1,9 @@
 # Installs the program and the two libraries, and exports them as a package: find_package(broadmark)
-# gives broadmark::engine and broadmark::algorithms.
+# gives broadmark::engine and broadmark::algorithms, and the program for plug-ins to link to.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS broadmark DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS broadmark_engine broadmark_algorithms EXPORT broadmark_targets
+install(TARGETS broadmark broadmark_engine broadmark_algorithms EXPORT broadmark_targets
+  RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 

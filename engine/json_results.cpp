@@ -245,6 +245,8 @@ Json toJson(const CaseResult& result) {
                {"isa", isaName(result.isa)},
                {"vectorised", result.vectorised},
                {"threads", result.threads},
+               {"device", result.device},
+               {"plugin", result.plugin},
                {"params", toJson(result.parameters)},
                {"status", statusName(result.status)},
                {"reason", result.reason},
@@ -290,6 +292,9 @@ CaseResult caseFrom(const JsonFields& json) {
   result.isa = named(json, "isa", kAllIsas, isaName);
   result.vectorised = json.boolean("vectorised");
   result.threads = json.integer<int>("threads", 1);
+  // Not in files of earlier versions.
+  if (json.has("device")) result.device = json.text("device");
+  if (json.has("plugin")) result.plugin = json.text("plugin");
   result.parameters = parametersFrom(json.at("params"), json.path("params"));
   result.status = named(json, "status", kStatuses, statusName);
   result.reason = json.text("reason");

@@ -73,7 +73,7 @@ bool runFrames(CaseResult& result, Repetition& repetition, CaseInstance& instanc
     if (options.cancelled && options.cancelled()) return false;
     const FrameTimes times = runFrame(instance.algorithm(), *frame);
     repetition.frames.push_back(times);
-    if (result.checked) {
+    if (result.checked && frame->index >= options.first_checked) {
       FrameDifference difference = instance.check(*frame, oracle, options.check);
       difference.repetition = number;
       addDifference(result, std::move(difference));
@@ -178,6 +178,8 @@ CaseResult beginCase(const Case& run, const RecordingReference& recording) {
   result.isa = run.isa;
   result.vectorised = run.algorithm.vectorised;
   result.threads = run.threads;
+  result.device = run.device;
+  result.plugin = run.algorithm.plugin;
   const auto algorithm = run.algorithm.create();
   setParameters(*algorithm, run.parameters);
   result.parameters = parameterValues(*algorithm);

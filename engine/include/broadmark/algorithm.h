@@ -30,6 +30,7 @@ struct Algorithm {
   std::function<std::unique_ptr<BroadPhase>()> create;
   /// A library beneath it allocates in a steady state, out of its reach.
   bool library_allocates = false;
+  std::string plugin;  ///< the file it was loaded from; "": built in
 
   // The paper's Table 1.
   std::string principle;            ///< "brute force", "sorting", "grid", "tree"

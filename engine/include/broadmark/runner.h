@@ -59,6 +59,7 @@ class CaseInstance {
 
 struct RunOptions {
   CheckMode check = CheckMode::full;
+  std::uint32_t first_checked = 1;  ///< frames before this one are not checked
   /// Limit on the running mean of a frame's total, judged after three frames.
   double frame_limit_seconds = 0.5;
   double initialize_limit_seconds = 60;

@@ -1,0 +1,58 @@
+// Finding the smallest part of a recording on which an algorithm still answers wrongly.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "broadmark/oracle.h"
+#include "broadmark/runner.h"
+#include "broadmark/sub_recording.h"
+
+namespace broadmark {
+
+struct ShrinkProgress {
+  std::uint64_t trials = 0;  ///< runs so far
+  std::size_t bodies = 0;    ///< of the smallest part found
+  std::size_t frames = 0;    ///< likewise, the initial pose not counted
+};
+
+struct ShrinkOptions {
+  std::function<void(const ShrinkProgress&)> progress;  ///< told after each trial
+  std::function<bool()> cancelled;                      ///< asked between frames; true ends it
+  /// A part of the recording that takes no more than this is held in memory; a larger one is read
+  /// anew for each trial.
+  std::size_t memory_bytes = std::size_t{256} << 20;
+};
+
+/// A part of a recording on which a case fails in the last frame.
+struct ShrunkCase {
+  Selection selection;         ///< in the recording's own numbers
+  FrameDifference difference;  ///< of the last frame, numbered as in the part
+  std::uint64_t trials = 0;
+  /// Whether no single body and no single frame can be left out; false when cancelled.
+  bool minimal = false;
+};
+
+/// The smallest part of `source` on which `run` still fails as it does in frame `known.frame`,
+/// which becomes the part's last one. The case fails where the answer for that frame is a mismatch
+/// of any kind, by the oracle's definition and the algorithm's own margin; each trial is a fresh
+/// instance that goes through all frames of its part. A run that throws is no answer, and counts as
+/// not failing; time is not looked at. Same input, same result, if the algorithm's own is.
+///
+/// The pairs that `known` lists only tell where to look first. Cancelled: the best so far. Throws
+/// InputError when the case does not fail in that frame, when the algorithm finds no pairs by
+/// design, or for a bad recording.
+ShrunkCase shrinkCase(const Case& run, FrameSource& source, const FrameDifference& known,
+                      const ShrinkOptions& options = {});
+
+/// What a part of a scene is called: "FreeFall case".
+std::string partName(const SceneInfo&);
+
+/// Writes the selected part of `source` as an .aabbs recording. Returns its hash. Throws
+/// InputError.
+std::string writePart(const std::filesystem::path& path, FrameSource& source, const Selection&);
+
+}  // namespace broadmark

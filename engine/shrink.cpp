@@ -1,0 +1,331 @@
+// Shrinking a failing case, by delta debugging: parts are left out, large ones first, as long as
+// what is left still fails, until no single body and no single frame can go.
+// Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002.
+//
+// That alone would begin with the whole recording. A broad phase mostly errs for reasons nearby,
+// though: so the wrong pair is tried first with few neighbours, then with more and more of them
+// (frames: with a short history, then a longer one), all of it in memory. Where the pair and k
+// neighbours fail that takes O(log k) runs on up to 2 k bodies, and O(k log k) small ones to shrink
+// these; where only the whole fails, O(n log n) runs on nearly n bodies.
+
+#include "broadmark/shrink.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <tuple>
+
+#include "broadmark/error.h"
+#include "broadmark/recording.h"
+
+namespace broadmark {
+namespace {
+
+/// The memory that a part takes.
+std::size_t bytesOf(std::size_t bodies, std::size_t frames) {
+  return bodies * frames * sizeof(Aabb);
+}
+
+/// Whether all of `part` is in `whole`; both ascend.
+bool isWithin(const Selection& part, const Selection& whole) {
+  return std::ranges::includes(whole.bodies, part.bodies) &&
+         std::ranges::includes(whole.frames, part.frames);
+}
+
+/// Where each of `numbers` stands in `all`; both ascend.
+std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
+                                     const std::vector<std::uint32_t>& all) {
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t number : numbers) {
+    const auto place = std::ranges::lower_bound(all, number);
+    found.push_back(static_cast<std::uint32_t>(place - all.begin()));
+  }
+  return found;
+}
+
+/// Tells where to look first: the bodies of the first wrong pair.
+std::vector<std::uint32_t> suspects(const FrameDifference& difference, std::span<const Aabb> boxes,
+                                    float margin) {
+  const auto exist = [&](const Pair pair) {
+    return pair.a < boxes.size() && pair.b < boxes.size();
+  };
+  const auto is_excused = [&](const Pair pair) {
+    return overlaps(enlarged(boxes[pair.a], margin), enlarged(boxes[pair.b], margin));
+  };
+  std::vector<Pair> wrong = difference.missed;
+  std::ranges::copy_if(difference.extra, std::back_inserter(wrong),
+                       [&](const Pair pair) { return exist(pair) && !is_excused(pair); });
+  std::ranges::copy(difference.invalid, std::back_inserter(wrong));
+  const auto first = std::ranges::find_if(wrong, exist);
+  if (first == wrong.end()) return {};
+  if (first->a == first->b) return {first->a};
+  return {first->a, first->b};
+}
+
+/// Squared distance of two boxes, 0 when they overlap.
+double squaredGap(const Aabb& a, const Aabb& b) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({0.0, static_cast<double>(a.min[axis]) - b.max[axis],
+                                 static_cast<double>(b.min[axis]) - a.max[axis]});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// Squared distance of two boxes' centres.
+double squaredDistance(const Aabb& a, const Aabb& b) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double twice = (static_cast<double>(a.min[axis]) + a.max[axis]) -
+                         (static_cast<double>(b.min[axis]) + b.max[axis]);
+    sum += twice * twice / 4;
+  }
+  return sum;
+}
+
+/// The `count` bodies nearest to the suspects, these first.
+std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
+                                   std::span<const Aabb> boxes, std::size_t count) {
+  using Key = std::tuple<bool, double, double, std::uint32_t>;
+  std::vector<Key> keys;
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    Key key = {true, std::numeric_limits<double>::infinity(), 0, body};
+    for (const std::uint32_t suspect : suspects) {
+      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]),
+                              squaredDistance(boxes[body], boxes[suspect]), body});
+    }
+    keys.push_back(key);
+  }
+  count = std::min(count, keys.size());
+  std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count));
+  std::vector<std::uint32_t> bodies;
+  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<3>(keys[i]));
+  return bodies;
+}
+
+/// The user has had enough.
+struct Cancelled {};
+
+class Shrinker {
+ public:
+  Shrinker(const Case& run, FrameSource& source, const FrameDifference& known,
+           const ShrinkOptions& options)
+      : run_(run), options_(options), whole_(source), known_(known) {
+    best_.selection = wholeSelection(source.scene(), known.frame);
+    best_.difference = known;
+  }
+
+  ShrunkCase shrink() {
+    try {
+      if (!failsAmongNeighbours()) {
+        requireFailure();
+        shortenHistory();
+        failsAmongNeighbours();  // more of them fit into memory now
+      }
+      shrinkToMinimum();
+      best_.minimal = true;
+    } catch (const Cancelled&) {
+    }
+    return std::move(best_);
+  }
+
+ private:
+  /// A part of the recording that is held in memory.
+  struct Held {
+    Selection origin;
+    FrameList frames;
+    FrameSeeker seeker{frames};
+
+    Held(Selection selection, FrameSource& part) : origin(std::move(selection)), frames(part) {}
+  };
+
+  void hold(const Selection& selection) {
+    held_.reset();
+    SubRecording part(whole_, selection, partName(whole_.scene()));
+    held_ = std::make_unique<Held>(selection, part);
+  }
+
+  [[nodiscard]] bool isHeld(const Selection& selection) const {
+    return held_ && isWithin(selection, held_->origin);
+  }
+
+  SubRecording part(const Selection& selection) {
+    const std::string name = partName(whole_.scene());
+    if (!isHeld(selection)) return {whole_, selection, name};
+    return {held_->seeker,
+            {positions(selection.bodies, held_->origin.bodies),
+             positions(selection.frames, held_->origin.frames)},
+            name};
+  }
+
+  /// Runs the case on a part, which becomes the best when it fails there.
+  bool fails(const Selection& selection) {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    SubRecording source = part(selection);
+    CaseResult result;
+    Oracle oracle(0);
+    const bool finished = runRepetition(result, run_, source, oracle,
+                                        {.first_checked = source.scene().frames,
+                                         .frame_limit_seconds = kNoLimit,
+                                         .initialize_limit_seconds = kNoLimit,
+                                         .cancelled = options_.cancelled},
+                                        false);
+    if (!finished) throw Cancelled();
+    ++best_.trials;
+    const bool failed = result.status == Status::mismatch;
+    if (failed) {
+      best_.selection = selection;
+      best_.difference = std::move(result.differences.front());
+    }
+    if (options_.progress) {
+      options_.progress({.trials = best_.trials,
+                         .bodies = best_.selection.bodies.size(),
+                         .frames = best_.selection.frames.size() - 1});
+    }
+    if (options_.cancelled && options_.cancelled()) throw Cancelled();
+    return failed;
+  }
+
+  /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Whether
+  /// any of that failed.
+  bool failsAmongNeighbours() {
+    const Selection before = best_.selection;
+    const std::vector<std::uint32_t> seeds = knownSuspects();
+    const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
+    if (seeds.empty() || limit < seeds.size()) return false;
+    const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(known_.frame).boxes, limit);
+    const auto first = [&](std::size_t count) {
+      Selection part{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)},
+                     before.frames};
+      std::ranges::sort(part.bodies);
+      return part;
+    };
+    hold(first(order.size()));
+    for (std::size_t count = seeds.size(); count < order.size(); count *= 2) {
+      if (fails(first(count))) return true;
+    }
+    return fails(first(order.size()));
+  }
+
+  std::vector<std::uint32_t> knownSuspects() {
+    const auto algorithm = run_.algorithm.create();
+    setParameters(*algorithm, run_.parameters);
+    return suspects(known_, whole_.at(known_.frame).boxes, algorithm->capabilities().margin);
+  }
+
+  void requireFailure() {
+    if (fails(best_.selection)) {
+      known_ = best_.difference;
+      known_.frame = best_.selection.frames.back();
+      return;
+    }
+    throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
+                                 whole_.scene().name, caseName(run_), known_.frame));
+  }
+
+  /// Tries longer and longer histories before the last frame.
+  void shortenHistory() {
+    const Selection before = best_.selection;
+    const auto frames = static_cast<std::ptrdiff_t>(before.frames.size());
+    for (std::ptrdiff_t history = 2; history < frames; history *= 2) {
+      if (fails({before.bodies, {before.frames.end() - history, before.frames.end()}})) return;
+    }
+  }
+
+  void shrinkToMinimum() {
+    bool smaller = true;
+    while (smaller) {
+      holdBest();
+      const bool fewer_frames = removeFrames();
+      smaller = removeBodies() || fewer_frames;
+    }
+  }
+
+  void holdBest() {
+    const Selection& best = best_.selection;
+    const bool fits = bytesOf(best.bodies.size(), best.frames.size()) <= options_.memory_bytes;
+    if (fits && !isHeld(best)) hold(best);
+  }
+
+  bool removeBodies() {
+    return removeChunks(best_.selection.bodies, 0, [&](std::vector<std::uint32_t> bodies) {
+      return fails({std::move(bodies), best_.selection.frames});
+    });
+  }
+
+  /// The last frame stays, and one before it: the initial pose.
+  bool removeFrames() {
+    return removeChunks(best_.selection.frames, 1, [&](std::vector<std::uint32_t> frames) {
+      return frames.size() > 1 && fails({best_.selection.bodies, std::move(frames)});
+    });
+  }
+
+  /// Leaves out chunks, large ones first, until none of the items can go, the last `kept` aside.
+  /// Whether any could.
+  template <class Fails>
+  static bool removeChunks(std::vector<std::uint32_t> items, std::size_t kept,
+                           Fails&& still_fails) {
+    const std::size_t at_first = items.size();
+    std::size_t chunk = std::max<std::size_t>(items.size() / 2, 1);
+    while (true) {
+      const std::size_t before = items.size();
+      for (std::size_t begin = 0; begin + kept < items.size();) {
+        const std::size_t end = std::min(begin + chunk, items.size() - kept);
+        std::vector<std::uint32_t> fewer = items;
+        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(begin),
+                    fewer.begin() + static_cast<std::ptrdiff_t>(end));
+        if (still_fails(fewer)) {
+          items = std::move(fewer);
+        } else {
+          begin = end;
+        }
+      }
+      if (chunk == 1 && items.size() == before) return items.size() < at_first;
+      chunk = std::max<std::size_t>(chunk / 2, 1);
+    }
+  }
+
+  const Case& run_;
+  const ShrinkOptions& options_;
+  FrameSeeker whole_;
+  FrameDifference known_;
+  ShrunkCase best_;
+  std::unique_ptr<Held> held_;
+};
+
+}  // namespace
+
+ShrunkCase shrinkCase(const Case& run, FrameSource& source, const FrameDifference& known,
+                      const ShrinkOptions& options) {
+  const SceneInfo& scene = source.scene();
+  if (known.frame < 1 || known.frame > scene.frames) {
+    throw InputError(fmt::format("{}: no frame {} to shrink: frames 1 to {} are checked",
+                                 scene.name, known.frame, scene.frames));
+  }
+  if (!run.algorithm.finds_pairs) {
+    throw InputError(
+        fmt::format("{} finds no pairs: there is nothing to shrink", run.algorithm.id));
+  }
+  return Shrinker(run, source, known, options).shrink();
+}
+
+std::string partName(const SceneInfo& scene) {
+  constexpr std::string_view kSuffix = " case";
+  constexpr std::size_t kLongest = 127;  // what a recording's header holds
+  if (scene.name.ends_with(kSuffix)) return scene.name;
+  return scene.name.substr(0, kLongest - kSuffix.size()).append(kSuffix);
+}
+
+std::string writePart(const std::filesystem::path& path, FrameSource& source,
+                      const Selection& selection) {
+  FrameSeeker whole(source);
+  SubRecording part(whole, selection, partName(source.scene()));
+  RecordingWriter writer(path, part.scene());
+  recordAll(part, writer);
+  return writer.finish();
+}
+
+}  // namespace broadmark

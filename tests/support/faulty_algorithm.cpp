@@ -1,0 +1,149 @@
+// Algorithms that are wrong once in a while, to show how such a fault is found. A plug-in, never
+// part of the program.
+//
+// Both keep a fat box around each body (as Bullet's and Box2D's trees do) and all pairs of
+// overlapping fat boxes. Only bodies that left their fat box, the moved ones, get a new one and are
+// queried anew. Moved bodies are taken from a small buffer in turn, and of two moved bodies only
+// the lower one reports the pair, so that it is found once.
+//
+// The fault of "faulty": that last rule holds where all new fat boxes stand before the first query,
+// as they do within one fill of the buffer only. When i < j move in the same frame but in different
+// fills, i is queried while j's old fat box still stands, and j leaves the pair to i. Two bodies
+// that come together in one frame can be lost, if a third one moves, too, and splits the buffer
+// between them: three bodies, and nothing but an initial pose and one frame. They stay lost until
+// one of them moves again.
+//
+// The fault of "faulty-extra": pairs of two bodies that moved in this frame go into the answer as
+// they are found, that is, for their fat boxes.
+
+#include "tests/support/faulty_algorithm.h"
+
+#include <array>
+#include <memory>
+
+#include "broadmark/plugin.h"
+
+namespace broadmark::faulty {
+namespace {
+
+enum class Fault { missed, extra };
+
+class FatBoxes final : public BoxBroadPhase {
+ public:
+  explicit FatBoxes(Fault fault) : fault_(fault) {}
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({.name = "fat_margin",
+           .doc = "how much larger a fat box is, on every side, in world units",
+           .value = &margin_,
+           .min = 0,
+           .max = 1000});
+  }
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    fat_.assign(first.boxes.begin(), first.boxes.end());
+    has_moved_.assign(fat_.size(), 1);
+    moved_.clear();
+    for (std::uint32_t body = 0; body < fat_.size(); ++body) moved_.push_back(body);
+    candidates_.clear();
+    update(moved_.size());
+  }
+
+  void updateStructures() override {
+    moved_.clear();
+    for (std::uint32_t body = 0; body < fat_.size(); ++body) {
+      has_moved_[body] = merged(fat_[body], boxes()[body]) != fat_[body];
+      if (has_moved_[body] != 0) moved_.push_back(body);
+    }
+    std::erase_if(candidates_, [&](const Pair pair) {
+      return has_moved_[pair.a] != 0 || has_moved_[pair.b] != 0;
+    });
+    update(fault_ == Fault::missed ? kBuffer : moved_.size());
+  }
+
+  void searchOverlaps() override {
+    for (const Pair pair : candidates_) {
+      if (overlaps(boxes()[pair.a], boxes()[pair.b]) || isTakenUntested(pair)) {
+        pairs().add(pair.a, pair.b);
+      }
+    }
+    publishPairs();
+  }
+
+  void drawStructure(DebugDraw& draw) const override {
+    constexpr Rgb kResting = 0x4f81bd;
+    constexpr Rgb kMoved = 0xe0a030;
+    for (std::size_t body = 0; body < fat_.size(); ++body) {
+      draw.box(fat_[body], has_moved_[body] != 0 ? kMoved : kResting, 0);
+    }
+    for (const Pair pair : candidates_) draw.line(centre(pair.a), centre(pair.b), kResting);
+  }
+
+ private:
+  /// So small that two bodies and a third one show the fault.
+  static constexpr std::size_t kBuffer = 2;
+
+  /// New fat boxes and queries for the moved bodies, `fill` of them at a time.
+  void update(std::size_t fill) {
+    for (std::size_t first = 0; first < moved_.size(); first += fill) {
+      const std::size_t last = std::min(first + fill, moved_.size());
+      for (std::size_t i = first; i < last; ++i) {
+        fat_[moved_[i]] = enlarged(boxes()[moved_[i]], static_cast<float>(margin_));
+      }
+      for (std::size_t i = first; i < last; ++i) query(moved_[i]);
+    }
+  }
+
+  void query(std::uint32_t body) {
+    for (std::uint32_t other = 0; other < fat_.size(); ++other) {
+      const bool is_theirs = other < body && has_moved_[other] != 0;
+      if (other == body || is_theirs || !overlaps(fat_[body], fat_[other])) continue;
+      candidates_.push_back(orderedPair(body, other));
+    }
+  }
+
+  [[nodiscard]] bool isTakenUntested(const Pair pair) const {
+    return fault_ == Fault::extra && has_moved_[pair.a] != 0 && has_moved_[pair.b] != 0;
+  }
+
+  [[nodiscard]] std::array<float, 3> centre(std::uint32_t body) const {
+    std::array<float, 3> point{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] = (fat_[body].min[axis] + fat_[body].max[axis]) / 2;
+    }
+    return point;
+  }
+
+  Fault fault_;
+  double margin_ = 0.5;
+  std::vector<Aabb> fat_;
+  std::vector<char> has_moved_;  ///< by body; not bool: read in the innermost loop
+  std::vector<std::uint32_t> moved_;
+  std::vector<Pair> candidates_;
+};
+
+Algorithm variant(const std::string& id, const std::string& summary, Fault fault) {
+  return {.id = id,
+          .family = "Faulty",
+          .summary = summary,
+          .create = [fault] { return std::make_unique<FatBoxes>(fault); },
+          .principle = "fat boxes",
+          .optimisations = "none",
+          .incremental = true,
+          .exactness = "wrong on purpose",
+          .time = "O(n·m), m the number of bodies that left their fat box",
+          .space = "O(n + k)",
+          .source = "a test of Broadmark's"};
+}
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  return {variant("faulty", "loses a pair once in some hundred frames", Fault::missed),
+          variant("faulty-extra", "reports a false pair once in a while", Fault::extra)};
+}
+
+}  // namespace broadmark::faulty
+
+BROADMARK_PLUGIN(broadmark::faulty::variants);
