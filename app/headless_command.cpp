@@ -12,6 +12,7 @@
 #include <map>
 #include <regex>
 
+#include "app/case_reference.h"
 #include "app/cases.h"
 #include "app/interrupt.h"
 #include "app/options.h"
@@ -71,11 +72,15 @@ void nameScreenshots(const HeadlessOptions& options, std::vector<Job>& jobs) {
   for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].screenshot = paths[i];
 }
 
-/// All jobs, already divided among shards and filtered; jobs without cases are left out.
-std::vector<Job> makeJobs(const HeadlessOptions& options) {
+/// Every source with the cases asked for.
+std::vector<Job> allJobs(const HeadlessOptions& options) {
   const std::vector<Algorithm> algorithms = availableAlgorithms(options.plugins);
-  const std::regex filter = compiledFilter(options.filter);
   std::vector<Job> jobs;
+  if (!options.case_id.empty()) {
+    CaseReference one = openCase(options.sources.front(), options.case_id, algorithms);
+    jobs.push_back({std::move(one.source), {one.run}, {}});
+    return jobs;
+  }
   for (Source& source : resolveSources(options)) {
     Job job{std::move(source), {}, {}};
     if (!job.source.settings) {
@@ -88,6 +93,13 @@ std::vector<Job> makeJobs(const HeadlessOptions& options) {
     for (Case& run : job.cases) run.device = options.device;
     jobs.push_back(std::move(job));
   }
+  return jobs;
+}
+
+/// All jobs, already divided among shards and filtered; jobs without cases are left out.
+std::vector<Job> makeJobs(const HeadlessOptions& options) {
+  const std::regex filter = compiledFilter(options.filter);
+  std::vector<Job> jobs = allJobs(options);
   requireKnownParameters(options, jobs);
   int number = 0;
   for (Job& job : jobs) {
@@ -215,12 +227,12 @@ void requireWritable(const HeadlessOptions& options, const std::vector<Job>& job
 }
 
 /// The machine, with the compute device that is used in front of the others.
-Environment environmentOf(const HeadlessOptions& options) {
+Environment environmentOf(const std::string& wanted_device) {
   Environment environment = thisEnvironment();
   std::vector<ComputeDevice> devices = computeDevices();
-  if (devices.empty() && options.device.empty()) return environment;
+  if (devices.empty() && wanted_device.empty()) return environment;
   const auto chosen =
-      devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, options.device));
+      devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, wanted_device));
   std::rotate(devices.begin(), chosen, chosen + 1);
   for (const ComputeDevice& device : devices) {
     environment.compute_devices.push_back(describe(device));
@@ -299,8 +311,9 @@ int runHeadless(const HeadlessOptions& options) {
   if (!options.record.empty()) makeDirectory(options.record);
 
   const InterruptGuard guard;
-  Results results{
-      .environment = environmentOf(options), .options = options.command_line, .cases = {}};
+  Results results{.environment = environmentOf(jobs.front().cases.front().device),
+                  .options = options.command_line,
+                  .cases = {}};
   Exhausted exhausted;
   Outcome outcome;
   for (Job& job : jobs) {

@@ -242,8 +242,8 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
                  "built-in scenes (freefall, brownian, …), recordings (.aabbs, .posrot), scene "
-                 "parameters (.json, also the one beside a baked recording) or settings files of "
-                 "the original Broadmark (.json)")
+                 "parameters (.json, also the one beside a baked recording), settings files of "
+                 "the original Broadmark (.json) or a results file (.json) with --case")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -304,6 +304,40 @@ void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& 
   app.add_flag("--quiet", options.quiet, "no progress");
 }
 
+void addCaseOptions(CLI::App& app, HeadlessOptions& options) {
+  CLI::Option* id = app.add_option("--case", options.case_id,
+                                   "run this case of the results file that is the source, and "
+                                   "nothing else");
+  id->type_name("ID");
+  app.add_option("--export-case", options.export_case,
+                 "instead of running it, find the smallest recording on which that case still "
+                 "gives a wrong answer, write it, and print the command that shows it")
+      ->type_name("FILE")
+      ->needs(id);
+}
+
+/// Refuses options that say what `option` says already, or that would be lost on it.
+void requireNoneBeside(const CLI::App& app, const std::string& option,
+                       const std::vector<std::string>& others) {
+  if (app.get_option(option)->count() == 0) return;
+  for (const std::string& other : others) {
+    if (app.get_option(other)->count() == 0) continue;
+    throw InputError(fmt::format("{}: must not stand beside {}", other, option));
+  }
+}
+
+void requireCaseAlone(const CLI::App& app) {
+  requireNoneBeside(
+      app, "--case",
+      {"--algorithm", "--threads", "--isa", "--device", "--objects", "--object-type", "--frames",
+       "--seed", "--density", "--engine", "--input", "--param", "--filter", "--shard"});
+  std::vector<std::string> outputs = {"--record", "--screenshot", "--list", "--memory"};
+  for (const ResultWriter& writer : resultWriters()) {
+    outputs.push_back(fmt::format("--{}", writer.name));
+  }
+  requireNoneBeside(app, "--export-case", outputs);
+}
+
 HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
                            const SceneTexts& scene) {
   options.scene = scene.parse();
@@ -327,6 +361,9 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   options.shard = parseShard(texts.shard);
   for (const auto& [name, path] : texts.outputs) {
     if (!path.empty()) options.outputs[name] = path;
+  }
+  if (!options.case_id.empty() && options.sources.size() != 1) {
+    throw InputError("--case: the source must be one results file");
   }
   if (options.sources.empty()) {
     throw InputError(
@@ -478,6 +515,7 @@ int runCommandLine(int argc, char** argv) {
   app.add_flag("--headless", headless, "run without a window");
   addHeadlessOptions(app, options, texts);
   scene.addTo(app);
+  addCaseOptions(app, options);
 
   BakeTexts bake_texts;
   CLI::App* bake = app.add_subcommand("bake", "Simulates scenes into recordings, in batches.");
@@ -531,7 +569,9 @@ int runCommandLine(int argc, char** argv) {
   }
   if (!headless) throw missingHeadless(app, options.sources);
   options.command_line.assign(argv + 1, argv + argc);
-  return runHeadless(understand(std::move(options), texts, scene));
+  requireCaseAlone(app);
+  options = understand(std::move(options), texts, scene);
+  return options.export_case.empty() ? runHeadless(options) : runExportCase(options);
 }
 
 }  // namespace broadmark

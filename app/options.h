@@ -34,6 +34,8 @@ struct HeadlessOptions {
   std::vector<std::string> sources;
   SceneOptions scene;
   std::vector<std::string> plugins;     ///< libraries with more algorithms
+  std::string case_id;                  ///< of the results file that is the source; "": none
+  std::filesystem::path export_case;    ///< where its smallest failing recording goes; "": nowhere
   std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
   std::vector<int> threads;
   std::vector<Isa> isas;
@@ -95,6 +97,8 @@ int runCommandLine(int argc, char** argv);
 
 // The commands. Each returns the exit status and throws InputError.
 int runHeadless(const HeadlessOptions&);
+/// Shrinks the case of a results file instead of running it.
+int runExportCase(const HeadlessOptions&);
 int runBake(const BakeOptions&);
 int runList(const ListOptions&);
 int runVerify(const VerifyOptions&);

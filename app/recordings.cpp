@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "app/case_reference.h"
 #include "app/cases.h"
 #include "app/interrupt.h"
 #include "app/progress.h"
@@ -62,6 +63,13 @@ RecordingReference referenceTo(Simulation& simulation) {
   return reference;
 }
 
+Source simulationSource(std::unique_ptr<Simulation> simulation) {
+  Source source;
+  source.reference = referenceTo(*simulation);
+  source.simulation = std::move(simulation);
+  return source;
+}
+
 Source recordingSource(const fs::path& path) {
   Source source;
   source.reference.path = path.string();
@@ -69,15 +77,16 @@ Source recordingSource(const fs::path& path) {
   return source;
 }
 
-/// A path in a settings file: as given, else relative to the settings file.
-fs::path besides(const fs::path& settings_file, const std::string& path) {
-  const fs::path beside = settings_file.parent_path() / path;
+/// A path in a file: as given, else relative to that file.
+fs::path besides(const fs::path& file, const std::string& path) {
+  const fs::path beside = file.parent_path() / path;
   return !fs::exists(path) && fs::exists(beside) ? beside : fs::path(path);
 }
 
 Source jsonSource(const fs::path& path) {
   const std::string text = readTextFile(path);
   const std::string kind = jsonKind(text, path.string());
+  if (kind == kResultsSchema) throw missingCase(parseResults(text, path.string()), path);
   if (kind != "original-settings") {
     throw InputError(fmt::format(
         "{}: {}: scene parameters (\"schema\": \"broadmark-scene-parameters/1\") or a settings "
@@ -135,6 +144,14 @@ std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet)
   return whole ? writer.finishTemporary() : nullptr;
 }
 
+void requireExpected(const Source& source) {
+  if (source.reference.hash == source.expected_hash) return;
+  const std::string what =
+      source.simulation ? source.reference.scene.name + " simulated anew" : source.reference.path;
+  throw InputError(fmt::format("{}: not the recording that the case ran on: its hash is {}, not {}",
+                               what, source.reference.hash, source.expected_hash));
+}
+
 /// The engine asked for, by its own option or by --param; "": the default.
 std::string engineOf(const SceneOptions& options, const ParameterValues& parameters) {
   for (const ParameterValues& values : {options.parameters, parameters}) {
@@ -183,13 +200,26 @@ std::vector<Source> resolveSources(const HeadlessOptions& options) {
       continue;
     }
     for (auto& simulation : makeSimulations({name}, options.scene, options.parameters)) {
-      Source source;
-      source.reference = referenceTo(*simulation);
-      source.simulation = std::move(simulation);
-      sources.push_back(std::move(source));
+      sources.push_back(simulationSource(std::move(simulation)));
     }
   }
   return sources;
+}
+
+Source referredSource(const RecordingReference& reference, const fs::path& results_file) {
+  Source source;
+  if (!reference.path.empty()) {
+    source = recordingSource(besides(results_file, reference.path));
+  } else {
+    ParameterValues parameters = reference.scene_parameters;
+    const auto engine = parameters.extract("engine");  // which brings parameters of its own
+    auto simulation =
+        makeSimulation(reference.scene.name, engine.empty() ? std::string() : engine.mapped());
+    setParameters(*simulation, parameters);
+    source = simulationSource(std::move(simulation));
+  }
+  source.expected_hash = reference.hash;
+  return source;
 }
 
 std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directory,
@@ -204,6 +234,7 @@ std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directo
     recording = openRecordingFile(path);
   }
   if (recording) source.reference.hash = recording->hash();
+  if (recording && !source.expected_hash.empty()) requireExpected(source);
   return recording;
 }
 

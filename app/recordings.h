@@ -20,6 +20,7 @@ struct Source {
   RecordingReference reference;              ///< hash and path filled by openRecording
   std::unique_ptr<Simulation> simulation;    ///< null for a given recording
   std::optional<OriginalSettings> settings;  ///< when the original's settings file names it
+  std::string expected_hash = {};            ///< what the recording must be; "": whatever it is
 };
 
 /// Every simulation that the options ask for: scenes × object types × object counts, sorted so
@@ -32,6 +33,10 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 
+/// The source that a results file refers to: a recording at its path, or else beside that file, or
+/// the simulation anew; in either case with the hash it had. Throws InputError.
+Source referredSource(const RecordingReference&, const std::filesystem::path& results_file);
+
 /// Where recordings by these recorders lie below a directory, laid out as the original's:
 /// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", ….
 std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
@@ -40,7 +45,7 @@ std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& d
 
 /// Opens a source's recording, simulating it first if need be: below `directory`, one recording by
 /// each of `recorders`, the first being opened; or, if that is empty, into an unnamed temporary
-/// file. Null when interrupted.
+/// file. Null when interrupted. Throws InputError when it is not the expected one.
 std::unique_ptr<Recording> openRecording(Source&, const std::filesystem::path& directory,
                                          const std::vector<std::string>& recorders, bool quiet);
 

@@ -12,8 +12,6 @@
 namespace broadmark {
 namespace {
 
-constexpr std::string_view kSchema = "broadmark-results/1";
-
 Json toJson(const Environment& e) {
   return {{"cpu", e.cpu},
           {"logical_cores", e.logical_cores},
@@ -322,7 +320,7 @@ CaseResult caseFrom(const JsonFields& json) {
 }  // namespace
 
 std::string formatJson(const Results& results) {
-  Json json = {{"schema", kSchema},
+  Json json = {{"schema", kResultsSchema},
                {"environment", toJson(results.environment)},
                {"options", results.options},
                {"cases", Json::array()}};
@@ -334,9 +332,9 @@ std::string formatJson(const Results& results) {
 Results parseResults(std::string_view text, std::string_view name) {
   const Json json = parseJson(text, name);
   const JsonFields fields(json, std::string(name));
-  if (!fields.has("schema") || fields.text("schema") != kSchema) {
+  if (!fields.has("schema") || fields.text("schema") != kResultsSchema) {
     throw InputError(
-        fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kSchema));
+        fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kResultsSchema));
   }
   Results results;
   results.environment = environmentFrom(fields.object("environment"));

@@ -14,3 +14,5 @@ run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
 run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
 run("${WORK_DIR}/build/my_broad_phase")
 run("${WORK_DIR}/prefix/bin/broadmark" --version)
+run("${WORK_DIR}/prefix/bin/broadmark" --headless brownian --objects 50 --frames 5 --quiet
+  --plugin "${WORK_DIR}/build/libmy_plugin.so" --algorithm Mine --threads 3)

@@ -137,9 +137,9 @@ TEST_F(BadInput, SourcesThatAreNone) {
   }
 }
 
-TEST_F(BadInput, AResultsFileIsNoSource) {
+TEST_F(BadInput, AResultsFileIsASourceOnlyWithACase) {
   runQuietly({"--headless", "freefall", "--objects", "5", "--frames", "2", "--json", "r.json"});
-  expectRefusal({"--headless", "r.json"}, {"r.json", "broadmark-results/1", "settings file"});
+  expectRefusal({"--headless", "r.json"}, {"r.json", "--case", "'FreeFall/Cubes/N5/F2/s1/"});
 }
 
 TEST_F(BadInput, UnreadableFile) {

@@ -24,6 +24,9 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
   expectWords(help, {"Usage: broadmark ",
                      "--headless",
                      "--algorithm",
+                     "--plugin",
+                     "--case",
+                     "--export-case",
                      "--threads",
                      "--isa",
                      "--repetitions",
@@ -54,7 +57,7 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                                         "--movie-every", "--size", "--list", "--force", "--quiet"});
   expectWords(run({"compare", "--help"}), {"--fail-above", "A.json", "B.json"});
   expectWords(run({"verify", "--help"}), {"FILE", "--describe", "--json", "--quiet"});
-  expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines"});
+  expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines", "--plugin"});
   expectWords(run({"--help-all"}), {"--headless", "--scenes", "--fail-above"});
 }
 

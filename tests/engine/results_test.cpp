@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "tests/engine/helpers.h"
@@ -66,6 +67,8 @@ Results everything() {
   full.isa = Isa::avx512;
   full.vectorised = true;
   full.threads = 3;
+  full.device = "pthread";
+  full.plugin = "my plug-in.so";
   full.parameters = {{"cells", "2"}, {"margin", "0.01"}};
   full.status = Status::mismatch;
   full.reason = "frame 1: 1 missed, 1 false, 1 invalid";
@@ -113,6 +116,8 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(full.pairs_mean, 1.0 / 3);
   EXPECT_EQ(full.differences.at(0).invalid.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
+  EXPECT_EQ(full.device, "pthread");
+  EXPECT_EQ(full.plugin, "my plug-in.so");
   EXPECT_EQ(full.parameters, (ParameterValues{{"cells", "2"}, {"margin", "0.01"}}));
   const CaseResult& bare = copy.cases.at(1);
   EXPECT_FALSE(bare.recording.seed);
@@ -221,13 +226,21 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
 TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
-    const bool optional = item.key() == "peak_bytes" || item.key() == "counters";
-    if (optional || item.key() == "summary") continue;  // the summary is derived
+    const std::set<std::string> optional = {"peak_bytes", "counters", "device", "plugin"};
+    if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());
     EXPECT_EQ(inputErrorOf([&] { parseResults(json.dump(), "a.json"); }),
               "a.json: cases[0]: '" + item.key() + "' is missing");
   }
+}
+
+TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
+  Json json = Json::parse(format(everything(), "json"));
+  for (const char* key : {"counters", "device", "plugin"}) json["cases"][0].erase(key);
+  const Results results = parseResults(json.dump(), "a.json");
+  EXPECT_EQ(results.cases[0].device, "");
+  EXPECT_EQ(results.cases[0].plugin, "");
 }
 
 TEST(ResultsJson, WhatIsNoResultsFile) {

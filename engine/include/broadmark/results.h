@@ -112,7 +112,10 @@ struct ResultWriter {
 };
 std::vector<ResultWriter> resultWriters();
 
-/// Parses a results file ("schema": "broadmark-results/1"). `name` stands for it in messages.
+/// The kind of JSON file, its "schema", that results are.
+inline constexpr std::string_view kResultsSchema = "broadmark-results/1";
+
+/// Parses a results file. `name` stands for it in messages.
 /// Throws InputError.
 Results parseResults(std::string_view json, std::string_view name);
 

@@ -1,0 +1,183 @@
+// A case that failed: found by a run, opened again from its results, shrunk to the smallest
+// recording, and shown by the printed command in a process of its own.
+
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "broadmark/recording.h"
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+class FailedCase : public EndToEnd {
+ protected:
+  /// Runs the faulty algorithms of the plug-in on a source.
+  void runFaulty(const std::string& source, const Arguments& more = {}) const {
+    Arguments call = {"--headless",  source,    "--plugin",    FAULTY_PLUGIN,
+                      "--algorithm", "faulty*", "--param",     "fat_margin=0.5",
+                      "--quiet",     "--json",  "results.json"};
+    call.insert(call.end(), more.begin(), more.end());
+    const Ended ended = run(call);
+    EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
+  }
+  void simulateFaulty() const {
+    runFaulty("brownian", {"--objects", "200", "--frames", "60", "--engine", "kinematic"});
+  }
+
+  /// The result of an algorithm in a results file.
+  [[nodiscard]] Json caseOf(const std::string& algorithm,
+                            const std::string& results = "results.json") const {
+    for (const Json& one : readJson(file(results)).at("cases")) {
+      if (one.at("algorithm") == algorithm) return one;
+    }
+    ADD_FAILURE() << "no case of " << algorithm;
+    return {};
+  }
+  [[nodiscard]] std::string idOf(const std::string& algorithm) const {
+    return caseOf(algorithm).at("id");
+  }
+
+  /// Arguments about one case of results.json.
+  [[nodiscard]] Arguments aboutCase(const std::string& id, const Arguments& more = {}) const {
+    Arguments call = {"--headless", "results.json", "--case", id,
+                      "--plugin",   FAULTY_PLUGIN,  "--quiet"};
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
+  }
+
+  /// Runs a command line in a shell, with the program in the path. Returns its exit status.
+  [[nodiscard]] int shell(const std::string& command) const {
+    writeFile(file("command.sh"), "cd '" + directory_.string() + "' && PATH='" +
+                                      fs::path(BROADMARK_PROGRAM).parent_path().string() +
+                                      "':$PATH && " + command + " > shell.out 2>&1\n");
+    const int status = std::system(("sh '" + file("command.sh").string() + "'").c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+};
+
+TEST_F(FailedCase, IsShrunkAndShownByACommand) {
+  simulateFaulty();
+  for (const std::string algorithm : {"faulty", "faulty-extra"}) {
+    SCOPED_TRACE(algorithm);
+    const std::string recording = "it's a " + algorithm + " case.aabbs";
+    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
+    ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+    EXPECT_EQ(ended.err, "");
+
+    RecordingReader reader(file(recording));
+    EXPECT_EQ(reader.scene().name, "Brownian case");
+    EXPECT_LE(reader.scene().objects, 3U);
+    EXPECT_EQ(reader.scene().frames, 1U);
+
+    const auto lines = linesOf(ended.out);
+    ASSERT_EQ(lines.size(), 3U) << ended.out;
+    EXPECT_THAT(lines[0], HasSubstr(algorithm == "faulty" ? "3 bodies, 1 frame of 200 bodies"
+                                                          : "2 bodies, 1 frame of 200 bodies"));
+    EXPECT_EQ(lines[1], "written: " + recording);
+    EXPECT_THAT(lines[2], StartsWith("broadmark --headless 'it'\\''s a "));
+    for (const std::string word :
+         {"--algorithm " + algorithm + " ", std::string("--param fat_margin=0.5 "),
+          std::string("--check full"), std::string("--plugin ")}) {
+      EXPECT_THAT(lines[2], HasSubstr(word));
+    }
+    EXPECT_EQ(shell(lines[2] + " --json shown.json"), 1) << readFile(file("shell.out"));
+    EXPECT_EQ(caseOf(algorithm, "shown.json").at("status"), "mismatch");
+  }
+}
+
+TEST_F(FailedCase, RunsAgainAsItDid) {
+  simulateFaulty();
+  const Json before = caseOf("faulty");
+  const Ended ended = run(aboutCase(before.at("id"), {"--json", "again.json"}));
+  EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
+  EXPECT_EQ(readJson(file("again.json")).at("cases").size(), 1U);
+  const Json after = caseOf("faulty", "again.json");
+  for (const char* key : {"id", "recording", "params", "status", "missed", "differences"}) {
+    EXPECT_EQ(after.at(key), before.at(key)) << key;
+  }
+  EXPECT_EQ(run(aboutCase(before.at("id"), {"--list"})).out,
+            before.at("id").get<std::string>() + "\n");
+}
+
+TEST_F(FailedCase, KeepsInstructionSetThreadsAndParameters) {
+  runQuietly({"--headless", "freefall", "--objects", "30", "--frames", "3", "--algorithm",
+              "sap-simd-mt,kd", "--isa", "sse2", "--threads", "3", "--param", "objects_per_leaf=7",
+              "--json", "results.json"});
+  for (const std::string algorithm : {"sap-simd-mt", "kd"}) {
+    const Json before = caseOf(algorithm);
+    runQuietly({"--headless", "results.json", "--case", before.at("id"), "--json", "again.json"});
+    const Json after = caseOf(algorithm, "again.json");
+    for (const char* key : {"id", "recording", "isa", "threads", "params", "device"}) {
+      EXPECT_EQ(after.at(key), before.at(key)) << key;
+    }
+  }
+}
+
+TEST_F(FailedCase, FindsARecordingBesideItsResults) {
+  bakeRecording("scene.aabbs", "60", "5");
+  runQuietly({"--headless", "scene.aabbs", "--algorithm", "sap", "--json", "results.json"});
+  const std::string id = idOf("sap");
+  fs::create_directory(file("moved"));
+  for (const char* name : {"scene.aabbs", "results.json"}) {
+    fs::rename(file(name), file("moved") / name);
+  }
+  runQuietly({"--headless", "moved/results.json", "--case", id, "--json", "again.json"});
+  EXPECT_EQ(caseOf("sap", "again.json").at("recording").at("source"), "moved/scene.aabbs");
+}
+
+TEST_F(FailedCase, AnotherRecordingIsRefused) {
+  bakeRecording("scene.aabbs", "60", "5", "1");
+  runQuietly({"--headless", "scene.aabbs", "--algorithm", "sap", "--json", "results.json"});
+  const std::string id = idOf("sap");
+  fs::remove(file("scene.aabbs"));
+  expectRefusal({"--headless", "results.json", "--case", id}, {"scene.aabbs", "No such file"});
+  bakeRecording("scene.aabbs", "60", "5", "2");
+  expectRefusal({"--headless", "results.json", "--case", id, "--quiet"},
+                {"scene.aabbs", "not the recording", "hash"});
+}
+
+TEST_F(FailedCase, BadCallsAreRefused) {
+  simulateFaulty();
+  runQuietly({"--headless", "freefall", "--objects", "5", "--frames", "2", "--algorithm", "sap",
+              "--json", "right.json"});
+  const std::string id = idOf("faulty");
+  expectRefusal({"--headless", "results.json"}, {"results.json", "--case", "'" + id + "'"});
+  expectRefusal({"--headless", "right.json"}, {"--case", "all its answers are right", "N5"});
+  expectRefusal(aboutCase(id + "y"), {"--case", "'" + id + "y'", "did you mean '" + id + "'?"});
+  expectRefusal(aboutCase("x"), {"--case", "no case 'x'", "'" + id + "'"});
+  expectRefusal({"--headless", "results.json", "--case", id},
+                {"'faulty'", "--plugin", "libfaulty"});
+  expectRefusal({"--headless", "results.json", "right.json", "--case", id}, {"--case", "one"});
+  expectRefusal({"--headless", "--case", id}, {"--case", "one results file"});
+  expectRefusal({"--headless", "brownian", "--case", id}, {"brownian", "No such file"});
+  expectRefusal({"--headless", FAULTY_PLUGIN, "--case", id}, {"not valid JSON"});
+  for (const Arguments& stated :
+       {Arguments{"--algorithm", "sap"}, Arguments{"--threads", "1"}, Arguments{"--isa", "sse2"},
+        Arguments{"--param", "a=b"}, Arguments{"--objects", "5"}, Arguments{"--seed", "2"},
+        Arguments{"--filter", "x"}, Arguments{"--shard", "0/2"}, Arguments{"--device", "0"}}) {
+    expectRefusal(aboutCase(id, stated), {"--case", stated.front()});
+  }
+  expectRefusal(aboutCase(id, {"--export-case", "a.posrot"}), {"a.posrot", ".aabbs"});
+  expectRefusal(aboutCase(id, {"--export-case", "no/a.aabbs"}), {"no/a.aabbs", "No such file"});
+  expectRefusal(aboutCase(id, {"--export-case", "a.aabbs", "--json", "j.json"}),
+                {"--export-case", "--json"});
+  expectRefusal({"--headless", "brownian", "--export-case", "a.aabbs"},
+                {"--export-case", "--case"});
+  expectRefusal({"--headless", "right.json", "--case", "FreeFall/Cubes/N5/F2/s1/sap",
+                 "--export-case", "a.aabbs"},
+                {"--export-case", "no wrong answer", "ok"});
+}
+
+TEST_F(FailedCase, TheRecordingItselfIsNotWrittenOver) {
+  runQuietly({"bake", "--scenes", "brownian", "--objects", "200", "--frames", "60", "--engine",
+              "kinematic", "--output", "baked"});
+  const std::string recording = recordingIn("baked", "Brownian Cubes N200 F60frames");
+  runFaulty(recording);
+  expectRefusal(aboutCase(idOf("faulty"), {"--export-case", recording}), {"itself"});
+}
+
+}  // namespace
+}  // namespace broadmark::testing

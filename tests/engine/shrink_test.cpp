@@ -1,0 +1,325 @@
+// Shrinking failing cases: planted faults are found again in parts that are as small as they can
+// be.
+
+#include "broadmark/shrink.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "broadmark/recording.h"
+#include "tests/engine/helpers.h"
+#include "tests/support/faulty_algorithm.h"
+#include "tests/support/wandering_boxes.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Brute force whose answer is spoilt, given the boxes and how many frames it has seen.
+class Spoilt final : public BoxBroadPhase {
+ public:
+  using Spoil = std::function<void(std::vector<Pair>&, const std::vector<Aabb>&, int seen)>;
+  Spoilt(Spoil spoil, float margin) : spoil_(std::move(spoil)), margin_(margin) {}
+
+  [[nodiscard]] Capabilities capabilities() const override { return {.margin = margin_}; }
+  void searchOverlaps() override {
+    std::vector<Aabb> fat = boxes();
+    for (Aabb& box : fat) box = enlarged(box, margin_);
+    std::vector<Pair> answer = bruteForcePairs(fat);
+    spoil_(answer, boxes(), ++seen_);
+    for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+    publishPairs();
+  }
+
+ private:
+  Spoil spoil_;
+  float margin_;
+  int seen_ = 0;
+};
+
+Case spoilt(Spoilt::Spoil spoil, float margin = 0) {
+  Case run;
+  run.algorithm.id = "spoilt";
+  run.algorithm.create = [=] { return std::make_unique<Spoilt>(spoil, margin); };
+  return run;
+}
+
+void dropFirst(std::vector<Pair>& answer) {
+  if (!answer.empty()) answer.erase(answer.begin());
+}
+
+Case faultyCase(const std::string& id) {
+  for (const Algorithm& algorithm : faulty::variants()) {
+    if (algorithm.id != id) continue;
+    return {.algorithm = algorithm, .parameters = {{"fat_margin", "0.5"}}};  // often enough
+  }
+  throw std::logic_error(id);
+}
+
+/// What is wrong in the first frame in which anything is.
+FrameDifference firstDifference(const Case& run, FrameSource& source) {
+  const CaseResult result = runCase(run, source);
+  EXPECT_EQ(result.status, Status::mismatch) << result.reason;
+  return result.differences.empty() ? FrameDifference{.frame = 1} : result.differences.front();
+}
+
+/// What a fresh instance finds wrong in the last frame of a part.
+FrameDifference lastDifference(const Case& run, FrameSource& source, const Selection& selection) {
+  FrameSeeker whole(source);
+  SubRecording part(whole, selection, "Part");
+  CaseResult result = runCase(run, part);
+  if (result.differences.empty()) return {};
+  if (result.differences.back().frame != part.scene().frames) return {};
+  return result.differences.back();
+}
+
+/// The part fails in its last frame, and no longer when anything is left out.
+void expectMinimal(const Case& run, FrameSource& source, const ShrunkCase& shrunk) {
+  EXPECT_TRUE(shrunk.minimal);
+  const Selection& selection = shrunk.selection;
+  EXPECT_TRUE(std::ranges::is_sorted(selection.bodies));
+  EXPECT_TRUE(std::ranges::is_sorted(selection.frames));
+  const FrameDifference difference = lastDifference(run, source, selection);
+  EXPECT_TRUE(difference.isMismatch());
+  EXPECT_EQ(difference.missed, shrunk.difference.missed);
+  EXPECT_EQ(difference.extra, shrunk.difference.extra);
+  for (std::size_t i = 0; i < selection.bodies.size(); ++i) {
+    Selection fewer = selection;
+    fewer.bodies.erase(fewer.bodies.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without body " << i;
+  }
+  for (std::size_t i = 0; i + 1 < selection.frames.size() && selection.frames.size() > 2; ++i) {
+    Selection fewer = selection;
+    fewer.frames.erase(fewer.frames.begin() + static_cast<std::ptrdiff_t>(i));
+    EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without frame " << i;
+  }
+}
+
+class PlantedFault : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  WanderingBoxes scene_{200, 400, GetParam()};
+};
+INSTANTIATE_TEST_SUITE_P(Seeds, PlantedFault, testing::Values(1, 2, 3, 4, 5, 6));
+
+TEST_P(PlantedFault, MissedPairNeedsThreeBodiesAndTwoFrames) {
+  const Case run = faultyCase("faulty");
+  const FrameDifference known = firstDifference(run, scene_);
+  const ShrunkCase shrunk = shrinkCase(run, scene_, known);
+  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+  EXPECT_EQ(shrunk.selection.frames.back(), known.frame);
+  EXPECT_EQ(shrunk.difference.missed_count, 1U);
+  EXPECT_EQ(shrunk.difference.forbidden_count + shrunk.difference.invalid_count, 0U);
+  expectMinimal(run, scene_, shrunk);
+}
+
+TEST_P(PlantedFault, FalsePairNeedsTwoBodies) {
+  const Case run = faultyCase("faulty-extra");
+  const FrameDifference known = firstDifference(run, scene_);
+  const ShrunkCase shrunk = shrinkCase(run, scene_, known);
+  EXPECT_EQ(shrunk.selection.bodies.size(), 2U);
+  EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+  EXPECT_EQ(shrunk.difference.forbidden_count, 1U);
+  EXPECT_EQ(shrunk.difference.missed_count + shrunk.difference.invalid_count, 0U);
+  expectMinimal(run, scene_, shrunk);
+}
+
+TEST_P(PlantedFault, SameInputSameResult) {
+  const Case run = faultyCase("faulty");
+  const FrameDifference known = firstDifference(run, scene_);
+  const ShrunkCase one = shrinkCase(run, scene_, known);
+  const ShrunkCase two = shrinkCase(run, scene_, known);
+  EXPECT_EQ(one.selection, two.selection);
+  EXPECT_EQ(one.trials, two.trials);
+}
+
+TEST_P(PlantedFault, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
+  const Case run = faultyCase("faulty");
+  const FrameDifference known = firstDifference(run, scene_);
+  const FrameDifference only_frame{.frame = known.frame};
+  for (const std::size_t memory : {std::size_t{0}, std::size_t{20'000}, std::size_t{1} << 30}) {
+    const ShrunkCase shrunk = shrinkCase(run, scene_, only_frame, {.memory_bytes = memory});
+    EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+    EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+    expectMinimal(run, scene_, shrunk);
+  }
+}
+
+TEST(Shrink, ParametersCount) {
+  WanderingBoxes scene(200, 400, 1);
+  Case run = faultyCase("faulty");
+  run.parameters = {{"fat_margin", "0.3"}};
+  const FrameDifference known = firstDifference(run, scene);
+  const ShrunkCase shrunk = shrinkCase(run, scene, known);
+  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  expectMinimal(run, scene, shrunk);
+  run.parameters = {{"fat_margin", "900"}};  // nothing ever moves
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, known); }), HasSubstr("does not fail"));
+}
+
+TEST(Shrink, CancelledKeepsTheBestSoFar) {
+  WanderingBoxes scene(200, 400, 1);
+  const Case run = faultyCase("faulty");
+  const FrameDifference known = firstDifference(run, scene);
+  const std::uint64_t all = shrinkCase(run, scene, known).trials;
+  for (const std::uint64_t enough : {std::uint64_t{0}, std::uint64_t{1}, all / 2, all - 1}) {
+    std::uint64_t done = 0;
+    std::size_t bodies = 200;
+    const ShrunkCase shrunk = shrinkCase(run, scene, known,
+                                         {.progress =
+                                              [&](const ShrinkProgress& now) {
+                                                EXPECT_EQ(now.trials, ++done);
+                                                EXPECT_LE(now.bodies, bodies);
+                                                bodies = now.bodies;
+                                              },
+                                          .cancelled = [&] { return done >= enough; }});
+    EXPECT_EQ(shrunk.trials, enough);
+    EXPECT_FALSE(shrunk.minimal);
+    EXPECT_EQ(shrunk.selection.bodies.size(), bodies);
+    EXPECT_TRUE(lastDifference(run, scene, shrunk.selection).isMismatch());
+  }
+}
+
+TEST(Shrink, FaultsOfManyBodiesKeepThemAll) {
+  constexpr std::size_t kNeeded = 37;
+  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+    if (boxes.size() >= kNeeded) dropFirst(answer);
+  });
+  WanderingBoxes scene(90, 12, 1);
+  for (const std::size_t memory : {std::size_t{1000}, std::size_t{1} << 30}) {
+    const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 12}, {.memory_bytes = memory});
+    EXPECT_EQ(shrunk.selection.bodies.size(), kNeeded);
+    EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+    expectMinimal(run, scene, shrunk);
+  }
+}
+
+TEST(Shrink, FaultsOfLongHistoriesKeepThem) {
+  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>&, int seen) {
+    if (seen == 7) dropFirst(answer);
+  });
+  WanderingBoxes scene(60, 20, 1);
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, {.frame = 20}); }),
+              AllOf(HasSubstr("Wandering"), HasSubstr("spoilt"), HasSubstr("frame 20")));
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.selection.bodies.size(), 2U);
+  EXPECT_EQ(shrunk.selection.frames.size(), 8U);
+  expectMinimal(run, scene, shrunk);
+}
+
+TEST(Shrink, PairsWithinTheMarginAreNoFault) {
+  constexpr float kMargin = 0.2F;
+  // Besides what the margin excuses, the pair of the first and the last body.
+  const Case run = spoilt(
+      [](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+        const Pair far{0, static_cast<std::uint32_t>(boxes.size() - 1)};
+        if (boxes.size() < 4 || std::ranges::count(answer, far) > 0) return;
+        answer.push_back(far);
+      },
+      kMargin);
+  WanderingBoxes scene(80, 5, 1);
+  const FrameDifference known = firstDifference(run, scene);
+  ASSERT_GT(known.extra_count, known.forbidden_count);
+  const ShrunkCase shrunk = shrinkCase(run, scene, known);
+  EXPECT_EQ(shrunk.selection.bodies.size(), 4U);
+  EXPECT_EQ(shrunk.difference.forbidden_count, 1U);
+  expectMinimal(run, scene, shrunk);
+}
+
+TEST(Shrink, AnswersThatAreNoPairsAreFaults) {
+  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+    if (boxes.size() > 2) answer.push_back({2, 2});
+  });
+  WanderingBoxes scene(30, 3, 1);
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.difference.invalid_count, 1U);
+  expectMinimal(run, scene, shrunk);
+}
+
+TEST(Shrink, WhatThrowsDoesNotFail) {
+  const Case run = spoilt([](std::vector<Pair>& answer, const std::vector<Aabb>& boxes, int) {
+    if (boxes.size() < 5) throw std::runtime_error("too few");
+    dropFirst(answer);
+  });
+  WanderingBoxes scene(50, 4, 1);
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.selection.bodies.size(), 5U);
+}
+
+TEST(Shrink, ManyBodiesTakeFewTrials) {
+  const std::uint32_t n = kSanitized ? 5'000 : 20'000;
+  // A sweep that loses the lowest pair of three or more bodies.
+  Case run;
+  run.algorithm.id = "sweep";
+  run.algorithm.create = [] {
+    class Sweep final : public BoxBroadPhase {
+      void searchOverlaps() override {
+        std::vector<Pair> answer = sweptPairs(boxes());
+        if (boxes().size() > 2) dropFirst(answer);
+        for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+        publishPairs();
+      }
+    };
+    return std::make_unique<Sweep>();
+  };
+  WanderingBoxes scene(n, 6, 1);
+  const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 6});
+  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+  EXPECT_LT(shrunk.trials, 30U);
+}
+
+TEST(Shrink, WhatCannotBeShrunk) {
+  WanderingBoxes scene(20, 3, 1);
+  const Case right = spoilt([](std::vector<Pair>&, const std::vector<Aabb>&, int) {});
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(right, scene, {.frame = 2}); }),
+              HasSubstr("does not fail in frame 2"));
+  // Whatever pair is said to be missed.
+  const FrameDifference wrong{.frame = 2, .missed_count = 1, .missed = {{3, 99}, {4, 5}}};
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(right, scene, wrong); }),
+              HasSubstr("does not fail in frame 2"));
+  for (const std::uint32_t frame : {0U, 4U}) {
+    EXPECT_THAT(inputErrorOf([&] { shrinkCase(right, scene, {.frame = frame}); }),
+                HasSubstr("frames 1 to 3"));
+  }
+  Case check = right;
+  check.algorithm.finds_pairs = false;
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(check, scene, {.frame = 2}); }),
+              HasSubstr("finds no pairs"));
+  Case bad = right;
+  bad.parameters = {{"nonsense", "1"}};
+  EXPECT_THAT(inputErrorOf([&] { shrinkCase(bad, scene, {.frame = 2}); }), HasSubstr("nonsense"));
+}
+
+TEST(Shrink, PartsAreWrittenAsRecordings) {
+  const TemporaryDirectory directory;
+  WanderingBoxes scene(30, 6, 1);
+  const Selection selection{{2, 3, 29}, {0, 4, 6}};
+  const std::string hash = writePart(directory / "part.aabbs", scene, selection);
+  RecordingReader reader(directory / "part.aabbs");
+  EXPECT_EQ(reader.hash(), hash);
+  EXPECT_EQ(reader.scene().name, "Wandering case");
+  EXPECT_EQ(reader.scene().world, scene.scene().world);
+  WanderingBoxes same(30, 6, 1);
+  FrameSeeker whole(same);
+  for (std::uint32_t frame = 0; frame < 3; ++frame) {
+    const auto boxes = whole.at(selection.frames[frame]).boxes;
+    for (std::size_t body = 0; body < 3; ++body) {
+      EXPECT_EQ(reader.read(frame).boxes[body], boxes[selection.bodies[body]]);
+    }
+  }
+}
+
+TEST(Shrink, NamesOfPartsFitIntoAHeader) {
+  EXPECT_EQ(partName({.name = "FreeFall"}), "FreeFall case");
+  EXPECT_EQ(partName({.name = "FreeFall case"}), "FreeFall case");
+  EXPECT_EQ(partName({.name = std::string(127, 'x')}), std::string(122, 'x') + " case");
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,88 @@
+// Parts of recordings: the right boxes, from any kind of source, in any order.
+
+#include "broadmark/sub_recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "broadmark/recording.h"
+#include "tests/engine/helpers.h"
+#include "tests/support/wandering_boxes.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::vector<Aabb> boxesOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
+
+std::unique_ptr<RecordingReader> recorded(FrameSource& source) {
+  RecordingWriter writer(source.scene());
+  recordAll(source, writer);
+  return writer.finishTemporary();
+}
+
+TEST(FrameSeeker, FindsFramesInAnyOrderOfAnySource) {
+  WanderingBoxes live(5, 9, 1);
+  WanderingBoxes again(5, 9, 1);
+  const auto recording = recorded(again);
+  FrameSeeker in_live(live);
+  FrameSeeker in_recording(*recording);
+  std::vector<std::vector<Aabb>> all;
+  WanderingBoxes third(5, 9, 1);
+  recordAll(third, [&](const Frame& frame) { all.push_back(boxesOf(frame)); });
+  for (const std::uint32_t index : {3U, 9U, 0U, 0U, 4U, 5U, 2U, 9U}) {
+    for (FrameSeeker* seeker : {&in_live, &in_recording}) {
+      const Frame frame = seeker->at(index);
+      EXPECT_EQ(frame.index, index);
+      EXPECT_EQ(boxesOf(frame), all[index]);
+    }
+  }
+  EXPECT_THAT(inputErrorOf([&] { in_live.at(10); }), HasSubstr("no frame 10"));
+  EXPECT_THAT(inputErrorOf([&] { in_recording.at(10); }), HasSubstr("no frame 10"));
+  EXPECT_EQ(boxesOf(in_live.at(1)), all[1]);
+}
+
+TEST(SubRecording, IsTheSelectedPart) {
+  WanderingBoxes source(6, 8, 2);
+  WanderingBoxes same(6, 8, 2);
+  FrameSeeker whole(source);
+  FrameSeeker check(same);
+  const Selection selection{{1, 4, 5}, {2, 3, 7}};
+  SubRecording part(whole, selection, "Part");
+  EXPECT_EQ(part.scene().name, "Part");
+  EXPECT_EQ(part.scene().object_type, source.scene().object_type);
+  EXPECT_EQ(part.scene().world, source.scene().world);
+  EXPECT_EQ(part.scene().objects, 3U);
+  EXPECT_EQ(part.scene().frames, 2U);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::uint32_t index = 0;
+    for (std::optional<Frame> frame = part.rewind(); frame; frame = part.next()) {
+      EXPECT_EQ(frame->index, index);
+      const std::vector<Aabb> all = boxesOf(check.at(selection.frames.at(index)));
+      EXPECT_THAT(boxesOf(*frame), ElementsAre(all[1], all[4], all[5]));
+      ++index;
+    }
+    EXPECT_EQ(index, 3U);
+  }
+}
+
+TEST(SubRecording, OfEverythingIsTheWhole) {
+  WanderingBoxes source(7, 4, 3);
+  const auto recording = recorded(source);
+  FrameSeeker whole(*recording);
+  SubRecording part(whole, wholeSelection(recording->scene(), 4), recording->scene().name);
+  EXPECT_EQ(part.scene(), recording->scene());
+  EXPECT_EQ(recorded(part)->hash(), recording->hash());
+}
+
+TEST(FrameList, HoldsAllFrames) {
+  WanderingBoxes source(7, 4, 3);
+  FrameList list(source);
+  EXPECT_EQ(list.scene(), source.scene());
+  EXPECT_EQ(recorded(list)->hash(), recorded(source)->hash());
+}
+
+}  // namespace
+}  // namespace broadmark::tests
