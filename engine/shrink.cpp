@@ -142,10 +142,16 @@ class Shrinker {
     Held(Selection selection, FrameSource& part) : origin(std::move(selection)), frames(part) {}
   };
 
-  void hold(const Selection& selection) {
+  /// Holds a part in memory, if it fits. Whether it is held now.
+  bool hold(const Selection& selection) {
+    if (isHeld(selection)) return true;
+    if (bytesOf(selection.bodies.size(), selection.frames.size()) > options_.memory_bytes) {
+      return false;
+    }
     held_.reset();
     SubRecording part(whole_, selection, partName(whole_.scene()));
     held_ = std::make_unique<Held>(selection, part);
+    return true;
   }
 
   [[nodiscard]] bool isHeld(const Selection& selection) const {
@@ -238,16 +244,10 @@ class Shrinker {
   void shrinkToMinimum() {
     bool smaller = true;
     while (smaller) {
-      holdBest();
+      hold(best_.selection);
       const bool fewer_frames = removeFrames();
       smaller = removeBodies() || fewer_frames;
     }
-  }
-
-  void holdBest() {
-    const Selection& best = best_.selection;
-    const bool fits = bytesOf(best.bodies.size(), best.frames.size()) <= options_.memory_bytes;
-    if (fits && !isHeld(best)) hold(best);
   }
 
   bool removeBodies() {

@@ -30,7 +30,8 @@ class FailedCase : public EndToEnd {
   /// The result of an algorithm in a results file.
   [[nodiscard]] Json caseOf(const std::string& algorithm,
                             const std::string& results = "results.json") const {
-    for (const Json& one : readJson(file(results)).at("cases")) {
+    const Json all = readJson(file(results));
+    for (const Json& one : all.at("cases")) {
       if (one.at("algorithm") == algorithm) return one;
     }
     ADD_FAILURE() << "no case of " << algorithm;
@@ -70,15 +71,15 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
     RecordingReader reader(file(recording));
     EXPECT_EQ(reader.scene().name, "Brownian case");
     EXPECT_LE(reader.scene().objects, 3U);
-    EXPECT_EQ(reader.scene().frames, 1U);
+    EXPECT_LE(reader.scene().frames, 2U);
 
     const auto lines = linesOf(ended.out);
     ASSERT_EQ(lines.size(), 3U) << ended.out;
-    EXPECT_THAT(lines[0], HasSubstr(algorithm == "faulty" ? "3 bodies, 1 frame of 200 bodies"
-                                                          : "2 bodies, 1 frame of 200 bodies"));
+    EXPECT_THAT(lines[0], HasSubstr(algorithm == "faulty" ? "3 bodies, " : "2 bodies, "));
+    EXPECT_THAT(lines[0], HasSubstr(" of 200 bodies, 60 frames ("));
     EXPECT_EQ(lines[1], "written: " + recording);
     EXPECT_THAT(lines[2], StartsWith("broadmark --headless 'it'\\''s a "));
-    for (const std::string word :
+    for (const std::string& word :
          {"--algorithm " + algorithm + " ", std::string("--param fat_margin=0.5 "),
           std::string("--check full"), std::string("--plugin ")}) {
       EXPECT_THAT(lines[2], HasSubstr(word));

@@ -10,8 +10,8 @@
 // as they do within one fill of the buffer only. When i < j move in the same frame but in different
 // fills, i is queried while j's old fat box still stands, and j leaves the pair to i. Two bodies
 // that come together in one frame can be lost, if a third one moves, too, and splits the buffer
-// between them: three bodies, and nothing but an initial pose and one frame. They stay lost until
-// one of them moves again.
+// between them: three bodies, an initial pose, and one frame, or two where they come to overlap
+// later only. They stay lost until one of them moves again.
 //
 // The fault of "faulty-extra": pairs of two bodies that moved in this frame go into the answer as
 // they are found, that is, for their fat boxes.
