@@ -12,6 +12,7 @@
 #include <limits>
 #include <thread>
 
+#include "app/recordings.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "scenes/simulation.h"
@@ -20,7 +21,8 @@ namespace broadmark {
 namespace {
 
 constexpr const char* kFooter =
-    "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
+    "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.\n"
+    "Exit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
     "bad input.\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
     "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
 
@@ -338,6 +340,30 @@ void requireCaseAlone(const CLI::App& app) {
   requireNoneBeside(app, "--export-case", outputs);
 }
 
+void addInspectorOptions(CLI::App& app, HeadlessOptions& options) {
+  app.add_flag("--ui", options.ui,
+               "with --headless: the inspector drawn off-screen (--screenshot)");
+  app.add_option("--script", options.script,
+                 "what a user does in the inspector, line by line (see docs/inspector.md)")
+      ->type_name("FILE");
+}
+
+/// What only a run without the inspector heeds would be lost on it.
+void requireForInspector(const CLI::App& app, const HeadlessOptions& options) {
+  std::vector<std::string> lost = {"--repetitions", "--warmup", "--check",    "--time-limit",
+                                   "--memory",      "--record", "--shard",    "--filter",
+                                   "--list",        "--frame",  "--recorder", "--export-case"};
+  for (const ResultWriter& writer : resultWriters()) {
+    lost.push_back(fmt::format("--{}", writer.name));
+  }
+  if (!options.headless) lost.insert(lost.end(), {"--screenshot", "--size", "--gl"});
+  for (const std::string& option : lost) {
+    if (app.get_option(option)->count() == 0) continue;
+    throw InputError(fmt::format("{}: only for runs without the inspector: {}", option,
+                                 options.headless ? "leave out --ui" : "add --headless"));
+  }
+}
+
 HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
                            const SceneTexts& scene) {
   options.scene = scene.parse();
@@ -365,7 +391,7 @@ HeadlessOptions understand(HeadlessOptions options, const HeadlessTexts& texts,
   if (!options.case_id.empty() && options.sources.size() != 1) {
     throw InputError("--case: the source must be one results file");
   }
-  if (options.sources.empty()) {
+  if (options.sources.empty() && options.headless && !options.ui) {
     throw InputError(
         "no source: name a built-in scene (freefall, brownian, gravity) or a recording");
   }
@@ -475,15 +501,14 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
                                 chosen.empty() ? "" : app.get_name() + ": ", message, command));
 }
 
-/// Neither --headless nor a command: perhaps a misspelt one.
-InputError missingHeadless(const CLI::App& app, const std::vector<std::string>& sources) {
+/// A source that is nothing may be a misspelt command.
+void requireNoMisspeltCommand(const CLI::App& app, const std::vector<std::string>& sources) {
+  if (sources.empty() || isSource(sources.front())) return;
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands({})) commands.push_back(command->get_name());
-  const std::string nearest = sources.empty() ? "" : nearestName(sources.front(), commands);
-  return InputError(
-      fmt::format("{}this version has no inspector window yet: add --headless (see "
-                  "'broadmark --help')",
-                  nearest.empty() ? "" : fmt::format("did you mean the command '{}'? ", nearest)));
+  const std::string nearest = nearestName(sources.front(), commands);
+  if (nearest.empty()) return;
+  throw InputError(fmt::format("'{}': did you mean the command '{}'?", sources.front(), nearest));
 }
 
 /// Options before a command would be lost on it.
@@ -508,11 +533,11 @@ int runCommandLine(int argc, char** argv) {
   app.set_version_flag("--version", thisEnvironment().version);
   app.get_formatter()->column_width(34);
 
-  bool headless = false;
   HeadlessOptions options;
   HeadlessTexts texts;
   SceneTexts scene;
-  app.add_flag("--headless", headless, "run without a window");
+  app.add_flag("--headless", options.headless, "run without a window");
+  addInspectorOptions(app, options);
   addHeadlessOptions(app, options, texts);
   scene.addTo(app);
   addCaseOptions(app, options);
@@ -567,9 +592,13 @@ int runCommandLine(int argc, char** argv) {
     compare_options.fail_above = parseNumber(fail_above, "--fail-above", 0, false);
     return runCompare(compare_options);
   }
-  if (!headless) throw missingHeadless(app, options.sources);
-  options.command_line.assign(argv + 1, argv + argc);
+  requireNoMisspeltCommand(app, options.sources);
   requireCaseAlone(app);
+  if (!options.headless || options.ui) {
+    requireForInspector(app, options);
+    return runInspector(understand(std::move(options), texts, scene));
+  }
+  options.command_line.assign(argv + 1, argv + argc);
   options = understand(std::move(options), texts, scene);
   return options.export_case.empty() ? runHeadless(options) : runExportCase(options);
 }

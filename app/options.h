@@ -57,6 +57,9 @@ struct HeadlessOptions {
   std::string filter;
   bool list_only = false;
   bool quiet = false;
+  bool headless = false;
+  bool ui = false;               ///< the inspector, without a window
+  std::filesystem::path script;  ///< of the inspector; "": none
   std::vector<std::string> command_line;
 };
 
@@ -99,6 +102,7 @@ int runCommandLine(int argc, char** argv);
 int runHeadless(const HeadlessOptions&);
 /// Shrinks the case of a results file instead of running it.
 int runExportCase(const HeadlessOptions&);
+int runInspector(const HeadlessOptions&);
 int runBake(const BakeOptions&);
 int runList(const ListOptions&);
 int runVerify(const VerifyOptions&);

@@ -162,6 +162,8 @@ std::string engineOf(const SceneOptions& options, const ParameterValues& paramet
 
 }  // namespace
 
+bool isSource(const std::string& text) { return isSceneName(text) || looksLikeFile(text); }
+
 std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
                                                          const SceneOptions& options,
                                                          const ParameterValues& parameters) {

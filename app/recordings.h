@@ -30,6 +30,9 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
                                                          const SceneOptions&,
                                                          const ParameterValues& parameters);
 
+/// Whether it is a built-in scene's name, or may be a file.
+bool isSource(const std::string& text);
+
 /// Understands the sources of a run. Throws InputError.
 std::vector<Source> resolveSources(const HeadlessOptions&);
 

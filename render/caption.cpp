@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render_assets.h"
+#include "render/fonts.h"
 
 namespace broadmark {
 namespace {
@@ -44,8 +44,7 @@ void fill(Picture& picture, const Rectangle& area, Rgb colour, int alpha) {
 class Typeface {
  public:
   explicit Typeface(float size) : size_(size) {
-    const auto* data =
-        reinterpret_cast<const unsigned char*>(render_assets::Inter_Regular_otf().data());
+    const auto* data = reinterpret_cast<const unsigned char*>(interfaceFont().data());
     if (stbtt_InitFont(&font_, data, stbtt_GetFontOffsetForIndex(data, 0)) == 0) {
       throw RenderError("the embedded font cannot be read");
     }

@@ -55,6 +55,27 @@ void Framebuffer::bind() const {
   gl_->Viewport(0, 0, width_, height_);
 }
 
+Picture readPicture(const Gl& gl, int width, int height) {
+  Picture picture{width, height, {}};
+  const std::size_t row_bytes = static_cast<std::size_t>(width) * 4;
+  picture.rgba.resize(row_bytes * static_cast<std::size_t>(height));
+  gl.PixelStorei(GL_PACK_ALIGNMENT, 4);
+  gl.ReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
+  gl.check("reading the picture back");
+
+  // What was drawn with blending has left its mark on the picture's opacity, too.
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  // OpenGL's rows run from bottom to top.
+  for (std::size_t top = 0, bottom = static_cast<std::size_t>(height) - 1; top < bottom;
+       ++top, --bottom) {
+    const auto row = [&](std::size_t index) {
+      return picture.rgba.begin() + static_cast<std::ptrdiff_t>(index * row_bytes);
+    };
+    std::swap_ranges(row(top), row(top + 1), row(bottom));
+  }
+  return picture;
+}
+
 Picture Framebuffer::read() const {
   if (drawn_.framebuffer.get() != 0) {
     gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.framebuffer.get());
@@ -63,22 +84,7 @@ Picture Framebuffer::read() const {
                          GL_NEAREST);
   }
   gl_->BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer.get());
-  Picture picture{width_, height_, {}};
-  const std::size_t row_bytes = static_cast<std::size_t>(width_) * 4;
-  picture.rgba.resize(row_bytes * static_cast<std::size_t>(height_));
-  gl_->PixelStorei(GL_PACK_ALIGNMENT, 4);
-  gl_->ReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, picture.rgba.data());
-  gl_->check("reading the picture back");
-
-  // OpenGL's rows run from bottom to top.
-  for (std::size_t top = 0, bottom = static_cast<std::size_t>(height_) - 1; top < bottom;
-       ++top, --bottom) {
-    const auto row = [&](std::size_t index) {
-      return picture.rgba.begin() + static_cast<std::ptrdiff_t>(index * row_bytes);
-    };
-    std::swap_ranges(row(top), row(top + 1), row(bottom));
-  }
-  return picture;
+  return readPicture(*gl_, width_, height_);
 }
 
 }  // namespace broadmark

@@ -5,6 +5,9 @@
 
 namespace broadmark {
 
+/// Reads what is in the framebuffer that is bound for reading, opaque. Throws RenderError.
+Picture readPicture(const Gl& gl, int width, int height);
+
 /// A picture-sized target with depth, four samples a pixel where the driver can.
 class Framebuffer {
  public:

@@ -1,0 +1,156 @@
+#include "app/inspector/file_dialog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string sizeText(std::uintmax_t bytes) {
+  constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
+  auto size = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
+  return fmt::format("{:.3g} {}", size, kUnits[unit]);
+}
+
+}  // namespace
+
+void FileDialog::ask(Request request) {
+  request_ = std::move(request);
+  open_ = opening_ = true;
+  confirm_overwrite_ = false;
+  const fs::path& suggestion = request_.suggestion;
+  std::error_code none;
+  const bool is_directory = fs::is_directory(suggestion, none);
+  name_ = is_directory ? "" : suggestion.filename().string();
+  const fs::path start = is_directory ? suggestion : suggestion.parent_path();
+  enter(start.empty() || !fs::is_directory(start, none) ? fs::current_path(none) : start);
+}
+
+void FileDialog::enter(const fs::path& directory) {
+  failure_.clear();
+  entries_.clear();
+  std::error_code error;
+  directory_ = fs::absolute(directory, error).lexically_normal();
+  path_text_ = directory_.string();
+  for (fs::directory_iterator it(directory_, error), end; !error && it != end;
+       it.increment(error)) {
+    std::error_code unknown;
+    Entry entry{.name = it->path().filename().string(), .is_directory = it->is_directory(unknown)};
+    if (entry.name.starts_with('.')) continue;
+    const bool wanted = entry.is_directory ||
+                        (request_.purpose != Purpose::directory &&
+                         (request_.extensions.empty() ||
+                          std::ranges::find(request_.extensions, it->path().extension().string()) !=
+                              request_.extensions.end()));
+    if (!wanted) continue;
+    if (!entry.is_directory) entry.bytes = it->file_size(unknown);
+    entries_.push_back(std::move(entry));
+  }
+  if (error) failure_ = fmt::format("{}: {}", directory_.string(), error.message());
+  std::ranges::sort(entries_, [](const Entry& a, const Entry& b) {
+    return a.is_directory != b.is_directory ? a.is_directory : a.name < b.name;
+  });
+}
+
+void FileDialog::accept() {
+  const fs::path path =
+      request_.purpose == Purpose::directory ? directory_ / name_ : directory_ / fs::path(name_);
+  std::error_code none;
+  if (request_.purpose != Purpose::directory) {
+    if (name_.empty()) {
+      failure_ = "a file name is needed";
+      return;
+    }
+    if (fs::is_directory(path, none)) {
+      name_.clear();
+      enter(path);
+      return;
+    }
+    if (request_.purpose == Purpose::open && !fs::exists(path, none)) {
+      failure_ = fmt::format("{}: there is no such file", path.string());
+      return;
+    }
+    if (request_.purpose == Purpose::save && fs::exists(path, none) && !confirm_overwrite_) {
+      confirm_overwrite_ = true;
+      failure_ = fmt::format("{} exists: press again to replace it", name_);
+      return;
+    }
+  }
+  open_ = false;
+  request_.chosen(path.lexically_normal());
+}
+
+void FileDialog::drawEntries(Ui& ui) {
+  const float below = ImGui::GetFrameHeightWithSpacing() * 3.2F;
+  ImGui::BeginChild("entries", {0, -below}, true);
+  if (directory_.has_relative_path() && ui.selectable("..", false)) enter(directory_.parent_path());
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry entry = entries_[i];  // entering a directory replaces them
+    const std::string label = entry.is_directory ? entry.name + "/" : entry.name;
+    const bool pressed = ImGui::Selectable(label.c_str(), entry.name == name_,
+                                           ImGuiSelectableFlags_AllowDoubleClick);
+    ui.note(label);
+    if (!entry.is_directory) {
+      const std::string size = sizeText(entry.bytes);
+      ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
+      ui.faint(size);
+    }
+    if (!pressed) continue;
+    if (entry.is_directory) {
+      enter(directory_ / entry.name);
+      break;
+    }
+    name_ = entry.name;
+    confirm_overwrite_ = false;
+    if (ImGui::IsMouseDoubleClicked(0)) accept();
+  }
+  ImGui::EndChild();
+}
+
+void FileDialog::draw(Ui& ui) {
+  if (!open_) return;
+  const auto scope = ui.scope("File");
+  if (std::exchange(opening_, false)) ImGui::OpenPopup(request_.title.c_str());
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowSize(
+      {std::min(620 * ui.scale, screen.x - 20), std::min(460 * ui.scale, screen.y - 20)},
+      ImGuiCond_Always);
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  bool keep = true;
+  if (!ImGui::BeginPopupModal(request_.title.c_str(), &keep,
+                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    open_ = false;
+    return;
+  }
+  ImGui::SetNextItemWidth(-1);
+  ImGui::PushID("directory");
+  const bool typed = ui.text("##directory", path_text_, "directory");
+  ImGui::PopID();
+  if (typed) enter(path_text_);
+  drawEntries(ui);
+  if (request_.purpose != Purpose::directory) {
+    if (ui.text("name", name_, "file name")) confirm_overwrite_ = false;
+  }
+  if (!failure_.empty()) {
+    ui.coloured(confirm_overwrite_ ? ui.theme.warning : ui.theme.bad, failure_);
+  } else {
+    ImGui::Dummy({0, ImGui::GetTextLineHeight()});
+  }
+  const char* verb = request_.purpose == Purpose::open   ? "Open"
+                     : request_.purpose == Purpose::save ? "Save"
+                                                         : "Choose";
+  if (ui.button(verb)) accept();
+  ImGui::SameLine();
+  if (ui.button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) keep = false;
+  if (!keep) open_ = false;
+  if (!open_) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+}
+
+}  // namespace broadmark

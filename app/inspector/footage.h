@@ -1,0 +1,50 @@
+// The frames of a scene by number, wherever they come from.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "broadmark/recording.h"
+#include "scenes/simulation.h"
+
+namespace broadmark {
+
+/// A recording, or a live simulation that goes only as far as it is watched: its frames are kept in
+/// an unnamed temporary file, so that any of them can be seen again. To be used from one thread.
+class Footage {
+ public:
+  explicit Footage(std::unique_ptr<Recording> recording);
+  /// The simulation begins with its present parameters.
+  explicit Footage(std::unique_ptr<Simulation> simulation);
+
+  /// Its `frames` counts all there may ever be.
+  [[nodiscard]] const SceneInfo& scene() const { return scene_; }
+  /// The last frame that exists already.
+  [[nodiscard]] std::uint32_t known() const { return known_; }
+  /// Whether frames beyond known() would have to be simulated first.
+  [[nodiscard]] bool live() const { return simulation_ != nullptr; }
+
+  /// Simulates the next frame. There must be one.
+  void extend();
+  /// A known frame; valid until the next call. Throws InputError (a broken recording).
+  Frame read(std::uint32_t index);
+
+  /// Writes all known frames as a recording, initial pose included. Throws InputError.
+  void save(const std::filesystem::path& path);
+
+ private:
+  void keep(std::span<const Aabb> boxes);
+
+  SceneInfo scene_;
+  std::uint32_t known_ = 0;
+  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<Simulation> simulation_;
+  FileDescriptor kept_;  ///< of a simulation: frame after frame, nothing else
+  std::vector<Aabb> boxes_;
+};
+
+}  // namespace broadmark

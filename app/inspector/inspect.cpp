@@ -1,0 +1,157 @@
+#include "app/inspector/inspect.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <chrono>
+#include <iostream>
+
+#include "app/inspector/inspector.h"
+#include "app/inspector/script.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "render/framebuffer.h"
+#include "render/window.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Off-screen, time goes by as if pictures came at this rate: the same on every machine.
+constexpr double kOffscreenSeconds = 1.0 / 60;
+/// Between two looks when nothing moves.
+constexpr double kIdleSeconds = 0.25;
+/// At least this much lies between two pictures.
+constexpr double kPictureSeconds = 1.0 / 60;
+
+std::optional<ScriptPlayer> scriptOf(const fs::path& path) {
+  if (path.empty()) return {};
+  return ScriptPlayer(parseScript(readTextFile(path), path.string()), path.string());
+}
+
+/// The pictures of a movie, one for each frame that is shown.
+class Movie {
+ public:
+  void take(Inspector& inspector, const std::function<Picture()>& picture) {
+    const fs::path& directory = inspector.movieDirectory();
+    if (directory.empty()) {
+      count_ = 0;
+      return;
+    }
+    std::optional<std::string> frame = inspector.value("shown_frame");
+    if (count_ > 0 && frame == last_) return;
+    last_ = frame;
+    std::error_code none;
+    fs::create_directories(directory, none);
+    inspector.session().attempt(
+        [&] { writePng(directory / fmt::format("frame_{:05}.png", count_++), picture()); });
+  }
+
+ private:
+  int count_ = 0;
+  std::optional<std::string> last_;
+};
+
+/// What is asked of whoever owns the picture.
+void takePictures(Inspector& inspector, Movie& movie, const std::function<Picture()>& picture) {
+  if (const auto path = inspector.takeScreenshotRequest()) {
+    inspector.session().attempt([&] { writePng(*path, picture()); });
+  }
+  movie.take(inspector, picture);
+}
+
+void linkClipboard(Window& window) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.ClipboardUserData = &window;
+  io.SetClipboardTextFn = [](void* user, const char* text) {
+    static_cast<Window*>(user)->setClipboard(text);
+  };
+  io.GetClipboardTextFn = [](void* user) {
+    static std::string held;
+    held = static_cast<Window*>(user)->clipboard();
+    return held.c_str();
+  };
+}
+
+}  // namespace
+
+void inspectInWindow(const InspectOptions& options) {
+  const fs::path remembered = preferencesPath();
+  Preferences preferences = loadPreferences(remembered);
+  Window window("Broadmark", preferences.window_width, preferences.window_height);
+  const Gl gl{[](const char* name) { return Window::function(name); }};
+  std::optional<ScriptPlayer> script = scriptOf(options.script);
+  {
+    Inspector inspector(gl, options.algorithms, preferences, window.scale());
+    linkClipboard(window);
+    if (options.begin) options.begin(inspector.session());
+    Movie movie;
+    auto before = std::chrono::steady_clock::now();
+    const auto bind = [&gl] { gl.BindFramebuffer(GL_FRAMEBUFFER, 0); };
+    while (!inspector.closing() && !window.closing()) {
+      const auto now = std::chrono::steady_clock::now();
+      const double seconds = std::chrono::duration<double>(now - before).count();
+      const bool lively = inspector.lively() || script || !window.input().empty();
+      window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
+      for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
+      if (script) {
+        script->update(inspector, window.input());
+        if (script->done()) script.reset();
+      }
+      if (window.width() < 1 || window.height() < 1) continue;  // minimised
+      before = std::chrono::steady_clock::now();
+      inspector.draw(window.input(), window.width(), window.height(),
+                     std::chrono::duration<double>(before - now).count() + seconds, bind);
+      takePictures(inspector, movie,
+                   [&] { return readPicture(gl, window.width(), window.height()); });
+      window.setCursor(ImGui::GetMouseCursor());
+      window.swap();
+    }
+    preferences = inspector.preferences();
+  }
+  preferences.window_width = static_cast<int>(static_cast<float>(window.width()) / window.scale());
+  preferences.window_height =
+      static_cast<int>(static_cast<float>(window.height()) / window.scale());
+  try {
+    savePreferences(remembered, preferences);
+  } catch (const InputError& error) {
+    std::cerr << fmt::format("broadmark: {}\n", error.what());
+  }
+}
+
+void inspectOffscreen(const InspectOptions& options) {
+  const auto context = makeOffscreenContext(options.gl);
+  const Gl gl(*context);
+  std::optional<ScriptPlayer> script = scriptOf(options.script);
+  Inspector inspector(gl, options.algorithms, {}, static_cast<float>(options.scale));
+  if (options.begin) options.begin(inspector.session());
+  InputQueue input;
+  Movie movie;
+  int width = options.width;
+  int height = options.height;
+  auto target = std::make_unique<Framebuffer>(gl, width, height);
+  // The first pictures settle sizes.
+  for (int calm = 0; calm < 4 && !inspector.closing();) {
+    if (script) script->update(inspector, input);
+    if (const auto size = script ? script->takeResize() : std::nullopt) {
+      std::tie(width, height) = *size;
+      target = std::make_unique<Framebuffer>(gl, width, height);
+    }
+    inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
+    const auto picture = [&] { return target->read(); };
+    takePictures(inspector, movie, picture);
+    if (const auto path = script ? script->takeScreenshot() : std::nullopt) {
+      writePng(*path, picture());
+    }
+    const bool busy = (script && !script->done()) || inspector.lively();
+    calm = busy ? 0 : calm + 1;
+    if (busy && input.empty()) inspector.session().runs.settle(std::chrono::milliseconds(2));
+  }
+  if (!options.screenshot.empty()) writePng(options.screenshot, target->read());
+  if (!inspector.session().errors.empty()) {
+    throw InputError(inspector.session().errors.front());
+  }
+}
+
+}  // namespace broadmark

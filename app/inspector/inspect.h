@@ -1,0 +1,34 @@
+// The inspector's two ways of life: in a window, and off-screen.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "broadmark/algorithm.h"
+#include "render/picture.h"
+
+namespace broadmark {
+
+class Session;
+
+/// What the inspector is started with.
+struct InspectOptions {
+  std::vector<Algorithm> algorithms;    ///< that can be chosen
+  std::function<void(Session&)> begin;  ///< opens the source, adds algorithms
+  std::filesystem::path script;         ///< "": none
+  std::filesystem::path screenshot;     ///< of the end, off-screen; "": none
+  int width = 1280;                     ///< off-screen
+  int height = 720;
+  double scale = 1;
+  GlSource gl = GlSource::automatic;
+};
+
+/// Opens a window and returns when it is closed. Throws RenderError where there is none to be had.
+void inspectInWindow(const InspectOptions& options);
+/// Draws into pictures only, until the script is done and all is computed. Nothing is remembered
+/// from other times or for them. Throws InputError when the script fails, RenderError.
+void inspectOffscreen(const InspectOptions& options);
+
+}  // namespace broadmark

@@ -1,0 +1,106 @@
+// The inspector: the session, and the window's contents around it. Draws into whatever is bound: a
+// window, or an off-screen picture.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/inspector/file_dialog.h"
+#include "app/inspector/panel.h"
+#include "app/inspector/preferences.h"
+#include "app/inspector/session.h"
+#include "app/inspector/ui.h"
+#include "app/inspector/view.h"
+#include "render/gl.h"
+#include "render/input_queue.h"
+#include "render/ui_renderer.h"
+
+struct ImGuiContext;
+
+namespace broadmark {
+
+/// A key, or several, that does something.
+struct Shortcut {
+  Key key = 0;
+  bool ctrl = false;
+  bool shift = false;
+  const char* keys = "";  ///< as people read it: "Ctrl+O"
+  const char* doc = "";
+  std::function<void()> act;
+};
+
+class Inspector {
+ public:
+  /// `scale`: pixels per unit. Needs its context current from construction to destruction; at most
+  /// one lives at a time.
+  Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale);
+  ~Inspector();
+  Inspector(const Inspector&) = delete;
+  Inspector& operator=(const Inspector&) = delete;
+
+  /// Takes in what has happened and draws one picture of `width` x `height` pixels. `bind` makes
+  /// the target current. `seconds` since the last picture.
+  void draw(InputQueue& input, int width, int height, double seconds,
+            const std::function<void()>& bind);
+
+  [[nodiscard]] Session& session() { return session_; }
+  [[nodiscard]] Ui& ui() { return ui_; }
+  [[nodiscard]] View& view() { return view_; }
+  [[nodiscard]] const Preferences& preferences() const { return preferences_; }
+  [[nodiscard]] bool closing() const { return closing_; }
+  void close() { closing_ = true; }
+  /// Whether pictures would change though nothing happens at mouse and keyboard.
+  [[nodiscard]] bool lively();
+  /// Brings a panel to the front.
+  void showPanel(const std::string& name) { session_.wanted_panels.push_back(name); }
+  /// A screenshot has been asked for: where to. Taken by whoever owns the target.
+  std::optional<std::filesystem::path> takeScreenshotRequest();
+  /// Where the numbered pictures of a movie go; "": none is being made.
+  [[nodiscard]] const std::filesystem::path& movieDirectory() const { return movie_directory_; }
+  /// What a name stands for, as text, for scripts and tests: "frame", "pairs", … Nothing for an
+  /// unknown name.
+  [[nodiscard]] std::optional<std::string> value(const std::string& name);
+  FileDialog& fileDialog() { return files_; }
+  /// Panel by name, or null.
+  [[nodiscard]] Panel* panel(const std::string& name);
+
+ private:
+  void loadFonts();
+  void build(const RunProgress& progress, int width, int height);
+  void drawMenus(const RunProgress& progress);
+  void drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size);
+  void drawTransport(const RunProgress& progress);
+  void drawStatus(const RunProgress& progress);
+  void drawHelp();
+  void drawErrors();
+  void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
+  void makeShortcuts();
+  void handleShortcuts();
+  void askOpen();
+  void askSaveRecording();
+  void askExportTimings();
+  void askMovie();
+
+  Preferences preferences_;
+  ImGuiContext* context_;
+  UiRenderer renderer_;
+  const Gl* gl_;
+  Ui ui_;
+  FileDialog files_;
+  Session session_;
+  View view_;
+  std::vector<std::unique_ptr<Panel>> panels_;
+  std::vector<Shortcut> shortcuts_;
+  bool help_ = false;
+  bool closing_ = false;
+  bool restyle_ = true;
+  bool screenshot_asked_ = false;
+  int screenshots_ = 0;
+  std::filesystem::path movie_directory_;
+  std::optional<std::string> timings_;  ///< asked for as a table, not yet saved
+};
+
+}  // namespace broadmark

@@ -1,0 +1,133 @@
+// Choosing algorithms, and how each is run.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "app/inspector/panel.h"
+
+namespace broadmark::panels::algorithms {
+namespace {
+
+/// A family's algorithms, to choose from.
+struct Family {
+  std::string name;
+  std::vector<const Algorithm*> members;
+};
+
+std::vector<Family> familiesOf(const std::vector<Algorithm>& algorithms) {
+  std::vector<Family> families;
+  for (const Algorithm& algorithm : algorithms) {
+    auto family = std::ranges::find(families, algorithm.family, &Family::name);
+    if (family == families.end()) {
+      family = families.insert(families.end(), {algorithm.family, {}});
+    }
+    family->members.push_back(&algorithm);
+  }
+  return families;
+}
+
+class AlgorithmsPanel final : public Panel {
+ public:
+  AlgorithmsPanel()
+      : Panel("Algorithms", Place::left, "Which algorithms run, and with which parameters") {}
+
+  void draw(PanelContext& context) override {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    if (ui.button("Add…##add", "Chooses another algorithm", ImGui::GetContentRegionAvail().x)) {
+      ImGui::OpenPopup("add");
+    }
+    drawChoice(ui, session);
+    ui.checkbox("check every answer", session.wish.check,
+                "Compares every answer with the oracle's, outside the timed region");
+    ImGui::BeginDisabled(!session.wish.check);
+    ui.checkbox("stop at a mismatch", session.wish.stop_at_mismatch,
+                "Stays at the first frame in which a pair is missed, or wrongly reported");
+    ImGui::EndDisabled();
+    if (session.lanes.empty()) {
+      ImGui::Spacing();
+      ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
+    }
+    int removed = 0;
+    for (LaneEdit& lane : session.lanes) {
+      if (!drawLane(ui, session, lane)) removed = lane.number;
+    }
+    if (removed != 0) session.removeLane(removed);
+  }
+
+ private:
+  static void drawChoice(Ui& ui, Session& session) {
+    if (!ImGui::BeginPopup("add")) return;
+    const auto scope = ui.scope("add");
+    const Algorithm* chosen = nullptr;
+    for (const Family& family : familiesOf(session.algorithms)) {
+      ui.faint(family.name);
+      for (const Algorithm* algorithm : family.members) {
+        if (ui.selectable(algorithm->id.c_str(), false, algorithm->summary.c_str())) {
+          chosen = algorithm;
+        }
+      }
+    }
+    if (chosen != nullptr) session.addLane(chosen->id);
+    ImGui::EndPopup();
+  }
+
+  /// Returns whether it is to be kept.
+  static bool drawLane(Ui& ui, Session& session, LaneEdit& lane) {
+    const auto scope = ui.scope(fmt::format("{}", lane.algorithm.id));
+    ImGui::PushID(lane.number);
+    bool keep = true;
+    const bool open =
+        ImGui::CollapsingHeader(lane.algorithm.id.c_str(), &keep, ImGuiTreeNodeFlags_DefaultOpen);
+    ui.note("header");
+    ui.tooltip(lane.algorithm.summary.c_str());
+    if (open) {
+      bool changed = false;
+      bool shown = session.wish.shown_lane == lane.number;
+      if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
+        session.showLane(shown ? lane.number : 0);
+      }
+      changed |= drawExecution(ui, lane);
+      changed |= ui.parameters(*lane.parameters);
+      if (changed) session.lanesChanged();
+      if (ui.button("Remove")) keep = false;
+    }
+    ImGui::PopID();
+    return keep;
+  }
+
+  static bool drawExecution(Ui& ui, LaneEdit& lane) {
+    bool changed = false;
+    if (lane.algorithm.vectorised) {
+      std::vector<std::string> names;
+      std::size_t chosen = 0;
+      std::vector<Isa> isas;
+      for (const Isa isa : kAllIsas) {
+        if (!isaSupported(isa)) continue;
+        if (isa == lane.isa) chosen = isas.size();
+        isas.push_back(isa);
+        names.emplace_back(isaName(isa));
+      }
+      if (ui.combo("instruction set", chosen, names)) {
+        lane.isa = isas[chosen];
+        changed = true;
+      }
+    }
+    if (lane.algorithm.parallel) {
+      std::int64_t threads = lane.threads;
+      if (ui.integer("threads", threads, 1, 256, "Threads that share the work")) {
+        lane.threads = static_cast<int>(threads);
+        changed = true;
+      }
+    }
+    return changed;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<AlgorithmsPanel>(); }
+
+}  // namespace broadmark::panels::algorithms

@@ -1,0 +1,109 @@
+// The times of all frames as curves, live.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "app/inspector/curve_colours.h"
+#include "app/inspector/panel.h"
+#include "render/plot.h"
+
+namespace broadmark::panels::timings {
+namespace {
+
+class TimingsPanel final : public Panel {
+ public:
+  TimingsPanel() : Panel("Timings", Place::bottom, "Times of all frames as curves") {}
+
+  void draw(PanelContext& context) override {
+    drawControls(context.ui);
+    const std::vector<PlotCurve> curves = makeCurves(context);
+    const auto last = static_cast<double>(std::max(1U, context.session.lastFrame()));
+    if (!zoomed_) {
+      first_ = 0;
+      last_ = last;
+    }
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const PlotResult done = drawPlot("plot", curves,
+                                     {.logarithmic = logarithmic_,
+                                      .unit = quantity_ == 0 ? "" : "s",
+                                      .marked_frame = static_cast<double>(context.session.frame()),
+                                      .first = first_,
+                                      .last = last_,
+                                      .dark = context.ui.theme.dark},
+                                     room.x, room.y);
+    context.ui.note("plot");
+    if (done.clicked_frame) {
+      context.session.playback.playing = false;
+      context.session.seek(std::llround(*done.clicked_frame));
+    }
+    if (done.toggled) toggle(context.progress.lanes[*done.toggled].spec.number);
+    if (done.zoom != 0) zoom(done, last);
+  }
+
+ private:
+  void drawControls(Ui& ui) {
+    std::vector<std::string> names = {"pairs"};
+    for (const Phase phase : kAllPhases) names.emplace_back(phaseName(phase));
+    const float width = 150 * ui.scale;
+    ui.combo("##quantity", quantity_, names, "What is plotted", width);
+    ImGui::SameLine();
+    ui.checkbox("logarithmic", logarithmic_);
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!zoomed_);
+    if (ui.button("All frames", "Undoes zooming with the wheel")) zoomed_ = false;
+    ImGui::EndDisabled();
+  }
+
+  std::vector<PlotCurve> makeCurves(const PanelContext& context) const {
+    std::vector<PlotCurve> curves;
+    for (const LaneReport& lane : context.progress.lanes) {
+      PlotCurve& curve = curves.emplace_back();
+      curve.label = caseName(lane.spec.run);
+      curve.colour = curveColour(lane.spec.number, context.ui.theme.dark);
+      curve.hidden = hidden_.contains(lane.spec.number);
+      curve.values.assign(lane.frames.size() + 1, std::numeric_limits<double>::quiet_NaN());
+      for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
+        const FrameRecord* record = lane.record(frame);
+        if (record == nullptr) continue;
+        curve.values[frame] = quantityOf(*record);
+        if (record->disturbed) curve.disturbed.push_back(frame);
+      }
+    }
+    return curves;
+  }
+
+  [[nodiscard]] double quantityOf(const FrameRecord& record) const {
+    if (quantity_ == 0) return static_cast<double>(record.pairs);
+    return static_cast<double>(record.times.ns[quantity_ - 1]) * 1e-9;
+  }
+
+  void toggle(int lane) {
+    if (hidden_.erase(lane) == 0) hidden_.insert(lane);
+  }
+
+  void zoom(const PlotResult& done, double last) {
+    const double factor = std::pow(0.8, done.zoom);
+    const double span = std::clamp((last_ - first_) * factor, 4.0, last);
+    const double share = (done.zoom_at - first_) / (last_ - first_);
+    first_ = std::clamp(done.zoom_at - share * span, 0.0, std::max(last - span, 0.0));
+    last_ = first_ + span;
+    zoomed_ = span < last;
+  }
+
+  std::size_t quantity_ = kAllPhases.size();  // 0: pairs; then the phases: the last is the total
+  bool logarithmic_ = true;
+  bool zoomed_ = false;
+  double first_ = 0;
+  double last_ = 1;
+  std::set<int> hidden_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<TimingsPanel>(); }
+
+}  // namespace broadmark::panels::timings

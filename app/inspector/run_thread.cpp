@@ -1,0 +1,355 @@
+#include "app/inspector/run_thread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <set>
+
+namespace broadmark {
+namespace {
+
+/// How many frames of a tracked body are looked back at.
+constexpr std::uint32_t kTrackFrames = 60;
+
+std::vector<std::uint32_t> countOverlaps(std::size_t bodies, std::span<const Pair> pairs) {
+  std::vector<std::uint32_t> counts(bodies, 0);
+  for (const Pair& pair : pairs) {
+    // A faulty algorithm may name bodies that do not exist.
+    if (pair.a < bodies) ++counts[pair.a];
+    if (pair.b < bodies) ++counts[pair.b];
+  }
+  return counts;
+}
+
+std::vector<Pair> joined(PairRuns runs) {
+  std::vector<Pair> pairs;
+  pairs.reserve(pairCount(runs));
+  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  return pairs;
+}
+
+/// Whether the snapshot of one wish will do for the other.
+bool showSame(const Wish& a, const Wish& b) {
+  return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
+         a.tracked == b.tracked;
+}
+
+float share(std::uint32_t part, std::uint32_t whole) {
+  return whole == 0 ? 1.0F : static_cast<float>(part) / static_cast<float>(whole);
+}
+
+}  // namespace
+
+RunThread::RunThread() : thread_([this] { loop(); }) {}
+
+RunThread::~RunThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void RunThread::wish(Wish wish) {
+  {
+    const std::lock_guard lock(mutex_);
+    wished_ = std::move(wish);
+    ++wishes_;
+  }
+  changed_.notify_all();
+}
+
+void RunThread::look(const std::function<void(const RunProgress&)>& at) {
+  const std::lock_guard lock(mutex_);
+  at(progress_);
+}
+
+bool RunThread::settled() {
+  const std::lock_guard lock(mutex_);
+  return idle_ && taken_ == wishes_;
+}
+
+bool RunThread::settle(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, patience, [this] { return idle_ && taken_ == wishes_; });
+}
+
+void RunThread::withFootage(const std::function<void(Footage*)>& act) {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return errand_ == nullptr; });
+  errand_ = &act;
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return errand_ != &act; });
+}
+
+void RunThread::loop() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    const bool anew = taken_ != wishes_;
+    if (stopping_) return;
+    if (errand_ != nullptr) {
+      const auto* errand = errand_;
+      lock.unlock();
+      (*errand)(footage_.get());
+      lock.lock();
+      errand_ = nullptr;
+      changed_.notify_all();
+      continue;
+    }
+    if (anew) {
+      if (!showSame(current_, wished_)) shown_ = false;
+      current_ = wished_;
+      taken_ = wishes_;
+      idle_ = false;
+    }
+    if (idle_) {
+      changed_.wait(lock, [this] { return stopping_ || errand_ != nullptr || taken_ != wishes_; });
+      continue;
+    }
+    lock.unlock();
+    bool more = false;
+    try {
+      more = step();
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+    lock.lock();
+    if (more || taken_ != wishes_) continue;
+    idle_ = true;
+    progress_.doing.clear();
+    changed_.notify_all();
+  }
+}
+
+/// Does one piece of work; false when there is none left.
+bool RunThread::step() {
+  if (current_.footage != opened_) {
+    openFootage();
+    return true;
+  }
+  if (footage_ == nullptr) return false;
+  if (reconcileLanes()) return true;
+  if (advance()) return true;
+  if (shown_) return false;
+  show();
+  return true;
+}
+
+void RunThread::fail(std::string reason) {
+  const std::lock_guard lock(mutex_);
+  progress_.failure = std::move(reason);
+}
+
+void RunThread::tell(std::string doing, float fraction) {
+  const std::lock_guard lock(mutex_);
+  progress_.doing = std::move(doing);
+  progress_.fraction = fraction;
+}
+
+void RunThread::openFootage() {
+  tell(current_.footage ? fmt::format("opening {}", current_.footage->title) : "", 0);
+  lanes_.clear();
+  footage_.reset();
+  oracle_ = Oracle(std::size_t{256} << 20);
+  stop_.reset();
+  shown_ = false;
+  opened_ = current_.footage;
+  std::string failure;
+  try {
+    if (opened_) footage_ = opened_->open();
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  const std::lock_guard lock(mutex_);
+  progress_ = RunProgress{.footage = opened_, .failure = std::move(failure)};
+  if (footage_ == nullptr) return;
+  progress_.scene = footage_->scene();
+  progress_.known_frames = footage_->known();
+  progress_.live = footage_->live();
+}
+
+/// Brings the lanes in line with those wished for. Returns whether there was anything to do.
+bool RunThread::reconcileLanes() {
+  const auto stands = [&](std::size_t i) {
+    return i < lanes_.size() && lanes_[i]->spec().same(current_.lanes[i]);
+  };
+  bool same = lanes_.size() == current_.lanes.size();
+  for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
+  if (same) return false;
+
+  std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
+  lanes_.clear();
+  for (const LaneSpec& spec : current_.lanes) {
+    const auto found = std::ranges::find_if(
+        kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
+    lanes_.push_back(found != kept.end() ? std::move(*found) : std::make_unique<Lane>(spec));
+  }
+  kept.clear();
+  shown_ = false;
+  stop_.reset();
+  // Process-wide state serves one instance at a time.
+  std::set<std::string_view> taken;
+  for (const auto& lane : lanes_) {
+    const std::string_view exclusive =
+        lane->spec().run.algorithm.create()->capabilities().exclusive;
+    if (exclusive.empty() || taken.insert(exclusive).second) continue;
+    lane->fail(Status::unsupported,
+               fmt::format("another algorithm in the list uses the same {} already", exclusive));
+  }
+  const std::lock_guard lock(mutex_);
+  progress_.stop.reset();
+  progress_.lanes.clear();
+  for (const auto& lane : lanes_) progress_.lanes.push_back(lane->report());
+  return true;
+}
+
+std::uint32_t RunThread::target() const {
+  const std::uint32_t last = std::min(current_.frame, footage_->scene().frames);
+  return stop_ ? std::min(last, stop_->frame) : last;
+}
+
+/// Brings the footage and one lane a frame nearer to the target. Returns whether it had to.
+bool RunThread::advance() {
+  if (stop_ && (!current_.check || !current_.stop_at_mismatch ||
+                (current_.known_mismatch && *current_.known_mismatch >= stop_->frame))) {
+    stop_.reset();
+    const std::lock_guard lock(mutex_);
+    progress_.stop.reset();
+  }
+  if (const std::uint32_t wanted = target(); footage_->known() < wanted) {
+    tell(fmt::format("simulating frame {}", footage_->known() + 1),
+         share(footage_->known(), wanted));
+    footage_->extend();
+    const std::lock_guard lock(mutex_);
+    progress_.known_frames = footage_->known();
+    return true;
+  }
+  // The hindmost first: then all pass each frame before any goes on.
+  Lane* hindmost = nullptr;
+  for (const auto& lane : lanes_) {
+    if (!lane->report().runs()) continue;
+    const bool behind = !lane->standsAt(target());
+    if (!behind) continue;
+    const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
+    if (restarts) {
+      lane->restart(footage_->scene(), footage_->read(0));
+      report(*lane);
+      shown_ = false;
+      return true;
+    }
+    if (hindmost == nullptr || lane->report().frame < hindmost->report().frame) {
+      hindmost = lane.get();
+    }
+  }
+  if (hindmost == nullptr) {
+    const std::lock_guard lock(mutex_);
+    if (!progress_.snapshot || progress_.snapshot->footage != opened_ ||
+        progress_.snapshot->frame != target()) {
+      shown_ = false;
+    }
+    return false;
+  }
+  const std::uint32_t next = hindmost->report().frame + 1;
+  tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next), share(next, target()));
+  return advanceLane(*hindmost, footage_->read(next));
+}
+
+bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
+  shown_ = false;
+  lane.advance(frame, gate_);
+  if (current_.check && lane.report().runs() && lane.spec().run.algorithm.finds_pairs) {
+    const bool mismatch = lane.check(frame, oracle_).isMismatch();
+    const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
+    if (mismatch && !known && current_.stop_at_mismatch && (!stop_ || frame.index < stop_->frame)) {
+      stop_ = RunProgress::Stop{.frame = frame.index, .lane = lane.spec().number};
+      const std::lock_guard lock(mutex_);
+      progress_.stop = stop_;
+    }
+  }
+  report(lane);
+  return true;
+}
+
+void RunThread::report(const Lane& lane) {
+  const LaneReport& now = lane.report();
+  const std::lock_guard lock(mutex_);
+  const auto shown = std::ranges::find_if(progress_.lanes, [&](const LaneReport& report) {
+    return report.spec.number == now.spec.number;
+  });
+  if (shown == progress_.lanes.end()) return;
+  // Not all of its history: that only changes at the present frame.
+  std::vector<FrameRecord> frames = std::move(shown->frames);
+  frames.resize(now.frames.size());
+  if (now.frame > 0) frames[now.frame - 1] = now.frames[now.frame - 1];
+  *shown = {.spec = now.spec,
+            .status = now.status,
+            .reason = now.reason,
+            .frame = now.frame,
+            .initialize_ns = now.initialize_ns,
+            .margin = now.margin,
+            .frames = std::move(frames),
+            .counters = now.counters};
+}
+
+Lane* RunThread::shownLane() const {
+  for (const auto& lane : lanes_) {
+    if (lane->spec().number == current_.shown_lane && lane->standsAt(target()) && target() > 0) {
+      return lane.get();
+    }
+  }
+  return nullptr;
+}
+
+std::vector<Track> RunThread::tracks(std::uint32_t frame) {
+  std::vector<Track> tracks;
+  const std::uint32_t first = frame - std::min(frame, kTrackFrames - 1);
+  for (const std::uint32_t body : current_.tracked) {
+    if (body < footage_->scene().objects) tracks.push_back({.body = body, .first = first});
+  }
+  if (tracks.empty()) return tracks;
+  for (std::uint32_t index = first; index <= frame; ++index) {
+    const Frame past = footage_->read(index);
+    for (Track& track : tracks) track.boxes.push_back(past.boxes[track.body]);
+  }
+  return tracks;
+}
+
+void RunThread::show() {
+  const std::uint32_t index = target();
+  auto snapshot = std::make_shared<Snapshot>();
+  snapshot->footage = opened_;
+  snapshot->scene = footage_->scene();
+  snapshot->frame = index;
+  snapshot->tracks = tracks(index);
+  const auto copy = [&](std::uint32_t which) {
+    const Frame frame = footage_->read(which);
+    return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
+  };
+  if (index > 0) snapshot->boxes_before = copy(index - 1);
+  snapshot->boxes = copy(index);
+  const Frame frame{index, *snapshot->boxes};
+  if (Lane* lane = shownLane()) {
+    snapshot->lane = lane->spec().number;
+    snapshot->pairs = joined(lane->algorithm().overlaps());
+    if (current_.check && lane->spec().run.algorithm.finds_pairs) {
+      snapshot->checked = true;
+      snapshot->difference = lane->check(frame, oracle_);
+    }
+    if (current_.structure) {
+      auto structure = std::make_shared<RecordedDrawing>();
+      lane->algorithm().drawStructure(*structure);
+      snapshot->structure = std::move(structure);
+    }
+  } else {
+    const std::span<const Pair> pairs = oracle_.pairs(frame);
+    snapshot->pairs.assign(pairs.begin(), pairs.end());
+  }
+  snapshot->overlaps = countOverlaps(snapshot->boxes->size(), snapshot->pairs);
+  shown_ = true;
+  const std::lock_guard lock(mutex_);
+  progress_.snapshot = std::move(snapshot);
+}
+
+}  // namespace broadmark

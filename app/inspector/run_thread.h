@@ -1,0 +1,152 @@
+// The thread that runs algorithms while the user interface stays free.
+//
+// The interface states a wish: what to look at, which algorithms, up to which frame. The thread
+// brings about what is wished, one frame of one algorithm at a time, and takes up a changed wish in
+// between. Algorithms keep state from frame to frame, so each goes through all frames from the
+// first: who wants to see an earlier one gets a fresh instance that starts over.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/inspector/draw_gate.h"
+#include "app/inspector/footage.h"
+#include "app/inspector/lane.h"
+#include "broadmark/oracle.h"
+#include "broadmark/recorded_drawing.h"
+
+namespace broadmark {
+
+/// What to look at. Compared by address: the same one is opened once.
+struct FootageRequest {
+  /// Called on the run thread. Throws InputError.
+  std::function<std::unique_ptr<Footage>()> open;
+  std::string title;
+};
+
+/// What the interface wants.
+struct Wish {
+  std::shared_ptr<const FootageRequest> footage;
+  std::vector<LaneSpec> lanes;
+  std::uint32_t frame = 0;
+  bool check = true;  ///< compare every answer with the oracle's
+  /// Stay at the first frame in which an algorithm is wrong…
+  bool stop_at_mismatch = true;
+  /// …except up to this frame, where it is known already.
+  std::optional<std::uint32_t> known_mismatch;
+  int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
+  bool structure = false;              ///< whether its structure is looked at, too
+  std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
+};
+
+/// A body's boxes up to the shown frame.
+struct Track {
+  std::uint32_t body = 0;
+  std::uint32_t first = 0;  ///< the frame of the first box
+  std::vector<Aabb> boxes;
+};
+
+/// Everything to be seen of one frame. Immutable.
+struct Snapshot {
+  std::shared_ptr<const FootageRequest> footage;
+  SceneInfo scene;
+  std::uint32_t frame = 0;
+  std::shared_ptr<const std::vector<Aabb>> boxes;
+  std::shared_ptr<const std::vector<Aabb>> boxes_before;  ///< null for frame 0
+  int lane = 0;                                           ///< whose answer this is; 0: the oracle's
+  std::vector<Pair> pairs;                                ///< the answer
+  std::vector<std::uint32_t> overlaps;  ///< per body, in how many pairs of the answer it is
+  bool checked = false;
+  FrameDifference difference;                        ///< from the right answer, if checked
+  std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
+  std::vector<Track> tracks;
+};
+
+/// How far the wish has come true.
+struct RunProgress {
+  std::shared_ptr<const FootageRequest> footage;  ///< what is open
+  std::string failure;                            ///< why it could not be opened, or not be read on
+  SceneInfo scene;
+  std::uint32_t known_frames = 0;  ///< that exist already
+  bool live = false;               ///< more can be simulated
+  std::vector<LaneReport> lanes;
+  std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
+  /// The frame, and the lane's number, at which it stays for being wrong.
+  struct Stop {
+    std::uint32_t frame = 0;
+    int lane = 0;
+  };
+  std::optional<Stop> stop;
+  std::string doing;   ///< "" when all that is wished has come true
+  float fraction = 0;  ///< of what is being done
+};
+
+class RunThread {
+ public:
+  RunThread();
+  /// Ends after the frame that is being run.
+  ~RunThread();
+  RunThread(const RunThread&) = delete;
+  RunThread& operator=(const RunThread&) = delete;
+
+  void wish(Wish wish);
+  /// Looks at the progress, which stands still as long.
+  void look(const std::function<void(const RunProgress&)>& at);
+  /// Whether all that has been wished has come true (or failed).
+  [[nodiscard]] bool settled();
+  /// Waits for that. Returns whether it came in time.
+  bool settle(std::chrono::milliseconds patience);
+  /// Does something with the footage between two frames; nothing is open: null. Returns when done.
+  void withFootage(const std::function<void(Footage*)>& act);
+
+  DrawGate& gate() { return gate_; }
+
+ private:
+  void loop();
+  bool step();
+  void openFootage();
+  bool reconcileLanes();
+  bool advance();
+  bool advanceLane(Lane& lane, const Frame& frame);
+  void show();
+  void tell(std::string doing, float fraction);
+  void report(const Lane& lane);
+  void fail(std::string reason);
+  [[nodiscard]] std::uint32_t target() const;
+  [[nodiscard]] Lane* shownLane() const;
+  [[nodiscard]] std::vector<Track> tracks(std::uint32_t frame);
+
+  DrawGate gate_;
+
+  // Used by the thread alone.
+  Wish current_;
+  std::shared_ptr<const FootageRequest> opened_;
+  std::unique_ptr<Footage> footage_;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+  Oracle oracle_{std::size_t{256} << 20};
+  std::optional<RunProgress::Stop> stop_;
+  bool shown_ = false;  ///< whether the snapshot is what current_ wants
+
+  // Guarded by mutex_.
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Wish wished_;
+  std::uint64_t wishes_ = 0;
+  std::uint64_t taken_ = 0;  ///< of the wishes
+  bool idle_ = false;
+  bool stopping_ = false;
+  const std::function<void(Footage*)>* errand_ = nullptr;
+  RunProgress progress_;
+
+  std::thread thread_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,358 @@
+#include "app/inspector/script.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+/// How long a widget, or a value that is expected, may keep one waiting, in seconds.
+constexpr double kPatience = 60;
+constexpr double kIdlePatience = 2;  // where nothing goes on any more
+
+std::vector<std::string> splitWords(std::string_view line) {
+  std::vector<std::string> words;
+  std::string word;
+  bool quoted = false;
+  bool begun = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+      begun = true;
+    } else if (!quoted && c == '#' && !begun) {
+      break;
+    } else if (!quoted && (c == ' ' || c == '\t' || c == '\r')) {
+      if (begun) words.push_back(std::exchange(word, {}));
+      begun = false;
+    } else {
+      word += c;
+      begun = true;
+    }
+  }
+  if (begun) words.push_back(word);
+  return words;
+}
+
+std::optional<double> parseNumber(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+bool holds(const std::string& value, const std::string& relation, const std::string& wanted) {
+  if (relation == "=") return value == wanted;
+  if (relation == "!=") return value != wanted;
+  if (relation == "~") return value.find(wanted) != std::string::npos;
+  const auto a = parseNumber(value);
+  const auto b = parseNumber(wanted);
+  if (!a || !b) return false;
+  if (relation == "<") return *a < *b;
+  if (relation == ">") return *a > *b;
+  if (relation == "<=") return *a <= *b;
+  return *a >= *b;
+}
+
+ImVec2 within(const WidgetPlace& place, float x, float y) {
+  return {place.min.x + x * (place.max.x - place.min.x),
+          place.min.y + y * (place.max.y - place.min.y)};
+}
+
+InputEvent moveTo(ImVec2 at) { return {.kind = InputEvent::Kind::move, .x = at.x, .y = at.y}; }
+InputEvent buttonEvent(int button, bool down) {
+  return {.kind = InputEvent::Kind::button, .code = button, .down = down};
+}
+InputEvent keyEvent(Key key, bool down) {
+  return {.kind = InputEvent::Kind::key, .code = key, .down = down};
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+const std::vector<ScriptVerb>& scriptVerbs() {
+  using P = ScriptPlayer;
+  static const std::vector<ScriptVerb> kVerbs = {
+      {"click", "WIDGET", 1, 1, &P::click, "presses a widget, by name: \"Playback/Play\""},
+      {"doubleclick", "WIDGET", 1, 1, &P::doubleClick, "presses it twice"},
+      {"rightclick", "WIDGET", 1, 1, &P::rightClick, "presses it with the right button"},
+      {"enter", "WIDGET TEXT", 2, 2, &P::enter, "replaces what an input holds, and confirms it"},
+      {"choose", "WIDGET OPTION", 2, 2, &P::choose, "opens a list, and chooses from it"},
+      {"type", "TEXT", 1, 1, &P::type, "types letters into whatever has the focus"},
+      {"key", "KEYS", 1, 1, &P::key, "presses keys together: Space, Ctrl+O"},
+      {"move", "WIDGET X Y", 3, 3, &P::move,
+       "moves the mouse to a place in a widget, each from 0 to 1"},
+      {"drag", "WIDGET X Y X Y [BUTTON [KEY]]", 5, 7, &P::drag,
+       "drags from one place in a widget to another; with the left button (0) or the right one "
+       "(1), perhaps while Shift or Ctrl is down"},
+      {"wheel", "WIDGET TURNS", 2, 2, &P::wheel, "turns the wheel over a widget"},
+      {"panel", "NAME", 1, 1, &P::panel, "brings a panel to the front"},
+      {"open", "FILE", 1, 1, &P::open, "drops a file onto the window"},
+      {"wait", "settled|PICTURES", 1, 1, &P::wait,
+       "until all that is wished for is computed, or for some pictures"},
+      {"expect", "VALUE RELATION TEXT", 3, 3, &P::expect,
+       "waits for a value of the session to be =, !=, <, >, <= or >= to the text, or to contain it "
+       "(~), and fails when that does not come"},
+      {"resize", "WIDTHxHEIGHT", 1, 1, &P::resize, "changes the size of the picture"},
+      {"screenshot", "FILE", 1, 1, &P::screenshot, "saves what is seen"},
+  };
+  return kVerbs;
+}
+
+std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name) {
+  std::vector<std::string> known;
+  for (const ScriptVerb& verb : scriptVerbs()) known.emplace_back(verb.name);
+  std::vector<ScriptLine> lines;
+  int number = 0;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::vector<std::string> words = splitWords(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    ++number;
+    if (words.empty()) continue;
+    const auto place = std::ranges::find(known, words[0]);
+    if (place == known.end()) {
+      throw InputError(
+          fmt::format("{}: line {}: {}", name, number, unknownName("verb", words[0], known)));
+    }
+    const ScriptVerb& verb = scriptVerbs()[static_cast<std::size_t>(place - known.begin())];
+    words.erase(words.begin());
+    if (words.size() < verb.fewest || words.size() > verb.most) {
+      throw InputError(
+          fmt::format("{}: line {}: '{} {}' is expected", name, number, verb.name, verb.arguments));
+    }
+    lines.push_back({.number = number, .verb = &verb, .words = std::move(words)});
+  }
+  return lines;
+}
+
+ScriptPlayer::ScriptPlayer(std::vector<ScriptLine> lines, std::string name)
+    : lines_(std::move(lines)), name_(std::move(name)) {}
+
+void ScriptPlayer::fail(const std::string& what) const {
+  throw InputError(fmt::format("{}: line {}: {}", name_, number_, what));
+}
+
+const WidgetPlace& ScriptPlayer::place(Inspector& inspector, const std::string& widget) const {
+  const WidgetPlace* found = inspector.ui().find(widget);
+  if (found != nullptr) return *found;
+  std::vector<std::string> names;
+  for (const auto& [name, where] : inspector.ui().places()) names.push_back(name);
+  fail(unknownName("widget", widget, names));
+}
+
+void ScriptPlayer::update(Inspector& inspector, InputQueue& input) {
+  while (true) {
+    if (!input.empty()) return;  // the last picture has not taken everything in
+    if (!steps_.empty()) {
+      if (!steps_.front()(inspector, input)) return;
+      steps_.erase(steps_.begin());
+      return;
+    }
+    if (next_ == lines_.size()) return;
+    const ScriptLine line = lines_[next_++];
+    number_ = line.number;
+    (this->*line.verb->begin)(line.words, inspector);
+  }
+}
+
+void ScriptPlayer::push(InputEvent event) {
+  steps_.push_back([event](Inspector&, InputQueue& input) {
+    input.push(event);
+    return true;
+  });
+}
+
+/// Waits until the widget is there and in sight.
+void ScriptPlayer::reveal(const std::string& widget) {
+  const auto start = std::chrono::steady_clock::now();
+  int pictures = 0;
+  steps_.push_back([this, widget, start, pictures](Inspector& inspector, InputQueue&) mutable {
+    const WidgetPlace* found = inspector.ui().find(widget);
+    ++pictures;
+    if (found != nullptr && found->visible) {
+      if (!found->enabled) fail(fmt::format("the widget '{}' is disabled", widget));
+      return pictures > 1;  // it stands still by then
+    }
+    if (found == nullptr) {
+      // Perhaps in a panel that is behind another.
+      const std::string panel = widget.substr(0, widget.find('/'));
+      if (inspector.panel(panel) != nullptr && pictures < 3) inspector.showPanel(panel);
+    } else {
+      inspector.ui().reveal(widget);
+    }
+    if (pictures > 30 && secondsSince(start) > kIdlePatience) {
+      if (found != nullptr) fail(fmt::format("the widget '{}' is out of sight", widget));
+      static_cast<void>(place(inspector, widget));  // fails, with the nearest name
+    }
+    return false;
+  });
+}
+
+void ScriptPlayer::moveInto(const std::string& widget, float x, float y) {
+  steps_.push_back([this, widget, x, y](Inspector& inspector, InputQueue& input) {
+    input.push(moveTo(within(place(inspector, widget), x, y)));
+    return true;
+  });
+}
+
+void ScriptPlayer::pause() {
+  steps_.emplace_back([](Inspector&, InputQueue&) { return true; });
+}
+
+double ScriptPlayer::number(const std::string& text) const {
+  const auto value = parseNumber(text);
+  if (!value) fail(fmt::format("'{}' is not a number", text));
+  return *value;
+}
+
+void ScriptPlayer::pressAt(const std::string& widget, int button, int times) {
+  reveal(widget);
+  moveInto(widget, 0.5F, 0.5F);
+  for (int time = 0; time < times; ++time) {
+    push(buttonEvent(button, true));
+    push(buttonEvent(button, false));
+  }
+}
+
+void ScriptPlayer::click(const Words& words, Inspector&) { pressAt(words[0], 0, 1); }
+void ScriptPlayer::doubleClick(const Words& words, Inspector&) { pressAt(words[0], 0, 2); }
+void ScriptPlayer::rightClick(const Words& words, Inspector&) { pressAt(words[0], 1, 1); }
+
+void ScriptPlayer::enter(const Words& words, Inspector& inspector) {
+  pressAt(words[0], 0, 1);
+  key({"Ctrl+A"}, inspector);
+  type({words[1]}, inspector);
+  key({"Enter"}, inspector);
+}
+
+void ScriptPlayer::choose(const Words& words, Inspector&) {
+  pressAt(words[0], 0, 1);
+  pressAt(fmt::format("{}/{}", words[0], words[1]), 0, 1);
+}
+
+void ScriptPlayer::type(const Words& words, Inspector&) {
+  steps_.push_back([text = words[0]](Inspector&, InputQueue& input) {
+    for (const char c : text) {
+      input.push({.kind = InputEvent::Kind::character, .code = static_cast<unsigned char>(c)});
+    }
+    return true;
+  });
+}
+
+void ScriptPlayer::key(const Words& words, Inspector&) {
+  const std::string& combination = words[0];
+  std::vector<Key> keys;
+  for (std::size_t start = 0; start <= combination.size();) {
+    const std::size_t end = std::min(combination.find('+', start), combination.size());
+    const std::string name = combination.substr(start, end - start);
+    keys.push_back(keyNamed(name));
+    if (keys.back() == 0) fail(fmt::format("there is no key '{}'", name));
+    start = end + 1;
+  }
+  for (const Key key : keys) push(keyEvent(key, true));
+  for (auto key = keys.rbegin(); key != keys.rend(); ++key) push(keyEvent(*key, false));
+}
+
+void ScriptPlayer::move(const Words& words, Inspector&) {
+  reveal(words[0]);
+  moveInto(words[0], static_cast<float>(number(words[1])), static_cast<float>(number(words[2])));
+}
+
+void ScriptPlayer::drag(const Words& words, Inspector&) {
+  const std::string& widget = words[0];
+  std::array<float, 4> at{};
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = static_cast<float>(number(words[i + 1]));
+  const int button = words.size() > 5 ? static_cast<int>(number(words[5])) : 0;
+  const Key held = words.size() > 6 ? keyNamed(words[6]) : 0;
+  reveal(widget);
+  moveInto(widget, at[0], at[1]);
+  if (held != 0) push(keyEvent(held, true));
+  push(buttonEvent(button, true));
+  for (const float share : {0.25F, 0.5F, 0.75F, 1.0F}) {
+    moveInto(widget, at[0] + share * (at[2] - at[0]), at[1] + share * (at[3] - at[1]));
+  }
+  push(buttonEvent(button, false));
+  if (held != 0) push(keyEvent(held, false));
+}
+
+void ScriptPlayer::wheel(const Words& words, Inspector&) {
+  reveal(words[0]);
+  moveInto(words[0], 0.5F, 0.5F);
+  push({.kind = InputEvent::Kind::wheel, .y = static_cast<float>(number(words[1]))});
+}
+
+void ScriptPlayer::panel(const Words& words, Inspector& inspector) {
+  if (inspector.panel(words[0]) == nullptr) {
+    fail(fmt::format("there is no panel '{}'", words[0]));
+  }
+  inspector.showPanel(words[0]);
+  pause();
+}
+
+void ScriptPlayer::open(const Words& words, Inspector& inspector) {
+  inspector.session().open(words[0]);
+  pause();
+}
+
+void ScriptPlayer::wait(const Words& words, Inspector&) {
+  if (words[0] != "settled") {
+    for (double left = number(words[0]); left > 0; --left) pause();
+    return;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  int pictures = 0;
+  steps_.push_back([this, start, pictures](Inspector& inspector, InputQueue&) mutable {
+    if (secondsSince(start) > 10 * kPatience) fail("it does not come to rest");
+    return ++pictures > 2 && inspector.session().runs.settled();
+  });
+}
+
+void ScriptPlayer::expect(const Words& words, Inspector&) {
+  const std::string& relation = words[1];
+  constexpr const char* kRelations[] = {"=", "!=", "<", ">", "<=", ">=", "~"};
+  if (std::ranges::find(kRelations, relation) == std::end(kRelations)) {
+    fail(fmt::format("'{}' is none of = != < > <= >= ~", relation));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  steps_.push_back([this, words, start](Inspector& inspector, InputQueue&) {
+    const std::optional<std::string> now = inspector.value(words[0]);
+    if (now && holds(*now, words[1], words[2])) return true;
+    // It may yet become so, as long as something goes on.
+    const bool idle = inspector.session().runs.settled() && !inspector.session().playback.playing;
+    if (secondsSince(start) < (idle ? kIdlePatience : kPatience)) return false;
+    if (!now) fail(fmt::format("there is no value '{}'", words[0]));
+    fail(fmt::format("{} {} {} is expected, but it is '{}'", words[0], words[1], words[2], *now));
+  });
+}
+
+void ScriptPlayer::resize(const Words& words, Inspector&) {
+  const std::size_t x = words[0].find('x');
+  if (x == std::string::npos) {
+    fail(fmt::format("'{}' is not of the form WIDTHxHEIGHT", words[0]));
+  }
+  const auto side = [&](const std::string& text) {
+    return static_cast<int>(std::clamp(number(text), 1.0, 16384.0));
+  };
+  resize_ = {side(words[0].substr(0, x)), side(words[0].substr(x + 1))};
+  pause();
+  pause();
+}
+
+void ScriptPlayer::screenshot(const Words& words, Inspector&) {
+  screenshot_ = words[0];
+  pause();
+}
+
+}  // namespace broadmark

@@ -1,0 +1,99 @@
+// Scripts: what a user would do, line by line, with assertions; for demonstrations and tests.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/inspector/inspector.h"
+
+namespace broadmark {
+
+class ScriptPlayer;
+
+/// What a line of a script can begin with.
+struct ScriptVerb {
+  using Words = std::vector<std::string>;
+
+  const char* name;
+  const char* arguments;  ///< for people: "WIDGET TEXT"
+  std::size_t fewest;     ///< words that follow it
+  std::size_t most;
+  void (ScriptPlayer::*begin)(const Words&, Inspector&);
+  const char* doc;
+};
+const std::vector<ScriptVerb>& scriptVerbs();
+
+/// One line of a script.
+struct ScriptLine {
+  int number = 0;  ///< in its file, from 1
+  const ScriptVerb* verb = nullptr;
+  ScriptVerb::Words words;  ///< what follows it; "quoted text" is one word
+};
+
+/// Throws InputError naming `name`, the line and what would be right.
+std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name);
+
+/// Goes through a script, picture by picture.
+class ScriptPlayer {
+ public:
+  ScriptPlayer(std::vector<ScriptLine> lines, std::string name);
+
+  /// Before a picture: feeds `input`, or looks at what the last picture shows. Throws InputError,
+  /// naming the line, when a widget is not there or an assertion fails.
+  void update(Inspector& inspector, InputQueue& input);
+  [[nodiscard]] bool done() const { return next_ == lines_.size() && steps_.empty(); }
+
+  /// Asked to change the size of the picture; taken by whoever owns the target.
+  std::optional<std::pair<int, int>> takeResize() { return std::exchange(resize_, {}); }
+  /// Asked for a picture; likewise.
+  std::optional<std::filesystem::path> takeScreenshot() { return std::exchange(screenshot_, {}); }
+
+ private:
+  friend const std::vector<ScriptVerb>& scriptVerbs();
+  using Words = ScriptVerb::Words;
+  /// Something that lasts until it returns true.
+  using Step = std::function<bool(Inspector&, InputQueue&)>;
+
+  // The verbs: each puts down the steps that it takes.
+  void click(const Words& words, Inspector& inspector);
+  void doubleClick(const Words& words, Inspector& inspector);
+  void rightClick(const Words& words, Inspector& inspector);
+  void enter(const Words& words, Inspector& inspector);
+  void choose(const Words& words, Inspector& inspector);
+  void type(const Words& words, Inspector& inspector);
+  void key(const Words& words, Inspector& inspector);
+  void move(const Words& words, Inspector& inspector);
+  void drag(const Words& words, Inspector& inspector);
+  void wheel(const Words& words, Inspector& inspector);
+  void panel(const Words& words, Inspector& inspector);
+  void open(const Words& words, Inspector& inspector);
+  void wait(const Words& words, Inspector& inspector);
+  void expect(const Words& words, Inspector& inspector);
+  void resize(const Words& words, Inspector& inspector);
+  void screenshot(const Words& words, Inspector& inspector);
+
+  void pressAt(const std::string& widget, int button, int times);
+  void moveInto(const std::string& widget, float x, float y);
+  void reveal(const std::string& widget);
+  void push(InputEvent event);
+  /// Lets one picture pass.
+  void pause();
+  [[nodiscard]] double number(const std::string& text) const;
+  [[nodiscard]] const WidgetPlace& place(Inspector& inspector, const std::string& widget) const;
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::vector<ScriptLine> lines_;
+  std::string name_;
+  std::size_t next_ = 0;
+  int number_ = 0;           ///< of the line being played
+  std::vector<Step> steps_;  ///< still to be done for it
+  std::optional<std::pair<int, int>> resize_;
+  std::optional<std::filesystem::path> screenshot_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,305 @@
+#include "app/inspector/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/cases.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool sameWish(const Wish& a, const Wish& b) {
+  return a.footage == b.footage && a.frame == b.frame && a.check == b.check &&
+         a.stop_at_mismatch == b.stop_at_mismatch && a.known_mismatch == b.known_mismatch &&
+         a.shown_lane == b.shown_lane && a.structure == b.structure && a.tracked == b.tracked &&
+         std::ranges::equal(a.lanes, b.lanes,
+                            [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
+}
+
+/// At most so many bodies are followed through the last frames.
+constexpr std::size_t kMostTracked = 2;
+
+}  // namespace
+
+LaneSpec LaneEdit::spec() const {
+  const std::unique_ptr<BroadPhase> fresh = algorithm.create();
+  ParameterValues changed = parameterValues(*parameters);
+  const ParameterValues defaults = parameterValues(*fresh);
+  std::erase_if(changed, [&](const auto& value) {
+    return defaults.contains(value.first) && defaults.at(value.first) == value.second;
+  });
+  return {.number = number,
+          .run = {.algorithm = algorithm,
+                  .isa = algorithm.vectorised ? isa : Isa::scalar,
+                  .threads = algorithm.parallel ? threads : 1,
+                  .device = device,
+                  .parameters = std::move(changed)}};
+}
+
+Session::Session(std::vector<Algorithm> available)
+    : algorithms(std::move(available)), draft(makeSimulation("freefall")) {}
+
+void Session::advance(const RunProgress& progress, double seconds) {
+  if (progress.footage != wish.footage || !progress.footage) return;
+  scene_ = progress.scene;
+  if (progress.failure != noticed_failure_) {
+    noticed_failure_ = progress.failure;
+    if (!progress.failure.empty()) {
+      playback.playing = false;
+      complain(progress.failure);
+    }
+  }
+  wish.frame = std::min(wish.frame, scene_.frames);
+  noticeStop(progress);
+  const bool there = progress.doing.empty() && progress.snapshot &&
+                     progress.snapshot->footage == wish.footage &&
+                     progress.snapshot->frame == wish.frame;
+  if (!playback.playing || !there) return;
+  playback.due += seconds * playback.frames_per_second;
+  if (playback.due < 1) return;
+  const double frames = std::floor(playback.due);
+  playback.due = std::min(playback.due - frames, 1.0);
+  if (wish.frame == scene_.frames) {
+    if (playback.loop) {
+      wish.frame = 0;
+    } else {
+      playback.playing = false;
+    }
+    return;
+  }
+  // What cannot keep pace is shown frame by frame.
+  seek(wish.frame + static_cast<std::int64_t>(std::min(frames, 4.0)));
+}
+
+void Session::noticeStop(const RunProgress& progress) {
+  if (!progress.stop) {
+    noticed_stop_.reset();
+    return;
+  }
+  const bool known = wish.known_mismatch && *wish.known_mismatch >= progress.stop->frame;
+  if (known || (noticed_stop_ && noticed_stop_->frame == progress.stop->frame)) return;
+  noticed_stop_ = progress.stop;
+  playback.playing = false;
+  wish.frame = progress.stop->frame;
+  wish.shown_lane = progress.stop->lane;
+  wanted_panels.emplace_back("Mismatches");
+  const LaneEdit* wrong = lane(progress.stop->lane);
+  say(fmt::format("{} is wrong in frame {}", wrong ? wrong->algorithm.id : "an algorithm",
+                  progress.stop->frame),
+      Message::Kind::error);
+}
+
+void Session::commit() {
+  wish.structure = view.structure;
+  wish.tracked = selection;
+  if (wish.tracked.size() > kMostTracked) wish.tracked.clear();
+  if (!sameWish(wish, committed_)) {
+    committed_ = wish;
+    runs.wish(wish);
+  }
+  for (const auto& act : std::exchange(put_off_, {})) attempt(act);
+}
+
+void Session::chooseScene(const std::string& scene, const std::string& engine) {
+  ParameterValues values = parameterValues(*draft);
+  draft = makeSimulation(scene, engine);
+  // What both scenes have in common and the user has probably chosen.
+  for (const char* shared : {"objects", "frames", "object_type", "seed", "engine"}) {
+    const auto value = values.find(shared);
+    const ParameterValues there = parameterValues(*draft);
+    if (value == values.end() || !there.contains(shared)) continue;
+    if (std::string(shared) == "engine" && !engine.empty()) continue;
+    setParameters(*draft, {*value});
+  }
+}
+
+void Session::simulate() {
+  const std::string text = formatSceneParameters(*draft);
+  source_path.clear();
+  show(fmt::format("{} (live)", draft->listing().name), [text] {
+    return std::make_unique<Footage>(parseSceneParameters(text, "scene parameters"));
+  });
+}
+
+void Session::show(std::string title, std::function<std::unique_ptr<Footage>()> open) {
+  wish.footage = std::make_shared<const FootageRequest>(
+      FootageRequest{.open = std::move(open), .title = std::move(title)});
+  wish.frame = 0;
+  wish.known_mismatch.reset();
+  noticed_stop_.reset();
+  noticed_failure_.clear();
+  playback.due = 0;
+  selection.clear();
+  scene_ = {};
+}
+
+void Session::open(const fs::path& path) {
+  attempt([&] {
+    const std::string extension = path.extension().string();
+    if (extension == ".json") {
+      openJson(path);
+    } else {
+      openRecordingFile(path);  // a bad one is told at once, and what is looked at stays
+      show(path.filename().string(),
+           [path] { return std::make_unique<Footage>(openRecordingFile(path)); });
+      source_path = path;
+    }
+    if (on_file) on_file(path);
+  });
+}
+
+void Session::openJson(const fs::path& path) {
+  const std::string text = readTextFile(path);
+  draft = parseSceneParameters(text, path.string());
+  simulate();
+}
+
+void Session::saveRecording(const fs::path& path) {
+  later([this, path] {
+    bool saved = false;
+    std::string failure;
+    runs.withFootage([&](Footage* footage) {
+      try {
+        if (footage == nullptr) throw InputError("nothing is open that could be recorded");
+        footage->save(path);
+        saved = true;
+      } catch (const std::exception& error) {
+        failure = error.what();
+      }
+    });
+    if (!saved) throw InputError(failure);
+    say(fmt::format("recorded: {}", path.string()));
+    if (on_file) on_file(path);
+  });
+}
+
+void Session::play(bool on) {
+  if (on && wish.frame == scene_.frames && scene_.frames > 0) wish.frame = 0;
+  if (on) acknowledgeStop();
+  playback.playing = on;
+  playback.due = 0;
+}
+
+void Session::acknowledgeStop() {
+  if (noticed_stop_) wish.known_mismatch = noticed_stop_->frame;
+}
+
+void Session::seek(std::int64_t frame) {
+  const auto last = static_cast<std::int64_t>(scene_.frames);
+  const auto wanted = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
+  if (wanted > wish.frame) acknowledgeStop();
+  wish.frame = wanted;
+}
+
+void Session::step(int frames) {
+  playback.playing = false;
+  seek(static_cast<std::int64_t>(wish.frame) + frames);
+}
+
+LaneEdit& Session::addLane(const std::string& algorithm_id) {
+  const auto found = std::ranges::find(algorithms, algorithm_id, &Algorithm::id);
+  if (found == algorithms.end()) {
+    std::vector<std::string> ids;
+    for (const Algorithm& algorithm : algorithms) ids.push_back(algorithm.id);
+    throw InputError(unknownName("algorithm", algorithm_id, ids));
+  }
+  LaneEdit& added = lanes.emplace_back();
+  added.number = ++last_lane_number_;
+  added.algorithm = *found;
+  added.parameters = found->create();
+  added.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (lanes.size() == 1) wish.shown_lane = added.number;
+  lanesChanged();
+  return added;
+}
+
+void Session::removeLane(int number) {
+  std::erase_if(lanes, [&](const LaneEdit& edit) { return edit.number == number; });
+  if (wish.shown_lane == number) wish.shown_lane = lanes.empty() ? 0 : lanes.front().number;
+  lanesChanged();
+}
+
+void Session::showLane(int number) { wish.shown_lane = number; }
+
+void Session::lanesChanged() {
+  wish.lanes.clear();
+  for (const LaneEdit& edit : lanes) wish.lanes.push_back(edit.spec());
+  wish.known_mismatch.reset();
+  noticed_stop_.reset();
+}
+
+LaneEdit* Session::lane(int number) {
+  const auto found = std::ranges::find(lanes, number, &LaneEdit::number);
+  return found == lanes.end() ? nullptr : &*found;
+}
+
+void Session::select(std::vector<std::uint32_t> bodies) {
+  std::ranges::sort(bodies);
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  std::erase_if(bodies, [&](std::uint32_t body) { return body >= scene_.objects; });
+  selection = std::move(bodies);
+}
+
+void Session::toggleSelected(std::uint32_t body) {
+  const auto place = std::ranges::lower_bound(selection, body);
+  if (place != selection.end() && *place == body) {
+    selection.erase(place);
+  } else {
+    selection.insert(place, body);
+  }
+}
+
+bool Session::isSelected(std::uint32_t body) const {
+  return std::ranges::binary_search(selection, body);
+}
+
+void Session::visit(Pair pair) {
+  select({pair.a, pair.b});
+  fly_to = selection;
+}
+
+void Session::say(std::string text, Message::Kind kind) { status = {kind, std::move(text)}; }
+
+void Session::complain(std::string text) {
+  say(text, Message::Kind::error);
+  errors.push_back(std::move(text));
+}
+
+bool Session::attempt(const std::function<void()>& act) {
+  try {
+    act();
+    return true;
+  } catch (const std::bad_alloc&) {
+    complain("out of memory");
+  } catch (const std::exception& error) {
+    complain(error.what());
+  }
+  return false;
+}
+
+std::string formatFrameTable(const RunProgress& progress) {
+  std::string table = "algorithm,isa,threads,frame";
+  for (const Phase phase : kAllPhases) table += fmt::format(",{}_ns", phaseName(phase));
+  table += ",pairs,missed,extra,checked,disturbed\n";
+  for (const LaneReport& lane : progress.lanes) {
+    const Case& run = lane.spec.run;
+    for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
+      const FrameRecord* record = lane.record(frame);
+      if (record == nullptr) continue;
+      table += fmt::format("{},{},{},{}", run.algorithm.id, isaName(run.isa), run.threads, frame);
+      for (const Phase phase : kAllPhases) table += fmt::format(",{}", record->times[phase]);
+      table += fmt::format(",{},{},{},{:d},{:d}\n", record->pairs, record->missed, record->extra,
+                           record->checked, record->disturbed);
+    }
+  }
+  return table;
+}
+
+}  // namespace broadmark

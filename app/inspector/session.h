@@ -1,0 +1,157 @@
+// What the inspector is about, without any drawing: the scene that is looked at, the algorithms,
+// the playback, the selection. Panels show and edit it; advance() moves it on.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/inspector/run_thread.h"
+#include "broadmark/algorithm.h"
+#include "broadmark/pair.h"
+#include "scenes/simulation.h"
+
+namespace broadmark {
+
+struct Playback {
+  bool playing = false;
+  bool loop = false;
+  double frames_per_second = 30;  ///< no more; an algorithm may need longer
+  double due = 0;                 ///< of the next frame, as a share of its time
+};
+
+/// An algorithm in the list, as it is edited. What runs is the case made from it.
+struct LaneEdit {
+  int number = 0;
+  Algorithm algorithm;
+  std::unique_ptr<BroadPhase> parameters;  ///< holds their values; never run
+  Isa isa = bestIsa();
+  int threads = 1;
+  std::string device;
+
+  [[nodiscard]] LaneSpec spec() const;
+};
+
+/// How the scene is shown.
+struct ViewOptions {
+  std::size_t colouring = 0;  ///< which of the colour modes
+  bool hide_free = false;     ///< show only what overlaps
+  bool pair_lines = false;    ///< a line between the centres of overlapping bodies…
+  bool lines_of_all = false;  ///< …of all pairs, not only those of the selection
+  bool world_box = true;
+  bool ground = true;
+  bool axes = true;
+  bool structure = false;      ///< what the shown algorithm draws of itself
+  bool structure_near = true;  ///< only around the selection, if there is one
+  int structure_level = -1;    ///< only this depth; -1: all
+};
+
+/// A line for the status bar.
+struct Message {
+  enum class Kind { note, warning, error };
+  Kind kind = Kind::note;
+  std::string text;
+};
+
+class Session {
+ public:
+  /// Algorithms that can be chosen.
+  explicit Session(std::vector<Algorithm> algorithms);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Once per picture: takes note of what has been achieved, and moves the playback on.
+  void advance(const RunProgress& progress, double seconds);
+  /// Hands the wish to the run thread if it has changed, and does what was put off. Not while the
+  /// progress is looked at.
+  void commit();
+
+  // Source.
+  /// Begins a live simulation with the draft's present parameters.
+  void simulate();
+  /// Takes over another built-in scene as the draft.
+  void chooseScene(const std::string& scene, const std::string& engine = {});
+  /// Opens a file of any kind that can be looked at. A bad one becomes an error message.
+  void open(const std::filesystem::path& path);
+  /// Shows what `open` gives, from frame 0 on.
+  void show(std::string title, std::function<std::unique_ptr<Footage>()> open);
+  /// Writes the frames known so far as a recording.
+  void saveRecording(const std::filesystem::path& path);
+
+  // Playback. Frames out of range are brought into it.
+  void play(bool on);
+  void seek(std::int64_t frame);
+  void step(int frames);
+
+  // Algorithms.
+  LaneEdit& addLane(const std::string& algorithm_id);
+  void removeLane(int number);
+  void showLane(int number);
+  /// To be called after a lane was edited.
+  void lanesChanged();
+  [[nodiscard]] LaneEdit* lane(int number);
+
+  // Selection: bodies, ascending.
+  void select(std::vector<std::uint32_t> bodies);
+  void toggleSelected(std::uint32_t body);
+  [[nodiscard]] bool isSelected(std::uint32_t body) const;
+  /// Selects the bodies of a pair and looks at them.
+  void visit(Pair pair);
+
+  // Messages.
+  void say(std::string text, Message::Kind kind = Message::Kind::note);
+  /// An error that the user has to acknowledge.
+  void complain(std::string text);
+  /// Does something, turning what it throws into an error message. Returns whether all went well.
+  bool attempt(const std::function<void()>& act);
+  /// Does something once nobody looks at the progress.
+  void later(std::function<void()> act) { put_off_.push_back(std::move(act)); }
+
+  /// The frame that is wished for.
+  [[nodiscard]] std::uint32_t frame() const { return wish.frame; }
+  [[nodiscard]] std::uint32_t lastFrame() const { return scene_.frames; }
+  [[nodiscard]] const SceneInfo& scene() const { return scene_; }
+
+  std::vector<Algorithm> algorithms;
+  std::unique_ptr<Simulation> draft;  ///< the scene that Simulate starts
+  std::vector<LaneEdit> lanes;
+  Playback playback;
+  ViewOptions view;
+  std::vector<std::uint32_t> selection;
+  /// What the view has been asked to fly to; taken by whoever draws it.
+  std::optional<std::vector<std::uint32_t>> fly_to;
+  /// Panels that shall come to the front in the next picture, by name.
+  std::vector<std::string> wanted_panels;
+  Message status;
+  std::deque<std::string> errors;     ///< not yet acknowledged
+  std::filesystem::path source_path;  ///< of the recording that is looked at; "": none
+  /// Called when a file has been opened or saved.
+  std::function<void(const std::filesystem::path&)> on_file;
+
+  Wish wish;  ///< edit it and it is committed
+  RunThread runs;
+
+ private:
+  void noticeStop(const RunProgress& progress);
+  /// Who goes on knows of the mismatch at which it stopped.
+  void acknowledgeStop();
+  void openJson(const std::filesystem::path& path);
+
+  SceneInfo scene_;
+  std::optional<RunProgress::Stop> noticed_stop_;
+  std::string noticed_failure_;
+  std::vector<std::function<void()>> put_off_;
+  Wish committed_;
+  int last_lane_number_ = 0;
+};
+
+/// Of each lane every frame that has been run, as CSV: one line per lane and frame, times in
+/// nanoseconds.
+std::string formatFrameTable(const RunProgress& progress);
+
+}  // namespace broadmark

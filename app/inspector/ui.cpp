@@ -1,0 +1,362 @@
+#include "app/inspector/ui.h"
+
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace broadmark {
+namespace {
+
+/// Inputs are as wide as this share of their panel; their labels stand in the rest.
+constexpr float kInputShare = 0.52F;
+constexpr float kTooltipDelay = 0.45F;  // seconds
+
+ImVec4 vec(Rgb rgb, float alpha = 1) {
+  const auto component = [&](int shift) {
+    return static_cast<float>((rgb >> shift) & 0xFFU) / 255.0F;
+  };
+  return {component(16), component(8), component(0), alpha};
+}
+
+/// What of a label is its name: the part before "##", or, if that is empty, after it; what stays
+/// the same of a label that changes, "Pause###Play", in any case.
+std::string_view nameOf(std::string_view label) {
+  if (const std::size_t lasting = label.find("###"); lasting != label.npos) {
+    return label.substr(lasting + 3);
+  }
+  const std::size_t split = label.find("##");
+  if (split == 0) return label.substr(2);
+  return label.substr(0, split);
+}
+
+/// The colours that differ between light and dark.
+struct Palette {
+  Rgb window, panel, input, hover, border, text, faint, accent, header;
+};
+constexpr Palette kDark = {0x17191D, 0x1E2126, 0x2A2E35, 0x383E48, 0x343941,
+                           0xE4E7EB, 0x8D96A3, 0x3D8BFD, 0x2C313A};
+constexpr Palette kLight = {0xE9ECF0, 0xF7F8FA, 0xFFFFFF, 0xDCE4EE, 0xCBD2DA,
+                            0x1C232B, 0x66707C, 0x1F6FEB, 0xDDE3EA};
+
+void setColours(const Palette& p) {
+  ImVec4* colours = ImGui::GetStyle().Colors;
+  const auto set = [&](ImGuiCol_ which, Rgb rgb, float alpha = 1) {
+    colours[which] = vec(rgb, alpha);
+  };
+  set(ImGuiCol_Text, p.text);
+  set(ImGuiCol_TextDisabled, p.faint);
+  set(ImGuiCol_WindowBg, p.panel);
+  set(ImGuiCol_ChildBg, p.panel, 0);
+  set(ImGuiCol_PopupBg, p.panel);
+  set(ImGuiCol_Border, p.border);
+  set(ImGuiCol_BorderShadow, p.border, 0);
+  set(ImGuiCol_FrameBg, p.input);
+  set(ImGuiCol_FrameBgHovered, p.hover);
+  set(ImGuiCol_FrameBgActive, p.hover);
+  set(ImGuiCol_TitleBg, p.window);
+  set(ImGuiCol_TitleBgActive, p.header);
+  set(ImGuiCol_TitleBgCollapsed, p.window);
+  set(ImGuiCol_MenuBarBg, p.window);
+  set(ImGuiCol_ScrollbarBg, p.panel, 0);
+  set(ImGuiCol_ScrollbarGrab, p.border);
+  set(ImGuiCol_ScrollbarGrabHovered, p.faint);
+  set(ImGuiCol_ScrollbarGrabActive, p.faint);
+  set(ImGuiCol_CheckMark, p.accent);
+  set(ImGuiCol_SliderGrab, p.accent);
+  set(ImGuiCol_SliderGrabActive, p.accent);
+  set(ImGuiCol_Button, p.input);
+  set(ImGuiCol_ButtonHovered, p.hover);
+  set(ImGuiCol_ButtonActive, p.accent);
+  set(ImGuiCol_Header, p.header);
+  set(ImGuiCol_HeaderHovered, p.hover);
+  set(ImGuiCol_HeaderActive, p.accent);
+  set(ImGuiCol_Separator, p.border);
+  set(ImGuiCol_SeparatorHovered, p.accent);
+  set(ImGuiCol_SeparatorActive, p.accent);
+  set(ImGuiCol_ResizeGrip, p.border);
+  set(ImGuiCol_ResizeGripHovered, p.accent);
+  set(ImGuiCol_ResizeGripActive, p.accent);
+  set(ImGuiCol_Tab, p.window);
+  set(ImGuiCol_TabHovered, p.hover);
+  set(ImGuiCol_TabActive, p.header);
+  set(ImGuiCol_TabUnfocused, p.window);
+  set(ImGuiCol_TabUnfocusedActive, p.header);
+  set(ImGuiCol_TableHeaderBg, p.header);
+  set(ImGuiCol_TableBorderStrong, p.border);
+  set(ImGuiCol_TableBorderLight, p.border, 0.6F);
+  set(ImGuiCol_TableRowBg, p.panel, 0);
+  set(ImGuiCol_TableRowBgAlt, p.text, 0.025F);
+  set(ImGuiCol_TextSelectedBg, p.accent, 0.4F);
+  set(ImGuiCol_NavHighlight, p.accent);
+  set(ImGuiCol_ModalWindowDimBg, 0x000000, 0.45F);
+}
+
+}  // namespace
+
+ImU32 colour(Rgb rgb, float alpha) { return ImGui::ColorConvertFloat4ToU32(vec(rgb, alpha)); }
+
+Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
+  ui.scope_ += name;
+  ui.scope_ += '/';
+}
+
+Ui::Scope::~Scope() { ui_->scope_.resize(length_); }
+
+void Ui::begin() { places_.clear(); }
+
+std::string Ui::fullName(std::string_view label) const {
+  return scope_ + std::string(nameOf(label));
+}
+
+void Ui::note(std::string_view label) {
+  const std::string name = fullName(label);
+  if (name == revealed_) {
+    ImGui::SetScrollHereY();
+    revealed_.clear();
+  }
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  const bool disabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0;
+  const ImVec2 centre{(min.x + max.x) / 2, (min.y + max.y) / 2};
+  const bool visible =
+      ImGui::IsItemVisible() && ImGui::GetCurrentWindowRead()->ClipRect.Contains(centre);
+  places_[name] = {.min = min, .max = max, .enabled = !disabled, .visible = visible};
+}
+
+const WidgetPlace* Ui::find(const std::string& name) const {
+  const auto found = places_.find(name);
+  return found == places_.end() ? nullptr : &found->second;
+}
+
+void Ui::tooltip(const char* text) {
+  if (text == nullptr || *text == '\0') return;
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  if (GImGui->HoveredIdTimer < kTooltipDelay) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void Ui::labelledWidth() const {
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
+}
+
+bool Ui::button(const char* label, const char* tip, float width) {
+  const bool pressed = ImGui::Button(label, {width, 0});
+  note(label);
+  tooltip(tip);
+  return pressed;
+}
+
+bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
+  const bool was_on = on;
+  if (was_on) {
+    ImGui::PushStyleColor(ImGuiCol_Button, vec(theme.accent));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, vec(theme.accent, 0.85F));
+    ImGui::PushStyleColor(ImGuiCol_Text, vec(0xFFFFFF));
+  }
+  const bool pressed = button(label, tip, width);
+  if (was_on) ImGui::PopStyleColor(3);
+  if (pressed) on = !on;
+  return pressed;
+}
+
+bool Ui::checkbox(const char* label, bool& value, const char* tip) {
+  const bool changed = ImGui::Checkbox(label, &value);
+  note(label);
+  tooltip(tip);
+  return changed;
+}
+
+bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
+               const char* tip, float width) {
+  if (width > 0) {
+    ImGui::SetNextItemWidth(width);
+  } else {
+    labelledWidth();
+  }
+  const char* shown = chosen < options.size() ? options[chosen].c_str() : "";
+  const bool open = ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge);
+  note(label);
+  if (!open) {
+    tooltip(tip);
+    return false;
+  }
+  bool changed = false;
+  const Scope inside = scope(nameOf(label));
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (ImGui::Selectable(options[i].c_str(), i == chosen)) {
+      changed = i != chosen;
+      chosen = i;
+    }
+    note(options[i]);
+    if (i == chosen) ImGui::SetItemDefaultFocus();
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool Ui::selectable(const char* label, bool selected, const char* tip) {
+  const bool pressed = ImGui::Selectable(label, selected);
+  note(label);
+  tooltip(tip);
+  return pressed;
+}
+
+bool Ui::text(const char* label, std::string& value, const char* hint) {
+  labelledWidth();
+  ImGui::InputTextWithHint(label, hint, &value);
+  note(label);
+  return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
+                 const char* tip) {
+  labelledWidth();
+  std::int64_t entered = value;
+  ImGui::InputScalar(label, ImGuiDataType_S64, &entered, nullptr, nullptr, "%lld");
+  note(label);
+  tooltip(tip);
+  // While it is typed the number may be out of range.
+  if (ImGui::IsItemActive()) {
+    value = entered;
+    return false;
+  }
+  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || value < min || value > max;
+  if (changed) value = std::clamp(entered, min, max);
+  return changed;
+}
+
+bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
+  labelledWidth();
+  double entered = value;
+  ImGui::InputScalar(label, ImGuiDataType_Double, &entered, nullptr, nullptr, "%.6g");
+  note(label);
+  tooltip(tip);
+  if (ImGui::IsItemActive()) {
+    value = entered;
+    return false;
+  }
+  const bool wrong = !(value >= min && value <= max);
+  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || wrong;
+  if (changed) value = std::isnan(entered) ? min : std::clamp(entered, min, max);
+  return changed;
+}
+
+bool Ui::slider(const char* label, int& value, int min, int max, const char* format) {
+  const bool changed =
+      ImGui::SliderInt(label, &value, min, max, format, ImGuiSliderFlags_AlwaysClamp);
+  note(label);
+  return changed;
+}
+
+bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool enabled) {
+  const bool pressed = ImGui::MenuItem(label, shortcut, selected, enabled);
+  note(label);
+  return pressed;
+}
+
+bool Ui::beginMenu(const char* label) {
+  const bool open = ImGui::BeginMenu(label);
+  // Inside the menu the last item is not its title any more.
+  if (!open) note(label);
+  return open;
+}
+
+bool Ui::parameter(const Parameter& parameter) {
+  const std::string name(parameter.name);
+  const std::string tip = fmt::format("{}\n{}", parameter.doc, parameterRange(parameter));
+  if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
+    return checkbox(name.c_str(), **flag, tip.c_str());
+  }
+  if (std::int64_t* const* whole = std::get_if<std::int64_t*>(&parameter.value)) {
+    return integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
+                   static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)), tip.c_str());
+  }
+  if (double* const* real = std::get_if<double*>(&parameter.value)) {
+    return number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str());
+  }
+  if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
+    const auto& options = (*choice)->options;
+    auto chosen =
+        static_cast<std::size_t>(std::ranges::find(options, (*choice)->value) - options.begin());
+    if (!combo(name.c_str(), chosen, options, tip.c_str())) return false;
+    (*choice)->value = options[chosen];
+    return true;
+  }
+  const bool changed = text(name.c_str(), *std::get<std::string*>(parameter.value));
+  tooltip(tip.c_str());
+  return changed;
+}
+
+bool Ui::parameters(Parametrised& object) {
+  bool changed = false;
+  object.visitParameters([&](const Parameter& p) { changed |= parameter(p); });
+  return changed;
+}
+
+void Ui::fact(const char* name, std::string_view value) {
+  faint(name);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
+  ImGui::TextUnformatted(value.data(), value.data() + value.size());
+}
+
+void Ui::faint(std::string_view words) { coloured(theme.faint, words); }
+
+void Ui::coloured(Rgb rgb, std::string_view words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, vec(rgb));
+  ImGui::TextUnformatted(words.data(), words.data() + words.size());
+  ImGui::PopStyleColor();
+}
+
+void Ui::heading(const char* words) {
+  ImGui::Dummy({0, ImGui::GetStyle().ItemSpacing.y / 2});
+  faint(words);
+  ImGui::Separator();
+}
+
+void Ui::paragraph(std::string_view words) {
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(words.data(), words.data() + words.size());
+  ImGui::PopTextWrapPos();
+}
+
+void applyTheme(Ui& ui, bool dark, float scale) {
+  const Palette& palette = dark ? kDark : kLight;
+  ImGuiStyle style;
+  style.WindowPadding = {10, 8};
+  style.FramePadding = {7, 3};
+  style.ItemSpacing = {7, 5};
+  style.ItemInnerSpacing = {6, 4};
+  style.CellPadding = {6, 3};
+  style.ScrollbarSize = 11;
+  style.GrabMinSize = 9;
+  style.WindowRounding = 0;
+  style.ChildRounding = 0;
+  style.FrameRounding = 4;
+  style.PopupRounding = 5;
+  style.ScrollbarRounding = 6;
+  style.GrabRounding = 4;
+  style.TabRounding = 4;
+  style.WindowBorderSize = 0;
+  style.PopupBorderSize = 1;
+  style.WindowMenuButtonPosition = ImGuiDir_None;
+  style.ScaleAllSizes(scale);
+  ImGui::GetStyle() = style;
+  setColours(palette);
+  ui.scale = scale;
+  ui.theme = {.dark = dark,
+              .accent = palette.accent,
+              .good = dark ? 0x5BC77AU : 0x1A7F37U,
+              .bad = dark ? 0xFF6B6BU : 0xCF222EU,
+              .warning = dark ? 0xF2B84BU : 0x9A6700U,
+              .faint = palette.faint,
+              .background = dark ? 0x202329U : 0xF5F6F8U};
+}
+
+}  // namespace broadmark

@@ -1,0 +1,117 @@
+// Widgets, by name: Dear ImGui's, each noted with its place, so that scripts and tests find them;
+// and the look of all of them.
+#pragma once
+
+#include <imgui.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/debug_draw.h"
+#include "broadmark/parameters.h"
+
+namespace broadmark {
+
+/// Where a widget was in the last picture.
+struct WidgetPlace {
+  ImVec2 min;
+  ImVec2 max;
+  bool enabled = true;
+  bool visible = true;  ///< not scrolled or clipped away
+};
+
+/// Colours that stand for something.
+struct Theme {
+  bool dark = true;
+  Rgb accent = 0;
+  Rgb good = 0;
+  Rgb bad = 0;
+  Rgb warning = 0;
+  Rgb faint = 0;       ///< text of less importance
+  Rgb background = 0;  ///< of the view
+};
+
+ImU32 colour(Rgb rgb, float alpha = 1);
+
+/// The widgets of one picture. A widget's name is its label, after the names of the scopes around
+/// it: "Scene/objects". Every method that is called as a Dear ImGui widget behaves like it.
+class Ui {
+ public:
+  /// Until destroyed, names stand in this scope. (It is none of Dear ImGui's.)
+  class Scope {
+   public:
+    Scope(Ui& ui, std::string_view name);
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Ui* ui_;
+    std::size_t length_;
+  };
+  [[nodiscard]] Scope scope(std::string_view name) { return {*this, name}; }
+
+  /// Forgets the places of the last picture.
+  void begin();
+
+  bool button(const char* label, const char* tooltip = nullptr, float width = 0);
+  /// A button that stays pressed while `on`.
+  bool toggle(const char* label, bool& on, const char* tooltip = nullptr, float width = 0);
+  bool checkbox(const char* label, bool& value, const char* tooltip = nullptr);
+  /// Chooses one of `options`; returns whether it changed.
+  bool combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
+             const char* tooltip = nullptr, float width = 0);
+  bool selectable(const char* label, bool selected, const char* tooltip = nullptr);
+  bool text(const char* label, std::string& value, const char* hint = "");
+  /// Numbers count when they are entered (Enter, Tab, or a click elsewhere), within their range.
+  bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
+               const char* tooltip = nullptr);
+  bool number(const char* label, double& value, double min, double max,
+              const char* tooltip = nullptr);
+  bool slider(const char* label, int& value, int min, int max, const char* format = "%d");
+  bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
+                bool enabled = true);
+  bool beginMenu(const char* label);
+  /// The widget that suits a parameter, its explanation as a tooltip.
+  bool parameter(const Parameter& parameter);
+  /// All parameters of an object. Returns whether one changed.
+  bool parameters(Parametrised& object);
+
+  /// A table row "name: value" in two columns.
+  void fact(const char* name, std::string_view value);
+  void faint(std::string_view text);
+  void coloured(Rgb rgb, std::string_view text);
+  void heading(const char* text);
+  /// Wrapped text.
+  void paragraph(std::string_view text);
+  void tooltip(const char* text);
+
+  /// Notes the item drawn last under a name of its own.
+  void note(std::string_view name);
+  /// The place of a widget in the last picture, or null.
+  [[nodiscard]] const WidgetPlace* find(const std::string& name) const;
+  [[nodiscard]] const std::map<std::string, WidgetPlace>& places() const { return places_; }
+  /// Scrolls to this widget when it is drawn next.
+  void reveal(std::string name) { revealed_ = std::move(name); }
+
+  Theme theme;
+  float scale = 1;  ///< pixels per unit
+
+ private:
+  [[nodiscard]] std::string fullName(std::string_view label) const;
+  /// Width of an input whose label stands to its right.
+  void labelledWidth() const;
+
+  std::string scope_;
+  std::map<std::string, WidgetPlace> places_;
+  std::string revealed_;
+};
+
+/// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
+void applyTheme(Ui& ui, bool dark, float scale);
+
+}  // namespace broadmark

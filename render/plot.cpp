@@ -1,0 +1,303 @@
+#include "render/plot.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace broadmark {
+namespace {
+
+constexpr float kLineWidth = 1.6F;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+ImU32 packed(Rgb rgb, unsigned alpha = 255) {
+  return IM_COL32((rgb >> 16) & 255U, (rgb >> 8) & 255U, rgb & 255U, alpha);
+}
+
+/// The plotted area, and how values become pixels.
+struct Axes {
+  ImVec2 min;
+  ImVec2 max;
+  double first, last;  ///< frames
+  double low, high;    ///< values
+  bool logarithmic;
+
+  [[nodiscard]] double scaled(double value) const {
+    return logarithmic ? std::log10(std::max(value, std::numeric_limits<double>::min())) : value;
+  }
+  [[nodiscard]] float x(double frame) const {
+    return min.x + static_cast<float>((frame - first) / (last - first)) * (max.x - min.x);
+  }
+  [[nodiscard]] float y(double value) const {
+    const double at = (scaled(value) - scaled(low)) / (scaled(high) - scaled(low));
+    return max.y - static_cast<float>(at) * (max.y - min.y);
+  }
+  [[nodiscard]] double frameAt(float pixel) const {
+    return first + static_cast<double>((pixel - min.x) / (max.x - min.x)) * (last - first);
+  }
+  [[nodiscard]] double valueAt(float pixel) const {
+    const double at = static_cast<double>((max.y - pixel) / (max.y - min.y));
+    const double value = scaled(low) + at * (scaled(high) - scaled(low));
+    return logarithmic ? std::pow(10, value) : value;
+  }
+};
+
+double valueAt(const PlotCurve& curve, double frame) {
+  const double index = std::round(frame);
+  if (index < 0 || index >= static_cast<double>(curve.values.size())) return kNone;
+  return curve.values[static_cast<std::size_t>(index)];
+}
+
+/// Lowest and highest shown value; NaN if there are none.
+std::array<double, 2> valueRange(const std::vector<PlotCurve>& curves, const PlotOptions& options) {
+  double low = kNone;
+  double high = kNone;
+  for (const PlotCurve& curve : curves) {
+    if (curve.hidden) continue;
+    const auto begin = static_cast<std::size_t>(std::max(0.0, std::floor(options.first)));
+    const auto end = static_cast<std::size_t>(std::max(0.0, std::ceil(options.last) + 1));
+    for (std::size_t i = begin; i < std::min(end, curve.values.size()); ++i) {
+      const double value = curve.values[i];
+      if (std::isnan(value) || (options.logarithmic && value <= 0)) continue;
+      low = std::fmin(low, value);
+      high = std::fmax(high, value);
+    }
+  }
+  return {low, high};
+}
+
+void widen(std::array<double, 2>& range, bool logarithmic) {
+  auto& [low, high] = range;
+  if (std::isnan(low)) {
+    low = logarithmic ? 1e-6 : 0;
+    high = 1e-3;
+  }
+  if (logarithmic) {
+    low *= 0.8;
+    high *= 1.25;
+    return;
+  }
+  low = std::min(low, 0.0);
+  high = high > low ? low + (high - low) * 1.08 : low + 1;
+}
+
+/// Draws the range of the values that fall onto each pixel column.
+void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float scale) {
+  const ImU32 colour = packed(curve.colour);
+  const auto count = static_cast<double>(curve.values.size());
+  const auto begin = static_cast<std::size_t>(std::clamp(std::floor(axes.first), 0.0, count));
+  const auto end = static_cast<std::size_t>(std::clamp(std::ceil(axes.last) + 1, 0.0, count));
+  ImVec2 before{};
+  bool joined = false;
+  for (std::size_t i = begin; i < end;) {
+    const float column = std::floor(axes.x(static_cast<double>(i)));
+    double low = kNone;
+    double high = kNone;
+    std::size_t taken = 0;
+    for (; i < end && (taken == 0 || std::floor(axes.x(static_cast<double>(i))) == column);
+         ++i, ++taken) {
+      low = std::fmin(low, curve.values[i]);
+      high = std::fmax(high, curve.values[i]);
+    }
+    if (std::isnan(low)) {
+      joined = false;
+      continue;
+    }
+    const float x = taken == 1 ? axes.x(static_cast<double>(i - 1)) : column;
+    const ImVec2 top{x, axes.y(high)};
+    const ImVec2 bottom{x, axes.y(low)};
+    if (joined) draw.AddLine(before, bottom, colour, kLineWidth * scale);
+    if (taken > 1) draw.AddLine(top, {bottom.x, bottom.y + 1}, colour, kLineWidth * scale);
+    if (!joined) draw.AddCircleFilled(bottom, kLineWidth * scale, colour, 8);
+    before = bottom;
+    joined = true;
+  }
+  for (const std::uint32_t frame : curve.disturbed) {
+    if (frame < begin || frame >= end || std::isnan(curve.values[frame])) continue;
+    draw.AddCircle({axes.x(frame), axes.y(curve.values[frame])}, 3.5F * scale, colour, 10, scale);
+  }
+}
+
+struct Palette {
+  ImU32 background, grid, text, marker;
+};
+
+Palette paletteOf(bool dark) {
+  return dark ? Palette{packed(0x17191D), packed(0xFFFFFF, 22), packed(0x8D96A3), packed(0x3D8BFD)}
+              : Palette{packed(0xFFFFFF), packed(0x000000, 22), packed(0x66707C), packed(0x1F6FEB)};
+}
+
+void drawAxes(ImDrawList& draw, const Axes& axes, const Palette& palette, const char* unit) {
+  const float line = ImGui::GetTextLineHeight();
+  const int rows = std::max(2, static_cast<int>((axes.max.y - axes.min.y) / (2.2F * line)));
+  for (const double value : axisTicks(axes.low, axes.high, rows, axes.logarithmic)) {
+    const float y = axes.y(value);
+    draw.AddLine({axes.min.x, y}, {axes.max.x, y}, palette.grid);
+    const std::string text = withPrefix(value, unit);
+    draw.AddText({axes.min.x - ImGui::CalcTextSize(text.c_str()).x - 5, y - line / 2}, palette.text,
+                 text.c_str());
+  }
+  const int columns = std::max(2, static_cast<int>((axes.max.x - axes.min.x) / (6 * line)));
+  for (const double frame : axisTicks(axes.first, axes.last, columns, false)) {
+    if (frame != std::floor(frame)) continue;
+    const float x = axes.x(frame);
+    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.grid);
+    const std::string text = fmt::format("{:.0f}", frame);
+    draw.AddText({x - ImGui::CalcTextSize(text.c_str()).x / 2, axes.max.y + 2}, palette.text,
+                 text.c_str());
+  }
+}
+
+/// Legend entries in the upper right corner; returns which one the mouse is over.
+std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
+                                      const Axes& axes, const Palette& palette) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  float width = 0;
+  for (const PlotCurve& curve : curves) {
+    width = std::max(width, ImGui::CalcTextSize(curve.label.c_str()).x);
+  }
+  width += 1.8F * line;
+  const std::size_t fitting =
+      static_cast<std::size_t>(std::max(0.0F, (axes.max.y - axes.min.y - line / 2) / line));
+  std::optional<std::size_t> hovered;
+  ImVec2 at{axes.max.x - width, axes.min.y + line / 4};
+  for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
+    const PlotCurve& curve = curves[i];
+    if (ImGui::IsMouseHoveringRect(at, {axes.max.x, at.y + line})) hovered = i;
+    const unsigned alpha = curve.hidden ? 70 : 255;
+    draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
+                       {at.x + line * 0.8F, at.y + line * 0.75F}, packed(curve.colour, alpha), 3);
+    draw.AddText({at.x + line, at.y},
+                 (palette.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT),
+                 curve.label.c_str());
+  }
+  return hovered;
+}
+
+void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
+                   const PlotOptions& options, const Palette& palette) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const double frame = std::round(axes.frameAt(mouse.x));
+  const float x = axes.x(frame);
+  draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.text);
+  draw.AddLine({axes.min.x, mouse.y}, {axes.max.x, mouse.y}, palette.grid);
+  ImGui::BeginTooltip();
+  ImGui::Text("frame %.0f, %s", frame, withPrefix(axes.valueAt(mouse.y), options.unit).c_str());
+  for (const PlotCurve& curve : curves) {
+    const double value = valueAt(curve, frame);
+    if (curve.hidden || std::isnan(value)) continue;
+    const bool disturbed = std::ranges::find(curve.disturbed, static_cast<std::uint32_t>(frame)) !=
+                           curve.disturbed.end();
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(curve.colour));
+    ImGui::TextUnformatted(curve.label.c_str());
+    ImGui::PopStyleColor();
+    ImGui::SameLine();
+    ImGui::Text("%s%s", withPrefix(value, options.unit).c_str(), disturbed ? "  (disturbed)" : "");
+    draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
+  }
+  ImGui::EndTooltip();
+}
+
+}  // namespace
+
+std::string withPrefix(double value, const char* unit) {
+  if (*unit == '\0') {
+    return value >= 1e4 ? fmt::format("{:.3g}k", value / 1e3) : fmt::format("{:.4g}", value);
+  }
+  constexpr std::pair<double, const char*> kPrefixes[] = {
+      {1, ""}, {1e-3, "m"}, {1e-6, "µ"}, {1e-9, "n"}};
+  if (value == 0) return fmt::format("0 {}", unit);
+  for (const auto& [factor, prefix] : kPrefixes) {
+    if (std::abs(value) >= 0.9995 * factor) {
+      return fmt::format("{:.3g} {}{}", value / factor, prefix, unit);
+    }
+  }
+  return fmt::format("{:.3g} n{}", value * 1e9, unit);
+}
+
+std::vector<double> axisTicks(double low, double high, int count, bool logarithmic) {
+  std::vector<double> ticks;
+  if (!(high > low) || count < 1) return ticks;
+  if (logarithmic) {
+    const double decades = std::log10(high / low);
+    const int per_decade = decades * 3 <= count ? 3 : 1;
+    const int stride = std::max(1, static_cast<int>(std::ceil(decades / count)));
+    constexpr double kSteps[] = {1, 2, 5};
+    for (int power = static_cast<int>(std::floor(std::log10(low)));
+         power <= static_cast<int>(std::ceil(std::log10(high))); ++power) {
+      if (power % stride != 0) continue;
+      for (int i = 0; i < per_decade; ++i) {
+        const double tick = kSteps[i] * std::pow(10, power);
+        if (tick >= low && tick <= high) ticks.push_back(tick);
+      }
+    }
+    return ticks;
+  }
+  const double rough = (high - low) / count;
+  const double power = std::pow(10, std::floor(std::log10(rough)));
+  double step = 10 * power;
+  for (const double factor : {5.0, 2.0, 1.0}) {
+    if (factor * power >= rough) step = factor * power;
+  }
+  for (double index = std::ceil(low / step); index * step <= high; ++index) {
+    ticks.push_back(index * step);
+  }
+  return ticks;
+}
+
+PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
+                    const PlotOptions& options, float width, float height) {
+  PlotResult result;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  ImGui::InvisibleButton(id, {std::max(width, 1.0F), std::max(height, 1.0F)});
+  const bool hovered = ImGui::IsItemHovered();
+  const bool held = ImGui::IsItemActive();
+  const float line = ImGui::GetTextLineHeight();
+  std::array<double, 2> range = valueRange(curves, options);
+  widen(range, options.logarithmic);
+  const Axes axes{.min = {corner.x + 4.8F * line, corner.y + line / 2},
+                  .max = {corner.x + width - line / 2, corner.y + height - 1.4F * line},
+                  .first = options.first,
+                  .last = std::max(options.last, options.first + 1),
+                  .low = range[0],
+                  .high = range[1],
+                  .logarithmic = options.logarithmic};
+  if (axes.max.x < axes.min.x + line || axes.max.y < axes.min.y + line) return result;
+
+  const Palette palette = paletteOf(options.dark);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddRectFilled(axes.min, axes.max, palette.background, 3);
+  drawAxes(draw, axes, palette, options.unit);
+  draw.PushClipRect(axes.min, axes.max, true);
+  for (const PlotCurve& curve : curves) {
+    if (!curve.hidden) drawCurve(draw, curve, axes, line / 15);
+  }
+  if (options.marked_frame >= 0) {
+    const float x = axes.x(options.marked_frame);
+    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.marker, line / 10);
+  }
+  result.hovered = drawLegend(draw, curves, axes, palette);
+  draw.PopClipRect();
+
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool inside = mouse.x >= axes.min.x && mouse.x <= axes.max.x && mouse.y >= axes.min.y &&
+                      mouse.y <= axes.max.y;
+  if (!hovered && !held) result.hovered.reset();
+  if (result.hovered && ImGui::IsMouseClicked(0)) {
+    result.toggled = result.hovered;
+  } else if (held && !result.hovered && ImGui::IsMouseDown(0)) {
+    result.clicked_frame = axes.frameAt(mouse.x);
+  }
+  if (hovered && inside && !result.hovered) drawCrosshair(draw, curves, axes, options, palette);
+  if (hovered && ImGui::GetIO().MouseWheel != 0) {
+    result.zoom = static_cast<double>(ImGui::GetIO().MouseWheel);
+    result.zoom_at = axes.frameAt(mouse.x);
+  }
+  return result;
+}
+
+}  // namespace broadmark
