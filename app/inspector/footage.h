@@ -33,6 +33,10 @@ class Footage {
   /// A known frame; valid until the next call. Throws InputError (a broken recording).
   Frame read(std::uint32_t index);
 
+  /// The frames up to `last`, which are known, as a source of their own, for use from any thread,
+  /// also when this is gone. Throws InputError.
+  [[nodiscard]] std::unique_ptr<FrameSource> source(std::uint32_t last) const;
+
   /// Writes all known frames as a recording, initial pose included. Throws InputError.
   void save(const std::filesystem::path& path);
 
@@ -43,7 +47,7 @@ class Footage {
   std::uint32_t known_ = 0;
   std::unique_ptr<Recording> recording_;
   std::unique_ptr<Simulation> simulation_;
-  FileDescriptor kept_;  ///< of a simulation: frame after frame, nothing else
+  std::shared_ptr<const FileDescriptor> kept_;  ///< of a simulation: frames, nothing else
   std::vector<Aabb> boxes_;
 };
 

@@ -1,0 +1,40 @@
+#include "app/inspector/preferences.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+TEST(Preferences, ComeBackAsTheyWere) {
+  const TemporaryDirectory directory;
+  Preferences preferences{.dark = false, .scale = 1.5, .window_width = 900, .left = 222};
+  preferences.tabs["left"] = "Algorithms";
+  preferences.remember("/tmp/a \"b\".aabbs");
+  savePreferences(directory / "deep/er/inspector.json", preferences);
+  EXPECT_EQ(loadPreferences(directory / "deep/er/inspector.json"), preferences);
+}
+
+TEST(Preferences, WhatCannotBeReadIsTheDefault) {
+  EXPECT_EQ(loadPreferences("/nowhere/inspector.json"), Preferences{});
+  for (const char* text : {"", "{", "[1]", "null", R"({"left": "wide", "recent": 7})",
+                           R"({"scale": -3, "left": 1e300, "window_width": -5})"}) {
+    const Preferences read = parsePreferences(text);
+    EXPECT_EQ(read.scale, 0) << text;
+    EXPECT_GE(read.left, 120) << text;
+    EXPECT_GE(read.window_width, 320) << text;
+  }
+}
+
+TEST(Preferences, RecentFilesAreFewAndTheLatestFirst) {
+  Preferences preferences;
+  for (int i = 0; i < 15; ++i) preferences.remember("/tmp/" + std::to_string(i));
+  preferences.remember("/tmp/7");
+  EXPECT_EQ(preferences.recent.size(), Preferences::kMostRecent);
+  EXPECT_EQ(preferences.recent[0], "/tmp/7");
+  EXPECT_EQ(preferences.recent[1], "/tmp/14");
+}
+
+}  // namespace
+}  // namespace broadmark::tests
