@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/cases.h"
 #include "broadmark/atomic_file.h"
@@ -49,6 +50,7 @@ Session::Session(std::vector<Algorithm> available)
 void Session::advance(const RunProgress& progress, double seconds) {
   if (progress.footage != wish.footage || !progress.footage) return;
   scene_ = progress.scene;
+  scene_known_ = true;
   if (progress.failure != noticed_failure_) {
     noticed_failure_ = progress.failure;
     if (!progress.failure.empty()) {
@@ -138,6 +140,7 @@ void Session::show(std::string title, std::function<std::unique_ptr<Footage>()> 
   playback.due = 0;
   selection.clear();
   scene_ = {};
+  scene_known_ = false;
 }
 
 void Session::open(const fs::path& path) {
@@ -192,7 +195,8 @@ void Session::acknowledgeStop() {
 }
 
 void Session::seek(std::int64_t frame) {
-  const auto last = static_cast<std::int64_t>(scene_.frames);
+  // What is only being opened may have any number of frames; it is set right then.
+  const std::int64_t last = scene_known_ ? scene_.frames : std::numeric_limits<std::int32_t>::max();
   const auto wanted = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
   if (wanted > wish.frame) acknowledgeStop();
   wish.frame = wanted;

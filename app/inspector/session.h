@@ -143,6 +143,7 @@ class Session {
   void openJson(const std::filesystem::path& path);
 
   SceneInfo scene_;
+  bool scene_known_ = false;  ///< what is wished for has been opened
   std::optional<RunProgress::Stop> noticed_stop_;
   std::string noticed_failure_;
   std::vector<std::function<void()>> put_off_;

@@ -26,9 +26,15 @@ TEST(Plot, TicksAreRoundAndWithinTheAxis) {
         for (const double tick : ticks) {
           EXPECT_GE(tick, low);
           EXPECT_LE(tick, high * (1 + 1e-12));
-          const double leading =
-              tick == 0 ? 1 : tick / std::pow(10, std::floor(std::log10(tick) + 1e-9));
-          EXPECT_NEAR(leading, std::round(leading), 1e-6);
+        }
+        // Steps of 1, 2 or 5 times a power of ten; powers of ten with 2 and 5 between them.
+        for (std::size_t i = 0; i < ticks.size(); ++i) {
+          if (!logarithmic && i == 0) continue;
+          const double round = logarithmic ? ticks[i] : ticks[i] - ticks[i - 1];
+          const double leading = round / std::pow(10, std::floor(std::log10(round) + 1e-9));
+          EXPECT_TRUE(std::abs(leading - 1) < 1e-6 || std::abs(leading - 2) < 1e-6 ||
+                      std::abs(leading - 5) < 1e-6)
+              << leading;
         }
       }
     }
