@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/box_look.h"
 #include "render_assets.h"
 
 namespace broadmark {
@@ -15,14 +16,22 @@ constexpr int kLineVertices = 6;
 
 BoxRenderer::BoxRenderer(const Gl& gl, std::size_t max_batch)
     : PrimitiveRenderer(gl, render_assets::box_vert(), render_assets::box_frag(), kBoxVertices,
-                        max_batch) {}
+                        max_batch) {
+  use();
+  gl.Uniform3f(uniform("light"), kBoxLook.light[0], kBoxLook.light[1], kBoxLook.light[2]);
+  gl.Uniform1f(uniform("underside"), kBoxLook.underside);
+  gl.Uniform1f(uniform("edge_darkness"), kBoxLook.edge_darkness);
+  gl.Uniform1f(uniform("foot_darkness"), kBoxLook.foot_darkness);
+  gl.Uniform1f(uniform("most_haze"), kBoxLook.haze);
+  gl.Uniform2f(uniform("haze_range"), -kBoxLook.haze_before, kBoxLook.haze_behind);
+}
 
 LineRenderer::LineRenderer(const Gl& gl)
     : PrimitiveRenderer(gl, render_assets::line_vert(), render_assets::line_frag(), kLineVertices) {
 }
 
-Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space) {
-  return {space.toView(box.min), static_cast<float>(colour), space.toView(box.max)};
+Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space, float width) {
+  return {space.toView(box.min), static_cast<float>(colour), space.toView(box.max), width};
 }
 
 std::vector<Primitive> wireframe(const Aabb& box, Rgb colour, float width, const ViewSpace& space) {

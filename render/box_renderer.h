@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "render/box_look.h"
 #include "render/primitive_renderer.h"
 
 namespace broadmark {
@@ -22,7 +23,9 @@ class LineRenderer : public PrimitiveRenderer {
   explicit LineRenderer(const Gl& gl);
 };
 
-Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space);
+/// A box that is drawn at least `width` pixels wide.
+Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space,
+                       float width = kBoxLook.smallest_pixels);
 
 /// The twelve edges of a box.
 std::vector<Primitive> wireframe(const Aabb& box, Rgb colour, float width, const ViewSpace& space);

@@ -15,16 +15,12 @@ using Eigen::Vector3f;
 using Eigen::Vector4f;
 
 Matrix4f viewMatrix(const Camera& camera) {
-  const Vector3f eye(camera.eye.data());
-  const Vector3f back = (eye - Vector3f(camera.target.data())).normalized();
-  // Looking straight up or down leaves the horizontal undecided: x then points to the right.
-  Vector3f right = Vector3f::UnitY().cross(back);
-  right = right.norm() > 1e-6F ? right.normalized() : Vector3f::UnitX();
+  const CameraAxes axes = axesOf(camera);
   Matrix4f view = Matrix4f::Identity();
-  view.block<1, 3>(0, 0) = right;
-  view.block<1, 3>(1, 0) = back.cross(right);
-  view.block<1, 3>(2, 0) = back;
-  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * eye;
+  view.block<1, 3>(0, 0) = Vector3f(axes.right.data());
+  view.block<1, 3>(1, 0) = Vector3f(axes.up.data());
+  view.block<1, 3>(2, 0) = Vector3f(axes.back.data());
+  view.block<3, 1>(0, 3) = -view.block<3, 3>(0, 0) * Vector3f(camera.eye.data());
   return view;
 }
 
@@ -136,6 +132,22 @@ Camera figureCamera(const Aabb& box, double aspect) {
   Map<Vector2f>(camera.window_min.data()) = centre - half;
   Map<Vector2f>(camera.window_max.data()) = centre + half;
   return camera;
+}
+
+CameraAxes axesOf(const Camera& camera) {
+  const Vector3f back = (Vector3f(camera.eye.data()) - Vector3f(camera.target.data())).normalized();
+  // Looking straight up or down leaves the horizontal undecided: x then points to the right.
+  Vector3f right = Vector3f::UnitY().cross(back);
+  right = right.norm() > 1e-6F ? right.normalized() : Vector3f::UnitX();
+  CameraAxes axes;
+  Map<Vector3f>(axes.right.data()) = right;
+  Map<Vector3f>(axes.up.data()) = back.cross(right);
+  Map<Vector3f>(axes.back.data()) = back;
+  return axes;
+}
+
+float pixelSize(const Camera& camera, int height) {
+  return (camera.window_max[1] - camera.window_min[1]) / static_cast<float>(height);
 }
 
 std::array<float, 16> viewProjection(const Camera& camera) {

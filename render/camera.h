@@ -20,6 +20,8 @@ struct ViewSpace {
   [[nodiscard]] Aabb toView(const Aabb& world_box) const;
 
   static constexpr double kLimit = 1e5;
+
+  friend bool operator==(const ViewSpace&, const ViewSpace&) = default;
 };
 
 /// The view space in which `box` is centred and its longest edge has length 1 (a point: its
@@ -39,12 +41,25 @@ struct Camera {
   std::array<float, 2> window_max{0.5F, 0.5F};
   float near = 0.01F;
   float far = 100;
+
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// The camera of the paper's figures, at (0.57, 0.20, 0.60)·3 looking at (0, −0.15, 0), with the
 /// window chosen so that all of `box` (in view space) is in the picture, for any aspect ratio
 /// (width / height).
 Camera figureCamera(const Aabb& box, double aspect);
+
+/// Directions of the picture in view space, each of length 1.
+struct CameraAxes {
+  std::array<float, 3> right{};
+  std::array<float, 3> up{};
+  std::array<float, 3> back{};  ///< from the target to the eye
+};
+CameraAxes axesOf(const Camera& camera);
+
+/// The length that one pixel covers at distance 1 before the eye, in a picture of that height.
+float pixelSize(const Camera& camera, int height);
 
 /// View space to clip space, column by column as OpenGL wants it.
 std::array<float, 16> viewProjection(const Camera& camera);

@@ -12,8 +12,6 @@ namespace broadmark {
 inline constexpr int kLargestPicture = 16384;  ///< pixels, either side
 
 // The colours of a picture: warm and strong for what overlaps, cool and quiet for the rest.
-inline constexpr Rgb kBackground = 0xF5F6F8;
-inline constexpr Rgb kFloor = 0xE9ECF0;
 inline constexpr Rgb kFreeBox = 0xC3D0DE;
 inline constexpr Rgb kOverlappingBox = 0xFA6E1E;
 

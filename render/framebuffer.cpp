@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace broadmark {
 namespace {
-
-constexpr int kSamples = 4;
 
 GlObject makeRenderbuffer(const Gl& gl, int samples, GLenum format, int width, int height) {
   GlObject buffer = makeObject(gl.GenRenderbuffers, gl.DeleteRenderbuffers);
@@ -16,9 +15,55 @@ GlObject makeRenderbuffer(const Gl& gl, int samples, GLenum format, int width, i
   return buffer;
 }
 
+struct PixelFormat {
+  GLint inside;
+  GLenum outside;
+  GLenum type;
+};
+constexpr PixelFormat kColour = {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE};
+constexpr PixelFormat kDepth = {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT};
+
+GlObject makeTexture(const Gl& gl, const PixelFormat& format, int width, int height) {
+  GlObject texture = makeObject(gl.GenTextures, gl.DeleteTextures);
+  gl.BindTexture(GL_TEXTURE_2D, texture.get());
+  gl.TexImage2D(GL_TEXTURE_2D, 0, format.inside, width, height, 0, format.outside, format.type,
+                nullptr);
+  for (const GLenum direction : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T}) {
+    gl.TexParameteri(GL_TEXTURE_2D, direction, GL_CLAMP_TO_EDGE);
+  }
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER}) {
+    gl.TexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);  // without mipmaps
+  }
+  return texture;
+}
+
+void fillTexture(const Gl& gl, const GlObject& texture, const PixelFormat& format, int width,
+                 int height, const void* pixels) {
+  gl.BindTexture(GL_TEXTURE_2D, texture.get());
+  gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format.outside, format.type, pixels);
+}
+
 }  // namespace
 
-Framebuffer::Target Framebuffer::makeTarget(int samples, bool& complete) const {
+Framebuffer::Target Framebuffer::whereComplete(Target target) const {
+  const bool complete = gl_->GetError() == GL_NO_ERROR &&
+                        gl_->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+  return complete ? std::move(target) : Target{};
+}
+
+Framebuffer::Target Framebuffer::makeTextureTarget() const {
+  Target target{makeTexture(*gl_, kColour, width_, height_),
+                makeTexture(*gl_, kDepth, width_, height_),
+                makeObject(gl_->GenFramebuffers, gl_->DeleteFramebuffers)};
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+  gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D,
+                            target.colour.get(), 0);
+  gl_->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, target.depth.get(),
+                            0);
+  return whereComplete(std::move(target));
+}
+
+Framebuffer::Target Framebuffer::makeMultisampleTarget(int samples) const {
   Target target{makeRenderbuffer(*gl_, samples, GL_RGBA8, width_, height_),
                 makeRenderbuffer(*gl_, samples, GL_DEPTH_COMPONENT24, width_, height_),
                 makeObject(gl_->GenFramebuffers, gl_->DeleteFramebuffers)};
@@ -27,32 +72,44 @@ Framebuffer::Target Framebuffer::makeTarget(int samples, bool& complete) const {
                                target.colour.get());
   gl_->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
                                target.depth.get());
-  complete = gl_->GetError() == GL_NO_ERROR &&
-             gl_->CheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
-  return target;
+  return whereComplete(std::move(target));
 }
 
-Framebuffer::Framebuffer(const Gl& gl, int width, int height)
+Framebuffer::Framebuffer(const Gl& gl, int width, int height, int samples)
     : gl_(&gl), width_(width), height_(height) {
-  const int largest = gl.integer(GL_MAX_RENDERBUFFER_SIZE);
+  const int largest = gl.integer(GL_MAX_TEXTURE_SIZE);
   if (width > largest || height > largest) {
     throw RenderError(fmt::format("a picture of {} x {} is too large for this OpenGL (at most {})",
                                   width, height, largest));
   }
-  bool complete = false;
-  resolved_ = makeTarget(0, complete);
-  if (!complete) {
+  resolved_ = makeTextureTarget();
+  if (resolved_.framebuffer.get() == 0) {
     throw RenderError(fmt::format("OpenGL has no room for a picture of {} x {}", width, height));
   }
-  drawn_ = makeTarget(std::min(kSamples, gl.integer(GL_MAX_SAMPLES)), complete);
-  // Too large for several samples a pixel: one each, drawn straight into the resolved target.
-  if (!complete) drawn_ = {};
+  samples = std::min(samples, gl.integer(GL_MAX_SAMPLES));
+  // Too large for several samples a pixel: one each, drawn straight into the textures.
+  if (samples > 1) drawn_ = makeMultisampleTarget(samples);
 }
 
 void Framebuffer::bind() const {
   const Target& target = drawn_.framebuffer.get() != 0 ? drawn_ : resolved_;
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   gl_->Viewport(0, 0, width_, height_);
+}
+
+void Framebuffer::write(std::span<const std::uint32_t> rgba, std::span<const float> depths) const {
+  gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  fillTexture(*gl_, resolved_.colour, kColour, width_, height_, rgba.data());
+  fillTexture(*gl_, resolved_.depth, kDepth, width_, height_, depths.data());
+  gl_->check("handing a picture to OpenGL");
+}
+
+void Framebuffer::resolve() const {
+  if (drawn_.framebuffer.get() == 0) return;
+  gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.framebuffer.get());
+  gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer.get());
+  gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
+                       GL_NEAREST);
 }
 
 Picture readPicture(const Gl& gl, int width, int height) {
@@ -77,12 +134,7 @@ Picture readPicture(const Gl& gl, int width, int height) {
 }
 
 Picture Framebuffer::read() const {
-  if (drawn_.framebuffer.get() != 0) {
-    gl_->BindFramebuffer(GL_READ_FRAMEBUFFER, drawn_.framebuffer.get());
-    gl_->BindFramebuffer(GL_DRAW_FRAMEBUFFER, resolved_.framebuffer.get());
-    gl_->BlitFramebuffer(0, 0, width_, height_, 0, 0, width_, height_, GL_COLOR_BUFFER_BIT,
-                         GL_NEAREST);
-  }
+  resolve();
   gl_->BindFramebuffer(GL_FRAMEBUFFER, resolved_.framebuffer.get());
   return readPicture(*gl_, width_, height_);
 }

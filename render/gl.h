@@ -41,7 +41,9 @@ namespace broadmark {
   X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)                                              \
   X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                                          \
   X(VERTEXATTRIBPOINTER, VertexAttribPointer) X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex) \
-  X(SCISSOR, Scissor) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)
+  X(SCISSOR, Scissor) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)                \
+  X(TEXSUBIMAGE2D, TexSubImage2D) X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D)                \
+  X(DEPTHRANGE, DepthRange) X(FINISH, Finish) X(COLORMASK, ColorMask)
 // clang-format on
 
 /// Address of a GL function, or null.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/box_look.h"
+#include "render/colour.h"
+
 namespace broadmark {
 namespace {
 
@@ -17,15 +20,12 @@ std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t want
                    vertices / static_cast<std::size_t>(vertices_per_primitive)}));
 }
 
-float component(Rgb colour, int shift) {
-  return static_cast<float>((colour >> shift) & 0xFFU) / 255.0F;
-}
-
-float distance(const std::array<float, 3>& a, const std::array<float, 3>& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
 }  // namespace
+
+float focus(const Camera& camera) {
+  return std::hypot(camera.eye[0] - camera.target[0], camera.eye[1] - camera.target[1],
+                    camera.eye[2] - camera.target[2]);
+}
 
 PrimitiveRenderer::PrimitiveRenderer(const Gl& gl, std::string_view vertex_source,
                                      std::string_view fragment_source, int vertices_per_primitive,
@@ -36,19 +36,21 @@ PrimitiveRenderer::PrimitiveRenderer(const Gl& gl, std::string_view vertex_sourc
       vertices_per_primitive_(vertices_per_primitive),
       batch_size_(batchSize(gl, vertices_per_primitive, max_batch)) {}
 
-void PrimitiveRenderer::upload(std::span<const Primitive> primitives) {
-  batches_.clear();
+PrimitiveBuffer PrimitiveRenderer::upload(std::span<const Primitive> primitives) const {
+  PrimitiveBuffer buffer;
   for (; !primitives.empty();
        primitives = primitives.subspan(std::min(batch_size_, primitives.size()))) {
-    batches_.push_back(makeBatch(primitives.first(std::min(batch_size_, primitives.size()))));
+    buffer.batches_.push_back(
+        makeBatch(primitives.first(std::min(batch_size_, primitives.size()))));
   }
   gl_->check("uploading boxes and lines");
+  return buffer;
 }
 
-PrimitiveRenderer::Batch PrimitiveRenderer::makeBatch(std::span<const Primitive> primitives) const {
-  Batch batch{makeObject(gl_->GenBuffers, gl_->DeleteBuffers),
-              makeObject(gl_->GenTextures, gl_->DeleteTextures),
-              static_cast<GLsizei>(primitives.size()) * vertices_per_primitive_};
+PrimitiveBuffer::Batch PrimitiveRenderer::makeBatch(std::span<const Primitive> primitives) const {
+  PrimitiveBuffer::Batch batch{makeObject(gl_->GenBuffers, gl_->DeleteBuffers),
+                               makeObject(gl_->GenTextures, gl_->DeleteTextures),
+                               static_cast<GLsizei>(primitives.size()) * vertices_per_primitive_};
   gl_->BindBuffer(GL_TEXTURE_BUFFER, batch.buffer.get());
   gl_->BufferData(GL_TEXTURE_BUFFER, static_cast<GLsizeiptr>(primitives.size_bytes()),
                   primitives.data(), GL_STATIC_DRAW);
@@ -61,20 +63,24 @@ GLint PrimitiveRenderer::uniform(const char* name) const {
   return gl_->GetUniformLocation(program_.get(), name);
 }
 
-void PrimitiveRenderer::draw(const Viewpoint& viewpoint) const {
+void PrimitiveRenderer::draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint,
+                             float opacity) const {
   // Setting a uniform that a shader does not use (location -1) is allowed and does nothing.
   const Camera& camera = viewpoint.camera;
-  gl_->UseProgram(program_.get());
+  const std::array haze = components(viewpoint.haze);
+  use();
   gl_->UniformMatrix4fv(uniform("view_projection"), 1, GL_FALSE, viewProjection(camera).data());
   gl_->Uniform3f(uniform("eye"), camera.eye[0], camera.eye[1], camera.eye[2]);
-  gl_->Uniform1f(uniform("focus"), distance(camera.eye, camera.target));
+  gl_->Uniform1f(uniform("focus"), focus(camera));
+  gl_->Uniform1f(uniform("pixel"), pixelSize(camera, viewpoint.height));
+  gl_->Uniform1f(uniform("edge_pixels"), edgePixels(viewpoint.height));
+  gl_->Uniform1f(uniform("opacity"), opacity);
   gl_->Uniform2f(uniform("viewport"), static_cast<float>(viewpoint.width),
                  static_cast<float>(viewpoint.height));
-  gl_->Uniform3f(uniform("haze"), component(viewpoint.haze, 16), component(viewpoint.haze, 8),
-                 component(viewpoint.haze, 0));
+  gl_->Uniform3f(uniform("haze"), haze[0], haze[1], haze[2]);
 
   gl_->BindVertexArray(vertex_array_.get());
-  for (const Batch& batch : batches_) {
+  for (const PrimitiveBuffer::Batch& batch : primitives.batches_) {
     gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
     gl_->DrawArrays(GL_TRIANGLES, 0, batch.vertices);
   }

@@ -2,6 +2,7 @@
 // A line pulled from the buffer texture, widened on the screen to a rectangle of two triangles.
 uniform samplerBuffer primitives;
 uniform mat4 view_projection;
+uniform vec3 eye;
 uniform vec2 viewport;  // pixels
 
 noperspective out float across;  // pixels from the middle of the line
@@ -9,6 +10,9 @@ flat out float half_width;       // pixels
 flat out vec3 line_colour;
 
 const float kNearest = 1e-3;  // clip w: what lies nearer, or behind the eye, is cut off
+
+// Lines lie so much nearer to the eye than they are, or the edges of boxes would cover half of them.
+const float kLift = 0.001;
 
 const vec2 kCorners[6] =
     vec2[](vec2(0, -1), vec2(1, -1), vec2(1, 1), vec2(0, -1), vec2(1, 1), vec2(0, 1));
@@ -20,8 +24,8 @@ void main() {
   int rgb = int(from.w);
   line_colour = vec3(rgb >> 16, (rgb >> 8) & 255, rgb & 255) / 255.0;
 
-  vec4 a = view_projection * vec4(from.xyz, 1);
-  vec4 b = view_projection * vec4(to.xyz, 1);
+  vec4 a = view_projection * vec4(mix(from.xyz, eye, kLift), 1);
+  vec4 b = view_projection * vec4(mix(to.xyz, eye, kLift), 1);
   if (a.w < kNearest && b.w < kNearest) {
     gl_Position = vec4(0, 0, 2, 1);  // wholly behind the eye: outside the clip volume
     return;

@@ -1,0 +1,215 @@
+#include "render/orbit_camera.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace broadmark {
+namespace {
+
+using Eigen::Map;
+using Eigen::Vector3f;
+
+constexpr float kFullTurn = 2 * std::numbers::pi_v<float>;
+
+/// From the pivot to the eye.
+Vector3f backwards(const OrbitCamera& camera) {
+  return {std::cos(camera.pitch) * std::sin(camera.yaw), std::sin(camera.pitch),
+          std::cos(camera.pitch) * std::cos(camera.yaw)};
+}
+
+Vector3f rightwards(const OrbitCamera& camera) {
+  return {std::cos(camera.yaw), 0, -std::sin(camera.yaw)};
+}
+
+Vector3f upwards(const OrbitCamera& camera) { return backwards(camera).cross(rightwards(camera)); }
+
+Vector3f pivotOf(const OrbitCamera& camera) { return Vector3f(camera.pivot.data()); }
+
+OrbitCamera withPivot(OrbitCamera camera, const Vector3f& pivot) {
+  constexpr auto kLimit = static_cast<float>(ViewSpace::kLimit);
+  Map<Vector3f>(camera.pivot.data()) = pivot.cwiseMax(-kLimit).cwiseMin(kLimit);
+  return camera;
+}
+
+/// Half the picture's height at distance 1.
+float halfHeight(const OrbitCamera& camera) { return std::tan(camera.field_of_view / 2); }
+
+Vector3f centreOf(const Aabb& box) {
+  return (Vector3f(box.min.data()) + Vector3f(box.max.data())) / 2;
+}
+
+/// In (-pi, pi], so that the camera turns the short way round.
+float shortestTurn(float angle) { return std::remainder(angle, kFullTurn); }
+
+float smooth(float t) {
+  const float clamped = std::clamp(t, 0.0F, 1.0F);
+  return clamped * clamped * (3 - 2 * clamped);
+}
+
+/// From a point to the nearest and to the farthest point of a box.
+std::pair<float, float> distancesTo(const Aabb& box, const Vector3f& point) {
+  const Vector3f low = Vector3f(box.min.data()) - point;
+  const Vector3f high = Vector3f(box.max.data()) - point;
+  const Vector3f outside = low.cwiseMax(-high).cwiseMax(Vector3f::Zero());
+  return {outside.norm(), low.cwiseAbs().cwiseMax(high.cwiseAbs()).norm()};
+}
+
+}  // namespace
+
+OrbitCamera lookedFrom(OrbitCamera camera, Direction direction) {
+  constexpr float kQuarter = kFullTurn / 4;
+  switch (direction) {
+    case Direction::figure:  // that of figureCamera()
+      camera.yaw = std::atan2(0.57F, 0.60F);
+      camera.pitch = std::atan2(0.20F + 0.05F, std::hypot(0.57F, 0.60F));
+      break;
+    case Direction::front:
+      camera.yaw = camera.pitch = 0;
+      break;
+    case Direction::back:
+      camera.yaw = 2 * kQuarter;
+      camera.pitch = 0;
+      break;
+    case Direction::left:
+      camera.yaw = -kQuarter;
+      camera.pitch = 0;
+      break;
+    case Direction::right:
+      camera.yaw = kQuarter;
+      camera.pitch = 0;
+      break;
+    case Direction::top:
+      camera.yaw = 0;
+      camera.pitch = OrbitCamera::kSteepest;
+      break;
+    case Direction::bottom:
+      camera.yaw = 0;
+      camera.pitch = -OrbitCamera::kSteepest;
+      break;
+  }
+  return camera;
+}
+
+std::string_view directionName(Direction direction) {
+  switch (direction) {
+    case Direction::figure:
+      return "figure";
+    case Direction::front:
+      return "front";
+    case Direction::back:
+      return "back";
+    case Direction::left:
+      return "left";
+    case Direction::right:
+      return "right";
+    case Direction::top:
+      return "top";
+    case Direction::bottom:
+      return "bottom";
+  }
+  return "?";
+}
+
+OrbitCamera orbited(OrbitCamera camera, float yaw, float pitch) {
+  camera.yaw = shortestTurn(camera.yaw + yaw);
+  camera.pitch = std::clamp(camera.pitch + pitch, -OrbitCamera::kSteepest, OrbitCamera::kSteepest);
+  return camera;
+}
+
+OrbitCamera panned(OrbitCamera camera, float right, float up) {
+  const float height = 2 * halfHeight(camera) * camera.distance;
+  return withPivot(camera,
+                   pivotOf(camera) - height * (right * rightwards(camera) + up * upwards(camera)));
+}
+
+OrbitCamera zoomed(OrbitCamera camera, float factor, const std::array<float, 3>& point) {
+  const float distance =
+      std::clamp(camera.distance * factor, OrbitCamera::kNearest, OrbitCamera::kFarthest);
+  // Eye and pivot shrink towards the point together, so it stays where it is seen.
+  const Vector3f fixed(point.data());
+  camera = withPivot(camera, fixed + (pivotOf(camera) - fixed) * (distance / camera.distance));
+  camera.distance = distance;
+  return camera;
+}
+
+OrbitCamera flown(OrbitCamera camera, float forward, float right, float up) {
+  return withPivot(camera, pivotOf(camera) + camera.distance * (right * rightwards(camera) +
+                                                                up * upwards(camera) -
+                                                                forward * backwards(camera)));
+}
+
+OrbitCamera focusedOn(OrbitCamera camera, const Aabb& box, double aspect) {
+  constexpr float kMargin = 1.1F;
+  constexpr float kSmallestSide = 1e-4F;
+  const Vector3f half_sides =
+      ((Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2).cwiseMax(kSmallestSide / 2);
+  const float half_height = halfHeight(camera);
+  const float half_width = half_height * static_cast<float>(aspect);
+  float distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3f signs((corner & 1) != 0 ? 1.0F : -1.0F, (corner & 2) != 0 ? 1.0F : -1.0F,
+                         (corner & 4) != 0 ? 1.0F : -1.0F);
+    const Vector3f point = half_sides.cwiseProduct(signs);
+    const float beside = std::max(std::abs(point.dot(rightwards(camera))) / half_width,
+                                  std::abs(point.dot(upwards(camera))) / half_height);
+    distance = std::max(distance, point.dot(backwards(camera)) + kMargin * beside);
+  }
+  camera.distance = std::clamp(distance, OrbitCamera::kNearest, OrbitCamera::kFarthest);
+  return withPivot(camera, centreOf(box));
+}
+
+OrbitCamera cutAway(OrbitCamera camera, const Aabb& box) {
+  constexpr float kRoom = 0.98F;
+  const Vector3f half_sides = (Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2;
+  const float towards_eye = (centreOf(box) - pivotOf(camera)).dot(backwards(camera)) +
+                            half_sides.dot(backwards(camera).cwiseAbs());
+  camera.cut = std::clamp(kRoom * (1 - towards_eye / camera.distance), OrbitCamera::kUncut, kRoom);
+  return camera;
+}
+
+OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t) {
+  const float s = smooth(t);
+  if (s >= 1) return to;
+  OrbitCamera camera = from;
+  camera.yaw = from.yaw + s * shortestTurn(to.yaw - from.yaw);
+  camera.pitch = std::lerp(from.pitch, to.pitch, s);
+  camera.cut = std::lerp(from.cut, to.cut, s);
+  camera.field_of_view = std::lerp(from.field_of_view, to.field_of_view, s);
+  camera.distance = from.distance * std::pow(to.distance / from.distance, s);
+  // The pivot's remaining way shrinks as the distance's does: in a long zoom the aim would
+  // otherwise leave the picture on the way.
+  const float change = from.distance - to.distance;
+  const float remaining =
+      std::abs(change) > 1e-3F * from.distance ? (camera.distance - to.distance) / change : 1 - s;
+  return withPivot(camera, pivotOf(to) + remaining * (pivotOf(from) - pivotOf(to)));
+}
+
+std::array<float, 3> pointUnder(const OrbitCamera& camera, double aspect, float x, float y) {
+  const float half_height = halfHeight(camera) * camera.distance;
+  const float half_width = half_height * static_cast<float>(aspect);
+  std::array<float, 3> point;
+  Map<Vector3f>(point.data()) =
+      pivotOf(camera) + x * half_width * rightwards(camera) + y * half_height * upwards(camera);
+  return point;
+}
+
+Camera toCamera(const OrbitCamera& orbit, double aspect, const Aabb& contents) {
+  Camera camera;
+  const Vector3f eye = pivotOf(orbit) + orbit.distance * backwards(orbit);
+  Map<Vector3f>(camera.eye.data()) = eye;
+  camera.target = orbit.pivot;
+  const float half_height = halfHeight(orbit);
+  const float half_width = half_height * static_cast<float>(aspect);
+  camera.window_min = {-half_width, -half_height};
+  camera.window_max = {half_width, half_height};
+  // Near things count as near relative to what is looked at; outside the contents there is nothing
+  // to cut off, which gives depth more precision.
+  const auto [nearest, farthest] = distancesTo(contents, eye);
+  camera.near = std::max(orbit.cut * orbit.distance, 0.5F * nearest);
+  camera.far = std::max(1.02F * farthest, 2 * camera.near);
+  return camera;
+}
+
+}  // namespace broadmark

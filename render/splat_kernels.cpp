@@ -1,0 +1,41 @@
+#include "render/splat_kernels.h"
+
+#include "render/box_look.h"
+
+namespace broadmark {
+namespace {
+
+// Without a target: the compiler splits the vectors for whatever the processor has at least.
+namespace baseline {
+#include "render/splat_kernels.inl"
+}  // namespace baseline
+
+// Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
+// copies of shared inline functions behind, of which the linker might keep one for everybody.
+#if defined(__x86_64__)
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+namespace avx2 {
+#include "render/splat_kernels.inl"
+}  // namespace avx2
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif
+
+}  // namespace
+
+const SplatKernels& splatKernels([[maybe_unused]] Isa isa) {
+#if defined(__x86_64__)
+  if (isa == Isa::avx2 || isa == Isa::avx512) return avx2::kKernels;
+#endif
+  return baseline::kKernels;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,168 @@
+#include "render/picking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "render/orbit_camera.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr int kWidth = 400;
+constexpr int kHeight = 300;
+
+Aabb cube(const std::array<float, 3>& centre, float side) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = centre[axis] - side / 2;
+    box.max[axis] = centre[axis] + side / 2;
+  }
+  return box;
+}
+
+/// A world of side 100 around (1000, 0, 0), to see that world and view space are told apart.
+const Aabb kWorld = cube({1000, 0, 0}, 100);
+
+Viewpoint viewpointFrom(Direction direction) {
+  const ViewSpace space = viewSpaceOf(kWorld);
+  const double aspect = static_cast<double>(kWidth) / kHeight;
+  const OrbitCamera orbit = focusedOn(lookedFrom({}, direction), space.toView(kWorld), aspect);
+  return {toCamera(orbit, aspect, space.toView(kWorld)), kWidth, kHeight, 0};
+}
+
+/// Pixels from the upper left corner.
+std::array<float, 2> pixelOf(const Viewpoint& viewpoint, const std::array<float, 4>& world_point) {
+  const auto at = project(viewpoint.camera, viewSpaceOf(kWorld).toView(world_point)).value();
+  return {(at[0] + 1) / 2 * kWidth, (1 - at[1]) / 2 * kHeight};
+}
+
+std::array<float, 4> middle(const Aabb& box) {
+  return {(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2,
+          (box.min[2] + box.max[2]) / 2, 0};
+}
+
+std::optional<std::uint32_t> pick(const std::vector<Aabb>& boxes, const Viewpoint& viewpoint,
+                                  const std::array<float, 2>& pixel, BodyMask mask = {},
+                                  float smallest = 2) {
+  const auto hit =
+      pickBody(boxes, viewSpaceOf(kWorld), viewpoint, pixel[0], pixel[1], mask, smallest);
+  return hit ? std::optional(hit->body) : std::nullopt;
+}
+
+TEST(Picking, RaysGoThroughTheirPixels) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::figure);
+  for (const auto& [x, y] : {std::pair{0.0F, 0.0F}, {200.0F, 150.0F}, {399.5F, 12.25F}}) {
+    const Ray ray = rayThrough(viewpoint, x, y);
+    const auto at = project(viewpoint.camera, ray.at(1.3F)).value();
+    EXPECT_NEAR((at[0] + 1) / 2 * kWidth, x, 1e-2F);
+    EXPECT_NEAR((1 - at[1]) / 2 * kHeight, y, 1e-2F);
+  }
+}
+
+TEST(Picking, FindsEachBodyUnderItsMiddle) {
+  const std::vector<Aabb> boxes = {cube({970, 10, 0}, 5), cube({1030, -10, 20}, 5),
+                                   cube({1000, 40, -30}, 5)};
+  for (const Direction direction : kAllDirections) {
+    const Viewpoint viewpoint = viewpointFrom(direction);
+    for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+      EXPECT_EQ(pick(boxes, viewpoint, pixelOf(viewpoint, middle(boxes[body]))), body);
+    }
+    EXPECT_EQ(pick(boxes, viewpoint, {2, 2}), std::nullopt);
+  }
+}
+
+TEST(Picking, TakesTheForemostWhateverTheOrder) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  std::vector<Aabb> boxes = {cube({1000, 0, -20}, 10), cube({1000, 0, 20}, 10)};
+  EXPECT_EQ(pick(boxes, viewpoint, {200, 150}), 1U);
+  std::swap(boxes[0], boxes[1]);
+  EXPECT_EQ(pick(boxes, viewpoint, {200, 150}), 0U);
+}
+
+TEST(Picking, DepthIsThatOfThePointHit) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  const std::vector<Aabb> boxes = {cube({1000, 0, 20}, 10)};
+  const auto hit = pickBody(boxes, viewSpaceOf(kWorld), viewpoint, 200, 150).value();
+  EXPECT_NEAR(rayThrough(viewpoint, 200, 150).at(hit.depth)[2], 0.25F, 1e-4F);
+}
+
+TEST(Picking, SeesThroughHiddenBodiesAndWhatSurroundsTheEye) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  const std::vector<Aabb> boxes = {cube({1000, 0, 20}, 10), cube({1000, 0, -20}, 10),
+                                   cube({1000, 0, 0}, 1e5F)};
+  EXPECT_EQ(pick(boxes, viewpoint, {200, 150}), 0U);
+  const std::vector<std::uint8_t> mask = {0, 1, 1};
+  EXPECT_EQ(pick(boxes, viewpoint, {200, 150}, mask), 1U);
+}
+
+TEST(Picking, NothingBehindTheEyeIsHit) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  EXPECT_EQ(pick({cube({1000, 0, 5000}, 10)}, viewpoint, {200, 150}), std::nullopt);
+}
+
+TEST(Picking, FlatAndTinyBodiesCanBeHit) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  const Aabb point = cube({1013, 7, 3}, 0);
+  const Aabb plate{{990, 0, -10, 0}, {1010, 0, 10, 0}};  // seen on its edge
+  const Aabb speck = cube({980, 20, 0}, 0.001F);
+  const std::vector<Aabb> boxes = {point, plate, speck};
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    const std::array at = pixelOf(viewpoint, middle(boxes[body]));
+    EXPECT_EQ(pick(boxes, viewpoint, at), body);
+    EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 1.8F}), body);
+    EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 4}), std::nullopt);
+    EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 1.8F}, {}, 0.5F), std::nullopt);
+  }
+  EXPECT_EQ(pick(boxes, viewpoint, pixelOf(viewpoint, {1009, 0, 0, 0})), 1U);
+}
+
+TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::figure);
+  std::mt19937 bits(5);
+  const auto random = [&] { return static_cast<float>(bits() % 1000) / 10 - 50; };
+  std::vector<Aabb> boxes;
+  for (int i = 0; i < 500; ++i) boxes.push_back(cube({1000 + random(), random(), random()}, 6));
+  std::vector<std::uint32_t> expected;
+  std::vector<std::uint32_t> expected_whole;
+  const auto isWithin = [&](const std::array<float, 4>& point) {
+    const auto [x, y] = pixelOf(viewpoint, point);
+    return x >= 120 && x <= 230 && y >= 90 && y <= 200;
+  };
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    if (isWithin(middle(boxes[body]))) expected.push_back(body);
+    bool whole = true;
+    for (unsigned i = 0; i < 8; ++i) {
+      const Aabb& box = boxes[body];
+      whole = whole && isWithin({i & 1U ? box.max[0] : box.min[0], i & 2U ? box.max[1] : box.min[1],
+                                 i & 4U ? box.max[2] : box.min[2], 0});
+    }
+    if (whole) expected_whole.push_back(body);
+  }
+  ASSERT_GT(expected.size(), 20U);
+  ASSERT_GT(expected_whole.size(), 10U);
+  const ViewSpace space = viewSpaceOf(kWorld);
+  EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{120, 90}, {230, 200}}), expected);
+  EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{230, 90}, {120, 200}}), expected);
+  EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{120, 90}, {230, 200}}, {}, SelectBy::whole),
+            expected_whole);
+}
+
+TEST(Selecting, LeavesOutWhatIsMaskedOrBehindTheEye) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  const std::vector<Aabb> boxes = {cube({1000, 0, 0}, 2), cube({1000, 0, 9}, 2),
+                                   cube({1000, 0, 5000}, 2)};
+  const ViewSpace space = viewSpaceOf(kWorld);
+  const ScreenRectangle all{{0, 0}, {kWidth, kHeight}};
+  EXPECT_THAT(bodiesWithin(boxes, space, viewpoint, all), ElementsAre(0, 1));
+  const std::vector<std::uint8_t> mask = {0, 1, 1};
+  EXPECT_THAT(bodiesWithin(boxes, space, viewpoint, all, mask), ElementsAre(1));
+  EXPECT_THAT(bodiesWithin(boxes, space, viewpoint, {{0, 0}, {5, 5}}), IsEmpty());
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,368 @@
+#include "render/scene_view.h"
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <random>
+
+#include "render/offscreen_context.h"
+#include "tests/support/pictures.h"
+
+namespace broadmark::tests {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
+constexpr Rgb kBlue = 0x3366CC;
+constexpr Rgb kRed = 0xCC3322;
+
+Aabb cube(const std::array<float, 3>& centre, float side) {
+  Aabb box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.min[axis] = centre[axis] - side / 2;
+    box.max[axis] = centre[axis] + side / 2;
+  }
+  return box;
+}
+
+const Aabb kWorld = cube({0, 0, 0}, 10);
+
+std::unique_ptr<OffscreenContext> softwareContext() {
+  OffscreenOptions options;
+  options.software = true;
+  return makeOffscreenContext(GlSource::automatic, options);
+}
+
+struct Bodies {
+  std::vector<Aabb> boxes;
+  std::vector<Rgb> colours;
+};
+
+Bodies randomBodies(std::size_t count, float smallest, float largest) {
+  std::mt19937 bits(77);
+  const auto random = [&](float low, float high) {
+    return low + (high - low) * static_cast<float>(bits() >> 8) / static_cast<float>(1U << 24);
+  };
+  Bodies bodies;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = random(-4.5F, 4.5F);
+    const float y = random(-4.5F, 4.5F);
+    const float z = random(-4.5F, 4.5F);
+    bodies.boxes.push_back(cube({x, y, z}, random(smallest, largest)));
+    bodies.colours.push_back(i % 3 == 0 ? kRed : kBlue);
+  }
+  return bodies;
+}
+
+SceneViewContent contentOf(const Bodies& bodies) {
+  SceneViewContent content;
+  content.space = viewSpaceOf(kWorld);
+  content.world = kWorld;
+  content.boxes = bodies.boxes;
+  content.colours = bodies.colours;
+  return content;
+}
+
+OrbitCamera wholeWorld(Direction direction = Direction::figure) {
+  return focusedOn(lookedFrom({}, direction), viewSpaceOf(kWorld).toView(kWorld), kAspect);
+}
+
+std::array<int, 3> pixelAt(const Picture& picture, float x, float y) {
+  const auto column = static_cast<std::size_t>(x);
+  const auto row = static_cast<std::size_t>(y);
+  const std::uint8_t* pixel =
+      &picture.rgba[4 * (row * static_cast<std::size_t>(picture.width) + column)];
+  return {pixel[0], pixel[1], pixel[2]};
+}
+
+std::array<int, 3> pixelAt(const Picture& picture, const Viewpoint& viewpoint,
+                           const std::array<float, 4>& world_point) {
+  const auto at = project(viewpoint.camera, viewSpaceOf(kWorld).toView(world_point)).value();
+  return pixelAt(picture, (at[0] + 1) / 2 * static_cast<float>(picture.width),
+                 (1 - at[1]) / 2 * static_cast<float>(picture.height));
+}
+
+bool isRed(const std::array<int, 3>& rgb) { return rgb[0] > rgb[2] + 60; }
+bool isBlue(const std::array<int, 3>& rgb) { return rgb[2] > rgb[0] + 60; }
+
+class SceneViewTest : public testing::TestWithParam<Technique> {
+ protected:
+  SceneViewTest() : context_(softwareContext()), gl_(*context_) {}
+
+  std::unique_ptr<SceneView> makeView(Technique technique, int threads = 2) {
+    SceneViewOptions options;
+    options.technique = technique;
+    options.threads = threads;
+    auto view = std::make_unique<SceneView>(gl_, options);
+    view->resize(kWidth, kHeight);
+    return view;
+  }
+  std::unique_ptr<SceneView> makeView() { return makeView(GetParam()); }
+  const Gl& gl() const { return gl_; }
+
+ private:
+  std::unique_ptr<OffscreenContext> context_;
+  Gl gl_;
+};
+INSTANTIATE_TEST_SUITE_P(Render, SceneViewTest, testing::Values(Technique::gl, Technique::splat),
+                         [](const auto& technique) {
+                           return technique.param == Technique::gl ? "Gl" : "Splat";
+                         });
+
+TEST_P(SceneViewTest, DrawsTheGoldenPictures) {
+  const Bodies bodies = randomBodies(60, 0.5F, 1.5F);
+  const std::vector<std::uint32_t> selected = {5, 40};
+  const std::vector<SceneLine> lines = {{{-4, -4, 4}, {4, 4, -4}, 0x7A2BBF, 2, Behind::faint},
+                                        {{-4, 4, 4}, {4, -4, 4}, 0x2A9D8F, 3, Behind::shown}};
+  const std::vector<SceneWireBox> wire_boxes = {{cube({0, 0, 0}, 6), 0x2A9D8F}};
+  SceneViewContent content = contentOf(bodies);
+  content.selected = selected;
+  content.lines = lines;
+  content.wire_boxes = wire_boxes;
+  content.shows_axes = true;
+  const auto view = makeView();
+  const auto golden = [](const char* name) {
+    return std::filesystem::path(BROADMARK_SOURCE_DIR) / "tests/render/golden" / name;
+  };
+  view->draw(content, wholeWorld());
+  EXPECT_TRUE(looksLikeGolden(view->read(), golden("scene-light.png")));
+  content.theme = kDarkScene;
+  view->draw(content, wholeWorld());
+  EXPECT_TRUE(looksLikeGolden(view->read(), golden("scene-dark.png")));
+}
+
+TEST_P(SceneViewTest, TheNearerBodyIsInFront) {
+  Bodies bodies{{cube({0, 0, 3}, 2), cube({0, 0, -3}, 3)}, {kRed, kBlue}};
+  const auto view = makeView();
+  for (const bool reversed : {false, true}) {
+    if (reversed) {
+      std::swap(bodies.boxes[0], bodies.boxes[1]);
+      std::swap(bodies.colours[0], bodies.colours[1]);
+    }
+    SceneViewContent content = contentOf(bodies);
+    content.bodies_revision = reversed ? 2 : 1;
+    view->draw(content, wholeWorld(Direction::front));
+    EXPECT_TRUE(isRed(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+    view->draw(content, wholeWorld(Direction::back));
+    EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+  }
+}
+
+TEST_P(SceneViewTest, OnlyVisibleBodiesAreDrawn) {
+  const Bodies bodies{{cube({0, 0, 3}, 2), cube({0, 0, -3}, 3)}, {kRed, kBlue}};
+  const std::vector<std::uint8_t> visible = {0, 1};
+  SceneViewContent content = contentOf(bodies);
+  content.visible = visible;
+  const auto view = makeView();
+  view->draw(content, wholeWorld(Direction::front));
+  EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+}
+
+TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
+  const std::array<float, 4> somewhere = {1.7F, 2.3F, -0.9F, 0};
+  for (const Aabb& box : {cube({1.7F, 2.3F, -0.9F}, 0), cube({1.7F, 2.3F, -0.9F}, 1e-5F),
+                          Aabb{{-4, 2.3F, -4, 0}, {4, 2.3F, 4, 0}}}) {
+    const Bodies bodies{{box}, {kRed}};
+    SceneViewContent content = contentOf(bodies);
+    const auto view = makeView();
+    // The plate is seen on its edge.
+    view->draw(content, wholeWorld(Direction::front));
+    const Picture picture = view->read();
+    bool seen = false;
+    const auto at = project(view->viewpoint().camera, content.space.toView(somewhere)).value();
+    for (int dx = -1; dx <= 1; ++dx) {
+      for (int dy = -1; dy <= 1; ++dy) {
+        const float x = (at[0] + 1) / 2 * kWidth + static_cast<float>(dx);
+        const float y = (1 - at[1]) / 2 * kHeight + static_cast<float>(dy);
+        seen = seen || isRed(pixelAt(picture, x, y));
+      }
+    }
+    EXPECT_TRUE(seen);
+  }
+}
+
+TEST_P(SceneViewTest, OneSeesOutOfABodyAroundTheEye) {
+  const Bodies bodies{{cube({0, 0, 0}, 1000), cube({0, 0, 0}, 3)}, {kRed, kBlue}};
+  const auto view = makeView();
+  view->draw(contentOf(bodies), wholeWorld(Direction::front));
+  EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+}
+
+TEST_P(SceneViewTest, BodiesAcrossTheNearPlaneAreDrawn) {
+  // A beam along the line of sight, from behind the eye to far before it, beside its path.
+  const Bodies bodies{{{{0.2F, -1, -100, 0}, {3, 1, 100, 0}}}, {kRed}};
+  const auto view = makeView();
+  view->draw(contentOf(bodies), wholeWorld(Direction::front));
+  const Picture picture = view->read();
+  EXPECT_TRUE(isRed(pixelAt(picture, kWidth * 0.7F, kHeight / 2.0F)));
+  EXPECT_FALSE(isRed(pixelAt(picture, kWidth * 0.3F, kHeight / 2.0F)));
+}
+
+TEST_P(SceneViewTest, BodiesHideLinesUnlessToldNotTo) {
+  const Bodies bodies{{cube({0, 0, 0}, 4)}, {kBlue}};
+  std::vector<SceneLine> lines = {{{-4, 0, -4}, {4, 0, -4}, 0xE00000, 3, Behind::hidden}};
+  SceneViewContent content = contentOf(bodies);
+  const auto view = makeView();
+  const auto drawnWith = [&](Behind behind) {
+    lines[0].behind = behind;
+    content.lines = lines;
+    ++content.lines_revision;
+    view->draw(content, wholeWorld(Direction::front));
+    const Picture picture = view->read();
+    EXPECT_TRUE(isRed(pixelAt(picture, view->viewpoint(), {3.9F, 0, -4, 0})));
+    return pixelAt(picture, view->viewpoint(), {0, 0, -4, 0});
+  };
+  const auto hidden = drawnWith(Behind::hidden);
+  const auto faint = drawnWith(Behind::faint);
+  EXPECT_TRUE(isBlue(hidden));
+  EXPECT_GT(faint[0], hidden[0] + 20);
+  EXPECT_FALSE(isRed(faint));
+  EXPECT_TRUE(isRed(drawnWith(Behind::shown)));
+}
+
+TEST_P(SceneViewTest, SelectionIsSeenThroughOtherBodies) {
+  const Bodies bodies{{cube({0, 0, -2}, 2), cube({0, 0, 2}, 4)}, {kBlue, kBlue}};
+  const std::vector<std::uint32_t> selected = {0, 99};  // the latter does not exist
+  SceneViewContent content = contentOf(bodies);
+  const auto view = makeView();
+  view->draw(content, wholeWorld(Direction::front));
+  const Picture before = view->read();
+  content.selected = selected;
+  ++content.bodies_revision;
+  view->draw(content, wholeWorld(Direction::front));
+  EXPECT_NE(view->read().rgba, before.rgba);
+}
+
+TEST_P(SceneViewTest, DrawsAnewOnlyWhatHasChanged) {
+  Bodies bodies{{cube({0, 0, 0}, 4)}, {kBlue}};
+  SceneViewContent content = contentOf(bodies);
+  const auto view = makeView();
+  const auto centre = [&](const OrbitCamera& camera) {
+    view->draw(content, camera);
+    return pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F);
+  };
+  EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::front))));
+  bodies.colours[0] = kRed;  // with the revision left as it was: not read
+  EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::front))));
+  EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::back))));
+  ++content.bodies_revision;
+  EXPECT_TRUE(isRed(centre(wholeWorld(Direction::back))));
+}
+
+TEST_P(SceneViewTest, LeavesTheTargetThatWasSet) {
+  const Framebuffer other(gl(), 64, 32, 1);
+  other.bind();
+  const GLint bound = gl().integer(GL_FRAMEBUFFER_BINDING);
+  const Bodies bodies = randomBodies(10, 0.5F, 1);
+  const auto view = makeView();
+  view->draw(contentOf(bodies), wholeWorld());
+  EXPECT_EQ(gl().integer(GL_FRAMEBUFFER_BINDING), bound);
+  GLint viewport[4];
+  gl().GetIntegerv(GL_VIEWPORT, viewport);
+  EXPECT_EQ(viewport[2], 64);
+  EXPECT_EQ(viewport[3], 32);
+  EXPECT_NO_THROW(gl().check("testing"));
+}
+
+TEST_P(SceneViewTest, EverySizeAndNoBodiesAreDrawn) {
+  const auto view = makeView();
+  SceneViewContent content;
+  content.world = kWorld;
+  content.space = viewSpaceOf(kWorld);
+  const Bodies bodies = randomBodies(20, 0.5F, 2);
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, {0, -3}, {7, 300}, {301, 5}, {33, 33}, {640, 480}}) {
+    view->resize(width, height);
+    view->draw(content, wholeWorld());
+    EXPECT_EQ(view->read().width, std::max(1, width));
+    SceneViewContent full = contentOf(bodies);
+    full.bodies_revision = content.bodies_revision + 1;
+    view->draw(full, wholeWorld());
+    EXPECT_EQ(view->read().height, std::max(1, height));
+    content.bodies_revision += 2;
+  }
+}
+
+/// Edges fade and rays round a little differently, so borders between bodies may.
+TEST_P(SceneViewTest, BothTechniquesGiveTheSamePicture) {
+  if (GetParam() != Technique::gl) GTEST_SKIP() << "compares both";
+  const auto by_gl = makeView(Technique::gl);
+  const auto by_splat = makeView(Technique::splat);
+  for (const auto& [count, smallest, largest] :
+       {std::tuple{30, 1.0F, 3.0F}, {300, 0.3F, 0.8F}, {3000, 0.01F, 0.1F}}) {
+    const Bodies bodies = randomBodies(static_cast<std::size_t>(count), smallest, largest);
+    for (const Direction direction : {Direction::figure, Direction::top, Direction::bottom}) {
+      SceneViewContent content = contentOf(bodies);
+      content.bodies_revision = static_cast<std::uint64_t>(count);
+      content.theme = direction == Direction::top ? kDarkScene : kLightScene;
+      by_gl->draw(content, wholeWorld(direction));
+      by_splat->draw(content, wholeWorld(direction));
+      const Picture a = by_gl->read();
+      const Picture b = by_splat->read();
+      std::size_t different = 0;
+      double sum = 0;
+      for (std::size_t pixel = 0; pixel < a.rgba.size(); pixel += 4) {
+        int most = 0;
+        for (std::size_t i = pixel; i < pixel + 3; ++i) {
+          most = std::max(most, std::abs(a.rgba[i] - b.rgba[i]));
+        }
+        different += most > 24 ? 1 : 0;
+        sum += most;
+      }
+      const auto pixels = static_cast<double>(a.rgba.size()) / 4;
+      EXPECT_LT(static_cast<double>(different) / pixels, 0.01)
+          << count << " bodies, " << directionName(direction);
+      EXPECT_LT(sum / pixels, 1.0) << count << " bodies, " << directionName(direction);
+    }
+  }
+}
+
+TEST_P(SceneViewTest, TechniqueFollowsTheDriver) {
+  if (GetParam() != Technique::gl) GTEST_SKIP() << "once is enough";
+  EXPECT_TRUE(isSoftwareRenderer(gl()));
+  EXPECT_TRUE(makeView(Technique::automatic)->isSplatting());
+  EXPECT_FALSE(makeView(Technique::gl)->isSplatting());
+}
+
+TEST(AxisTips, PointAlongTheAxes) {
+  const Viewpoint viewpoint{toCamera(wholeWorld(Direction::front), kAspect, kWorld), kWidth,
+                            kHeight, 0};
+  const auto [x, y, z] = axisTips(viewpoint, 1);
+  EXPECT_GT(x[0], z[0] + 20);
+  EXPECT_NEAR(x[1], z[1], 1);
+  EXPECT_LT(y[1], z[1] - 20);
+  EXPECT_NEAR(y[0], z[0], 1);
+  for (const auto& tip : {x, y, z}) {
+    EXPECT_GT(tip[0], 0);
+    EXPECT_LT(tip[1], kHeight);
+  }
+}
+
+TEST(BoxSplatter, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
+  const Bodies bodies = randomBodies(5000, 0.01F, 0.6F);
+  const ViewSpace space = viewSpaceOf(kWorld);
+  std::vector<Primitive> boxes;
+  for (std::size_t i = 0; i < bodies.boxes.size(); ++i) {
+    boxes.push_back(boxPrimitive(bodies.boxes[i], bodies.colours[i], space));
+  }
+  const Viewpoint viewpoint{toCamera(wholeWorld(), kAspect, space.toView(kWorld)), 333, 241,
+                            0xF5F6F8};
+  ThreadTeam alone(1);
+  BoxSplatter reference(alone, Isa::scalar);
+  reference.draw(boxes, viewpoint);
+  for (const int threads : {1, 3}) {
+    for (const Isa isa : kAllIsas) {
+      if (!isaSupported(isa)) continue;
+      ThreadTeam team(threads);
+      BoxSplatter splatter(team, isa);
+      splatter.draw(boxes, viewpoint);
+      EXPECT_TRUE(std::ranges::equal(splatter.colours(), reference.colours())) << isaName(isa);
+      EXPECT_TRUE(std::ranges::equal(splatter.depths(), reference.depths())) << isaName(isa);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests
