@@ -1,0 +1,192 @@
+// Every mode sorts the bodies into a few classes, each with a colour and a line of the legend.
+// Scales grow darker on a light background and brighter on a dark one, so that lightness alone
+// tells their steps apart; single colours are after Okabe and Ito.
+#include "render/colouring.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "render/draw_frame.h"
+
+namespace broadmark {
+namespace {
+
+/// The colours of one background.
+struct Palette {
+  Rgb quiet;  ///< what nothing is to be said of
+  Rgb overlapping;
+  Rgb right;
+  Rgb missed;
+  Rgb extra;
+  Rgb moving;
+  std::array<Rgb, 6> heat;
+  std::array<Rgb, 6> size;
+};
+constexpr Palette kLight = {kFreeBox,
+                            kOverlappingBox,
+                            0x8CBFB4,
+                            0xD1003F,
+                            0x2563C9,
+                            0x0072B2,
+                            {0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
+                            {0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75}};
+constexpr Palette kDark = {0x707C89,
+                           0xFF8A3D,
+                           0x4E8F84,
+                           0xFF4F79,
+                           0x62A5FF,
+                           0x56B4E9,
+                           {0x6A3B78, 0x973A72, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B},
+                           {0x2F5288, 0x2F7393, 0x2E938B, 0x4CB37B, 0x8CCF5C, 0xE6E34E}};
+
+const Palette& paletteOf(const ColouringInput& input) { return input.dark ? kDark : kLight; }
+
+/// Gives each body the colour of its class: the entry of the legend with the number classOf(body).
+/// Counts them.
+template <class ClassOf>
+void colourByClass(std::size_t bodies, std::vector<LegendEntry> legend, Colouring& colouring,
+                   const ClassOf& classOf) {
+  colouring.colours.resize(bodies);
+  colouring.legend = std::move(legend);
+  for (std::size_t body = 0; body < bodies; ++body) {
+    LegendEntry& entry = colouring.legend[classOf(body)];
+    ++entry.count;
+    colouring.colours[body] = entry.swatch;
+  }
+}
+
+std::uint32_t overlapsOf(const ColouringInput& input, std::size_t body) {
+  return body < input.overlaps.size() ? input.overlaps[body] : 0;
+}
+
+/// Marks the bodies of some pairs.
+void mark(std::vector<std::uint8_t>& marks, std::span<const Pair> pairs, std::uint8_t value) {
+  for (const Pair pair : pairs) {
+    for (const std::uint32_t body : {pair.a, pair.b}) {
+      if (body < marks.size()) marks[body] = value;
+    }
+  }
+}
+
+void colourOverlapping(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input);
+  colourByClass(input.boxes.size(), {{"overlapping", palette.overlapping}, {"free", palette.quiet}},
+                colouring, [&](std::size_t body) { return overlapsOf(input, body) > 0 ? 0U : 1U; });
+}
+
+void colourByCount(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input);
+  std::vector<LegendEntry> legend = {{"0", palette.quiet}, {"1", palette.heat[0]}};
+  const std::size_t last = palette.heat.size() - 1;
+  for (std::size_t step = 1; step < last; ++step) {
+    legend.push_back({fmt::format("{} to {}", 1U << step, (2U << step) - 1), palette.heat[step]});
+  }
+  legend.push_back({fmt::format("{} or more", 1U << last), palette.heat[last]});
+  colourByClass(input.boxes.size(), std::move(legend), colouring, [&](std::size_t body) {
+    const std::uint32_t count = overlapsOf(input, body);
+    std::size_t step = count > 0 ? 1 : 0;
+    for (std::size_t i = 1; i <= last; ++i) step += (count >> i) != 0 ? 1 : 0;
+    return step;
+  });
+}
+
+void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input);
+  std::vector<std::uint8_t> classes(input.boxes.size());
+  for (std::size_t body = 0; body < classes.size(); ++body) {
+    classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
+  }
+  mark(classes, input.extra, 1);
+  mark(classes, input.missed, 0);  // the worse fault is shown
+  colourByClass(classes.size(),
+                {{"missed", palette.missed},
+                 {"extra", palette.extra},
+                 {"right", palette.right},
+                 {"free", palette.quiet}},
+                colouring, [&](std::size_t body) { return classes[body]; });
+}
+
+void colourByMotion(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input);
+  if (input.previous.size() != input.boxes.size()) {
+    colourByClass(input.boxes.size(), {{"no frame before", palette.quiet}}, colouring,
+                  [](std::size_t) { return 0U; });
+    return;
+  }
+  colourByClass(
+      input.boxes.size(), {{"moving", palette.moving}, {"static", palette.quiet}}, colouring,
+      [&](std::size_t body) { return input.boxes[body] != input.previous[body] ? 0U : 1U; });
+}
+
+/// The longest edge.
+float sizeOf(const Aabb& box) {
+  return std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
+}
+
+void colourBySize(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input);
+  constexpr float kMost = std::numeric_limits<float>::max();
+  float smallest = kMost;
+  float largest = 0;
+  for (const Aabb& box : input.boxes) {
+    const float size = sizeOf(box);
+    if (size > 0) smallest = std::min(smallest, size);
+    largest = std::max(largest, std::min(size, kMost));
+  }
+  if (!(smallest < largest)) {
+    colourByClass(input.boxes.size(), {{fmt::format("{:.3g}", largest), palette.size[2]}},
+                  colouring, [](std::size_t) { return 0U; });
+    return;
+  }
+  // Steps by the same factor. Points are in the first, like the smallest bodies.
+  const std::size_t steps = palette.size.size();
+  std::array<float, std::tuple_size_v<decltype(palette.size)>> begins{};
+  std::vector<LegendEntry> legend;
+  const auto border = [&](std::size_t step) {
+    const double part = static_cast<double>(step) / static_cast<double>(steps);
+    return smallest * std::pow(double{largest} / double{smallest}, part);
+  };
+  for (std::size_t step = 0; step < steps; ++step) {
+    begins[step] = static_cast<float>(border(step));
+    legend.push_back(
+        {fmt::format("{:.3g} to {:.3g}", border(step), border(step + 1)), palette.size[step]});
+  }
+  colourByClass(input.boxes.size(), std::move(legend), colouring, [&](std::size_t body) {
+    const float size = sizeOf(input.boxes[body]);
+    std::size_t step = 0;
+    for (std::size_t i = 1; i < steps; ++i) step += size >= begins[i] ? 1 : 0;
+    return step;
+  });
+}
+
+constexpr ColourMode kModes[] = {
+    {"overlapping", "Overlapping", "bodies that are in a pair", colourOverlapping},
+    {"overlaps", "Number of overlaps", "in how many pairs each body is", colourByCount},
+    {"correctness", "Missed and extra", "bodies of pairs that the answer misses or has too many",
+     colourByCorrectness},
+    {"motion", "Moving and static", "bodies whose box is not that of the frame before",
+     colourByMotion},
+    {"size", "Size", "each body's longest edge, in steps by the same factor", colourBySize},
+};
+
+}  // namespace
+
+std::span<const ColourMode> colourModes() { return kModes; }
+
+std::vector<std::uint32_t> overlapCounts(std::size_t n, PairRuns pairs) {
+  std::vector<std::uint32_t> counts(n, 0);
+  for (const PairRun run : pairs) {
+    for (const Pair pair : run) {
+      if (pair.a >= n || pair.b >= n) continue;
+      ++counts[pair.a];
+      ++counts[pair.b];
+    }
+  }
+  return counts;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,235 @@
+#include "render/colouring.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+
+#include "render/colour.h"
+#include "render/overlays.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::ElementsAre;
+
+Aabb boxOf(float low, float side) {
+  return {{low, low, low, 0}, {low + side, low + side, low + side, 0}};
+}
+
+std::vector<Aabb> boxesOf(std::size_t count) {
+  std::vector<Aabb> boxes;
+  for (std::size_t i = 0; i < count; ++i) boxes.push_back(boxOf(static_cast<float>(i), 1));
+  return boxes;
+}
+
+Colouring coloured(std::string_view id, const ColouringInput& input) {
+  for (const ColourMode& mode : colourModes()) {
+    if (mode.id != id) continue;
+    Colouring colouring;
+    mode.colour(input, colouring);
+    return colouring;
+  }
+  ADD_FAILURE() << "no mode " << id;
+  return {};
+}
+
+/// The legend's label for each body.
+std::vector<std::string> labels(const Colouring& colouring) {
+  std::vector<std::string> result;
+  for (const Rgb colour : colouring.colours) {
+    std::string label = "?";
+    for (const LegendEntry& entry : colouring.legend) {
+      if (entry.swatch == colour) label = entry.label;
+    }
+    result.push_back(label);
+  }
+  return result;
+}
+
+/// As sRGB defines it, 0 to 1.
+double luminance(Rgb colour) {
+  const auto linear = [](float value) {
+    return value <= 0.04045F ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+  };
+  const std::array rgb = components(colour);
+  return 0.2126 * linear(rgb[0]) + 0.7152 * linear(rgb[1]) + 0.0722 * linear(rgb[2]);
+}
+
+TEST(Colouring, BeginsWithWhatOverlaps) {
+  ASSERT_FALSE(colourModes().empty());
+  EXPECT_EQ(colourModes()[0].id, "overlapping");
+  const std::vector<Aabb> boxes = boxesOf(3);
+  const std::vector<std::uint32_t> overlaps = {0, 2, 1};
+  ColouringInput input;
+  input.boxes = boxes;
+  input.overlaps = overlaps;
+  const Colouring colouring = coloured("overlapping", input);
+  EXPECT_THAT(labels(colouring), ElementsAre("free", "overlapping", "overlapping"));
+  EXPECT_EQ(colouring.legend[0].count, 2U);
+  EXPECT_EQ(colouring.legend[1].count, 1U);
+}
+
+TEST(Colouring, CountsAreShownInDoublingSteps) {
+  const std::vector<std::uint32_t> overlaps = {0, 1, 2, 3, 4, 7, 8, 15, 16, 31, 32, 4'000'000'000};
+  const std::vector<Aabb> boxes = boxesOf(overlaps.size());
+  ColouringInput input;
+  input.boxes = boxes;
+  input.overlaps = overlaps;
+  EXPECT_THAT(labels(coloured("overlaps", input)),
+              ElementsAre("0", "1", "2 to 3", "2 to 3", "4 to 7", "4 to 7", "8 to 15", "8 to 15",
+                          "16 to 31", "16 to 31", "32 or more", "32 or more"));
+}
+
+TEST(Colouring, TheWorseFaultIsShown) {
+  const std::vector<Aabb> boxes = boxesOf(6);
+  const std::vector<std::uint32_t> overlaps = {0, 1, 1, 1, 1, 0};
+  const std::vector<Pair> missed = {{0, 1}, {2, 77}};
+  const std::vector<Pair> extra = {{1, 3}, {88, 99}};
+  ColouringInput input;
+  input.boxes = boxes;
+  input.overlaps = overlaps;
+  input.missed = missed;
+  input.extra = extra;
+  EXPECT_THAT(labels(coloured("correctness", input)),
+              ElementsAre("missed", "missed", "missed", "extra", "right", "free"));
+}
+
+TEST(Colouring, MotionIsSeenAgainstTheFrameBefore) {
+  const std::vector<Aabb> boxes = boxesOf(3);
+  std::vector<Aabb> previous = boxes;
+  previous[1].max[2] += 1e-3F;
+  ColouringInput input;
+  input.boxes = boxes;
+  EXPECT_EQ(coloured("motion", input).legend.size(), 1U);
+  input.previous = previous;
+  EXPECT_THAT(labels(coloured("motion", input)), ElementsAre("static", "moving", "static"));
+}
+
+TEST(Colouring, SizesAreShownInStepsByTheSameFactor) {
+  const std::vector<Aabb> boxes = {boxOf(0, 0), boxOf(0, 1), boxOf(0, 9), boxOf(0, 1000),
+                                   boxOf(0, 1e6F)};
+  ColouringInput input;
+  input.boxes = boxes;
+  const Colouring colouring = coloured("size", input);
+  EXPECT_THAT(labels(colouring),
+              ElementsAre("1 to 10", "1 to 10", "1 to 10", "1e+03 to 1e+04", "1e+05 to 1e+06"));
+}
+
+TEST(Colouring, EveryModeColoursWhateverItGets) {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  const std::vector<Aabb> odd = {{{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}},
+                                 {{0, 0, 0}, {0, 0, 0}},
+                                 {{1, 1, 1}, {-1, -1, -1}}};
+  const std::vector<Aabb> same = boxesOf(4);
+  const std::vector<Pair> pairs = {{0, 1}, {5, 700}};
+  for (const ColourMode& mode : colourModes()) {
+    Colouring colouring;
+    for (const std::span<const Aabb> boxes : {std::span<const Aabb>(odd), {}, {same}}) {
+      ColouringInput input;
+      input.boxes = boxes;
+      input.missed = pairs;
+      mode.colour(input, colouring);
+      EXPECT_EQ(colouring.colours.size(), boxes.size()) << mode.id;
+      std::uint64_t bodies = 0;
+      for (const LegendEntry& entry : colouring.legend) bodies += entry.count;
+      EXPECT_EQ(bodies, boxes.size()) << mode.id;
+    }
+  }
+}
+
+TEST(Colouring, ModesAreNamedOnce) {
+  std::set<std::string_view> ids;
+  for (const ColourMode& mode : colourModes()) {
+    EXPECT_TRUE(ids.insert(mode.id).second) << mode.id;
+    EXPECT_FALSE(mode.title.empty());
+    EXPECT_FALSE(mode.help.empty());
+  }
+}
+
+TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
+  std::vector<Aabb> boxes = boxesOf(7);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = boxOf(0, std::pow(2.0F, float(i)));
+  const std::vector<std::uint32_t> overlaps = {0, 1, 2, 4, 8, 16, 32};
+  for (const bool dark : {false, true}) {
+    ColouringInput input;
+    input.boxes = boxes;
+    input.overlaps = overlaps;
+    input.dark = dark;
+    for (const char* id : {"overlaps", "size"}) {
+      const Colouring colouring = coloured(id, input);
+      // The first of the counts, 0, is not on the scale.
+      for (std::size_t i = id == std::string_view("overlaps") ? 2 : 1; i < colouring.legend.size();
+           ++i) {
+        const double before = luminance(colouring.legend[i - 1].swatch) + 0.05;
+        const double step = luminance(colouring.legend[i].swatch) + 0.05;
+        EXPECT_GT(dark ? step / before : before / step, 1.15) << id << " step " << i;
+      }
+    }
+  }
+}
+
+TEST(OverlapCounts, CountsBothBodiesOfEveryPair) {
+  const std::vector<Pair> first = {{0, 1}, {1, 2}};
+  const std::vector<Pair> second = {{1, 3}, {2, 9}};
+  const std::vector<PairRun> runs = {first, second};
+  EXPECT_THAT(overlapCounts(4, runs), ElementsAre(1, 3, 1, 1));
+  EXPECT_THAT(overlapCounts(0, runs), ElementsAre());
+}
+
+TEST(PairLines, GoFromMiddleToMiddle) {
+  const std::vector<Aabb> boxes = {boxOf(0, 2), boxOf(10, 4), boxOf(20, 2)};
+  const std::vector<Pair> pairs = {{0, 1}, {1, 2}, {0, 2}, {2, 50}};
+  const PairRun run = pairs;
+  PairLineStyle style;
+  style.colour = 0x123456;
+  const Overlay all = pairLines(boxes, {&run, 1}, style);
+  ASSERT_EQ(all.lines.size(), 3U);
+  EXPECT_EQ(all.lines[0].from, (std::array{1.0F, 1.0F, 1.0F}));
+  EXPECT_EQ(all.lines[0].to, (std::array{12.0F, 12.0F, 12.0F}));
+  EXPECT_EQ(all.lines[0].colour, 0x123456U);
+
+  const std::vector<std::uint32_t> selection = {1, 99};
+  EXPECT_EQ(pairLines(boxes, {&run, 1}, style, selection).lines.size(), 2U);
+  EXPECT_EQ(pairLines(boxes, {&run, 1}, style, std::span<const std::uint32_t>()).lines.size(), 0U);
+  style.most = 1;
+  const Overlay few = pairLines(boxes, {&run, 1}, style);
+  EXPECT_EQ(few.lines.size(), 1U);
+  EXPECT_EQ(few.left_out, 2U);
+}
+
+TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
+  RecordedDrawing drawing;
+  EXPECT_EQ(deepestLevel(drawing), 0);
+  drawing.box(boxOf(0, 100), 1, 0);
+  drawing.box(boxOf(0, 10), 2, 1);
+  drawing.box(boxOf(50, 10), 3, 1);
+  drawing.box(boxOf(50, 5), 4, 2);
+  drawing.line({0, 0, 0}, {5, 5, 5}, 5);
+  drawing.line({90, 90, 90}, {50, 50, 50}, 6);
+  EXPECT_EQ(deepestLevel(drawing), 2);
+
+  const auto shown = [&](const StructureFilter& filter) {
+    std::vector<Rgb> colours;
+    const Overlay overlay = structureOverlay(drawing, filter);
+    for (const SceneWireBox& box : overlay.boxes) colours.push_back(box.colour);
+    for (const SceneLine& line : overlay.lines) colours.push_back(line.colour);
+    return colours;
+  };
+  EXPECT_THAT(shown({}), ElementsAre(1, 2, 3, 4, 5, 6));
+  StructureFilter filter;
+  filter.first_level = filter.last_level = 1;
+  EXPECT_THAT(shown(filter), ElementsAre(2, 3, 5, 6));
+  filter.near = boxOf(52, 1);
+  EXPECT_THAT(shown(filter), ElementsAre(3, 6));
+  filter = {};
+  filter.most = 1;
+  EXPECT_THAT(shown(filter), ElementsAre(1, 5));
+  EXPECT_EQ(structureOverlay(drawing, filter).left_out, 4U);
+}
+
+}  // namespace
+}  // namespace broadmark::tests
