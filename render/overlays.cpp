@@ -1,6 +1,7 @@
 #include "render/overlays.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace broadmark {
 namespace {
