@@ -49,6 +49,8 @@ struct ViewOptions {
   bool structure = false;      ///< what the shown algorithm draws of itself
   bool structure_near = true;  ///< only around the selection, if there is one
   int structure_level = -1;    ///< only this depth; -1: all
+
+  friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
 
 /// A line for the status bar.

@@ -1,10 +1,344 @@
 #include "app/inspector/view.h"
 
-namespace broadmark {
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
 
-View::View(const Gl& gl) : gl_(&gl) {}
-View::~View() = default;
-void View::draw(Ui&, Session&, const RunProgress&) {}
-bool View::lively() const { return false; }
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "render/ui_renderer.h"
+
+namespace broadmark {
+namespace {
+
+constexpr float kFlightSeconds = 0.45F;
+constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
+constexpr float kZoomPerTurn = 0.86F;
+constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
+constexpr float kClickPixels = 3;   // a press that moves less is a click
+constexpr float kSurroundings = 4;  // what is looked at is shown with so many times its size around
+
+constexpr Rgb kMissed = 0xE5484D;
+constexpr Rgb kLine = 0x4C8DFF;
+
+Aabb enlargedBy(const Aabb& box, float factor) {
+  float longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, box.max[axis] - box.min[axis]);
+  }
+  return enlarged(box, (factor - 1) * longest / 2);
+}
+
+}  // namespace
+
+View::View(const Gl& gl) : scene_(gl) {}
+
+double View::aspect() const { return static_cast<double>(width_) / height_; }
+
+void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); }
+
+void View::lookAtAll() {
+  if (!shown_.snapshot) return;
+  const Aabb all = shownBox(shown_.snapshot->scene.world, *shown_.snapshot->boxes);
+  fly(focusedOn(camera_, content_.space.toView(all), aspect()));
+}
+
+void View::fly(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
+
+void View::moveOn(float seconds) {
+  if (!flight_) return;
+  flight_->part += seconds / kFlightSeconds;
+  camera_ = between(flight_->from, flight_->to, std::min(flight_->part, 1.0F));
+  if (flight_->part >= 1) flight_.reset();
+}
+
+Aabb View::boundsOf(std::span<const std::uint32_t> bodies) const {
+  const std::vector<Aabb>& boxes = *shown_.snapshot->boxes;
+  Aabb bounds = boxes[bodies.front()];
+  for (const std::uint32_t body : bodies) bounds = merged(bounds, boxes[body]);
+  return bounds;
+}
+
+void View::takeFlightRequest(Session& session) {
+  if (!session.fly_to) return;
+  std::vector<std::uint32_t> bodies = *std::exchange(session.fly_to, {});
+  std::erase_if(bodies, [&](std::uint32_t body) { return body >= shown_.snapshot->boxes->size(); });
+  if (bodies.empty()) {
+    lookAtAll();
+    return;
+  }
+  const Aabb bounds = enlargedBy(boundsOf(bodies), kSurroundings);
+  fly(focusedOn(camera_, content_.space.toView(bounds), aspect()));
+}
+
+void View::update(Session& session, const RunProgress& progress, bool dark) {
+  const bool new_scene = progress.snapshot && footage_ != progress.snapshot->footage;
+  const ViewOptions& options = session.view;
+  const bool same = progress.snapshot == shown_.snapshot && session.selection == shown_.selection &&
+                    options == shown_.options && dark == shown_.dark;
+  if (same || !progress.snapshot) return;
+  shown_ = {progress.snapshot, session.selection, options, dark};
+  if (new_scene) {
+    footage_ = progress.snapshot->footage;
+    const Aabb all = shownBox(progress.snapshot->scene.world, *progress.snapshot->boxes);
+    content_.space = viewSpaceOf(all);
+    camera_ = focusedOn(lookedFrom({}, Direction::figure), content_.space.toView(all), aspect());
+    flight_.reset();
+  }
+  content_.world = progress.snapshot->scene.world;
+  content_.shows_world = options.world_box;
+  content_.shows_grid = options.ground;
+  content_.shows_axes = options.axes;
+  content_.theme = dark ? kDarkScene : kLightScene;
+  ++revision_;
+  updateBodies(session);
+  updateLines(session, dark);
+}
+
+void View::updateBodies(const Session& session) {
+  const Snapshot& snapshot = *shown_.snapshot;
+  const std::span<const ColourMode> modes = colourModes();
+  modes[session.view.colouring % modes.size()].colour(
+      {.boxes = *snapshot.boxes,
+       .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
+                                         : std::span<const Aabb>(),
+       .overlaps = snapshot.overlaps,
+       .missed = snapshot.difference.missed,
+       .extra = snapshot.difference.extra,
+       .dark = shown_.dark},
+      colouring_);
+  visible_.clear();
+  if (session.view.hide_free) {
+    visible_.resize(snapshot.boxes->size());
+    for (std::size_t body = 0; body < visible_.size(); ++body) {
+      visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
+    }
+    // What is missing is what one looks for.
+    for (const Pair& pair : snapshot.difference.missed) visible_[pair.a] = visible_[pair.b] = 1;
+    for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
+  }
+  content_.boxes = *snapshot.boxes;
+  content_.colours = colouring_.colours;
+  content_.visible = visible_;
+  content_.selected = shown_.selection;
+  content_.bodies_revision = revision_;
+}
+
+void View::add(Overlay overlay) {
+  lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
+  wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
+  left_out_ += overlay.left_out;
+}
+
+void View::updateLines(const Session& session, bool dark) {
+  const Snapshot& snapshot = *shown_.snapshot;
+  const std::span<const Aabb> boxes = *snapshot.boxes;
+  const ViewOptions& options = session.view;
+  lines_.clear();
+  wire_boxes_.clear();
+  left_out_ = 0;
+  const std::optional<std::span<const std::uint32_t>> selected =
+      options.lines_of_all ? std::nullopt
+                           : std::optional<std::span<const std::uint32_t>>(shown_.selection);
+  if (options.pair_lines) {
+    const PairRun run = snapshot.pairs;
+    add(pairLines(boxes, {&run, 1}, {.colour = kLine}, selected));
+  }
+  if (const PairRun missed = snapshot.difference.missed; !missed.empty()) {
+    add(pairLines(boxes, {&missed, 1},
+                  {.colour = kMissed, .width = 2.5F, .behind = Behind::shown}));
+  }
+  if (snapshot.structure) {
+    StructureFilter filter;
+    if (options.structure_level >= 0) {
+      filter.first_level = filter.last_level = options.structure_level;
+    }
+    if (options.structure_near && !shown_.selection.empty()) {
+      filter.near = boundsOf(shown_.selection);
+    }
+    add(structureOverlay(*snapshot.structure, filter));
+  }
+  for (const Track& track : snapshot.tracks) {
+    for (std::size_t i = 1; i < track.boxes.size(); ++i) {
+      const auto middle = [&](const Aabb& box) {
+        std::array<float, 3> centre{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          centre[axis] = (box.min[axis] + box.max[axis]) / 2;
+        }
+        return centre;
+      };
+      lines_.push_back({.from = middle(track.boxes[i - 1]),
+                        .to = middle(track.boxes[i]),
+                        .colour = (dark ? kDarkScene : kLightScene).selection,
+                        .behind = Behind::faint});
+    }
+  }
+  content_.lines = lines_;
+  content_.wire_boxes = wire_boxes_;
+  content_.lines_revision = revision_;
+}
+
+void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
+  const auto scope = ui.scope("View");
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
+  width_ = static_cast<int>(size.x);
+  height_ = static_cast<int>(size.y);
+  update(session, progress, ui.theme.dark);
+  if (!shown_.snapshot) {
+    ImGui::InvisibleButton("scene", size);
+    ui.note("scene");
+    const char* hint = "Simulate a scene, or drop a recording here";
+    const ImVec2 text = ImGui::CalcTextSize(hint);
+    ImGui::GetWindowDrawList()->AddText(
+        {corner.x + (size.x - text.x) / 2, corner.y + (size.y - text.y) / 2},
+        colour(ui.theme.faint), hint);
+    return;
+  }
+  takeFlightRequest(session);
+  moveOn(ImGui::GetIO().DeltaTime);
+  content_.scale = ui.scale;
+  scene_.resize(width_, height_);
+  scene_.draw(content_, camera_);
+  ImGui::GetWindowDrawList()->AddImage(uiTexture(scene_.texture()), corner,
+                                       {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton("scene", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  ui.note("scene");
+  handleMouse(ui, session, corner, size);
+  drawLegend(ui, corner, size);
+  if (session.view.axes) drawAxisNames(corner);
+}
+
+void View::beginDrag(ImVec2 mouse) {
+  const ImGuiIO& io = ImGui::GetIO();
+  drag_from_ = mouse;
+  dragged_ = false;
+  drag_ = !io.MouseDown[0] ? Drag::pan : io.KeyShift ? Drag::rectangle : Drag::orbit;
+  flight_.reset();
+}
+
+void View::handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  if (ImGui::IsItemActivated()) beginDrag(mouse);
+  if (ImGui::IsItemActive()) handleDrag(session, corner, size);
+  if (ImGui::IsItemDeactivated()) {
+    if (drag_ == Drag::rectangle && dragged_) {
+      selectWithin(session, drag_from_, mouse);
+    } else if (!dragged_ && drag_ != Drag::pan) {
+      click(session, mouse, io.MouseDoubleClicked[0]);
+    }
+    drag_ = Drag::none;
+  }
+  if (!ImGui::IsItemHovered()) return;
+  if (ImGui::IsMouseDoubleClicked(0)) click(session, mouse, true);
+  if (io.MouseWheel != 0) {
+    flight_.reset();
+    const float x = 2 * mouse.x / size.x - 1;
+    const float y = 1 - 2 * mouse.y / size.y;
+    camera_ =
+        zoomed(camera_, std::pow(kZoomPerTurn, io.MouseWheel), pointUnder(camera_, aspect(), x, y));
+  }
+  if (!io.WantTextInput && !io.KeyCtrl) handleKeys();
+  if (drag_ == Drag::rectangle && dragged_) {
+    const ImVec2 from{corner.x + drag_from_.x, corner.y + drag_from_.y};
+    ImGui::GetWindowDrawList()->AddRectFilled(from, io.MousePos, colour(ui.theme.accent, 0.15F));
+    ImGui::GetWindowDrawList()->AddRect(from, io.MousePos, colour(ui.theme.accent));
+  }
+}
+
+void View::handleDrag(Session&, ImVec2 corner, ImVec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  if (!dragged_ && std::hypot(mouse.x - drag_from_.x, mouse.y - drag_from_.y) <= kClickPixels) {
+    return;
+  }
+  const ImVec2 moved =
+      dragged_ ? io.MouseDelta : ImVec2{mouse.x - drag_from_.x, mouse.y - drag_from_.y};
+  dragged_ = true;
+  if (drag_ == Drag::orbit) {
+    camera_ = orbited(camera_, -moved.x / size.y * kRadiansPerHeight,
+                      moved.y / size.y * kRadiansPerHeight);
+  } else if (drag_ == Drag::pan) {
+    camera_ = panned(camera_, moved.x / size.y, -moved.y / size.y);
+  }
+}
+
+void View::handleKeys() {
+  const float step = kFlySpeed * ImGui::GetIO().DeltaTime;
+  const auto along = [&](Key forth, Key back) {
+    return step * static_cast<float>(int{ImGui::IsKeyDown(forth)} - int{ImGui::IsKeyDown(back)});
+  };
+  const float forward = along(GLFW_KEY_W, GLFW_KEY_S);
+  const float right = along(GLFW_KEY_D, GLFW_KEY_A);
+  const float up = along(GLFW_KEY_E, GLFW_KEY_Q);
+  if (forward == 0 && right == 0 && up == 0) return;
+  flight_.reset();
+  camera_ = flown(camera_, forward, right, up);
+}
+
+void View::click(Session& session, ImVec2 at, bool fly_there) {
+  const auto picked =
+      pickBody(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(), at.x, at.y, visible_);
+  if (!picked) {
+    if (!ImGui::GetIO().KeyCtrl) session.select({});
+    return;
+  }
+  if (ImGui::GetIO().KeyCtrl) {
+    session.toggleSelected(picked->body);
+  } else {
+    session.select({picked->body});
+  }
+  if (fly_there) session.fly_to = std::vector<std::uint32_t>{picked->body};
+}
+
+void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
+  session.select(bodiesWithin(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(),
+                              {{from.x, from.y}, {to.x, to.y}}, visible_));
+}
+
+void View::drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const auto rows = static_cast<float>(colouring_.legend.size() + (left_out_ > 0 ? 1 : 0));
+  float width = 0;
+  std::vector<std::string> texts;
+  for (const LegendEntry& entry : colouring_.legend) {
+    texts.push_back(fmt::format("{}  {}", entry.label, entry.count));
+    width = std::max(width, ImGui::CalcTextSize(texts.back().c_str()).x);
+  }
+  const float pad = 0.5F * line;
+  if (width + 3 * line > size.x || (rows + 2) * line > size.y) return;
+  const ImVec2 at{corner.x + size.x - width - 2.3F * line, corner.y + pad};
+  draw.AddRectFilled(at, {corner.x + size.x - pad, at.y + rows * line + pad},
+                     colour(ui.theme.background, 0.82F), 4 * ui.scale);
+  float y = at.y + pad / 2;
+  for (std::size_t i = 0; i < texts.size(); ++i, y += line) {
+    draw.AddRectFilled({at.x + pad, y + 0.15F * line}, {at.x + pad + 0.6F * line, y + 0.75F * line},
+                       colour(colouring_.legend[i].swatch), 3 * ui.scale);
+    draw.AddText({at.x + pad + line, y}, ImGui::GetColorU32(ImGuiCol_Text), texts[i].c_str());
+  }
+  if (left_out_ > 0) {
+    const std::string text = fmt::format("{} lines left out", left_out_);
+    draw.AddText({at.x + pad, y}, colour(ui.theme.warning), text.c_str());
+  }
+}
+
+void View::drawAxisNames(ImVec2 corner) const {
+  const auto tips = axisTips(scene_.viewpoint(), content_.scale);
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const ImVec2 text = ImGui::CalcTextSize(kNames[axis]);
+    ImGui::GetWindowDrawList()->AddText(
+        {corner.x + tips[axis][0] - text.x / 2, corner.y + tips[axis][1] - text.y / 2},
+        colour(kAxisColours[axis]), kNames[axis]);
+  }
+}
 
 }  // namespace broadmark

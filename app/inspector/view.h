@@ -1,24 +1,84 @@
-// The view of the scene: drawn boxes, the camera, and what the mouse does in it.
+// The view of the scene: what is drawn, the camera, and what the mouse does in it.
 #pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include "app/inspector/session.h"
 #include "app/inspector/ui.h"
+#include "render/colouring.h"
 #include "render/gl.h"
+#include "render/orbit_camera.h"
+#include "render/overlays.h"
+#include "render/scene_view.h"
 
 namespace broadmark {
 
 class View {
  public:
   explicit View(const Gl& gl);
-  ~View();
 
   /// Fills the current window.
   void draw(Ui& ui, Session& session, const RunProgress& progress);
   /// Whether it moves by itself.
-  [[nodiscard]] bool lively() const;
+  [[nodiscard]] bool lively() const { return flight_.has_value(); }
+  /// What the colours of the present picture mean.
+  [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
+  [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
+
+  void lookFrom(Direction direction);
+  void lookAtAll();
 
  private:
-  const Gl* gl_;
+  struct Flight {
+    OrbitCamera from;
+    OrbitCamera to;
+    float part = 0;
+  };
+  /// What a picture of the bodies was made from.
+  struct Shown {
+    std::shared_ptr<const Snapshot> snapshot;
+    std::vector<std::uint32_t> selection;
+    ViewOptions options;
+    bool dark = false;
+  };
+
+  void update(Session& session, const RunProgress& progress, bool dark);
+  void updateBodies(const Session& session);
+  void updateLines(const Session& session, bool dark);
+  void add(Overlay overlay);
+  void takeFlightRequest(Session& session);
+  void fly(const OrbitCamera& to);
+  void moveOn(float seconds);
+  void handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
+  void handleDrag(Session& session, ImVec2 corner, ImVec2 size);
+  void handleKeys();
+  void beginDrag(ImVec2 mouse);
+  void click(Session& session, ImVec2 at, bool fly_there);
+  void selectWithin(Session& session, ImVec2 from, ImVec2 to);
+  void drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const;
+  void drawAxisNames(ImVec2 corner) const;
+  [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
+  [[nodiscard]] double aspect() const;
+
+  SceneView scene_;
+  SceneViewContent content_;
+  Shown shown_;
+  OrbitCamera camera_;
+  std::optional<Flight> flight_;
+  std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
+  Colouring colouring_;
+  std::vector<std::uint8_t> visible_;
+  std::vector<SceneLine> lines_;
+  std::vector<SceneWireBox> wire_boxes_;
+  std::uint64_t revision_ = 0;
+  std::size_t left_out_ = 0;  ///< lines and boxes that were too many
+  int width_ = 1;
+  int height_ = 1;
+  enum class Drag { none, orbit, pan, rectangle } drag_ = Drag::none;
+  ImVec2 drag_from_;
+  bool dragged_ = false;  ///< the mouse has moved since the button went down
 };
 
 }  // namespace broadmark

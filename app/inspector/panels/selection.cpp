@@ -1,0 +1,122 @@
+// What is known of the selected bodies, and of the scene.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/inspector/panel.h"
+#include "broadmark/scene_statistics.h"
+
+namespace broadmark::panels::selection {
+namespace {
+
+constexpr std::size_t kListedBodies = 200;
+constexpr std::size_t kListedPartners = 200;
+constexpr const char* kAxes[] = {"x", "y", "z"};
+
+class SelectionPanel final : public Panel {
+ public:
+  SelectionPanel()
+      : Panel("Bodies", Place::right, "The selected bodies, and the scene as a whole") {}
+
+  void draw(PanelContext& context) override {
+    const Snapshot* snapshot = context.progress.snapshot.get();
+    if (snapshot == nullptr) {
+      context.ui.faint("Nothing is open.");
+      return;
+    }
+    goTo(context);
+    if (context.session.selection.empty()) {
+      drawScene(context.ui, context.progress.snapshot);
+    } else if (context.session.selection.size() == 1) {
+      drawBody(context, *snapshot, context.session.selection.front());
+    } else {
+      drawBodies(context, *snapshot);
+    }
+  }
+
+ private:
+  void goTo(PanelContext& context) {
+    const auto last = static_cast<std::int64_t>(context.progress.scene.objects) - 1;
+    if (last < 0) return;
+    if (context.ui.integer("body", wanted_, 0, last,
+                           "Selects a body by its number, and flies there")) {
+      context.session.select({static_cast<std::uint32_t>(wanted_)});
+      context.session.fly_to = context.session.selection;
+    }
+  }
+
+  static void drawBody(PanelContext& context, const Snapshot& snapshot, std::uint32_t body) {
+    Ui& ui = context.ui;
+    if (body >= snapshot.boxes->size()) return;
+    const Aabb& box = (*snapshot.boxes)[body];
+    ui.heading(fmt::format("Body {}", body).c_str());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ui.fact(kAxes[axis], fmt::format("{:.5g} … {:.5g}", box.min[axis], box.max[axis]));
+    }
+    ui.fact("size", fmt::format("{:.4g} × {:.4g} × {:.4g}", box.max[0] - box.min[0],
+                                box.max[1] - box.min[1], box.max[2] - box.min[2]));
+    ui.fact("overlaps", std::to_string(snapshot.overlaps[body]));
+    ui.heading("Overlaps with");
+    ImGui::BeginChild("partners");
+    std::size_t listed = 0;
+    for (const Pair& pair : snapshot.pairs) {
+      if (pair.a != body && pair.b != body) continue;
+      if (listed++ == kListedPartners) break;
+      const std::uint32_t other = pair.a == body ? pair.b : pair.a;
+      if (ui.selectable(fmt::format("{}", other).c_str(), false)) context.session.visit(pair);
+    }
+    ImGui::EndChild();
+  }
+
+  static void drawBodies(PanelContext& context, const Snapshot& snapshot) {
+    Ui& ui = context.ui;
+    const std::vector<std::uint32_t> bodies = context.session.selection;
+    ui.heading(fmt::format("{} bodies", bodies.size()).c_str());
+    if (ui.button("Fly there", "(F)")) context.session.fly_to = bodies;
+    ImGui::BeginChild("bodies");
+    for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
+      if (bodies[i] >= snapshot.boxes->size()) continue;
+      const std::string label =
+          fmt::format("{}    {} overlaps", bodies[i], snapshot.overlaps[bodies[i]]);
+      if (ui.selectable(label.c_str(), false)) context.session.select({bodies[i]});
+    }
+    if (bodies.size() > kListedBodies) ui.faint("…");
+    ImGui::EndChild();
+  }
+
+  /// Statistics take a pass over all boxes: once per frame, and not for what is in motion.
+  void drawScene(Ui& ui, const std::shared_ptr<const Snapshot>& snapshot) {
+    ui.heading("Scene");
+    ui.fact("name", snapshot->scene.name);
+    ui.fact("object type", snapshot->scene.object_type);
+    ui.fact("bodies", std::to_string(snapshot->boxes->size()));
+    ui.fact("pairs", std::to_string(snapshot->pairs.size()));
+    const float side = snapshot->scene.world.max[0] - snapshot->scene.world.min[0];
+    ui.fact("world", fmt::format("{:.4g} wide", side));
+    if (described_ != snapshot) {
+      described_ = snapshot;
+      moving_ = 0;
+      if (snapshot->boxes_before) {
+        for (std::size_t i = 0; i < snapshot->boxes->size(); ++i) {
+          moving_ += (*snapshot->boxes)[i] == (*snapshot->boxes_before)[i] ? 0 : 1;
+        }
+      }
+    }
+    ui.fact("moving", std::to_string(moving_));
+    ImGui::Spacing();
+    ImGui::PushTextWrapPos(0);
+    ui.faint("Click a body to select it; drag with Shift to select several.");
+    ImGui::PopTextWrapPos();
+  }
+
+  std::int64_t wanted_ = 0;
+  std::shared_ptr<const Snapshot> described_;
+  std::uint64_t moving_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<SelectionPanel>(); }
+
+}  // namespace broadmark::panels::selection
