@@ -224,7 +224,7 @@ std::vector<double> axisTicks(double low, double high, int count, bool logarithm
   if (!(high > low) || count < 1) return ticks;
   if (logarithmic) {
     const double decades = std::log10(high / low);
-    const int per_decade = decades * 3 <= count ? 3 : 1;
+    const int per_decade = decades * 2 <= count ? 3 : 1;
     const int stride = std::max(1, static_cast<int>(std::ceil(decades / count)));
     constexpr double kSteps[] = {1, 2, 5};
     for (int power = static_cast<int>(std::floor(std::log10(low)));
@@ -260,7 +260,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   std::array<double, 2> range = valueRange(curves, options);
   widen(range, options.logarithmic);
   const Axes axes{.min = {corner.x + 4.8F * line, corner.y + line / 2},
-                  .max = {corner.x + width - line / 2, corner.y + height - 1.4F * line},
+                  .max = {corner.x + width - 1.4F * line, corner.y + height - 1.4F * line},
                   .first = options.first,
                   .last = std::max(options.last, options.first + 1),
                   .low = range[0],

@@ -47,6 +47,13 @@ Window::Window(const std::string& title, int width, int height) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
+    int free_width = width;
+    int free_height = height;
+    glfwGetMonitorWorkarea(monitor, nullptr, nullptr, &free_width, &free_height);
+    width = std::min(width, free_width);
+    height = std::min(height, free_height);
+  }
   window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = lastError();

@@ -19,8 +19,8 @@ namespace broadmark {
 /// at a time.
 class Window {
  public:
-  /// `width` and `height` in screen units. Throws RenderError where no window can be had (no
-  /// display, no OpenGL 3.3).
+  /// `width` and `height` in screen units, or less where the screen is smaller. Throws RenderError
+  /// where no window can be had (no display, no OpenGL 3.3).
   Window(const std::string& title, int width, int height);
   ~Window();
   Window(const Window&) = delete;

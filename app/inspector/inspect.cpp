@@ -130,13 +130,13 @@ void inspectOffscreen(const InspectOptions& options) {
   Movie movie;
   int width = options.width;
   int height = options.height;
-  auto target = std::make_unique<Framebuffer>(gl, width, height);
+  auto target = std::make_unique<Framebuffer>(gl, width, height, 1);
   // The first pictures settle sizes.
   for (int calm = 0; calm < 4 && !inspector.closing();) {
     if (script) script->update(inspector, input);
     if (const auto size = script ? script->takeResize() : std::nullopt) {
       std::tie(width, height) = *size;
-      target = std::make_unique<Framebuffer>(gl, width, height);
+      target = std::make_unique<Framebuffer>(gl, width, height, 1);
     }
     inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
     const auto picture = [&] { return target->read(); };

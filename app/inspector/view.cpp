@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "render/input_queue.h"
 #include "render/ui_renderer.h"
 
 namespace broadmark {

@@ -14,6 +14,9 @@
 namespace broadmark::panels::timings {
 namespace {
 
+/// Shown of a simulation that has just begun.
+constexpr std::uint32_t kFewestFrames = 20;
+
 class TimingsPanel final : public Panel {
  public:
   TimingsPanel() : Panel("Timings", Place::bottom, "Times of all frames as curves") {}
@@ -21,7 +24,7 @@ class TimingsPanel final : public Panel {
   void draw(PanelContext& context) override {
     drawControls(context.ui);
     const std::vector<PlotCurve> curves = makeCurves(context);
-    const auto last = static_cast<double>(std::max(1U, context.session.lastFrame()));
+    const auto last = static_cast<double>(std::max(kFewestFrames, context.progress.known_frames));
     if (!zoomed_) {
       first_ = 0;
       last_ = last;

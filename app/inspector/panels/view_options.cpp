@@ -15,7 +15,7 @@ class ViewPanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     ViewOptions& view = context.session.view;
-    drawColours(ui, view, context.view);
+    drawColours(ui, view);
     ui.heading("Show");
     ui.checkbox("only what overlaps", view.hide_free, "Hides bodies that are in no pair (H)");
     ui.checkbox("lines between pairs", view.pair_lines,
@@ -31,7 +31,7 @@ class ViewPanel final : public Panel {
   }
 
  private:
-  static void drawColours(Ui& ui, ViewOptions& view, const View& shown) {
+  static void drawColours(Ui& ui, ViewOptions& view) {
     std::vector<std::string> titles;
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
     view.colouring %= titles.size();
@@ -39,7 +39,6 @@ class ViewPanel final : public Panel {
     ImGui::PushTextWrapPos(0);
     ui.faint(colourModes()[view.colouring].help);
     ImGui::PopTextWrapPos();
-    static_cast<void>(shown);
   }
 
   static void drawStructure(PanelContext& context) {
