@@ -142,7 +142,7 @@ Panel* Inspector::panel(const std::string& name) {
 void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
   beginAt(id, position, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
   ImGui::SetCursorPos({0, 0});
-  ImGui::InvisibleButton(id, size);
+  ImGui::InvisibleButton(id, {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
   ui_.note(id);
   const bool vertical = size.y > size.x;
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {

@@ -92,7 +92,7 @@ class Ui {
 
   /// Notes the item drawn last under a name of its own.
   void note(std::string_view name);
-  /// The place of a widget in the last picture, or null.
+  /// The place of a widget in the last picture, until the next one; or null.
   [[nodiscard]] const WidgetPlace* find(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, WidgetPlace>& places() const { return places_; }
   /// Scrolls to this widget when it is drawn next.

@@ -1,0 +1,251 @@
+// The window's contents, drawn off-screen, through the real queue of events.
+#include "app/inspector/inspector.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "broadmark/algorithms.h"
+#include "render/framebuffer.h"
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+class InspectorTest : public testing::Test {
+ protected:
+  InspectorTest()
+      : context(makeOffscreenContext(GlSource::automatic)),
+        gl(*context),
+        inspector(gl, builtinAlgorithms(), {}, 1),
+        former_directory(std::filesystem::current_path()) {
+    std::filesystem::current_path(directory / "");  // screenshots go there
+    setParameters(*inspector.session().draft, {{"objects", "40"}, {"frames", "20"}});
+  }
+  ~InspectorTest() override { std::filesystem::current_path(former_directory); }
+
+  void draw(int pictures = 1) {
+    for (int i = 0; i < pictures; ++i) {
+      const Framebuffer target(gl, width, height, 1);
+      inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
+    }
+  }
+
+  /// Draws until the queue is empty and all is computed.
+  void settle() {
+    for (int i = 0; i < 400; ++i) {
+      draw();
+      inspector.session().runs.settle(60s);
+      if (i > 2 && input.empty()) return;
+    }
+  }
+
+  void click(const std::string& widget) {
+    const WidgetPlace* place = inspector.ui().find(widget);
+    ASSERT_NE(place, nullptr) << widget;
+    press({(place->min.x + place->max.x) / 2, (place->min.y + place->max.y) / 2});
+  }
+
+  void press(ImVec2 at) {
+    input.push({.kind = InputEvent::Kind::move, .x = at.x, .y = at.y});
+    for (const bool down : {true, false}) {
+      input.push({.kind = InputEvent::Kind::button, .code = 0, .down = down});
+    }
+  }
+
+  void key(Key which) {
+    for (const bool down : {true, false}) {
+      input.push({.kind = InputEvent::Kind::key, .code = which, .down = down});
+    }
+  }
+
+  std::string value(const std::string& name) {
+    return inspector.value(name).value_or("(no such value)");
+  }
+
+  std::unique_ptr<OffscreenContext> context;
+  Gl gl;
+  Inspector inspector;
+  InputQueue input;
+  TemporaryDirectory directory;
+  std::filesystem::path former_directory;
+  int width = 960;
+  int height = 600;
+};
+
+TEST_F(InspectorTest, DrawsWithNothingOpen) {
+  draw(3);
+  EXPECT_NE(inspector.ui().find("Scene/Simulate"), nullptr);
+  EXPECT_EQ(value("bodies"), "0");
+}
+
+TEST_F(InspectorTest, ClickingSimulatesAndKeysStep) {
+  draw(3);
+  click("Scene/Simulate");
+  settle();
+  EXPECT_EQ(value("bodies"), "40");
+  key(GLFW_KEY_RIGHT);
+  key(GLFW_KEY_RIGHT);
+  settle();
+  EXPECT_EQ(value("shown_frame"), "2");
+  key(GLFW_KEY_END);
+  settle();
+  EXPECT_EQ(value("shown_frame"), "20");
+}
+
+TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
+  draw(3);
+  click("Scene/Simulate");
+  settle();
+  click("Scene/objects");
+  settle();
+  key(GLFW_KEY_SPACE);
+  key(GLFW_KEY_END);
+  settle();
+  EXPECT_EQ(value("playing"), "no");
+  EXPECT_EQ(value("frame"), "0");
+}
+
+TEST_F(InspectorTest, EverySizeCanBeDrawn) {
+  inspector.session().simulate();
+  inspector.session().addLane("kd");
+  for (const auto& [w, h] : {std::pair{1, 1},
+                             {3, 700},
+                             {700, 3},
+                             {64, 48},
+                             {320, 240},
+                             {640, 200},
+                             {1920, 1080},
+                             {960, 600}}) {
+    width = w;
+    height = h;
+    draw(2);
+  }
+  settle();
+  EXPECT_NE(inspector.ui().find("Scene/Simulate"), nullptr);
+}
+
+TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
+  draw(2);
+  inspector.session().open("/nowhere/at all.aabbs");
+  draw(3);
+  EXPECT_THAT(value("error"), testing::HasSubstr("/nowhere/at all.aabbs"));
+  click("Error/OK");
+  settle();
+  EXPECT_EQ(value("error"), "");
+}
+
+TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
+  inspector.session().simulate();
+  settle();
+  ASSERT_NE(inspector.ui().find("View/scene"), nullptr);
+  const WidgetPlace view = *inspector.ui().find("View/scene");
+  // Somewhere in the view there are bodies.
+  for (int i = 0; i < 81 && value("selection") == "0"; ++i) {
+    const float x = 0.3F + 0.05F * static_cast<float>(i % 9);
+    const float y = 0.3F + 0.05F * static_cast<float>(i / 9);
+    press({view.min.x + x * (view.max.x - view.min.x), view.min.y + y * (view.max.y - view.min.y)});
+    settle();
+  }
+  EXPECT_EQ(value("selection"), "1");
+  key(GLFW_KEY_ESCAPE);
+  settle();
+  EXPECT_EQ(value("selection"), "0");
+}
+
+// Every widget of every panel is pressed once, and whatever that opens is closed again.
+TEST_F(InspectorTest, EveryWidgetCanBePressed) {
+  inspector.session().simulate();
+  inspector.session().addLane("grid-bf-mt");
+  settle();
+  std::set<std::string> pressed;
+  for (const auto& panel : makePanels()) {
+    inspector.showPanel(panel->name());
+    settle();
+    for (int round = 0; round < 60; ++round) {
+      std::string next;
+      for (const auto& [name, place] : inspector.ui().places()) {
+        if (place.visible && place.enabled && name.starts_with(panel->name()) &&
+            pressed.insert(name).second) {
+          next = name;
+          break;
+        }
+      }
+      if (next.empty()) break;
+      click(next);
+      settle();
+      key(GLFW_KEY_ESCAPE);
+      settle();
+      inspector.session().errors.clear();
+      inspector.showPanel(panel->name());
+      settle();
+    }
+  }
+  EXPECT_GT(pressed.size(), 30U);
+  EXPECT_FALSE(inspector.closing());
+}
+
+class RandomEvents : public InspectorTest, public testing::WithParamInterface<unsigned> {};
+
+TEST_P(RandomEvents, DoNoHarm) {
+  std::mt19937 random(GetParam());
+  const auto below = [&](int count) {
+    return static_cast<int>(random() % static_cast<unsigned>(count));
+  };
+  constexpr Key kKeys[] = {
+      GLFW_KEY_SPACE,        GLFW_KEY_LEFT,       GLFW_KEY_RIGHT,  GLFW_KEY_HOME,
+      GLFW_KEY_END,          GLFW_KEY_F,          GLFW_KEY_H,      GLFW_KEY_C,
+      GLFW_KEY_TAB,          GLFW_KEY_ENTER,      GLFW_KEY_ESCAPE, GLFW_KEY_F1,
+      GLFW_KEY_LEFT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_DELETE, GLFW_KEY_Z};
+  inspector.session().simulate();
+  inspector.session().addLane("sap");
+  settle();
+  for (int event = 0; event < 200; ++event) {
+    switch (below(7)) {
+      case 0:
+      case 1: {
+        // Mostly at something: an arbitrary point is rarely one.
+        const auto& places = inspector.ui().places();
+        auto place = places.begin();
+        std::advance(place, below(static_cast<int>(places.size())));
+        if (place->first.find("Quit") != std::string::npos) break;
+        press({(place->second.min.x + place->second.max.x) / 2,
+               (place->second.min.y + place->second.max.y) / 2});
+        break;
+      }
+      case 2:
+        press({static_cast<float>(below(width)), static_cast<float>(below(height))});
+        break;
+      case 3:
+        input.push({.kind = InputEvent::Kind::key,
+                    .code = kKeys[static_cast<std::size_t>(below(std::size(kKeys)))],
+                    .down = below(3) > 0});
+        break;
+      case 4:
+        input.push({.kind = InputEvent::Kind::character, .code = ' ' + below(95)});
+        break;
+      case 5:
+        input.push({.kind = InputEvent::Kind::wheel, .y = static_cast<float>(below(7) - 3)});
+        break;
+      case 6:
+        width = 300 + below(900);
+        height = 200 + below(600);
+        break;
+      default:
+        break;
+    }
+    draw();
+  }
+  settle();
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomEvents, testing::Range(1U, 7U));
+
+}  // namespace
+}  // namespace broadmark::tests
