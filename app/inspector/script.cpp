@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 
@@ -17,7 +18,6 @@ namespace {
 
 /// How long a widget, or a value that is expected, may keep one waiting, in seconds.
 constexpr double kPatience = 60;
-constexpr double kIdlePatience = 2;  // where nothing goes on any more
 
 std::vector<std::string> splitWords(std::string_view line) {
   std::vector<std::string> words;
@@ -104,6 +104,10 @@ const std::vector<ScriptVerb>& scriptVerbs() {
       {"expect", "VALUE RELATION TEXT", 3, 3, &P::expect,
        "waits for a value of the session to be =, !=, <, >, <= or >= to the text, or to contain it "
        "(~), and fails when that does not come"},
+      {"patience", "SECONDS", 1, 1, &P::patience,
+       "how long from here on an expectation may take although nothing goes on (at first 2)"},
+      {"places", "FILE", 1, 1, &P::places,
+       "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name"},
       {"resize", "WIDTHxHEIGHT", 1, 1, &P::resize, "changes the size of the picture"},
       {"screenshot", "FILE", 1, 1, &P::screenshot, "saves what is seen"},
   };
@@ -192,7 +196,7 @@ void ScriptPlayer::reveal(const std::string& widget) {
     } else {
       inspector.ui().reveal(widget);
     }
-    if (pictures > 30 && secondsSince(start) > kIdlePatience) {
+    if (pictures > 30 && secondsSince(start) > idle_patience_) {
       if (found != nullptr) fail(fmt::format("the widget '{}' is out of sight", widget));
       static_cast<void>(place(inspector, widget));  // fails, with the nearest name
     }
@@ -331,10 +335,22 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
     if (now && holds(*now, words[1], words[2])) return true;
     // It may yet become so, as long as something goes on.
     const bool idle = inspector.session().runs.settled() && !inspector.session().playback.playing;
-    if (secondsSince(start) < (idle ? kIdlePatience : kPatience)) return false;
+    if (secondsSince(start) < (idle ? idle_patience_ : kPatience)) return false;
     if (!now) fail(fmt::format("there is no value '{}'", words[0]));
     fail(fmt::format("{} {} {} is expected, but it is '{}'", words[0], words[1], words[2], *now));
   });
+}
+
+void ScriptPlayer::patience(const Words& words, Inspector&) { idle_patience_ = number(words[0]); }
+
+void ScriptPlayer::places(const Words& words, Inspector& inspector) {
+  std::string text;
+  for (const auto& [name, place] : inspector.ui().places()) {
+    if (!place.visible || !place.enabled) continue;
+    text += fmt::format("{:.0f} {:.0f} {:.0f} {:.0f} {}\n", place.min.x, place.min.y, place.max.x,
+                        place.max.y, name);
+  }
+  writeTextFile(words[0], text);
 }
 
 void ScriptPlayer::resize(const Words& words, Inspector&) {

@@ -74,6 +74,8 @@ class ScriptPlayer {
   void open(const Words& words, Inspector& inspector);
   void wait(const Words& words, Inspector& inspector);
   void expect(const Words& words, Inspector& inspector);
+  void patience(const Words& words, Inspector& inspector);
+  void places(const Words& words, Inspector& inspector);
   void resize(const Words& words, Inspector& inspector);
   void screenshot(const Words& words, Inspector& inspector);
 
@@ -90,8 +92,9 @@ class ScriptPlayer {
   std::vector<ScriptLine> lines_;
   std::string name_;
   std::size_t next_ = 0;
-  int number_ = 0;           ///< of the line being played
-  std::vector<Step> steps_;  ///< still to be done for it
+  int number_ = 0;            ///< of the line being played
+  double idle_patience_ = 2;  ///< in seconds
+  std::vector<Step> steps_;   ///< still to be done for it
   std::optional<std::pair<int, int>> resize_;
   std::optional<std::filesystem::path> screenshot_;
 };

@@ -1,0 +1,168 @@
+// The program in a real window, under Xvfb, with somebody at its mouse and keyboard (xdotool). What
+// comes of it is asserted by a script that runs in the program meanwhile.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// An X server of our own, without a screen.
+class Screen {
+ public:
+  Screen() {
+    int ends[2];
+    if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      const int quiet = ::open("/dev/null", O_WRONLY);
+      ::dup2(quiet, 2);
+      ::execlp("Xvfb", "Xvfb", "-displayfd", std::to_string(ends[1]).c_str(), "-screen", "0",
+               "1280x800x24", "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
+      ::_exit(127);
+    }
+    ::close(ends[1]);
+    char digit = 0;
+    while (::read(ends[0], &digit, 1) == 1 && digit != '\n') name_ += digit;
+    ::close(ends[0]);
+    if (!name_.empty()) name_ = ":" + name_;
+  }
+  ~Screen() {
+    ::kill(pid_, SIGTERM);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  /// "" when it could not be started.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  void tool(const std::string& arguments) const {
+    const std::string command = "DISPLAY=" + name_ + " xdotool " + arguments;
+    ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    std::this_thread::sleep_for(150ms);
+  }
+
+ private:
+  pid_t pid_ = -1;
+  std::string name_;
+};
+
+class WindowTest : public EndToEnd {
+ protected:
+  /// Waits for what the script tells of the widgets' places; the middle of one of them.
+  std::pair<int, int> middleOf(const std::string& places, const std::string& widget) {
+    const auto deadline = std::chrono::steady_clock::now() + 90s;
+    while (!std::filesystem::exists(file(places))) {
+      if (std::chrono::steady_clock::now() > deadline) {
+        ADD_FAILURE() << places << " does not come";
+        return {0, 0};
+      }
+      std::this_thread::sleep_for(50ms);
+    }
+    for (const std::string& line : linesOf(readFile(file(places)))) {
+      std::istringstream fields(line);
+      int left = 0;
+      int top = 0;
+      int right = 0;
+      int bottom = 0;
+      fields >> left >> top >> right >> bottom >> std::ws;
+      std::string name;
+      std::getline(fields, name);
+      if (name == widget) return {(left + right) / 2, (top + bottom) / 2};
+    }
+    ADD_FAILURE() << places << ": no widget " << widget;
+    return {0, 0};
+  }
+
+  void click(const Screen& screen, const std::string& places, const std::string& widget) {
+    const auto [x, y] = middleOf(places, widget);
+    screen.tool("mousemove " + std::to_string(x) + " " + std::to_string(y));
+    screen.tool("click 1");
+  }
+};
+
+TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
+  const Screen screen;
+  ASSERT_FALSE(screen.name().empty()) << "Xvfb does not start";
+  writeFile(file("script.txt"),
+            "patience 90\n"
+            "wait settled\n"
+            "expect bodies = 150\n"
+            "places opened\n"
+            "expect playing = yes\n"
+            "expect frame > 3\n"
+            "places playing\n"
+            "expect playing = no\n"
+            "places paused\n"
+            "expect selection = 1\n"
+            "places picked\n"
+            "expect panel.left = Algorithms\n"
+            "wait 3\n"
+            "places algorithms\n"
+            "wait 20\n"
+            "places choice\n"
+            "expect lanes = 1\n"
+            "wait settled\n"
+            "expect lane.kd.status = ok\n"
+            "places chosen\n"
+            "expect scene.objects = 275\n"
+            "places typed\n"
+            "expect dialog = yes\n"
+            "wait 5\n"
+            "places saving\n"
+            "expect dialog = no\n"
+            "expect status ~ recorded\n");
+  Program program(file(""),
+                  {"brownian", "--objects", "150", "--frames", "40", "--script", "script.txt"},
+                  {.environment = {{"DISPLAY", screen.name()},
+                                   {"XDG_CONFIG_HOME", (file("config")).string()}}});
+  click(screen, "opened", "Playback/Play");
+  click(screen, "playing", "Playback/Play");
+  click(screen, "paused", "View/scene");
+  click(screen, "picked", "Algorithms");
+  click(screen, "algorithms", "Algorithms/Add…");
+  click(screen, "choice", "Algorithms/add/kd");
+  click(screen, "chosen", "Scene");
+  std::this_thread::sleep_for(500ms);
+  click(screen, "opened", "Scene/objects");
+  screen.tool("key --delay 60 ctrl+a");
+  screen.tool("type --delay 40 275");
+  screen.tool("key --delay 60 Return");
+  middleOf("typed", "View/scene");
+  screen.tool("key --delay 60 ctrl+s");
+  click(screen, "saving", "File/name");
+  screen.tool("key --delay 60 ctrl+a");
+  screen.tool("type --delay 40 mine.aabbs");
+  screen.tool("key --delay 60 Return");
+  click(screen, "saving", "File/Save");
+  const auto deadline = std::chrono::steady_clock::now() + 60s;
+  while (!std::filesystem::exists(file("mine.aabbs")) &&
+         std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(50ms);
+  }
+  screen.tool("mousemove 640 300");
+  screen.tool("key --delay 60 ctrl+q");
+  const Ended ended = program.wait();
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_EQ(run({"verify", "mine.aabbs"}).status, 0);
+  EXPECT_THAT(readFile(file("config/broadmark/inspector.json")),
+              ::testing::HasSubstr("mine.aabbs"));
+}
+
+TEST_F(WindowTest, WithoutADisplayOneLineSaysWhatToDo) {
+  Program program(file(""), {"brownian"},
+                  {.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}});
+  const Ended ended = program.wait();
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, ::testing::HasSubstr("--headless"));
+  EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+}
+
+}  // namespace
+}  // namespace broadmark::testing
