@@ -25,6 +25,7 @@ struct Grid {
   cl_float4 scale;
   cl_float4 origin;
   cl_uint4 bits;
+  cl_uint4 edge;
 };
 
 class GpuGrid final : public opencl::DeviceBroadPhase {
@@ -35,7 +36,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
     constexpr std::size_t kMostCells = 20'000;
     if (count() < 2) return;
     std::vector<Cell> cells;
-    for (const Aabb& box : read<Aabb>(sorted_, count())) cells.push_back(cellOf(box));
+    for (const Aabb& box : read<Aabb>(boxes(), count())) cells.push_back(cellOf(box));
     std::ranges::sort(cells);
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     cells.resize(std::min(cells.size(), kMostCells));
@@ -53,7 +54,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
   }
 
   void reserve(std::size_t count) override {
-    sorted_ = context().buffer(count * sizeof(Aabb));
+    sorted_ = sortedBoxes(count);
     starts_ = context().buffer((std::bit_ceil(count) + 1) * sizeof(cl_uint));
   }
 
@@ -64,13 +65,13 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
               used_levels_);
     sorter().sort(tableBits());
     const auto buckets = cl_uint{1} << tableBits();
-    forBodies(gather_, count(), boxes(), sorter().keys(), sorter().values(), n(), buckets, sorted_,
-              starts_);
+    forBodies(gather_, count() + opencl::kPadding, boxes(), sorter().keys(), sorter().values(), n(),
+              buckets, stride(), sorted_, starts_);
   }
 
   void search(const opencl::PairSink& sink) override {
-    forBodies(search_, count(), sorted_, sorter().values(), starts_, n(), grid_, used_levels_,
-              sink.pairs, sink.count, sink.capacity);
+    forBodies(search_, count(), sorted_, stride(), sorter().values(), starts_, n(), grid_, wraps_,
+              used_levels_, sink.pairs, sink.count, sink.capacity);
   }
 
  private:
@@ -94,22 +95,31 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       unit = std::max({unit, (high - low) / (kMostUnits - 2),
                        std::max(std::abs(low), std::abs(high)) / (1 << 23)});
     }
+    // Where sixteen bodies are tested at once, fewer cells with more bodies in them: shorter along
+    // x, on which neighbouring cells are neighbours in memory.
+    const std::array<int, 3> edge =
+        likeGpu() ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{1, 2, 2};
     std::array<int, 3> bits{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double low = summary.bounds.min[axis];
-      const double cells = (summary.bounds.max[axis] - low) / unit + 1;
-      bits[axis] = static_cast<int>(std::bit_width(static_cast<std::uint32_t>(cells)));
       grid_.scale.s[axis] = static_cast<float>(1 / unit);
       grid_.origin.s[axis] = summary.bounds.min[axis] * grid_.scale.s[axis];
+      grid_.edge.s[axis] = static_cast<cl_uint>(edge[axis]);
+      // One more than there are, should a device round otherwise.
+      const std::uint32_t units = unitOf(summary.bounds.max[axis], axis) + 1;
+      bits[axis] = static_cast<int>(std::bit_width(units >> edge[axis]));
     }
     grid_.scale.s[3] = grid_.origin.s[3] = 0;
     // No more buckets than bodies.
     const auto most = static_cast<int>(std::bit_width(count() - 1));
+    wraps_ = bits[0] + bits[1] + bits[2] > most ? 1 : 0;
     while (bits[0] + bits[1] + bits[2] > most) --*std::ranges::max_element(bits);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       grid_.bits.s[axis] = static_cast<cl_uint>(bits[axis]);
     }
-    grid_.bits.s[3] = 0;
+  }
+
+  [[nodiscard]] int edgeBits(std::size_t axis) const {
+    return static_cast<int>(grid_.edge.s[axis]);
   }
 
   /// As unit_of in grid.cl.
@@ -122,13 +132,11 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
   [[nodiscard]] Cell cellOf(const Aabb& box) const {
     Cell cell;
     const auto fits = [&](std::size_t axis) {
-      return (unitOf(box.max[axis], axis) >> cell.level) -
-                 (unitOf(box.min[axis], axis) >> cell.level) <=
-             1;
+      return unitOf(box.max[axis], axis) - unitOf(box.min[axis], axis) <= 1U << cell.level;
     };
     while (!(fits(0) && fits(1) && fits(2))) ++cell.level;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      cell.at[axis] = unitOf(box.min[axis], axis) >> cell.level;
+      cell.at[axis] = unitOf(box.min[axis], axis) >> (cell.level + edgeBits(axis));
     }
     return cell;
   }
@@ -136,7 +144,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
   [[nodiscard]] Aabb boxOf(const Cell& cell) const {
     Aabb box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto edge = static_cast<float>(1U << cell.level);
+      const auto edge = static_cast<float>(1U << (cell.level + edgeBits(axis)));
       const float low = static_cast<float>(cell.at[axis]) * edge + grid_.origin.s[axis];
       box.min[axis] = low / grid_.scale.s[axis];
       box.max[axis] = (low + edge) / grid_.scale.s[axis];
@@ -151,6 +159,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
   cl::Buffer sorted_;
   cl::Buffer starts_;
   Grid grid_{};
+  cl_uint wraps_ = 0;  ///< whether cells share buckets
 };
 
 }  // namespace

@@ -39,9 +39,7 @@ class GpuSap final : public opencl::DeviceBroadPhase {
     search_ = cl::Kernel(program, "search");
   }
 
-  void reserve(std::size_t count) override {
-    sorted_ = context().buffer(6 * (count + kPadding) * sizeof(float));
-  }
+  void reserve(std::size_t count) override { sorted_ = sortedBoxes(count); }
 
   void build() override {
     const opencl::FrameSummary summary = summarise();
@@ -50,7 +48,7 @@ class GpuSap final : public opencl::DeviceBroadPhase {
         static_cast<cl_uint>(std::ranges::max_element(summary.variance) - summary.variance.begin());
     forBodies(make_keys_, count(), boxes(), n(), axis_, sorter().keys(), sorter().values());
     sorter().sort(32);
-    forBodies(gather_, count() + kPadding, boxes(), sorter().values(), n(), axis_, stride(),
+    forBodies(gather_, count() + opencl::kPadding, boxes(), sorter().values(), n(), axis_, stride(),
               sorted_);
   }
 
@@ -61,7 +59,7 @@ class GpuSap final : public opencl::DeviceBroadPhase {
 
  private:
   static constexpr std::size_t kPadding = 16;  ///< as sap.cl has it
-  [[nodiscard]] cl_uint stride() const { return static_cast<cl_uint>(count() + kPadding); }
+  [[nodiscard]] cl_uint stride() const { return static_cast<cl_uint>(count() + opencl::kPadding); }
 
   cl::Kernel make_keys_;
   cl::Kernel gather_;

@@ -38,8 +38,8 @@ void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Executio
   group_ = likeGpu() ? 64 : 1;
   const std::string source = fmt::format("{}{}", opencl_kernels::common_cl(), kernelSource());
   const cl::Program program = context_->build(
-      source,
-      fmt::format("-DBODIES_PER_ITEM={} -DPAIRS_HELD={}", bodies_per_item_, likeGpu() ? 1 : 32));
+      source, fmt::format("-DBODIES_PER_ITEM={} -DPAIRS_HELD={} -DLANES={}", bodies_per_item_,
+                          likeGpu() ? 1 : 32, likeGpu() ? 1 : 16));
   summarise_ = cl::Kernel(program, "summarise");
   summaries_ = context_->buffer(kStrips * kSumsPerStrip * sizeof(Float4));
   sorter_.emplace(*context_, likeGpu());

@@ -27,6 +27,9 @@ struct PairSink {
   cl_uint capacity = 0;
 };
 
+/// As common.cl has it: bodies behind the last one that meet nothing.
+constexpr std::size_t kPadding = 16;
+
 /// The frame's work is done when each phase returns: the times are honest.
 class DeviceBroadPhase : public BroadPhase {
  public:
@@ -71,6 +74,15 @@ class DeviceBroadPhase : public BroadPhase {
     launch(context_->queue(), kernel, items, group_, arguments...);
   }
 
+  /// Whether a work item takes one body: for a GPU's many. Else hundreds, sixteen at a time.
+  [[nodiscard]] bool likeGpu() const;
+
+  /// Elements of each of the six arrays of sorted boxes, and room for all of them (see common.cl).
+  [[nodiscard]] cl_uint stride() const { return static_cast<cl_uint>(count_ + kPadding); }
+  [[nodiscard]] cl::Buffer sortedBoxes(std::size_t count) const {
+    return context_->buffer(6 * (count + kPadding) * sizeof(float));
+  }
+
   /// Looks at all boxes; waits for the answer.
   FrameSummary summarise();
 
@@ -85,7 +97,6 @@ class DeviceBroadPhase : public BroadPhase {
   }
 
  private:
-  [[nodiscard]] bool likeGpu() const;
   cl_uint searchOnce();
 
   Choice way_{"auto", {"auto", "cpu", "gpu"}};

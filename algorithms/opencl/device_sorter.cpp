@@ -9,7 +9,7 @@ namespace broadmark::opencl {
 namespace {
 
 // As sort.cl has them.
-constexpr int kSerialDigitBits = 8;
+constexpr int kSerialDigitBits = 11;  ///< at most
 constexpr int kGroupDigitBits = 4;
 constexpr std::size_t kGroupSize = 128;
 constexpr std::size_t kGroupBlock = kGroupSize * 4;
@@ -42,11 +42,17 @@ void DeviceSorter::resize(std::size_t count) {
 }
 
 void DeviceSorter::sort(int bits) {
-  const int digit_bits = by_groups_ ? kGroupDigitBits : kSerialDigitBits;
-  for (int shift = 0; shift < bits; shift += digit_bits) pass(static_cast<cl_uint>(shift));
+  // As few passes as can be, with digits of about the same size.
+  const int most = by_groups_ ? kGroupDigitBits : kSerialDigitBits;
+  const int passes = (bits + most - 1) / most;
+  for (int done = 0; done < passes; ++done) {
+    const int digit_bits = by_groups_ ? most : (bits + passes - 1) / passes;
+    pass(done * digit_bits, digit_bits);
+  }
 }
 
-void DeviceSorter::pass(cl_uint shift) {
+void DeviceSorter::pass(int shift_bits, int digit_bits) {
+  const auto shift = static_cast<cl_uint>(shift_bits);
   const cl::CommandQueue& queue = context_.queue();
   const auto n = static_cast<cl_uint>(size_);
   const int to = 1 - current_;
@@ -61,11 +67,12 @@ void DeviceSorter::pass(cl_uint shift) {
     const std::size_t blocks =
         kBlocksPerUnit * context_.device().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     const auto block_size = static_cast<cl_uint>((size_ + blocks - 1) / blocks);
-    const auto counts = static_cast<cl_uint>(blocks << kSerialDigitBits);
-    launch(queue, count_, blocks, 1, keys(), n, shift, block_size, counts_);
+    const cl_uint digits = cl_uint{1} << digit_bits;
+    const auto counts = static_cast<cl_uint>(blocks << digit_bits);
+    launch(queue, count_, blocks, 1, keys(), n, shift, digits, block_size, counts_);
     launch(queue, places_, 1, 1, counts_, counts);
-    launch(queue, scatter_, blocks, 1, keys(), values(), n, shift, block_size, counts_, keys_[to],
-           values_[to]);
+    launch(queue, scatter_, blocks, 1, keys(), values(), n, shift, digits, block_size, counts_,
+           keys_[to], values_[to]);
   }
   current_ = to;
 }

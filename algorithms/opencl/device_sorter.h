@@ -25,7 +25,7 @@ class DeviceSorter {
   void sort(int bits);
 
  private:
-  void pass(cl_uint shift);
+  void pass(int shift_bits, int digit_bits);
 
   DeviceContext& context_;
   bool by_groups_;

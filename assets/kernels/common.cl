@@ -4,9 +4,25 @@
 //                  work items are cheap only by the group; 1 on a GPU
 // PAIRS_HELD       pairs that a work item keeps to itself before it takes room for all of them with
 //                  one atomic operation
+// LANES            sorted bodies that are tested at once: 16 on a CPU, whose work item has vectors; 1
+//                  on a GPU, whose work items are the lanes
 
 // A multiplication and an addition must round alike in every kernel: cells depend on it.
 #pragma OPENCL FP_CONTRACT OFF
+
+#define ALWAYS_INLINE static inline __attribute__((always_inline))
+
+/// On a CPU, asks for what will be read in a while from a place that nobody can guess. (PoCL's own
+/// prefetch() does nothing.)
+#define PREFETCHED 24u
+#if LANES > 1 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define PREFETCH(address) __builtin_prefetch(address)
+#endif
+#endif
+#ifndef PREFETCH
+#define PREFETCH(address)
+#endif
 
 /// The bodies i of [0, n) of this work item.
 #define FOR_EACH_BODY(i, n)                                                  \
@@ -19,6 +35,56 @@ typedef struct {
   float4 low;
   float4 high;
 } Box;
+
+/// Behind the last sorted body there is room for a vector of bodies that meet nothing.
+#define PADDING 16u
+
+/// Sorted boxes are six arrays of `stride` floats: lower and upper bounds on the first axis, on the
+/// second, on the third.
+static inline void put_sorted(__global float* sorted, uint stride, uint i, float4 low, float4 high) {
+  sorted[i] = low.x;
+  sorted[stride + i] = high.x;
+  sorted[2 * stride + i] = low.y;
+  sorted[3 * stride + i] = high.y;
+  sorted[4 * stride + i] = low.z;
+  sorted[5 * stride + i] = high.z;
+}
+
+#if LANES == 16
+typedef int16 Lanes;
+#define LOAD_LANES(from) vload16(0, from)
+
+/// The lanes or'ed together. In this form compilers see a reduction; in any() they do not.
+static inline uint folded(int16 lanes) {
+  const int8 eight = lanes.lo | lanes.hi;
+  const int4 four = eight.lo | eight.hi;
+  const int2 two = four.lo | four.hi;
+  return (uint)(two.x | two.y);
+}
+
+/// A bit for each lane that is true.
+static inline uint bits_of(int16 lanes) {
+  if (folded(lanes) == 0) return 0;
+  return folded(lanes & (int16)(0x1, 0x2, 0x4, 0x8, 0x10, 0x20, 0x40, 0x80, 0x100, 0x200, 0x400,
+                                0x800, 0x1000, 0x2000, 0x4000, 0x8000));
+}
+#else
+typedef int Lanes;
+#define LOAD_LANES(from) (*(from))
+static inline uint bits_of(int lane) { return lane != 0; }
+#endif
+
+/// Which of LANES sorted bodies meet [low, high] on one axis: `lows` points to the first one's lower
+/// bound.
+static inline Lanes reach(__global const float* lows, uint stride, float low, float high) {
+  return (LOAD_LANES(lows) <= high) & (low <= LOAD_LANES(lows + stride));
+}
+
+/// For bodies `block` ... of which bit k of `hits` stands for the k-th: those before `end`, as j.
+#define FOR_EACH_HIT(j, hits, block, end)                                             \
+  for (uint left_ = (end) - (block) < LANES ? (hits) & ((1u << ((end) - (block))) - 1) : (hits), \
+            j = (block) + 31 - clz(left_);                                            \
+       left_ != 0; left_ ^= 1u << (j - (block)), j = (block) + 31 - clz(left_))
 
 /// Closed intersection: touching counts.
 static inline int meet(float4 a_low, float4 a_high, float4 b_low, float4 b_high) {

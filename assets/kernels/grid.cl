@@ -1,10 +1,10 @@
-// Hierarchical grid: cells of edge 2^l units on level l. A body lives on the finest level on which
-// it reaches from the cell of its lower corner no farther than into the next one, and there in that
-// one cell. Whatever meets it on its own level is then in a neighbouring cell; whatever meets it
-// and is larger, in one of the 27 cells around it on a coarser level.
+// Hierarchical grid: on level l bodies reach no farther than 2^l units, and cells have edges of
+// 2^(l + w) units. A body lives on the finest level that it fits, in the one cell of its
+// lower corner. Whatever meets a box on a level has its lower corner between 2^l units before the
+// box and the box's end: in two cells per axis, or three if cells are as small as the units.
 //
 // Coordinates become integers by a monotone function, so rounding and clamping cost no pair: if
-// a.low <= b.high, then so are their cells.
+// a.low <= b.high, then so are their units.
 //
 // Cells wrap around into a table of 2^bits buckets, neighbours along x beside each other. What is in
 // a bucket may thus be from another cell; a pair counts only in the cell it was looked for.
@@ -16,6 +16,7 @@ typedef struct {
   float4 scale;   // units per length
   float4 origin;  // lower corner of all boxes, in units
   uint4 bits;     // of the bucket's number, per axis
+  uint4 edge;     // cells on level l have edges of 2^(l + edge) units
 } Grid;
 
 static inline uint3 unit_of(float4 corner, Grid grid) {
@@ -24,11 +25,11 @@ static inline uint3 unit_of(float4 corner, Grid grid) {
 }
 
 static inline uint level_of(uint3 low, uint3 high) {
-  for (uint level = 0;; ++level) {
-    const uint3 reach = (high >> level) - (low >> level);
-    if ((reach.x <= 1) & (reach.y <= 1) & (reach.z <= 1)) return level;
-  }
+  const uint3 edges = high - low;
+  return 32 - clz(max(max(edges.x, edges.y), max(edges.z, 1u)) - 1);
 }
+
+static inline uint3 cell_of(uint3 low, uint level, Grid grid) { return low >> (level + grid.edge.xyz); }
 
 /// The bucket at the start of a row of cells along x.
 static inline uint row_of(uint y, uint z, uint level, Grid grid) {
@@ -45,7 +46,7 @@ __kernel void make_keys(__global const Box* boxes, const uint n, const Grid grid
   FOR_EACH_BODY(i, n) {
     const uint3 low = unit_of(boxes[i].low, grid);
     const uint level = level_of(low, unit_of(boxes[i].high, grid));
-    const uint3 cell = low >> level;
+    const uint3 cell = cell_of(low, level, grid);
     keys[i] = row_of(cell.y, cell.z, level, grid) | (cell.x & ((1u << grid.bits.x) - 1));
     bodies[i] = i;
     used |= 1u << level;
@@ -57,9 +58,15 @@ __kernel void make_keys(__global const Box* boxes, const uint n, const Grid grid
 /// Puts the boxes into the buckets' order, and notes where each bucket starts.
 __kernel void gather(__global const Box* boxes, __global const uint* keys,
                      __global const uint* bodies, const uint n, const uint buckets,
-                     __global Box* sorted, __global uint* starts) {
-  FOR_EACH_BODY(i, n) {
-    sorted[i] = boxes[bodies[i]];
+                     const uint stride, __global float* sorted, __global uint* starts) {
+  FOR_EACH_BODY(i, n + PADDING) {
+    if (i >= n) {
+      put_sorted(sorted, stride, i, (float4)(INFINITY), (float4)(-INFINITY));
+      continue;
+    }
+    PREFETCH(boxes + bodies[min(i + PREFETCHED, n - 1)]);
+    const Box box = boxes[bodies[i]];
+    put_sorted(sorted, stride, i, box.low, box.high);
     for (uint bucket = i == 0 ? 0 : keys[i - 1] + 1; bucket <= keys[i]; ++bucket) {
       starts[bucket] = i;
     }
@@ -69,121 +76,120 @@ __kernel void gather(__global const Box* boxes, __global const uint* keys,
   }
 }
 
-/// The body whose partners are looked for.
+/// The bodies in the order of their buckets.
 typedef struct {
-  float4 low;
-  float4 high;
-  uint position;
-  uint number;
-} Seeker;
-
-typedef struct {
-  __global const Box* sorted;
+  __global const float* sorted;
+  uint stride;
   __global const uint* bodies;
   __global const uint* starts;
   Grid grid;
 } Cells;
 
-/// Cells [first.x, last_x] of the row at first.y, first.z.
+static inline Box box_at(const Cells* cells, uint i) {
+  __global const float* first = cells->sorted + i;
+  const uint stride = cells->stride;
+  Box box;
+  box.low = (float4)(first[0], first[2 * stride], first[4 * stride], 0);
+  box.high = (float4)(first[stride], first[3 * stride], first[5 * stride], 0);
+  return box;
+}
+
+/// What is looked for on one level: of the bodies in the cells from `first` to `last`, those from
+/// position `earliest` on that meet `box`.
 typedef struct {
-  uint3 first;
-  uint last_x;
+  Box box;
+  uint number;
   uint level;
-  bool own;  // the row starts with the seeker's own cell
-} Row;
+  uint3 first;
+  uint3 last;
+  uint earliest;
+} Search;
 
-static inline void search_buckets(const Seeker* seeker, const Cells* cells, const Row* row,
-                                  uint begin, uint end, Sink* sink) {
-  for (uint j = begin; j < end; ++j) {
-    const Box other = cells->sorted[j];
-    if (!meet(seeker->low, seeker->high, other.low, other.high)) continue;
-    const uint3 low = unit_of(other.low, cells->grid);
-    if (level_of(low, unit_of(other.high, cells->grid)) != row->level) continue;
-    const uint3 cell = low >> row->level;
-    if ((cell.y != row->first.y) | (cell.z != row->first.z) | (cell.x < row->first.x) |
-        (cell.x > row->last_x)) {
-      continue;
-    }
-    // In its own cell the earlier of the two finds the pair.
-    if (row->own && cell.x == row->first.x && j <= seeker->position) continue;
-    report(sink, seeker->number, cells->bodies[j]);
-  }
+/// Whether body j is in the cells [search->first.x, search->last.x] of a row.
+static inline int in_row(const Search* search, const Cells* cells, uint y, uint z, uint j) {
+  const Box box = box_at(cells, j);
+  const uint3 low = unit_of(box.low, cells->grid);
+  const uint level = level_of(low, unit_of(box.high, cells->grid));
+  const uint3 cell = cell_of(low, level, cells->grid);
+  return (level == search->level) & (cell.y == y) & (cell.z == z) & (cell.x >= search->first.x) &
+         (cell.x <= search->last.x);
 }
 
-static inline void search_row(const Seeker* seeker, const Cells* cells, const Row* row,
+/// `exact`: a bucket is one cell, of this level.
+ALWAYS_INLINE void search_row(const Search* search, const Cells* cells, uint y, uint z, int exact,
                               Sink* sink) {
+  const Box box = search->box;
+  const uint stride = cells->stride;
   const uint size = 1u << cells->grid.bits.x;
-  const uint count = min(row->last_x - row->first.x + 1, size);
-  const uint from = count == size ? 0 : row->first.x & (size - 1);
-  const uint before_wrap = min(count, size - from);
-  __global const uint* starts =
-      cells->starts + row_of(row->first.y, row->first.z, row->level, cells->grid);
-  search_buckets(seeker, cells, row, starts[from], starts[from + before_wrap], sink);
-  if (before_wrap < count) {
-    search_buckets(seeker, cells, row, starts[0], starts[count - before_wrap], sink);
+  const uint count = min(search->last.x - search->first.x + 1, size);
+  __global const uint* starts = cells->starts + row_of(y, z, search->level, cells->grid);
+  for (uint done = 0; done < count;) {  // again if the row wraps around
+    const uint from = (search->first.x + done) & (size - 1);
+    const uint part = exact ? count : min(count - done, size - from);
+    done += part;
+    const uint end = starts[from + part];
+    for (uint block = max(starts[from], search->earliest); block < end; block += LANES) {
+      __global const float* bounds = cells->sorted + block;
+      const uint hits = bits_of(reach(bounds, stride, box.low.x, box.high.x) &
+                                reach(bounds + 2 * stride, stride, box.low.y, box.high.y) &
+                                reach(bounds + 4 * stride, stride, box.low.z, box.high.z));
+      FOR_EACH_HIT(j, hits, block, end) {
+        if (exact || in_row(search, cells, y, z, j)) report(sink, search->number, cells->bodies[j]);
+      }
+    }
+    if (exact) break;
   }
 }
 
-/// Half of the neighbours, the own cell among them: the other half finds this body.
-static inline void search_own_level(const Seeker* seeker, const Cells* cells, uint3 cell,
-                                    uint level, Sink* sink) {
-  Row row;
-  row.level = level;
-  row.last_x = cell.x + 1;
-  row.first = cell;
-  row.own = true;
-  search_row(seeker, cells, &row, sink);
-  row.own = false;
-  row.first.x = max(cell.x, 1u) - 1;
-  row.first.y = cell.y + 1;
-  search_row(seeker, cells, &row, sink);
-  row.first.z = cell.z + 1;
-  for (row.first.y = max(cell.y, 1u) - 1; row.first.y <= cell.y + 1; ++row.first.y) {
-    search_row(seeker, cells, &row, sink);
-  }
-}
-
-static inline void search_coarser_level(const Seeker* seeker, const Cells* cells, uint3 low,
-                                        uint3 high, uint level, Sink* sink) {
-  const uint3 first = max(low >> level, (uint3)(1)) - (uint3)(1);
-  const uint3 last = high >> level;
-  Row row;
-  row.level = level;
-  row.last_x = last.x;
-  row.own = false;
-  row.first = first;
-  for (row.first.z = first.z; row.first.z <= last.z; ++row.first.z) {
-    for (row.first.y = first.y; row.first.y <= last.y; ++row.first.y) {
-      search_row(seeker, cells, &row, sink);
+/// Looks for what meets body i, whose corners are in the units `low` and `high`, on one level.
+/// `ordered`: buckets are in the order of cells.
+ALWAYS_INLINE void search_level(const Cells* cells, uint i, Box box, uint3 low, uint3 high,
+                                uint level, int is_own, int ordered, int exact, Sink* sink) {
+  const uint back = 1u << level;
+  Search search;
+  search.box = box;
+  search.number = cells->bodies[i];
+  search.level = level;
+  search.first = cell_of(max(low, back) - back, level, cells->grid);
+  search.last = cell_of(high, level, cells->grid);
+  // On their own level, the earlier one of two bodies looks for the later one.
+  search.earliest = is_own ? i + 1 : 0;
+  // If in order, all in rows before its own one are earlier.
+  const uint3 begin = is_own && ordered ? cell_of(low, level, cells->grid) : search.first;
+  for (uint z = begin.z; z <= search.last.z; ++z) {
+    for (uint y = z == begin.z ? begin.y : search.first.y; y <= search.last.y; ++y) {
+      search_row(&search, cells, y, z, exact, sink);
     }
   }
 }
 
-__kernel void search(__global const Box* sorted, __global const uint* bodies,
-                     __global const uint* starts, const uint n, const Grid grid,
+/// `wraps`: cells share buckets.
+__kernel void search(__global const float* sorted, const uint stride, __global const uint* bodies,
+                     __global const uint* starts, const uint n, const Grid grid, const uint wraps,
                      __global const uint* used_levels, __global uint2* pairs,
                      volatile __global uint* count, const uint capacity) {
   MAKE_SINK(sink)
   Cells cells;
   cells.sorted = sorted;
+  cells.stride = stride;
   cells.bodies = bodies;
   cells.starts = starts;
   cells.grid = grid;
   const uint used = *used_levels;
+  const int exact = used == 1 && !wraps;
   FOR_EACH_BODY(i, n) {
-    Seeker seeker;
-    seeker.low = sorted[i].low;
-    seeker.high = sorted[i].high;
-    seeker.position = i;
-    seeker.number = bodies[i];
-    const uint3 low = unit_of(seeker.low, grid);
-    const uint3 high = unit_of(seeker.high, grid);
+    const Box box = box_at(&cells, i);
+    const uint3 low = unit_of(box.low, grid);
+    const uint3 high = unit_of(box.high, grid);
+    if (exact) {  // bodies of about one size: the same, and much faster with so much known
+      search_level(&cells, i, box, low, high, 0, 1, 1, 1, &sink);
+      continue;
+    }
     const uint own = level_of(low, high);
-    search_own_level(&seeker, &cells, low >> own, own, &sink);
-    for (uint level = own + 1; level < LEVELS && used >> level != 0; ++level) {
-      if ((used >> level & 1) != 0) {
-        search_coarser_level(&seeker, &cells, low, high, level, &sink);
-      }
+    for (uint level = own; used >> level != 0; ++level) {
+      if ((used >> level & 1) == 0) continue;
+      // Coarser levels begin elsewhere in the table, and may wrap around.
+      search_level(&cells, i, box, low, high, level, level == own, level == 0 && !wraps, 0, &sink);
     }
   }
   flush(&sink);

@@ -76,6 +76,7 @@ __kernel void build(__global const Box* boxes, __global const uint* keys,
                     __global const uint* bodies, const uint n, __global Box* leaves,
                     __global Node* nodes, __global uint* parents, __global uint* visits) {
   FOR_EACH_BODY(i, n) {
+    PREFETCH(boxes + bodies[min(i + PREFETCHED, n - 1)]);
     leaves[i] = boxes[bodies[i]];
     if (i + 1 == n) continue;
     visits[i] = 0;

@@ -1,8 +1,5 @@
 // Sweep and prune: bodies sorted by the lower bound on one axis; each is tested on the other two
-// against those that begin before it ends, sixteen at a time.
-
-/// Padding behind the last body: the sweep loads whole vectors.
-#define PADDING 16u
+// against those that begin before it ends.
 
 /// Makes a float sort as an unsigned integer; -0 with +0.
 static inline uint sort_key(float value) {
@@ -10,29 +7,27 @@ static inline uint sort_key(float value) {
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
 }
 
-static inline float along(float4 corner, uint axis) {
-  return axis == 0 ? corner.x : axis == 1 ? corner.y : corner.z;
+/// The components in the order of the sweep's axes: the sort axis first.
+static inline float4 from_axis(float4 corner, uint axis) {
+  return axis == 0 ? corner : axis == 1 ? corner.yzxw : corner.zxyw;
 }
 
 __kernel void make_keys(__global const Box* boxes, const uint n, const uint axis,
                         __global uint* keys, __global uint* bodies) {
   FOR_EACH_BODY(i, n) {
-    keys[i] = sort_key(along(boxes[i].low, axis));
+    keys[i] = sort_key(from_axis(boxes[i].low, axis).x);
     bodies[i] = i;
   }
 }
 
-/// The sorted boxes as six arrays of `stride` floats, sort axis first: its lower and upper bounds,
-/// then those of the two other axes.
+/// Puts the boxes into the sort order.
 __kernel void gather(__global const Box* boxes, __global const uint* bodies, const uint n,
                      const uint axis, const uint stride, __global float* sorted) {
   FOR_EACH_BODY(i, n + PADDING) {
-    for (uint k = 0; k < 3; ++k) {
-      const uint from = (axis + k) % 3;
-      // Padding meets nothing.
-      sorted[2 * k * stride + i] = i < n ? along(boxes[bodies[i]].low, from) : INFINITY;
-      sorted[(2 * k + 1) * stride + i] = i < n ? along(boxes[bodies[i]].high, from) : -INFINITY;
-    }
+    PREFETCH(boxes + bodies[min(i + PREFETCHED, n - 1)]);
+    const float4 low = i < n ? boxes[bodies[i]].low : (float4)(INFINITY);
+    const float4 high = i < n ? boxes[bodies[i]].high : (float4)(-INFINITY);
+    put_sorted(sorted, stride, i, from_axis(low, axis), from_axis(high, axis));
   }
 }
 
@@ -53,26 +48,19 @@ static inline uint window_end(__global const float* lows, uint i, uint n, float 
 __kernel void search(__global const float* sorted, __global const uint* bodies, const uint n,
                      const uint stride, __global uint2* pairs, volatile __global uint* count,
                      const uint capacity) {
-  __global const float* low1 = sorted + 2 * stride;
-  __global const float* high1 = sorted + 3 * stride;
-  __global const float* low2 = sorted + 4 * stride;
-  __global const float* high2 = sorted + 5 * stride;
+  __global const float* second = sorted + 2 * stride;
+  __global const float* third = sorted + 4 * stride;
   MAKE_SINK(sink)
   FOR_EACH_BODY(i, n) {
     const uint end = window_end(sorted, i, n, sorted[stride + i]);
-    const float16 own_low1 = (float16)(low1[i]);
-    const float16 own_high1 = (float16)(high1[i]);
-    const float16 own_low2 = (float16)(low2[i]);
-    const float16 own_high2 = (float16)(high2[i]);
-    for (uint j = i + 1; j < end; j += 16) {
-      const int16 hits = (own_low1 <= vload16(0, high1 + j)) & (vload16(0, low1 + j) <= own_high1) &
-                         (own_low2 <= vload16(0, high2 + j)) & (vload16(0, low2 + j) <= own_high2);
-      if (!any(hits)) continue;
-      int lanes[16];
-      vstore16(hits, 0, lanes);
-      for (uint k = 0; k < 16 && j + k < end; ++k) {
-        if (lanes[k] != 0) report(&sink, bodies[i], bodies[j + k]);
-      }
+    const float low2 = second[i];
+    const float high2 = second[stride + i];
+    const float low3 = third[i];
+    const float high3 = third[stride + i];
+    for (uint block = i + 1; block < end; block += LANES) {
+      const uint hits = bits_of(reach(second + block, stride, low2, high2) &
+                                reach(third + block, stride, low3, high3));
+      FOR_EACH_HIT(j, hits, block, end) report(&sink, bodies[i], bodies[j]);
     }
   }
   flush(&sink);

@@ -6,17 +6,18 @@
 //
 // Counts stand digit by digit, and for each digit block by block.
 
-#define SERIAL_DIGITS 256u
+/// Most digits of a pass.
+#define SERIAL_DIGITS 2048u
 
 __kernel void serial_count(__global const uint* keys, const uint n, const uint shift,
-                           const uint block_size, __global uint* counts) {
+                           const uint digits, const uint block_size, __global uint* counts) {
   const uint block = get_global_id(0);
   const uint blocks = get_global_size(0);
   uint own[SERIAL_DIGITS];
-  for (uint d = 0; d < SERIAL_DIGITS; ++d) own[d] = 0;
+  for (uint d = 0; d < digits; ++d) own[d] = 0;
   const uint end = min((block + 1) * block_size, n);
-  for (uint i = block * block_size; i < end; ++i) ++own[keys[i] >> shift & (SERIAL_DIGITS - 1)];
-  for (uint d = 0; d < SERIAL_DIGITS; ++d) counts[d * blocks + block] = own[d];
+  for (uint i = block * block_size; i < end; ++i) ++own[keys[i] >> shift & (digits - 1)];
+  for (uint d = 0; d < digits; ++d) counts[d * blocks + block] = own[d];
 }
 
 /// Turns counts into places: each the sum of those before it. One work item.
@@ -30,16 +31,16 @@ __kernel void serial_places(__global uint* counts, const uint size) {
 }
 
 __kernel void serial_scatter(__global const uint* keys, __global const uint* values, const uint n,
-                             const uint shift, const uint block_size, __global const uint* places,
+                             const uint shift, const uint digits, const uint block_size, __global const uint* places,
                              __global uint* to_keys, __global uint* to_values) {
   const uint block = get_global_id(0);
   const uint blocks = get_global_size(0);
   uint own[SERIAL_DIGITS];
-  for (uint d = 0; d < SERIAL_DIGITS; ++d) own[d] = places[d * blocks + block];
+  for (uint d = 0; d < digits; ++d) own[d] = places[d * blocks + block];
   const uint end = min((block + 1) * block_size, n);
   for (uint i = block * block_size; i < end; ++i) {
     const uint key = keys[i];
-    const uint to = own[key >> shift & (SERIAL_DIGITS - 1)]++;
+    const uint to = own[key >> shift & (digits - 1)]++;
     to_keys[to] = key;
     to_values[to] = values[i];
   }

@@ -43,9 +43,9 @@ class Contest {
 
   /// Throws InputError (parameters) and UnsupportedError.
   void add(std::string name, const Algorithm& algorithm, Isa isa, int threads,
-           const ParameterValues& parameters = {}) {
+           const ParameterValues& parameters = {}, const std::string& device = {}) {
     Contestant added = {
-        std::move(name), std::make_unique<Execution>(threads, isa), algorithm.create(), {}};
+        std::move(name), std::make_unique<Execution>(threads, isa, device), algorithm.create(), {}};
     setParameters(*added.algorithm, parameters);
     added.algorithm->initialize(scene_, {0, frames_[0]}, *added.execution);
     contestants_.push_back(std::move(added));

@@ -1,0 +1,134 @@
+// Measures our own algorithms on an OpenCL device against Bullet's of the same kind, on the same
+// device, and prints how many times faster they are, beside the targets, which are for PoCL. They
+// take turns, frame by frame, on unit cubes spread evenly over a cube of volume 10 n, elsewhere in
+// every frame. Exit status 1 if a target is missed or pairs are wrong.
+//
+//   opencl_ratios [KIND...] [--objects N,...] [--rounds R] [--threads T] [--device NAME]
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/error.h"
+#include "tests/benchmarks/contest.h"
+#include "tests/support/inputs.h"
+
+namespace {
+
+using namespace broadmark;
+using broadmark::benchmarks::Contest;
+
+/// How many times faster ours is to be than Bullet's, for kTargetObjects bodies.
+struct Target {
+  std::string_view kind;
+  double least = 0;
+};
+constexpr Target kTargets[] = {{"grid", 8}, {"lbvh", 1.3}, {"sap", 15}};
+constexpr std::size_t kTargetObjects = 512'000;
+
+struct Options {
+  std::vector<std::string> kinds;  ///< empty: all
+  std::vector<std::size_t> objects = {kTargetObjects};
+  int rounds = 7;
+  int threads = 2;
+  std::string device;
+};
+
+/// Adds the algorithm; false, with a line that says why, if it cannot run here.
+bool enter(Contest& contest, const std::string& id, const Options& options) {
+  const std::vector<Algorithm> all = builtinAlgorithms();
+  const auto algorithm = std::ranges::find(all, id, &Algorithm::id);
+  if (algorithm == all.end()) throw InputError("built without OpenCL");
+  try {
+    if (contest.scene().objects > algorithm->create()->capabilities().max_objects) {
+      throw UnsupportedError("too many bodies for it");
+    }
+    contest.add(id, *algorithm, bestIsa(), options.threads, {}, options.device);
+    return true;
+  } catch (const UnsupportedError& error) {
+    fmt::print("  {} skipped: {}\n", id, error.what());
+    return false;
+  }
+}
+
+std::string line(const Contest& contest, const std::string& id) {
+  return fmt::format("{:8} {:8.2f} ms", id, contest.find(id).median());
+}
+
+/// Prints one line; false if the target is missed or pairs are wrong.
+bool measure(const Target& target, std::span<const std::vector<Aabb>> frames,
+             const Options& options) {
+  const std::string own = fmt::format("gpu-{}", target.kind);
+  const std::string bullets = fmt::format("b3-{}", target.kind);
+  Contest contest("Uniform", frames);
+  const bool has_own = enter(contest, own, options);
+  const bool has_bullets = enter(contest, bullets, options);
+  contest.run(options.rounds);
+  fmt::print("{:>8}", contest.scene().objects);
+  if (has_own) fmt::print("  {}", line(contest, own));
+  if (has_bullets) fmt::print("  {}", line(contest, bullets));
+  if (!has_own || !has_bullets) {
+    fmt::print("\n");
+    return true;
+  }
+  const bool same = digest(contest.find(own).algorithm->overlaps()) ==
+                    digest(contest.find(bullets).algorithm->overlaps());
+  const double ratio = contest.ratio(bullets, own);
+  fmt::print("  {:6.2f}x{}", ratio, same ? "" : "  WRONG PAIRS");
+  const bool counts = contest.scene().objects == kTargetObjects;
+  const bool met = ratio >= target.least;
+  if (counts) fmt::print("  target {:.1f}x  {}", target.least, met ? "ok" : "MISSED");
+  fmt::print("\n");
+  std::fflush(stdout);
+  return same && (met || !counts);
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  std::vector<std::string> kinds;
+  for (const Target& target : kTargets) kinds.emplace_back(target.kind);
+  CLI::App app("How many times faster our algorithms on a device are than Bullet's");
+  app.add_option("kinds", options.kinds, "default: all")->check(CLI::IsMember(kinds));
+  app.add_option("--objects", options.objects)
+      ->delimiter(',')
+      ->check(CLI::Range(2, 10'000'000))
+      ->capture_default_str();
+  app.add_option("--rounds", options.rounds)
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  app.add_option("--threads", options.threads)->check(CLI::Range(1, 4096))->capture_default_str();
+  app.add_option("--device", options.device, "its number or a part of its name");
+  CLI11_PARSE(app, argc, argv);
+
+  bool met = true;
+  for (const std::size_t objects : options.objects) {
+    std::vector<std::vector<Aabb>> frames;
+    for (std::uint32_t frame = 0; frame < 3; ++frame) {
+      frames.push_back(inputs::uniform(objects, frame, 1));
+    }
+    for (const Target& target : kTargets) {
+      const bool wanted =
+          options.kinds.empty() || std::ranges::count(options.kinds, target.kind) > 0;
+      if (wanted) met &= measure(target, frames, options);
+    }
+  }
+  return met ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "opencl_ratios: %s\n", error.what());
+    return 2;
+  }
+}
