@@ -19,6 +19,9 @@
 namespace broadmark::gpu_grid {
 namespace {
 
+/// Per body: enough for a cell each where bodies take a tenth of the space.
+constexpr std::size_t kMostBuckets = 4;
+
 // As grid.cl has them.
 constexpr int kLevels = 21;
 struct Grid {
@@ -55,7 +58,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
 
   void reserve(std::size_t count) override {
     sorted_ = sortedBoxes(count);
-    starts_ = context().buffer((std::bit_ceil(count) + 1) * sizeof(cl_uint));
+    starts_ = context().buffer((std::bit_ceil(kMostBuckets * count) + 1) * sizeof(cl_uint));
   }
 
   void build() override {
@@ -95,10 +98,10 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       unit = std::max({unit, (high - low) / (kMostUnits - 2),
                        std::max(std::abs(low), std::abs(high)) / (1 << 23)});
     }
-    // Where sixteen bodies are tested at once, fewer cells with more bodies in them: shorter along
-    // x, on which neighbouring cells are neighbours in memory.
-    const std::array<int, 3> edge =
-        likeGpu() ? std::array<int, 3>{0, 0, 0} : std::array<int, 3>{1, 2, 2};
+    // Larger than bodies, so that there are few rows of cells to look into; more so where sixteen
+    // bodies are tested at once, but not along x, on which the next cell is next in memory.
+    const int across = likeGpu() ? 1 : 2;
+    const std::array<int, 3> edge = {1, across, across};
     std::array<int, 3> bits{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       grid_.scale.s[axis] = static_cast<float>(1 / unit);
@@ -109,8 +112,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       bits[axis] = static_cast<int>(std::bit_width(units >> edge[axis]));
     }
     grid_.scale.s[3] = grid_.origin.s[3] = 0;
-    // No more buckets than bodies.
-    const auto most = static_cast<int>(std::bit_width(count() - 1));
+    const auto most = static_cast<int>(std::bit_width(kMostBuckets * count() - 1));
     wraps_ = bits[0] + bits[1] + bits[2] > most ? 1 : 0;
     while (bits[0] + bits[1] + bits[2] > most) --*std::ranges::max_element(bits);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -169,6 +171,7 @@ std::vector<Algorithm> variants() {
            .family = "GPU",
            .summary = "hierarchical grid on an OpenCL device",
            .parallel = true,
+           .on_device = true,
            .create = [] { return std::make_unique<GpuGrid>(); },
            .library_allocates = true,
            .principle = "grid",

@@ -103,6 +103,7 @@ std::vector<Algorithm> variants() {
            .family = "GPU",
            .summary = "linear bounding volume hierarchy on an OpenCL device",
            .parallel = true,
+           .on_device = true,
            .create = [] { return std::make_unique<GpuLbvh>(); },
            .library_allocates = true,
            .principle = "tree",

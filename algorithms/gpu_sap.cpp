@@ -76,6 +76,7 @@ std::vector<Algorithm> variants() {
            .family = "GPU",
            .summary = "sweep and prune on an OpenCL device",
            .parallel = true,
+           .on_device = true,
            .create = [] { return std::make_unique<GpuSap>(); },
            .library_allocates = true,
            .principle = "sorting",

@@ -232,7 +232,7 @@ CaseResult runCase(const Case& run, FrameSource& source, const RunOptions& optio
 
 std::optional<std::uint64_t> measurePeakBytes(const Case& run, FrameSource& source) {
   // The threads of a device's driver do not live on in a child, which would wait for them.
-  if (run.algorithm.family == "GPU") return std::nullopt;
+  if (run.algorithm.on_device) return std::nullopt;
   int channel[2];
   if (::pipe(channel) != 0) return std::nullopt;
   // Free memory that the child inherits is within its peak from the start, and would hide what the

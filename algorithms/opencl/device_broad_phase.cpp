@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kStrips = 256;  ///< parts in which boxes are summarised
 constexpr std::size_t kSumsPerStrip = 5;
-constexpr std::size_t kMostObjects = std::size_t{1} << 30;
+/// Kernels count sixteen floats for each body with 32 bits.
+constexpr std::size_t kMostObjects = std::size_t{1} << 28;
 /// As common.cl has it: kernels stop counting about here.
 constexpr cl_uint kMostPairs = 0x80000000;
 

@@ -4,8 +4,8 @@
 //                  work items are cheap only by the group; 1 on a GPU
 // PAIRS_HELD       pairs that a work item keeps to itself before it takes room for all of them with
 //                  one atomic operation
-// LANES            sorted bodies that are tested at once: 16 on a CPU, whose work item has vectors; 1
-//                  on a GPU, whose work items are the lanes
+// LANES            sorted bodies that are tested at once: 16 on a CPU, whose work items have
+//                  vectors; 1 on a GPU, whose work items are the lanes
 
 // A multiplication and an addition must round alike in every kernel: cells depend on it.
 #pragma OPENCL FP_CONTRACT OFF
@@ -41,7 +41,8 @@ typedef struct {
 
 /// Sorted boxes are six arrays of `stride` floats: lower and upper bounds on the first axis, on the
 /// second, on the third.
-static inline void put_sorted(__global float* sorted, uint stride, uint i, float4 low, float4 high) {
+static inline void put_sorted(__global float* sorted, uint stride, uint i, float4 low,
+                              float4 high) {
   sorted[i] = low.x;
   sorted[stride + i] = high.x;
   sorted[2 * stride + i] = low.y;
@@ -74,8 +75,8 @@ typedef int Lanes;
 static inline uint bits_of(int lane) { return lane != 0; }
 #endif
 
-/// Which of LANES sorted bodies meet [low, high] on one axis: `lows` points to the first one's lower
-/// bound.
+/// Which of LANES sorted bodies meet [low, high] on one axis: `lows` points to the first one's
+/// lower bound.
 static inline Lanes reach(__global const float* lows, uint stride, float low, float high) {
   return (LOAD_LANES(lows) <= high) & (low <= LOAD_LANES(lows + stride));
 }

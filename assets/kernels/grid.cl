@@ -1,13 +1,13 @@
 // Hierarchical grid: on level l bodies reach no farther than 2^l units, and cells have edges of
-// 2^(l + w) units. A body lives on the finest level that it fits, in the one cell of its
+// 2^(l + edge) units. A body lives on the finest level that it fits, in the one cell of its
 // lower corner. Whatever meets a box on a level has its lower corner between 2^l units before the
 // box and the box's end: in two cells per axis, or three if cells are as small as the units.
 //
 // Coordinates become integers by a monotone function, so rounding and clamping cost no pair: if
 // a.low <= b.high, then so are their units.
 //
-// Cells wrap around into a table of 2^bits buckets, neighbours along x beside each other. What is in
-// a bucket may thus be from another cell; a pair counts only in the cell it was looked for.
+// Cells wrap around into a table of 2^bits buckets, neighbours along x beside each other. What is
+// in a bucket may thus be from another cell; a pair counts only in the cell it was looked for.
 
 #define LEVELS 21u
 
@@ -29,7 +29,9 @@ static inline uint level_of(uint3 low, uint3 high) {
   return 32 - clz(max(max(edges.x, edges.y), max(edges.z, 1u)) - 1);
 }
 
-static inline uint3 cell_of(uint3 low, uint level, Grid grid) { return low >> (level + grid.edge.xyz); }
+static inline uint3 cell_of(uint3 low, uint level, Grid grid) {
+  return low >> (level + grid.edge.xyz);
+}
 
 /// The bucket at the start of a row of cells along x.
 static inline uint row_of(uint y, uint z, uint level, Grid grid) {

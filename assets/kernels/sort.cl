@@ -31,8 +31,9 @@ __kernel void serial_places(__global uint* counts, const uint size) {
 }
 
 __kernel void serial_scatter(__global const uint* keys, __global const uint* values, const uint n,
-                             const uint shift, const uint digits, const uint block_size, __global const uint* places,
-                             __global uint* to_keys, __global uint* to_values) {
+                             const uint shift, const uint digits, const uint block_size,
+                             __global const uint* places, __global uint* to_keys,
+                             __global uint* to_values) {
   const uint block = get_global_id(0);
   const uint blocks = get_global_size(0);
   uint own[SERIAL_DIGITS];

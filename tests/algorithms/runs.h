@@ -39,7 +39,7 @@ struct Configuration {
 inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
   std::vector<int> teams = {1};
   if (algorithm.parallel) teams = {1, 2, 3, 5};
-  if (algorithm.family == "GPU") teams = {2};
+  if (algorithm.on_device) teams = {2};
   std::vector<Configuration> all;
   for (const Isa isa : kAllIsas) {
     if (!isaSupported(isa) || (isa != Isa::scalar && !algorithm.vectorised)) continue;

@@ -54,6 +54,21 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
   }
 }
 
+TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
+  for (const ComputeDevice& device : computeDevices()) {
+    if (device.platform != "Portable Computing Language") GTEST_SKIP() << "there are other devices";
+  }
+  const Ended ended = run(short_run_, {.environment = {{"POCL_CACHE_DIR", "/proc/nonexistent"}}});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const Json& result : readJson(file("r.json")).at("cases")) {
+    const bool on_device = result.at("algorithm") == "gpu-sap";
+    EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
+    if (on_device) {
+      EXPECT_THAT(result.at("reason"), HasSubstr("is its kernel cache writable?"));
+    }
+  }
+}
+
 TEST_F(Device, MemoryOnADeviceIsNotMeasured) {
   Arguments arguments = short_run_;
   arguments.push_back("--memory");

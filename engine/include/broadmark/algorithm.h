@@ -24,6 +24,7 @@ struct Algorithm {
   std::string summary;      ///< one sentence
   bool parallel = false;    ///< uses several threads
   bool vectorised = false;  ///< heeds the instruction set
+  bool on_device = false;   ///< runs on a compute device, whose driver has threads of its own
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
   std::vector<OriginalId> original_ids;

@@ -83,7 +83,7 @@ bool runRepetition(CaseResult& result, const Case&, FrameSource& source, Oracle&
 CaseResult runCase(const Case&, FrameSource&, const RunOptions& = {}, int repetitions = 1);
 
 /// Growth of the process's peak memory over one untimed pass in a child process, in bytes; nothing
-/// if it cannot be had.
+/// if it cannot be had, as for algorithms on a compute device: a child has no part in its driver.
 std::optional<std::uint64_t> measurePeakBytes(const Case&, FrameSource&);
 
 }  // namespace broadmark
