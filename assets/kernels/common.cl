@@ -12,16 +12,15 @@
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/// On a CPU, asks for what will be read in a while from a place that nobody can guess. (PoCL's own
-/// prefetch() does nothing.)
+/// On a CPU, asks for a box that is read in a while, PREFETCHED bodies on, at a place that nobody
+/// can guess. PoCL's prefetch() does nothing, but its compiler has one that does.
 #define PREFETCHED 24u
-#if LANES > 1 && defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
-#define PREFETCH(address) __builtin_prefetch(address)
-#endif
-#endif
-#ifndef PREFETCH
-#define PREFETCH(address)
+#if LANES == 1
+#define PREFETCH(box)
+#elif defined(POCL_DEVICE_ADDRESS_BITS)
+#define PREFETCH(box) __builtin_prefetch(box)
+#else
+#define PREFETCH(box) prefetch((__global const float*)(box), 8)
 #endif
 
 /// The bodies i of [0, n) of this work item.

@@ -147,7 +147,7 @@ ALWAYS_INLINE void search_row(const Search* search, const Cells* cells, uint y, 
 /// `ordered`: buckets are in the order of cells.
 ALWAYS_INLINE void search_level(const Cells* cells, uint i, Box box, uint3 low, uint3 high,
                                 uint level, int is_own, int ordered, int exact, Sink* sink) {
-  const uint back = 1u << level;
+  const uint3 back = (uint3)(1u << level);  // a vector: oclgrind's max() takes no scalar beside one
   Search search;
   search.box = box;
   search.number = cells->bodies[i];
