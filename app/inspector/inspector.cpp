@@ -140,8 +140,8 @@ Panel* Inspector::panel(const std::string& name) {
 }
 
 void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   beginAt(id, position, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
-  ImGui::SetCursorPos({0, 0});
   ImGui::InvisibleButton(id, {std::max(size.x, 1.0F), std::max(size.y, 1.0F)});
   ui_.note(id);
   const bool vertical = size.y > size.x;
@@ -156,6 +156,7 @@ void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& e
     extent = std::max(extent, static_cast<double>(kNarrowest));
   }
   ImGui::End();
+  ImGui::PopStyleVar();
 }
 
 void Inspector::build(const RunProgress& progress, int width, int height) {

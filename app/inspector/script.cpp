@@ -186,8 +186,11 @@ void ScriptPlayer::reveal(const std::string& widget) {
     const WidgetPlace* found = inspector.ui().find(widget);
     ++pictures;
     if (found != nullptr && found->visible) {
-      if (!found->enabled) fail(fmt::format("the widget '{}' is disabled", widget));
-      return pictures > 1;  // it stands still by then
+      // What has just been done may show in the next picture only.
+      if (!found->enabled && pictures > 4) {
+        fail(fmt::format("the widget '{}' is disabled", widget));
+      }
+      return found->enabled && pictures > 1;
     }
     if (found == nullptr) {
       // Perhaps in a panel that is behind another.

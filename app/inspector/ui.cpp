@@ -117,13 +117,15 @@ void Ui::note(std::string_view label) {
     ImGui::SetScrollHereY();
     revealed_.clear();
   }
-  const ImVec2 min = ImGui::GetItemRectMin();
-  const ImVec2 max = ImGui::GetItemRectMax();
+  // Of what is partly clipped away, the rest: that is what can be pressed.
+  ImRect rect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  const bool visible = ImGui::IsItemVisible();
+  if (visible) rect.ClipWithFull(ImGui::GetCurrentWindowRead()->ClipRect);
   const bool disabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0;
-  const ImVec2 centre{(min.x + max.x) / 2, (min.y + max.y) / 2};
-  const bool visible =
-      ImGui::IsItemVisible() && ImGui::GetCurrentWindowRead()->ClipRect.Contains(centre);
-  places_[name] = {.min = min, .max = max, .enabled = !disabled, .visible = visible};
+  places_[name] = {.min = rect.Min,
+                   .max = rect.Max,
+                   .enabled = !disabled,
+                   .visible = visible && rect.GetWidth() >= 1 && rect.GetHeight() >= 1};
 }
 
 const WidgetPlace* Ui::find(const std::string& name) const {

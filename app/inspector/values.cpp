@@ -41,6 +41,15 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
                             : "0";
 }
 
+/// "overlapping 12, free 28"
+std::string legendText(const std::vector<LegendEntry>& legend) {
+  std::string text;
+  for (const LegendEntry& entry : legend) {
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", entry.label, entry.count);
+  }
+  return text;
+}
+
 Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
   values["frame"] = std::to_string(session.frame());
@@ -69,6 +78,8 @@ Values valuesOf(Session& session, const RunProgress& progress) {
     values[fmt::format("lane.{}.threads", lane.algorithm.id)] = std::to_string(lane.threads);
     values[fmt::format("lane.{}.isa", lane.algorithm.id)] = isaName(lane.isa);
   }
+  const LaneEdit* shown = session.lane(session.wish.shown_lane);
+  values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addLanes(values, progress);
   addSnapshot(values, progress.snapshot.get());
   return values;
@@ -82,6 +93,10 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["panel.left"] = preferences_.tabs["left"];
   values["panel.right"] = preferences_.tabs["right"];
   values["panel.bottom"] = preferences_.tabs["bottom"];
+  values["camera.yaw"] = fmt::format("{:.4f}", view_.camera().yaw);
+  values["camera.pitch"] = fmt::format("{:.4f}", view_.camera().pitch);
+  values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
+  values["legend"] = legendText(view_.legend());
   values["theme"] = preferences_.dark ? "dark" : "light";
   values["help"] = help_ ? "yes" : "no";
   values["dialog"] = files_.isOpen() ? "yes" : "no";
