@@ -1,0 +1,130 @@
+// Whether the inspector measures what a headless run measures: the same cases on the same frames in
+// turns, once by runCase(), once by the inspector while it plays and draws. Prints the ratio of the
+// medians of a frame's total time (1: they agree), and how many of the inspector's frames were
+// disturbed.
+//
+//   inspector_times [--objects N] [--frames F] [--rounds R]
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+
+#include "app/inspector/inspector.h"
+#include "broadmark/algorithms.h"
+#include "render/framebuffer.h"
+
+namespace {
+
+using namespace broadmark;
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+struct Setting {
+  std::string algorithm;
+  std::string objects;
+  std::string frames;
+};
+
+std::unique_ptr<Simulation> simulationOf(const Setting& setting) {
+  auto simulation = makeSimulation("brownian", "kinematic");
+  setParameters(*simulation, {{"objects", setting.objects}, {"frames", setting.frames}});
+  return simulation;
+}
+
+Case caseOf(const std::string& id) {
+  const std::vector<Algorithm> all = builtinAlgorithms();
+  const auto found = std::ranges::find(all, id, &Algorithm::id);
+  return {.algorithm = *found, .isa = found->vectorised ? bestIsa() : Isa::scalar, .threads = 1};
+}
+
+std::vector<double> headlessTimes(const Setting& setting) {
+  const auto simulation = simulationOf(setting);
+  const CaseResult result = runCase(caseOf(setting.algorithm), *simulation);
+  std::vector<double> times;
+  for (const FrameTimes& frame : result.repetitions.at(0).frames) {
+    times.push_back(static_cast<double>(frame[Phase::total]));
+  }
+  return times;
+}
+
+struct InspectorTimes {
+  std::vector<double> times;  ///< of the undisturbed frames
+  int disturbed = 0;
+};
+
+InspectorTimes inspectorTimes(const Gl& gl, const Setting& setting) {
+  constexpr int kWidth = 1280;
+  constexpr int kHeight = 720;
+  const Framebuffer target(gl, kWidth, kHeight, 1);
+  Inspector inspector(gl, builtinAlgorithms(), {}, 1);
+  Session& session = inspector.session();
+  session.draft = simulationOf(setting);
+  session.simulate();
+  LaneEdit& lane = session.addLane(setting.algorithm);
+  lane.threads = 1;
+  session.lanesChanged();
+  session.playback.frames_per_second = 1000;
+  InputQueue input;
+  InspectorTimes result;
+  for (bool playing = false, done = false; !done;) {
+    inspector.draw(input, kWidth, kHeight, 1.0 / 60, [&] { target.bind(); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    session.runs.look([&](const RunProgress& progress) {
+      if (!progress.snapshot) return;
+      done = playing && progress.snapshot->frame == progress.scene.frames;
+      if (!done) return;
+      for (const FrameRecord& record : progress.lanes.at(0).frames) {
+        result.disturbed += record.disturbed ? 1 : 0;
+        if (!record.disturbed) {
+          result.times.push_back(static_cast<double>(record.times[Phase::total]));
+        }
+      }
+    });
+    if (!playing && session.lastFrame() > 0) {
+      session.play(true);
+      playing = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Compares the times that the inspector measures with those of a headless run.");
+  Setting setting{.objects = "8000", .frames = "60"};
+  int rounds = 3;
+  app.add_option("--objects", setting.objects)->capture_default_str();
+  app.add_option("--frames", setting.frames)->capture_default_str();
+  app.add_option("--rounds", rounds)->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+
+  const auto context = makeOffscreenContext(GlSource::automatic);
+  const Gl gl(*context);
+  fmt::print("{:12} {:>12} {:>12} {:>7} {:>10}\n", "algorithm", "headless", "inspector", "ratio",
+             "disturbed");
+  for (const char* algorithm : {"sap", "sap-simd", "grid-bf", "kd", "tracy", "dbvt-d"}) {
+    setting.algorithm = algorithm;
+    std::vector<double> headless;
+    std::vector<double> inspector;
+    int disturbed = 0;
+    for (int round = 0; round < rounds; ++round) {
+      headless.push_back(median(headlessTimes(setting)));
+      const InspectorTimes seen = inspectorTimes(gl, setting);
+      inspector.push_back(median(seen.times));
+      disturbed += seen.disturbed;
+    }
+    const double a = median(headless);
+    const double b = median(inspector);
+    fmt::print("{:12} {:>9.1f} µs {:>9.1f} µs {:>7.2f} {:>10}\n", algorithm, a / 1000, b / 1000,
+               b / a, disturbed);
+  }
+  return 0;
+}
