@@ -101,8 +101,14 @@ TEST_F(BadInput, NumbersOutOfRange) {
 }
 
 TEST_F(BadInput, IncompleteCalls) {
-  expectRefusal({}, {"--headless"});
-  expectRefusal({"freefall"}, {"no inspector", "--headless"});
+  const Surroundings no_display{.environment = {{"DISPLAY", ""}, {"WAYLAND_DISPLAY", ""}}};
+  expectRefusal({}, {"no window", "--headless"}, no_display);
+  expectRefusal({"freefall"}, {"no window", "--headless"}, no_display);
+  expectRefusal({"freefal"}, {"'freefal'", "'freefall'"}, no_display);
+  expectRefusal({"freefall", "brownian"}, {"'brownian'", "one source"}, no_display);
+  expectRefusal({"freefall", "--json", "a.json"}, {"--json", "--headless"}, no_display);
+  expectRefusal({"--headless", "--ui", "freefall", "--check", "off"}, {"--check", "--ui"});
+  expectRefusal({"--headless", "--ui", "--script", "missing.txt"}, {"missing.txt"});
   expectRefusal({"--headless"}, {"no source", "freefall"});
   expectRefusal({"bake"}, {"bake", "--output"});
   expectRefusal({"verify"}, {"verify", "files"});
