@@ -6,18 +6,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
+#include "app/bake_plan.h"
 #include "app/batch.h"
-#include "app/cases.h"
 #include "app/interrupt.h"
 #include "app/movie.h"
 #include "app/options.h"
 #include "app/progress.h"
-#include "app/recordings.h"
-#include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
-#include "broadmark/names.h"
 
 namespace broadmark {
 namespace {
@@ -28,107 +26,21 @@ InputError interruption() {
   return InputError("interrupted: finished recordings are kept, and the same call goes on");
 }
 
-/// A --param that no scene has is an error.
-void requireKnownParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
-  std::vector<std::string> known;
-  for (const BakeJob& job : jobs) {
-    std::ranges::move(parameterNames(*job.simulation), std::back_inserter(known));
-  }
-  for (const auto& [name, value] : options.parameters) {
-    if (std::ranges::find(known, name) == known.end()) {
-      throw InputError("--param: " + unknownName("parameter", name, known));
-    }
-  }
+/// The plan, with progress. Throws InputError when interrupted.
+BakePlan makePlan(const BakeOptions& options) {
+  std::optional<Progress> shown;  // only when there is something to check
+  auto plan =
+      planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
+        if (!shown) shown.emplace("checking what is there", total, options.quiet);
+        shown->detail(path.string());
+        shown->update(number);
+        return !InterruptGuard::requested();
+      });
+  if (!plan) throw interruption();
+  return std::move(*plan);
 }
 
-/// The whole matrix, each combination once.
-std::vector<BakeJob> makeJobs(const BakeOptions& options) {
-  std::vector<std::string> scenes = options.scenes;
-  scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
-  if (scenes.empty()) {
-    for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
-  }
-  std::vector<BakeJob> jobs;
-  std::set<std::vector<fs::path>> taken;
-  for (auto& simulation : makeSimulations(scenes, options.scene, options.parameters)) {
-    BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
-    job.simulation = std::move(simulation);
-    job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
-    requireApart(*job.simulation, job.paths);
-    if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
-  }
-  requireKnownParameters(options, jobs);
-  return jobs;
-}
-
-/// A batch before it begins.
-struct Plan {
-  std::vector<BakeJob> pending;  ///< only with the recordings that are to be written
-  std::vector<fs::path> kept;
-
-  /// Recordings to be written.
-  [[nodiscard]] std::size_t recordings() const {
-    std::size_t sum = 0;
-    for (const BakeJob& job : pending) sum += job.paths.size();
-    return sum;
-  }
-  [[nodiscard]] std::uint64_t bytes() const {
-    std::uint64_t sum = 0;
-    for (const BakeJob& job : pending) sum += job.paths.size() * recordingBytes(job.scene);
-    return sum;
-  }
-};
-
-Plan makePlan(std::vector<BakeJob> jobs, const BakeOptions& options) {
-  Plan plan;
-  std::uint64_t there = 0;
-  for (const BakeJob& job : jobs) {
-    there += static_cast<std::uint64_t>(
-        std::ranges::count_if(job.paths, [](const fs::path& path) { return fs::exists(path); }));
-  }
-  Progress progress("checking what is there", there, options.quiet || options.force || there == 0);
-  std::uint64_t checked = 0;
-  for (BakeJob& job : jobs) {
-    std::erase_if(job.paths, [&](const fs::path& path) {
-      if (InterruptGuard::requested()) throw interruption();
-      if (options.force || !fs::exists(path)) return false;
-      progress.detail(path.string());
-      progress.update(++checked);
-      const bool whole = isBaked(path, *job.simulation);
-      if (whole) plan.kept.push_back(path);
-      return whole;
-    });
-    if (!job.paths.empty()) plan.pending.push_back(std::move(job));
-  }
-  return plan;
-}
-
-/// Fails now rather than after hours: when what is missing would not fit on the disc.
-void requireRoom(const Plan& plan, const fs::path& output) {
-  // Beside each recording its sidecar, in whole blocks.
-  constexpr std::uint64_t kSidecarBytes = 1 << 13;
-  fs::path there = fs::absolute(output);
-  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
-  std::error_code unknown;
-  const std::uint64_t free = fs::space(there, unknown).available;
-  const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
-  if (unknown || needed <= free) return;
-  throw InputError(
-      fmt::format("{}: not enough room: {} recordings take {} bytes, but only {} are free",
-                  output.string(), plan.recordings(), needed, free));
-}
-
-/// Fails now rather than after hours: when a file cannot be written.
-void requireWritable(const Plan& plan) {
-  for (const BakeJob& job : plan.pending) {
-    for (const fs::path& path : job.paths) {
-      makeDirectory(path.parent_path());
-      const AtomicFile probe(path);
-    }
-  }
-}
-
-int listPlan(const Plan& plan) {
+int listPlan(const BakePlan& plan) {
   const auto print = [](const char* what, std::uint64_t bytes, const fs::path& path) {
     fmt::print("{}  {:>14}  {}\n", what, bytes, path.string());
   };
@@ -159,7 +71,7 @@ struct Tally {
 };
 
 /// Bakes all that is pending and tells of each recording as it ends. Returns those that are whole.
-std::vector<fs::path> performPlan(Plan plan, const BakeOptions& options, Tally& tally) {
+std::vector<fs::path> performPlan(BakePlan plan, const BakeOptions& options, Tally& tally) {
   std::vector<fs::path> whole = plan.kept;
   for (const fs::path& path : whole) fmt::print("kept   {}\n", path.string());
   std::fflush(stdout);
@@ -225,11 +137,9 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
 int runBake(const BakeOptions& options) {
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
-  Plan plan = makePlan(makeJobs(options), options);
+  BakePlan plan = makePlan(options);
   if (options.list_only) return listPlan(plan);
-  requireRoom(plan, options.output);
-  makeDirectory(options.output);
-  requireWritable(plan);
+  prepare(plan, options.output);
   std::optional<MovieMaker> movie_maker;
   if (options.movie) movie_maker.emplace(*options.movie);
   Tally tally;

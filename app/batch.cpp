@@ -63,11 +63,7 @@ BakeBatch::BakeBatch(std::vector<BakeJob> jobs, int threads)
 }
 
 BakeBatch::~BakeBatch() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
+  cancel();
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -76,6 +72,14 @@ std::vector<BakedJob> BakeBatch::await(std::chrono::milliseconds patience) {
   changed_.wait_for(lock, patience, [this] { return !ended_.empty() || active_threads_ == 0; });
   if (broken_) std::rethrow_exception(broken_);
   return std::exchange(ended_, {});
+}
+
+void BakeBatch::cancel() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
 }
 
 bool BakeBatch::ended() {

@@ -53,6 +53,9 @@ class BakeBatch {
   /// Waits up to `patience` for a recording to end, and for nothing once all have. Returns those
   /// that have ended since the last call; interrupted ones are never among them.
   std::vector<BakedJob> await(std::chrono::milliseconds patience);
+  /// Begins no more recordings and stops those that run, which leave nothing behind. Does not wait:
+  /// ended() tells when all is still.
+  void cancel();
   /// Whether every thread has come to its end.
   [[nodiscard]] bool ended();
   [[nodiscard]] BatchState state();

@@ -213,8 +213,9 @@ std::vector<std::pair<std::string, fs::path>> plannedFiles(const HeadlessOptions
 void requireWritable(const HeadlessOptions& options, const std::vector<Job>& jobs) {
   std::map<fs::path, std::string> taken;
   for (const Job& job : jobs) {
-    if (job.source.simulation) continue;
-    taken[fs::weakly_canonical(job.source.reference.path)] = "a source";
+    const fs::path source = job.source.simulation ? job.source.simulation->input()
+                                                  : fs::path(job.source.reference.path);
+    if (!source.empty()) taken[fs::weakly_canonical(source)] = "a source";
   }
   for (const auto& [option, path] : plannedFiles(options, jobs)) {
     const auto [other, free] = taken.emplace(fs::weakly_canonical(path), option);

@@ -243,9 +243,10 @@ std::vector<int> parseThreads(const std::vector<std::string>& texts) {
 
 void addHeadlessOptions(CLI::App& app, HeadlessOptions& options, HeadlessTexts& texts) {
   app.add_option("source", options.sources,
-                 "built-in scenes (freefall, brownian, …), recordings (.aabbs, .posrot), scene "
-                 "parameters (.json, also the one beside a baked recording), settings files of "
-                 "the original Broadmark (.json) or a results file (.json) with --case")
+                 "built-in scenes (freefall, brownian, …), recordings (.aabbs, .posrot), authored "
+                 "scenes (.json), scene parameters (.json, also the one beside a baked recording), "
+                 "settings files of the original Broadmark (.json) or a results file (.json) with "
+                 "--case")
       ->type_name("SOURCE");
   addList(app, "--algorithm", texts.algorithms,
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
@@ -413,8 +414,8 @@ struct BakeTexts {
 void addBakeOptions(CLI::App& app, BakeTexts& texts) {
   addList(app, "--scenes", texts.scenes, "built-in scenes (default: all)", "A[,B...]");
   app.add_option("--parameters", texts.options.parameter_files,
-                 "bake the scene that this file of scene parameters, or the .json beside a "
-                 "recording, describes; other options override it (repeatable)")
+                 "bake the scene that this file of scene parameters, the .json beside a recording, "
+                 "or an authored scene (.json) describes; other options override it (repeatable)")
       ->type_name("FILE")
       ->allow_extra_args(false);
   texts.scene.addTo(app);

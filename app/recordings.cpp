@@ -29,17 +29,33 @@ bool looksLikeFile(const std::string& source) {
          fs::exists(source);
 }
 
-/// Whether a source is a file of scene parameters, or the sidecar of a recording.
+/// Whether a source is a file that describes a scene: an authored one, or parameters.
 bool isSceneFile(const std::string& source) {
   return fs::path(source).extension() == ".json" &&
          describesScene(jsonKind(readTextFile(source), source));
 }
 
-/// The simulation that a scene's name, moved by this engine ("": the default one), or a file of
-/// scene parameters stands for.
+/// The simulation that a scene's name, moved by this engine ("": the default one), or a file that
+/// describes a scene stands for.
 std::unique_ptr<Simulation> simulationOf(const std::string& scene, const std::string& engine) {
   if (!looksLikeFile(scene)) return makeSimulation(scene, engine);
   return parseSceneParameters(readTextFile(scene), scene);
+}
+
+/// An authored scene says itself which bodies there are and where: options that would say it anew
+/// are mistakes.
+void requireApplicable(Simulation& simulation, const std::string& scene,
+                       const ParameterValues& options) {
+  if (simulation.listing().id != kAuthoredSceneId) return;
+  const std::vector<std::string> known = parameterNames(simulation);
+  for (const auto& [name, value] : options) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    std::string option = "--" + name;
+    std::ranges::replace(option, '_', '-');
+    throw InputError(fmt::format(
+        "{}: {}: bodies, sizes and places are those of the authored scene: leave the option out",
+        scene, option));
+  }
 }
 
 /// Sets those of the values that the object has.
@@ -54,6 +70,10 @@ RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
   reference.scene_parameters = parameterValues(simulation);
+  // What an authored scene is made from is no parameter of it.
+  if (simulation.listing().id == kAuthoredSceneId) {
+    reference.scene_parameters["input"] = simulation.input().string();
+  }
   // A replay has none.
   if (const auto seed = reference.scene_parameters.find("seed");
       seed != reference.scene_parameters.end()) {
@@ -89,8 +109,9 @@ Source jsonSource(const fs::path& path) {
   if (kind == kResultsSchema) throw missingCase(parseResults(text, path.string()), path);
   if (kind != "original-settings") {
     throw InputError(fmt::format(
-        "{}: {}: scene parameters (\"schema\": \"broadmark-scene-parameters/1\") or a settings "
-        "file of the original Broadmark (with m_inputScene) are expected",
+        "{}: {}: an authored scene (\"schema\": \"broadmark-scene/1\"), scene parameters "
+        "(\"broadmark-scene-parameters/1\") or a settings file of the original Broadmark (with "
+        "m_inputScene) are expected",
         path.string(), kind.empty() ? "of no known kind" : fmt::format("of the kind '{}'", kind)));
   }
   const OriginalSettings settings = parseOriginalSettings(text, path.string());
@@ -181,6 +202,8 @@ std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::
         if (!counts.empty()) axes["objects"] = fmt::format("{}", counts[count]);
         if (!options.object_types.empty()) axes["object_type"] = options.object_types[type];
         auto simulation = simulationOf(scene, engine);
+        requireApplicable(*simulation, scene, options.parameters);
+        requireApplicable(*simulation, scene, axes);
         setParameters(*simulation, options.parameters);  // the engine first: it brings its own
         setApplicable(*simulation, parameters);
         setParameters(*simulation, axes);

@@ -24,8 +24,9 @@ struct Source {
 };
 
 /// Every simulation that the options ask for: scenes × object types × object counts, sorted so
-/// that counts ascend within a scene. A scene is a built-in one's name or a file of scene
-/// parameters, which the options override. Throws InputError.
+/// that counts ascend within a scene. A scene is a built-in one's name, a file of scene parameters,
+/// which the options override, or an authored scene, of which they override the parameters. Throws
+/// InputError.
 std::vector<std::unique_ptr<Simulation>> makeSimulations(const std::vector<std::string>& scenes,
                                                          const SceneOptions&,
                                                          const ParameterValues& parameters);

@@ -16,19 +16,55 @@ namespace broadmark {
 
 using Json = nlohmann::ordered_json;
 
+/// The library's complaint about a text as ours, with line and column.
+inline InputError notJson(std::string_view name, const nlohmann::detail::exception& error) {
+  // Drop the library's own prefix "[json.exception.parse_error.101] ".
+  const std::string_view what = error.what();
+  const auto end_of_prefix = what.find("] ");
+  return InputError(
+      fmt::format("{}: not valid JSON: {}", name,
+                  what.substr(end_of_prefix == std::string_view::npos ? 0 : end_of_prefix + 2)));
+}
+
 /// Parses a text; `name` stands for it in messages. Throws InputError with line and column.
 inline Json parseJson(std::string_view text, std::string_view name) {
   try {
     return Json::parse(text);
   } catch (const Json::exception& error) {  // out_of_range for numbers like 1e999
-    // Drop the library's own prefix "[json.exception.parse_error.101] ".
-    const std::string_view what = error.what();
-    const auto end_of_prefix = what.find("] ");
-    throw InputError(
-        fmt::format("{}: not valid JSON: {}", name,
-                    what.substr(end_of_prefix == std::string_view::npos ? 0 : end_of_prefix + 2)));
+    throw notJson(name, error);
   }
 }
+
+/// What to do with the parts of a JSON text as they are read, when the whole is not wanted in
+/// memory. Ignores all of them; a method that returns false ends the reading.
+class JsonEvents : public nlohmann::json_sax<Json> {
+ public:
+  /// `name` stands for the text in messages.
+  explicit JsonEvents(std::string_view name) : name_(name) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t& /*as written*/) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override {
+    throw notJson(name_, error);
+  }
+
+ protected:
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
 
 /// A view of one JSON object within a file.
 class JsonFields {

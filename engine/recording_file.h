@@ -3,9 +3,6 @@
 
 #include <fmt/format.h>
 
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -24,6 +21,7 @@
 #include "broadmark/error.h"
 #include "broadmark/frame.h"
 #include "broadmark/posrot.h"
+#include "hasher.h"
 
 namespace broadmark {
 
@@ -45,22 +43,6 @@ SceneInfo parseHeader(const RecordingHeader&, const std::string& name);
 
 /// Where set `set` begins.
 std::uint64_t setOffset(const SceneInfo&, std::uint64_t set);
-
-/// XXH3-128.
-class Hasher {
- public:
-  Hasher() { XXH3_128bits_reset(&state_); }
-  void add(std::span<const std::byte> bytes) {
-    XXH3_128bits_update(&state_, bytes.data(), bytes.size());
-  }
-  [[nodiscard]] std::string hex() const {
-    const XXH128_hash_t hash = XXH3_128bits_digest(&state_);
-    return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
-  }
-
- private:
-  XXH3_state_t state_{};
-};
 
 /// "" or what is wrong with a record.
 std::string fault(const Aabb&);

@@ -23,13 +23,13 @@ constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 
 fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
-/// What stands beside a recording with this hash. Of a replayed recording its contents count, not
-/// where it lies.
+/// What stands beside a recording with this hash. Of an input its contents count, not where it
+/// lies.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
   Json json = sceneParametersJson(simulation, kBakeSchema);
-  if (const fs::path input = simulation.input(); !input.empty()) {
+  if (const std::string input = simulation.inputHash(); !input.empty()) {
     json["parameters"].erase("input");
-    json["input_hash"] = openRecordingFile(input)->hash();
+    json["input_hash"] = input;
   }
   json["hash"] = hash;
   return json;
@@ -88,10 +88,10 @@ void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
   if (!input.empty()) taken.insert(place(input));
   for (const fs::path& path : paths) {
     if (taken.insert(place(path)).second) continue;
-    throw InputError(
-        fmt::format("{}: would be written over {}: another directory is needed", path.string(),
-                    input.empty() ? "the .json beside another recording"
-                                  : "the recording that is replayed, or the .json beside it"));
+    throw InputError(fmt::format("{}: would be written over {}: another directory is needed",
+                                 path.string(),
+                                 input.empty() ? "the .json beside another recording"
+                                               : "what it is made from, or the .json beside that"));
   }
 }
 

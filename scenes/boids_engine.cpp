@@ -191,6 +191,7 @@ class BoidsEngine final : public PhysicsEngine {
   }
   void addWall(const HalfSpace& wall) override { walls_.push_back(wall); }
   void setGravity(const Vec3& gravity) override { gravity_ = toEigen(gravity); }
+  [[nodiscard]] Vec3 gravity() const override { return fromEigen(gravity_); }
 
   void step() override {
     const auto seconds =

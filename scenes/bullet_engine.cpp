@@ -322,6 +322,8 @@ class BulletEngine final : public PhysicsEngine {
     world_.setGravity(toBullet(gravity));
   }
 
+  [[nodiscard]] Vec3 gravity() const override { return fromBullet(world_.getGravity()); }
+
   void step() override {
     const double substep = settings_.time_step / static_cast<double>(settings_.substeps);
     // Each substep by itself: Bullet's own division of a step depends on rounding.

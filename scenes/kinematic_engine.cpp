@@ -188,6 +188,8 @@ class KinematicEngine final : public PhysicsEngine {
     for (KinematicBody& body : bodies_) body.wake();
   }
 
+  [[nodiscard]] Vec3 gravity() const override { return world_.gravity; }
+
   void step() override {
     for (KinematicBody& body : bodies_) {
       for (std::int64_t i = 0; i < substeps_ && !body.asleep(); ++i) body.move(world_);

@@ -278,6 +278,8 @@ class OdeEngine final : public PhysicsEngine {
     for (OdeBody& body : bodies_) body.wake();
   }
 
+  [[nodiscard]] Vec3 gravity() const override { return gravity_; }
+
   void step() override {
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       // Of sleeping bodies too: one that is awake wakes all that it touches, and these must find

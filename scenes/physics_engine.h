@@ -19,6 +19,8 @@ struct PhysicsSettings {
   double angular_damping = 0.05;
   double max_angular_speed = 7;    ///< radians per second
   double sleep_threshold = 0.005;  ///< kinetic energy per mass below which a body may fall asleep
+
+  void visit(const ParameterVisitor&);
 };
 
 /// A body to be created.
@@ -68,6 +70,7 @@ class PhysicsEngine : public Parametrised {
   virtual void addWall(const HalfSpace&) = 0;
   /// Acceleration of all bodies. A change wakes them.
   virtual void setGravity(const Vec3&) = 0;
+  [[nodiscard]] virtual Vec3 gravity() const = 0;
 
   /// Moves on by one time step.
   virtual void step() = 0;

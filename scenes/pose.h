@@ -9,10 +9,14 @@ namespace broadmark::scenes {
 
 struct BoxShape {
   Vec3 half_extents{};
+
+  friend bool operator==(const BoxShape&, const BoxShape&) = default;
 };
 
 struct SphereShape {
   float radius = 0;
+
+  friend bool operator==(const SphereShape&, const SphereShape&) = default;
 };
 
 /// The form of a body around its centre.

@@ -1,11 +1,16 @@
 // The scenes, physics engines and object types that there are.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "broadmark/error.h"
+#include "broadmark/names.h"
 #include "scenes/physics_engine.h"
 #include "scenes/random.h"
 #include "scenes/simulation.h"
@@ -38,5 +43,23 @@ struct ObjectType {
 std::vector<SceneEntry> sceneEntries();
 std::vector<EngineEntry> engineEntries();
 std::vector<ObjectType> objectTypes();
+
+/// A choice of all ids in a list, with the first as default.
+template <class Entries>
+Choice choiceOf(const Entries& entries) {
+  Choice choice;
+  for (const auto& entry : entries) choice.options.push_back(entry.listing.id);
+  choice.value = choice.options.front();
+  return choice;
+}
+
+/// The entry of a list that a choice names; `kind` says of what in messages. Throws InputError.
+template <class Entry>
+Entry entryOf(std::vector<Entry> entries, const Choice& choice, std::string_view kind) {
+  const auto found =
+      std::ranges::find(entries, choice.value, [](const Entry& entry) { return entry.listing.id; });
+  if (found == entries.end()) throw InputError(unknownName(kind, choice.value, choice.options));
+  return std::move(*found);
+}
 
 }  // namespace broadmark::scenes

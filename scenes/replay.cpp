@@ -73,6 +73,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   [[nodiscard]] fs::path input() const override { return find().path; }
+  [[nodiscard]] std::string inputHash() override { return openRecordingFile(input())->hash(); }
 
   Frame rewind() override {
     replay_ = open();

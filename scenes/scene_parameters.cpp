@@ -10,32 +10,12 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "broadmark/original_settings.h"
 #include "engine/json_fields.h"
+#include "scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
-
-Json parametersJson(Simulation& simulation) {
-  Json parameters = Json::object();
-  simulation.visitParameters([&](const Parameter& parameter) {
-    parameters[std::string(parameter.name)] = std::visit(
-        [](const auto* value) -> Json {
-          if constexpr (std::is_same_v<decltype(value), const Choice*>) {
-            return value->value;
-          } else {
-            return *value;
-          }
-        },
-        parameter.value);
-  });
-  return parameters;
-}
-
-/// A text on one line, control characters escaped.
-std::string onOneLine(const std::string& text) {
-  const std::string quoted = Json(text).dump();
-  return quoted.substr(1, quoted.size() - 2);
-}
 
 /// A value as text for messages and numbers; a list or an object is only hinted at.
 std::string textOf(const Json& value) {
@@ -87,8 +67,9 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   };
   const std::string schema = text("schema");
   if (!describesScene(schema)) {
-    throw InputError(fmt::format("schema: '{}' is not {} or {}", onOneLine(schema),
-                                 kSceneParametersSchema, kBakeSchema));
+    throw InputError(fmt::format("schema: '{}' is not {}, {} or {}", onOneLine(schema),
+                                 kSceneParametersSchema, kBakeSchema,
+                                 scenes::kAuthoredSceneSchema));
   }
   for (const auto& [key, value] : json.items()) requireKnown("key", key, knownKeys(schema));
 
@@ -101,19 +82,50 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
     const Json& value = parameters->at("engine");
     engine = onOneLine(value.is_string() ? value.get<std::string>() : textOf(value));
   }
-  auto simulation = makeSimulation(onOneLine(text("scene")), engine);
-  if (parameters == json.end()) return simulation;
-  std::vector<std::string> known;
-  simulation->visitParameters([&](const Parameter& parameter) {
-    known.emplace_back(parameter.name);
-    const auto value = parameters->find(known.back());
-    if (value != parameters->end()) setFromJson(parameter, *value);
-  });
-  for (const auto& [key, value] : parameters->items()) requireKnown("parameter", key, known);
+  const std::string scene = text("scene");
+  if (scene == kAuthoredSceneId) {
+    throw InputError(fmt::format(
+        "stands beside the recording of an authored scene: name that scene's own file (\"schema\": "
+        "\"{}\")",
+        scenes::kAuthoredSceneSchema));
+  }
+  auto simulation = makeSimulation(onOneLine(scene), engine);
+  if (parameters != json.end()) setParametersFromJson(*simulation, *parameters);
   return simulation;
 }
 
 }  // namespace
+
+nlohmann::ordered_json parametersJson(Parametrised& object) {
+  Json parameters = Json::object();
+  object.visitParameters([&](const Parameter& parameter) {
+    parameters[std::string(parameter.name)] = std::visit(
+        [](const auto* value) -> Json {
+          if constexpr (std::is_same_v<decltype(value), const Choice*>) {
+            return value->value;
+          } else {
+            return *value;
+          }
+        },
+        parameter.value);
+  });
+  return parameters;
+}
+
+void setParametersFromJson(Parametrised& object, const nlohmann::ordered_json& values) {
+  std::vector<std::string> known;
+  object.visitParameters([&](const Parameter& parameter) {
+    known.emplace_back(parameter.name);
+    const auto value = values.find(known.back());
+    if (value != values.end()) setFromJson(parameter, *value);
+  });
+  for (const auto& [key, value] : values.items()) requireKnown("parameter", key, known);
+}
+
+std::string onOneLine(const std::string& text) {
+  const std::string quoted = Json(text).dump();
+  return quoted.substr(1, quoted.size() - 2);
+}
 
 nlohmann::ordered_json sceneParametersJson(Simulation& simulation, std::string_view schema) {
   return {{"schema", schema},
@@ -122,10 +134,14 @@ nlohmann::ordered_json sceneParametersJson(Simulation& simulation, std::string_v
 }
 
 bool describesScene(std::string_view json_kind) {
-  return json_kind == kSceneParametersSchema || json_kind == kBakeSchema;
+  return json_kind == kSceneParametersSchema || json_kind == kBakeSchema ||
+         json_kind == scenes::kAuthoredSceneSchema;
 }
 
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name) {
+  if (jsonKind(json, name) == scenes::kAuthoredSceneSchema) {
+    return scenes::makeAuthoredSimulation(scenes::parseAuthoredScene(json, name), name);
+  }
   const Json parsed = parseJson(json, name);
   try {
     if (!parsed.is_object()) throw InputError("a JSON object is expected");
@@ -136,6 +152,9 @@ std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::str
 }
 
 std::string formatSceneParameters(Simulation& simulation) {
+  if (auto* authored = dynamic_cast<scenes::SceneDocument*>(&simulation)) {
+    return scenes::formatAuthoredScene(authored->document());
+  }
   return sceneParametersJson(simulation, kSceneParametersSchema).dump(2) + "\n";
 }
 

@@ -6,18 +6,23 @@
 #include "scenes/registry.h"
 
 namespace broadmark::scenes {
-namespace {
 
-/// A choice of all ids in a list, with the first as default.
-template <class Entries>
-Choice choiceOf(const Entries& entries) {
-  Choice choice;
-  for (const auto& entry : entries) choice.options.push_back(entry.listing.id);
-  choice.value = choice.options.front();
-  return choice;
+void PhysicsSettings::visit(const ParameterVisitor& visit) {
+  visit({"time_step", "time between frames, in seconds", &time_step, 1e-4, 1});
+  visit({"substeps", "physics steps per frame", &substeps, 1, 1000});
+  visit({"solver_iterations", "iterations of the contact solver per physics step",
+         &solver_iterations, 1, 1000});
+  visit({"friction", "Coulomb friction of contacts", &friction, 0, 10});
+  visit({"restitution", "restitution of contacts (1: fully elastic)", &restitution, 0, 1});
+  visit({"linear_damping", "share of its velocity that a body loses per second", &linear_damping, 0,
+         1});
+  visit({"angular_damping", "share of its angular velocity that a body loses per second",
+         &angular_damping, 0, 1});
+  visit({"max_angular_speed", "largest angular speed, in radians per second", &max_angular_speed, 0,
+         1000});
+  visit({"sleep_threshold", "kinetic energy per mass below which a body may fall asleep",
+         &sleep_threshold, 0, 1e6});
 }
-
-}  // namespace
 
 Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
 
@@ -36,20 +41,7 @@ void Settings::visit(const ParameterVisitor& visit) {
   visit({"initial_speed", "largest speed of a launched body, in sides of the world per second",
          &initial_speed, 0, 10});
   visit({"gravity", "gravity, in sides of the world per second squared", &gravity, 0, 10});
-  visit({"time_step", "time between frames, in seconds", &physics.time_step, 1e-4, 1});
-  visit({"substeps", "physics steps per frame", &physics.substeps, 1, 1000});
-  visit({"solver_iterations", "iterations of the contact solver per physics step",
-         &physics.solver_iterations, 1, 1000});
-  visit({"friction", "Coulomb friction of contacts", &physics.friction, 0, 10});
-  visit({"restitution", "restitution of contacts (1: fully elastic)", &physics.restitution, 0, 1});
-  visit({"linear_damping", "share of its velocity that a body loses per second",
-         &physics.linear_damping, 0, 1});
-  visit({"angular_damping", "share of its angular velocity that a body loses per second",
-         &physics.angular_damping, 0, 1});
-  visit({"max_angular_speed", "largest angular speed, in radians per second",
-         &physics.max_angular_speed, 0, 1000});
-  visit({"sleep_threshold", "kinetic energy per mass below which a body may fall asleep",
-         &physics.sleep_threshold, 0, 1e6});
+  physics.visit(visit);
 }
 
 double Settings::side() const {

@@ -56,11 +56,13 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
  public:
   explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
 
-  /// The built-in scene it is one of.
+  /// The built-in scene it is one of; of an authored one the id is kAuthoredSceneId.
   [[nodiscard]] const SceneListing& listing() const { return listing_; }
-  /// The recording that is replayed instead of simulating; "": none. Throws InputError when it is
-  /// not there.
+  /// The file that it is made from besides its parameters: a recording that is replayed, an
+  /// authored scene; "": none. Throws InputError when a recording is not there.
   [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
+  /// The hash of what it is made from besides its parameters; "": nothing. Throws InputError.
+  [[nodiscard]] virtual std::string inputHash() { return {}; }
 
  private:
   SceneListing listing_;
@@ -72,27 +74,33 @@ class Simulation : public Parametrised, public FrameSource, public PoseSource {
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
                                            const std::string& engine = {});
 
+/// The id in the listing of every authored scene, which no built-in one has.
+inline constexpr std::string_view kAuthoredSceneId = "authored";
+
 /// Whether JSON of this kind (see jsonKind) describes a scene: a file of scene parameters
-/// ("broadmark-scene-parameters/1"), or the sidecar of a baked recording.
+/// ("broadmark-scene-parameters/1"), the sidecar of a baked recording, or an authored scene
+/// ("broadmark-scene/1").
 bool describesScene(std::string_view json_kind);
 
-/// The simulation that such a JSON text describes; what it does not state keeps its default. `name`
-/// stands for the text in messages. Throws InputError that names the key and what would be right.
+/// The simulation that such a JSON text describes; what it does not state keeps its default.
+/// `name`, its path if it has one, stands for the text in messages. Throws InputError that names
+/// the key and what would be right.
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
 
-/// Scene and parameters as such a text: reading it back gives the same simulation.
+/// Scene and parameters as such a text, of an authored scene the whole of it: reading it back gives
+/// the same simulation.
 std::string formatSceneParameters(Simulation&);
 
 /// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
-/// says so, and the recording has the stated hash) from what is at `input()` now, if anything.
+/// says so, and the recording has the stated hash) from what has `inputHash()` now.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 
 /// The hash that the .json beside a recording states; nothing if there is none, or it is no sidecar
 /// of a baked recording. Throws InputError when a sidecar states no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
-/// Throws InputError if bake() to these paths would write over the recording that is replayed, or
-/// over the .json beside that or another of them.
+/// Throws InputError if bake() to these paths would write over input(), or over the .json beside
+/// that or another of them.
 void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
 
 /// Simulates all frames once into recordings at `paths`, each by the recorder that its extension

@@ -196,6 +196,10 @@ class PlainBullet final : public PhysicsEngine {
     for (PlainBody& body : bodies_) body.body.activate();
     world_.setGravity(toBullet(gravity));
   }
+  [[nodiscard]] Vec3 gravity() const override {
+    const btVector3 g = world_.getGravity();
+    return {g.x(), g.y(), g.z()};
+  }
 
   void step() override {
     gContactBreakingThreshold = setup_.contact_margin;

@@ -1,0 +1,124 @@
+// Planning is cheap but for recordings that are there: each is read through once, by its hash.
+
+#include "app/bake_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "app/cases.h"
+#include "app/recordings.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A --param that no scene has is an error.
+void requireKnownParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
+  std::vector<std::string> known;
+  for (const BakeJob& job : jobs) {
+    std::ranges::move(parameterNames(*job.simulation), std::back_inserter(known));
+  }
+  for (const auto& [name, value] : options.parameters) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--param: " + unknownName("parameter", name, known));
+    }
+  }
+}
+
+/// The whole matrix, each combination once.
+std::vector<BakeJob> makeJobs(const BakeOptions& options) {
+  std::vector<std::string> scenes = options.scenes;
+  scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
+  if (scenes.empty()) {
+    for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
+  }
+  std::vector<BakeJob> jobs;
+  std::set<std::vector<fs::path>> taken;
+  for (auto& simulation : makeSimulations(scenes, options.scene, options.parameters)) {
+    BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
+    job.simulation = std::move(simulation);
+    job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
+    requireApart(*job.simulation, job.paths);
+    if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
+  }
+  requireKnownParameters(options, jobs);
+  return jobs;
+}
+
+/// Fails now rather than after hours: when what is missing would not fit on the disc.
+void requireRoom(const BakePlan& plan, const fs::path& output) {
+  // Beside each recording its sidecar, in whole blocks.
+  constexpr std::uint64_t kSidecarBytes = 1 << 13;
+  fs::path there = fs::absolute(output);
+  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
+  std::error_code unknown;
+  const std::uint64_t free = fs::space(there, unknown).available;
+  const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
+  if (unknown || needed <= free) return;
+  throw InputError(
+      fmt::format("{}: not enough room: {} recordings take {} bytes, but only {} are free",
+                  output.string(), plan.recordings(), needed, free));
+}
+
+/// Fails now rather than after hours: when a file cannot be written.
+void requireWritable(const BakePlan& plan) {
+  for (const BakeJob& job : plan.pending) {
+    for (const fs::path& path : job.paths) {
+      makeDirectory(path.parent_path());
+      const AtomicFile probe(path);
+    }
+  }
+}
+
+}  // namespace
+
+std::size_t BakePlan::recordings() const {
+  std::size_t sum = 0;
+  for (const BakeJob& job : pending) sum += job.paths.size();
+  return sum;
+}
+
+std::uint64_t BakePlan::bytes() const {
+  std::uint64_t sum = 0;
+  for (const BakeJob& job : pending) sum += job.paths.size() * recordingBytes(job.scene);
+  return sum;
+}
+
+std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress& progress) {
+  std::vector<BakeJob> jobs = makeJobs(options);
+  const auto to_check = [&](const fs::path& path) { return !options.force && fs::exists(path); };
+  std::uint64_t total = 0;
+  for (const BakeJob& job : jobs) {
+    total += static_cast<std::uint64_t>(std::ranges::count_if(job.paths, to_check));
+  }
+  BakePlan plan;
+  std::uint64_t number = 0;
+  for (BakeJob& job : jobs) {
+    std::vector<fs::path> missing;
+    for (const fs::path& path : job.paths) {
+      if (!to_check(path)) {
+        missing.push_back(path);
+        continue;
+      }
+      if (progress && !progress(path, ++number, total)) return {};
+      (isBaked(path, *job.simulation) ? plan.kept : missing).push_back(path);
+    }
+    job.paths = std::move(missing);
+    if (!job.paths.empty()) plan.pending.push_back(std::move(job));
+  }
+  return plan;
+}
+
+void prepare(const BakePlan& plan, const fs::path& output) {
+  requireRoom(plan, output);
+  makeDirectory(output);
+  requireWritable(plan);
+}
+
+}  // namespace broadmark

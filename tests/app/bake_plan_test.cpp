@@ -1,0 +1,116 @@
+// A batch as a window runs it: planned, started, watched, cancelled, with nothing printed.
+
+#include "app/bake_plan.h"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "scenes/authored_simulation.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+class BatchWizard : public testing::Test {
+ protected:
+  BatchWizard() {
+    std::string name = (fs::temp_directory_path() / "broadmark XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    directory_ = name;
+    options_.output = directory_ / "out";
+    options_.scenes = {"freefall", "brownian"};
+    options_.scene.object_types = {"cubes", "spheres"};
+    options_.scene.objects = {20, 30};
+    options_.scene.parameters = {{"frames", "5"}};
+    options_.scene.recorders = {"aabbs"};
+  }
+  ~BatchWizard() override { fs::remove_all(directory_); }
+
+  /// Bakes to the end. Returns how many recordings ended.
+  static std::size_t finish(BakeBatch& batch) {
+    std::size_t ended = 0;
+    while (!batch.ended()) ended += batch.await(20ms).size();
+    return ended;
+  }
+
+  [[nodiscard]] std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(directory_)) {
+      if (entry.is_regular_file()) names.insert(entry.path().filename());
+    }
+    return names;
+  }
+
+  fs::path directory_;
+  BakeOptions options_;
+};
+
+TEST_F(BatchWizard, PlansBakesAndKeeps) {
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  auto plan = planBake(options_);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->recordings(), 8U);
+  EXPECT_EQ(plan->bytes(), 4 * (2 * 304 + 32 * 6 * (20 + 30)));
+  EXPECT_TRUE(files().empty()) << "planning writes nothing";
+  prepare(*plan, options_.output);
+  BakeBatch batch(std::move(plan->pending), 2);
+  EXPECT_EQ(finish(batch), 8U);
+  EXPECT_EQ(batch.state().done, batch.state().total);
+
+  std::vector<std::uint64_t> numbers;
+  plan = planBake(options_, [&](const fs::path&, std::uint64_t number, std::uint64_t total) {
+    EXPECT_EQ(total, 8U);
+    numbers.push_back(number);
+    return true;
+  });
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->kept.size(), 8U);
+  EXPECT_TRUE(plan->pending.empty());
+  EXPECT_THAT(numbers, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
+}
+
+TEST_F(BatchWizard, PlanningCanBeStopped) {
+  auto plan = planBake(options_);
+  prepare(*plan, options_.output);
+  BakeBatch batch(std::move(plan->pending), 2);
+  finish(batch);
+  EXPECT_FALSE(planBake(
+      options_, [](const fs::path&, std::uint64_t number, std::uint64_t) { return number < 3; }));
+}
+
+TEST_F(BatchWizard, CancellingLeavesOnlyWholeRecordings) {
+  options_.scene.parameters["frames"] = "20000";
+  options_.scene.objects = {300};
+  auto plan = planBake(options_);
+  prepare(*plan, options_.output);
+  BakeBatch long_batch(std::move(plan->pending), 2);
+  while (long_batch.state().done == 0) long_batch.await(1ms);
+  EXPECT_FALSE(long_batch.ended());
+  long_batch.cancel();
+  EXPECT_EQ(finish(long_batch), 0U);
+  EXPECT_TRUE(files().empty());
+}
+
+TEST_F(BatchWizard, AuthoredScenesTakePart) {
+  scenes::AuthoredScene scene{.name = "Mine", .parameters = {{"frames", "5"}}};
+  scene.bodies.resize(2);
+  writeTextFile(directory_ / "mine.json", scenes::formatAuthoredScene(scene));
+  options_.parameter_files = {(directory_ / "mine.json").string()};
+  EXPECT_THROW(planBake(options_), InputError) << "it has its own number of bodies";
+  options_.scene.objects.clear();
+  options_.scene.object_types.clear();
+  const auto plan = planBake(options_);
+  ASSERT_TRUE(plan);
+  EXPECT_EQ(plan->recordings(), 3U);
+  EXPECT_EQ(plan->pending.back().scene.name, "Mine");
+}
+
+}  // namespace
+}  // namespace broadmark

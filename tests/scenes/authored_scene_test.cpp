@@ -1,0 +1,366 @@
+// Authored scenes: as JSON, in motion, and made from frames of others.
+
+#include "scenes/authored_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <random>
+
+#include "broadmark/error.h"
+#include "broadmark/posrot.h"
+#include "scenes/authored_simulation.h"
+#include "tests/scenes/scene_runs.h"
+
+namespace broadmark::scenes {
+namespace {
+
+using broadmark::testing::allFrames;
+using broadmark::testing::sceneWith;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::string refusalOf(const std::string& text) {
+  try {
+    parseAuthoredScene(text, "my scene.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// A text of one body with these members, and more of the scene.
+std::string sceneText(const std::string& body, const std::string& more = "") {
+  return R"({"schema": "broadmark-scene/1", "name": "Test", "world": {"min": [-9, -9, -9], "max": [9, 9, 9]}, )" +
+         more + R"("bodies": [{"box": [1, 1, 1], "position": [0, 0, 0]}, {)" + body + "}]}";
+}
+
+/// A float that is finite, of any size up to `most`, denormals and negative zero included.
+float anyFloat(std::mt19937& random, float most) {
+  for (;;) {
+    const auto value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    if (std::abs(value) <= most) return random() % 16 == 0 ? -0.0F : value;
+  }
+}
+
+Vec3 anyVector(std::mt19937& random, float most) {
+  return {anyFloat(random, most), anyFloat(random, most), anyFloat(random, most)};
+}
+
+float anySize(std::mt19937& random) {
+  for (;;) {
+    const float size = std::abs(anyFloat(random, kMostEdge / 2));
+    if (size >= kLeastEdge) return size;
+  }
+}
+
+AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
+  std::mt19937 random(seed);
+  AuthoredScene scene{.name = "Any \"scene\" \\", .parameters = {{"gravity_x", "0.1"}}};
+  scene.world = {{-1e9F, -0.0F, 1e-40F, 0}, {0.1F, 3, 1e9F, 0}};
+  for (std::size_t i = 0; i < bodies; ++i) {
+    AuthoredBody body;
+    if (random() % 2 == 0) {
+      body.shape = SphereShape{anySize(random)};
+    } else {
+      body.shape = BoxShape{{anySize(random), anySize(random), anySize(random)}};
+    }
+    body.mass = random() % 2 == 0 ? 1 : 1e-3 + static_cast<double>(random()) / 5;
+    body.frozen = random() % 4 == 0;
+    body.pose.position = anyVector(random, 1e9F);
+    if (random() % 2 == 0) {
+      body.pose.rotation = {-0.0F, std::sin(0.1F * static_cast<float>(i)), 0,
+                            std::cos(0.1F * static_cast<float>(i))};
+    }
+    body.linear_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
+    body.angular_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
+    scene.bodies.push_back(body);
+  }
+  return scene;
+}
+
+/// The floats of a body as they lie in memory: negative zero is not zero here.
+std::vector<std::uint32_t> bitsOf(const AuthoredBody& body) {
+  std::vector<std::uint32_t> bits;
+  const auto add = [&](const auto& floats) {
+    for (const float value : floats) bits.push_back(std::bit_cast<std::uint32_t>(value));
+  };
+  add(body.pose.position);
+  add(body.pose.rotation);
+  add(body.linear_velocity);
+  add(body.angular_velocity);
+  return bits;
+}
+
+TEST(AuthoredScene, SurvivesARoundTripBitForBit) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const AuthoredScene scene = anyScene(seed, 100);
+    const std::string text = formatAuthoredScene(scene);
+    const AuthoredScene again = parseAuthoredScene(text, "again");
+    ASSERT_EQ(again, scene);
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      ASSERT_EQ(bitsOf(again.bodies[i]), bitsOf(scene.bodies[i])) << seed << " " << i;
+    }
+    EXPECT_TRUE(std::signbit(again.world.min[1]));
+    EXPECT_EQ(formatAuthoredScene(again), text);
+  }
+}
+
+TEST(AuthoredScene, WritesOneBodyALine) {
+  const std::string text = formatAuthoredScene(anyScene(1, 57));
+  EXPECT_EQ(std::ranges::count(text, '\n'), 57 + 8);
+}
+
+TEST(AuthoredScene, LeavesOutWhatHasItsDefault) {
+  AuthoredScene scene{.name = "Two"};
+  scene.bodies.resize(2);
+  scene.bodies[1].shape = SphereShape{0.1F};
+  scene.bodies[1].mass = 0.1;
+  scene.bodies[1].frozen = true;
+  EXPECT_EQ(formatAuthoredScene(scene),
+            R"({
+"schema": "broadmark-scene/1",
+"name": "Two",
+"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
+"parameters": {},
+"bodies": [
+{"box": [1, 1, 1], "position": [0, 0, 0]},
+{"sphere": 0.1, "position": [0, 0, 0], "mass": 0.1, "frozen": true}
+]
+}
+)");
+}
+
+TEST(AuthoredScene, KeysMayComeInAnyOrder) {
+  const AuthoredScene scene = parseAuthoredScene(
+      R"({"bodies": [{"position": [1, 2, 3], "mass": 2, "sphere": 0.5}],
+          "parameters": {"sight": 3, "engine": "boids"},
+          "world": {"max": [4, 4, 4], "min": [-4, -4, -4]}, "name": "N",
+          "schema": "broadmark-scene/1"})",
+      "text");
+  EXPECT_EQ(scene.bodies.at(0).shape, Shape(SphereShape{0.5F}));
+  EXPECT_EQ(scene.bodies.at(0).pose.position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(scene.parameters, (ParameterValues{{"engine", "boids"}, {"sight", "3"}}));
+}
+
+TEST(AuthoredScene, RefusalsNameBodyKeyAndWhatWouldBeRight) {
+  const std::string position = R"("position": [0, 0, 0])";
+  const std::vector<std::pair<std::string, std::vector<std::string>>> cases = {
+      {"", {"not valid JSON"}},
+      {"{", {"not valid JSON", "line 1"}},
+      {"[]", {"a JSON object"}},
+      {"{}", {"schema"}},
+      {R"({"schema": "broadmark-scene/2"})", {"broadmark-scene/2", "broadmark-scene/1"}},
+      {R"({"schema": "broadmark-scene/1"})", {"'name' is missing"}},
+      {R"({"schema": "broadmark-scene/1", "nam": 1})", {"'nam'", "did you mean 'name'"}},
+      {R"({"schema": "broadmark-scene/1", "name": "a/b", "world": {"min": [0,0,0], "max": [1,1,1]}, "bodies": []})",
+       {"name", "'/'"}},
+      {R"({"schema": "broadmark-scene/1", "name": "a", "world": {"min": [0,0,0], "max": [1,0,1]}, "bodies": []})",
+       {"world", "min below max"}},
+      {R"({"schema": "broadmark-scene/1", "world": {"min": [0,0]}})",
+       {"world", "min", "three numbers"}},
+      {R"({"schema": "broadmark-scene/1", "world": {"min": [0,0,0]}})", {"world", "'max'"}},
+      {R"({"schema": "broadmark-scene/1", "bodies": {}})", {"bodies", "array of objects"}},
+      {R"({"schema": "broadmark-scene/1", "bodies": [7]})", {"bodies", "array of objects"}},
+      {sceneText(position), {"body 1", "'box' or 'sphere'"}},
+      {sceneText(R"("sphere": 1)"), {"body 1", "'position' is missing"}},
+      {sceneText(R"("sphere": 1, "box": [1, 1, 1], )" + position), {"body 1", "either"}},
+      {sceneText(R"("sphere": 1, "sphere": 1)"), {"body 1", "'sphere' is stated twice"}},
+      {sceneText(R"("sphere": "1", )" + position), {"body 1", "sphere: a number"}},
+      {sceneText(R"("sphere": [1], )" + position), {"body 1", "sphere: a number"}},
+      {sceneText(R"("box": 1, )" + position), {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("box": [1, null, 1])"), {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("box": [0, 1, 1], )" + position), {"body 1", "size", "1e-06"}},
+      {sceneText(R"("sphere": -1, )" + position), {"body 1", "size"}},
+      {sceneText(R"("sphere": 1, "position": [1e10, 0, 0])"), {"body 1", "position", "1e+09"}},
+      {sceneText(R"("sphere": 1, "rotation": [0, 0, 0, 2], )" + position),
+       {"body 1", "rotation", "unit length"}},
+      {sceneText(R"("sphere": 1, "rotation": [0, 0, 1], )" + position),
+       {"body 1", "rotation: an array of four numbers"}},
+      {sceneText(R"("sphere": 1, "mass": 0, )" + position), {"body 1", "mass"}},
+      {sceneText(R"("sphere": 1, "frozen": 1, )" + position), {"body 1", "frozen: true or false"}},
+      {sceneText(R"("sphere": 1, "velocity": [0, 1e7, 0], )" + position), {"body 1", "velocity"}},
+      {sceneText(R"("sphere": 1, "positon": [0, 0, 0])"),
+       {"body 1", "'positon'", "did you mean 'position'"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("parameters": {"objects": 5}, )"),
+       {"unknown parameter 'objects'"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("parameters": {"engine": "viewer"}, )"),
+       {"engine", "viewer", "bullet"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("parameters": {"frames": "5"}, )"),
+       {"frames", "integer"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("parameters": {"frames": [5]}, )"), {"frames"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("parameters": 3, )"),
+       {"parameters", "an object"}},
+      {sceneText(R"("sphere": 1, )" + position) + "x", {"not valid JSON"}},
+  };
+  for (const auto& [text, words] : cases) {
+    const std::string refusal = refusalOf(text);
+    EXPECT_THAT(refusal, ::testing::StartsWith("my scene.json: ")) << text;
+    EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
+    for (const std::string& word : words) EXPECT_THAT(refusal, HasSubstr(word)) << text;
+  }
+}
+
+/// A few bodies that fall on a frozen floor.
+AuthoredScene fallingScene() {
+  AuthoredScene scene{.name = "Falling", .parameters = {{"frames", "20"}}};
+  AuthoredBody floor{.shape = BoxShape{{8, 0.5F, 8}}, .frozen = true};
+  floor.pose.position = {0, -5, 0};
+  scene.bodies.push_back(floor);
+  for (int i = 0; i < 6; ++i) {
+    AuthoredBody body;
+    body.pose.position = {static_cast<float>(i) - 3, static_cast<float>(i % 3), 0.1F};
+    if (i % 2 == 0) body.shape = SphereShape{0.4F};
+    body.linear_velocity = {0.5F, 0, 1};
+    body.angular_velocity = {0, 2, 0};
+    scene.bodies.push_back(body);
+  }
+  return scene;
+}
+
+TEST(AuthoredSimulation, StartsAsAuthoredWithEveryEngineAndGivesTheSameBits) {
+  for (const EngineEntry& engine : engineEntries()) {
+    AuthoredScene scene = fallingScene();
+    scene.parameters["engine"] = engine.listing.id;
+    const auto simulation = makeAuthoredSimulation(scene);
+    EXPECT_EQ(simulation->scene().name, "Falling");
+    EXPECT_EQ(simulation->scene().object_type, "Assorted");
+    EXPECT_EQ(simulation->scene().objects, 7U);
+    EXPECT_EQ(simulation->scene().world, scene.world);
+    const auto frames = allFrames(*simulation);
+    ASSERT_EQ(frames.size(), 21U);
+    EXPECT_EQ(frames[0], boxesOf(scene)) << engine.listing.id;
+    EXPECT_NE(frames[20], frames[0]) << engine.listing.id;
+    EXPECT_EQ(frames[20][0], frames[0][0]) << "frozen, " << engine.listing.id;
+    EXPECT_EQ(allFrames(*makeAuthoredSimulation(scene)), frames) << engine.listing.id;
+    EXPECT_EQ(allFrames(*simulation), frames) << "rewound, " << engine.listing.id;
+  }
+}
+
+TEST(AuthoredSimulation, GravityPointsWhereItIsSaid) {
+  AuthoredScene scene = fallingScene();
+  scene.parameters = {{"frames", "3"}, {"gravity_x", "9"}, {"gravity_y", "0"}};
+  const auto frames = allFrames(*makeAuthoredSimulation(scene));
+  const auto way = broadmark::testing::way(frames[0][2], frames[3][2]);
+  EXPECT_NEAR(way[0], 0.5 * 0.1 + 9 * 0.1 * 0.1 / 2, 0.02);
+  EXPECT_NEAR(way[1], 0, 1e-4);
+}
+
+TEST(AuthoredSimulation, StaysInsideAWorldOfAnyForm) {
+  AuthoredScene scene{.name = "Flat", .parameters = {{"frames", "40"}, {"gravity_y", "0"}}};
+  scene.world = {{1, -2, -8, 0}, {4, 2, 3, 0}};
+  AuthoredBody body{.shape = SphereShape{0.2F}};
+  body.pose.position = {2, 0, 0};
+  body.linear_velocity = {9, 5, -20};
+  scene.bodies = {body};
+  for (const char* engine : {"bullet", "ode", "kinematic"}) {
+    scene.parameters["engine"] = engine;
+    const auto frames = allFrames(*makeAuthoredSimulation(scene));
+    for (const auto& frame : frames) {
+      EXPECT_TRUE(broadmark::testing::allInside(frame, scene.world, 0.1)) << engine;
+    }
+    EXPECT_GT(frames[20][0].min[0], 1 - 0.1F);
+  }
+}
+
+TEST(AuthoredSimulation, IsReadAndWrittenLikeOtherScenes) {
+  const AuthoredScene scene = fallingScene();
+  const auto simulation = parseSceneParameters(formatAuthoredScene(scene), "some/file.json");
+  EXPECT_EQ(simulation->listing().id, kAuthoredSceneId);
+  EXPECT_EQ(simulation->input(), "some/file.json");
+  setParameters(*simulation, {{"engine", "kinematic"}, {"frames", "5"}});
+  const auto again = parseSceneParameters(formatSceneParameters(*simulation), "again");
+  EXPECT_EQ(parameterValues(*again), parameterValues(*simulation));
+  EXPECT_EQ(allFrames(*again), allFrames(*simulation));
+  EXPECT_TRUE(describesScene("broadmark-scene/1"));
+}
+
+TEST(AuthoredSimulation, TellsOneSceneFromAnotherByItsContents) {
+  AuthoredScene scene = fallingScene();
+  const std::string hash = makeAuthoredSimulation(scene, "here.json")->inputHash();
+  EXPECT_EQ(makeAuthoredSimulation(scene, "there.json")->inputHash(), hash);
+  scene.bodies[3].linear_velocity[1] += 1e-6F;
+  EXPECT_NE(makeAuthoredSimulation(scene)->inputHash(), hash);
+}
+
+TEST(AuthoredSimulation, RefusesAFaultyScene) {
+  AuthoredScene scene = fallingScene();
+  scene.bodies[4].mass = -1;
+  try {
+    makeAuthoredSimulation(scene);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("body 4: mass"));
+  }
+}
+
+TEST(SceneFromFrame, OfASimulationGoesOnAsItWouldHave) {
+  // Without contacts a body's future depends on its pose and velocity alone.
+  const auto simulation =
+      sceneWith("freefall", {{"objects", "40"}, {"frames", "30"}, {"engine", "kinematic"}});
+  const auto frames = allFrames(*simulation);
+  const AuthoredScene scene = sceneFromFrame(*simulation, 10);
+  EXPECT_EQ(boxesOf(scene), frames[10]);
+  EXPECT_EQ(scene.world, simulation->scene().world);
+  EXPECT_EQ(scene.parameters.at("engine"), "kinematic");
+  const auto onwards = allFrames(*makeAuthoredSimulation(scene));
+  for (std::size_t frame = 0; frame < 5; ++frame) {
+    for (std::size_t i = 0; i < 40; ++i) {
+      EXPECT_LT(broadmark::testing::lengthOf(
+                    broadmark::testing::way(frames[10 + frame][i], onwards[frame][i])),
+                1e-3)
+          << frame << " " << i;
+    }
+  }
+}
+
+class SceneFromRecording : public ::testing::Test {
+ protected:
+  SceneFromRecording() {
+    std::string name = (fs::temp_directory_path() / "broadmark XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
+    directory_ = name;
+  }
+  ~SceneFromRecording() override { fs::remove_all(directory_); }
+  fs::path directory_;
+};
+
+TEST_F(SceneFromRecording, OfPosesKeepsThem) {
+  const auto simulation = sceneWith("brownian", {{"objects", "30"}, {"frames", "6"}});
+  bake(*simulation, {directory_ / "a.posrot"});
+  const auto recording = openRecordingFile(directory_ / "a.posrot");
+  const AuthoredScene scene = sceneFromFrame(*recording, 6);
+  const auto truth = sceneFromFrame(*simulation, 6);
+  ASSERT_EQ(scene.bodies.size(), 30U);
+  for (std::size_t i = 0; i < 30; ++i) {
+    EXPECT_EQ(scene.bodies[i].pose, truth.bodies[i].pose);
+    const Vec3& half = std::get<BoxShape>(scene.bodies[i].shape).half_extents;
+    for (const float edge : half) EXPECT_NEAR(edge, 0.5, 1e-5);
+  }
+}
+
+TEST_F(SceneFromRecording, OfBoxesKeepsThoseAndSpheresAreSpheres) {
+  for (const std::string type : {"cubes", "spheres"}) {
+    const auto simulation =
+        sceneWith("brownian", {{"objects", "30"}, {"frames", "6"}, {"object_type", type}});
+    bake(*simulation, {directory_ / (type + ".aabbs")});
+    const auto recording = openRecordingFile(directory_ / (type + ".aabbs"));
+    const AuthoredScene scene = sceneFromFrame(*recording, 4);
+    const auto frame = recording->read(4);
+    const auto boxes = boxesOf(scene);
+    for (std::size_t i = 0; i < 30; ++i) {
+      EXPECT_EQ(std::holds_alternative<SphereShape>(scene.bodies[i].shape), type == "spheres");
+      for (int axis = 0; axis < 3; ++axis) {
+        EXPECT_NEAR(boxes[i].min[axis], frame.boxes[i].min[axis], 1e-4);
+        EXPECT_NEAR(boxes[i].max[axis], frame.boxes[i].max[axis], 1e-4);
+      }
+    }
+    EXPECT_EQ(parseAuthoredScene(formatAuthoredScene(scene), "again"), scene);
+    EXPECT_THROW(sceneFromFrame(*recording, 7), InputError);
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::scenes

@@ -1,0 +1,86 @@
+// The example among the assets, as an author would put it together.
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+
+#include "broadmark/atomic_file.h"
+#include "scenes/authored_simulation.h"
+#include "scenes/brush.h"
+#include "scenes/scene_editor.h"
+#include "tests/scenes/scene_runs.h"
+
+namespace broadmark::scenes {
+namespace {
+
+std::unique_ptr<Brush> lineOf(int count, const ParameterValues& step) {
+  for (const BrushEntry& entry : brushEntries()) {
+    if (entry.listing.id != "line") continue;
+    auto brush = entry.create();
+    ParameterValues values = step;
+    values["count"] = std::to_string(count);
+    setParameters(*brush, values);
+    return brush;
+  }
+  throw std::runtime_error("no line");
+}
+
+constexpr int kDominoes = 24;
+constexpr int kLayers = 5;
+
+/// A table with a row of dominoes, a pyramid behind them, and a ball on its way.
+AuthoredScene dominoes() {
+  SceneEditor editor;
+  editor.setName("Dominoes");
+  editor.setWorld({{-20, -4, -8, 0}, {20, 12, 8, 0}});
+  // A domino that begins to fall is slow: it must not go to sleep.
+  editor.setParameters({{"frames", "250"}, {"friction", "0.3"}, {"sleep_threshold", "0"}});
+
+  AuthoredBody table{.shape = BoxShape{{18, 0.5F, 4}}, .frozen = true};
+  table.pose.position = {0, -0.5F, 0};
+  editor.add({table});
+
+  Paint thin;
+  thin.scale = 0.2;
+  editor.add(paint(*lineOf(kDominoes, {}), thin, {-14, 1, 0}, editor.scene().bodies).bodies);
+  editor.setSize({0.3F, 2, 1});
+
+  for (int layer = 0; layer < kLayers; ++layer) {
+    const int cubes = kLayers - layer;
+    const Vec3 first = {11, 0.5F + static_cast<float>(layer),
+                        -0.5F * static_cast<float>(cubes - 1)};
+    const auto row = lineOf(cubes, {{"step_x", "0"}, {"step_z", "1"}});
+    editor.add(paint(*row, {}, first, editor.scene().bodies).bodies);
+  }
+
+  AuthoredBody ball{
+      .shape = SphereShape{0.5F},
+  };
+  ball.pose.position = {-15.5F, 1.7F, 0};
+  ball.linear_velocity = {5, 0.3F, 0};
+  editor.add({ball});
+  return editor.scene();
+}
+
+const std::filesystem::path kFile =
+    std::filesystem::path(BROADMARK_SOURCE_DIR) / "assets/scenes/dominoes.json";
+
+TEST(ExampleScene, IsWhatTheEditorMakes) {
+  if (std::getenv("BROADMARK_UPDATE_GOLDEN") != nullptr) {
+    writeTextFile(kFile, formatAuthoredScene(dominoes()));
+  }
+  EXPECT_EQ(readTextFile(kFile), formatAuthoredScene(dominoes()));
+  EXPECT_EQ(dominoes().bodies.size(), 1 + kDominoes + kLayers * (kLayers + 1) / 2 + 1U);
+}
+
+TEST(ExampleScene, TheLastDominoFalls) {
+  const auto frames = broadmark::testing::allFrames(*makeAuthoredSimulation(dominoes()));
+  for (int domino = 1; domino <= kDominoes; ++domino) {
+    const auto id = static_cast<std::size_t>(domino);
+    EXPECT_EQ(frames.front()[id].max[1], 2) << domino;
+    EXPECT_LT(frames.back()[id].max[1], 1.9F) << domino;
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::scenes

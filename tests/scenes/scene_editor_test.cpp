@@ -1,0 +1,445 @@
+// Editing with undo and redo: whatever the order of edits, what was there comes back.
+
+#include "scenes/scene_editor.h"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "broadmark/error.h"
+#include "scenes/brush.h"
+#include "scenes/registry.h"
+
+namespace broadmark::scenes {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<AuthoredBody> row(std::size_t count) {
+  std::vector<AuthoredBody> bodies(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    bodies[i].pose.position = {static_cast<float>(2 * i), 0, 0};
+  }
+  return bodies;
+}
+
+/// The x of every body.
+std::vector<float> places(const SceneEditor& editor) {
+  std::vector<float> places;
+  for (const AuthoredBody& body : editor.scene().bodies) places.push_back(body.pose.position[0]);
+  return places;
+}
+
+TEST(SceneEditor, DeletingAndBringingBackKeepsOrderAndSelection) {
+  SceneEditor editor;
+  editor.add(row(5));
+  EXPECT_THAT(editor.selection(), ElementsAre(0, 1, 2, 3, 4));
+  editor.select({3, 1, 1});
+  editor.erase();
+  EXPECT_THAT(places(editor), ElementsAre(0, 4, 8));
+  EXPECT_THAT(editor.selection(), IsEmpty());
+  editor.undo();
+  EXPECT_THAT(places(editor), ElementsAre(0, 2, 4, 6, 8));
+  EXPECT_THAT(editor.selection(), ElementsAre(1, 3));
+  editor.redo();
+  EXPECT_THAT(places(editor), ElementsAre(0, 4, 8));
+  editor.undo();
+  editor.undo();
+  EXPECT_THAT(places(editor), IsEmpty());
+  EXPECT_THAT(editor.selection(), IsEmpty());
+  EXPECT_FALSE(editor.canUndo());
+  EXPECT_EQ(editor.redoName(), "add 5 bodies");
+}
+
+TEST(SceneEditor, EditsActOnTheSelectionAlone) {
+  SceneEditor editor;
+  editor.add(row(3));
+  editor.select({1});
+  editor.move({0.5F, 1, 0});
+  editor.setMass(4);
+  editor.setFrozen(true);
+  editor.setVelocity({1, 2, 3});
+  editor.setAngularVelocity({4, 5, 6});
+  editor.makeSpheres();
+  editor.setSize({3, 9, 9});
+  const AuthoredBody& body = editor.scene().bodies[1];
+  EXPECT_EQ(body.pose.position, (Vec3{2.5F, 1, 0}));
+  EXPECT_EQ(body.mass, 4);
+  EXPECT_TRUE(body.frozen);
+  EXPECT_EQ(body.linear_velocity, (Vec3{1, 2, 3}));
+  EXPECT_EQ(body.angular_velocity, (Vec3{4, 5, 6}));
+  EXPECT_EQ(body.shape, Shape(SphereShape{1.5F}));
+  EXPECT_EQ(editor.scene().bodies[0], row(3)[0]);
+  EXPECT_EQ(editor.scene().bodies[2], row(3)[2]);
+  editor.makeBoxes();
+  EXPECT_EQ(editor.scene().bodies[1].shape, Shape(BoxShape{{1.5F, 1.5F, 1.5F}}));
+}
+
+TEST(SceneEditor, ScalesAndTurnsAboutTheCommonCentre) {
+  SceneEditor editor;
+  editor.add(row(3));
+  editor.scale(2);
+  EXPECT_THAT(places(editor), ElementsAre(-2, 2, 6));
+  EXPECT_EQ(editor.scene().bodies[0].shape, Shape(BoxShape{{1, 1, 1}}));
+  EXPECT_EQ(editor.undoName(), "scale 3 bodies");
+  editor.undo();
+  EXPECT_EQ(editor.scene().bodies, row(3));
+  const float half = std::sqrt(0.5F);
+  editor.turn({0, half, 0, half});  // a quarter about y: x goes to -z
+  EXPECT_NEAR(editor.scene().bodies[0].pose.position[2], 2, 1e-5);
+  EXPECT_NEAR(editor.scene().bodies[2].pose.position[2], -2, 1e-5);
+}
+
+TEST(SceneEditor, DuplicatesAreSelected) {
+  SceneEditor editor;
+  editor.add(row(2));
+  editor.select({1});
+  editor.duplicate({10, 0, 0});
+  EXPECT_THAT(places(editor), ElementsAre(0, 2, 12));
+  EXPECT_THAT(editor.selection(), ElementsAre(2));
+  editor.undo();
+  EXPECT_THAT(editor.selection(), ElementsAre(1));
+}
+
+TEST(SceneEditor, AGestureIsOneStepOfBoundedMemory) {
+  SceneEditor editor;
+  editor.add(row(100));
+  const AuthoredScene before = editor.scene();
+  editor.beginGesture("drag");
+  editor.move({1, 0, 0});
+  const std::size_t bytes = editor.historyBytes();
+  for (int i = 0; i < 1000; ++i) {
+    editor.move({0.01F, 0, 0});
+    if (i % 100 == 0) editor.setMass(2 + i);
+  }
+  EXPECT_LE(editor.historyBytes(), bytes + 100 * 16);
+  editor.endGesture();
+  const AuthoredScene after = editor.scene();
+  editor.move({0, 1, 0});
+  editor.undo();
+  EXPECT_EQ(editor.scene(), after);
+  EXPECT_EQ(editor.undoName(), "drag");
+  editor.undo();
+  EXPECT_EQ(editor.scene(), before);
+  editor.redo();
+  EXPECT_EQ(editor.scene(), after);
+}
+
+TEST(SceneEditor, WhatChangesNothingIsNoStep) {
+  SceneEditor editor;
+  editor.move({1, 0, 0});
+  editor.erase();
+  editor.duplicate({1, 0, 0});
+  editor.add({});
+  editor.setName("Untitled");
+  editor.setParameters({});
+  editor.undo();
+  editor.redo();
+  EXPECT_FALSE(editor.canUndo());
+  editor.add(row(1));
+  editor.setMass(1);
+  editor.move({});
+  EXPECT_EQ(editor.undoName(), "add 1 body");
+}
+
+TEST(SceneEditor, RefusalsLeaveAllAsItWas) {
+  SceneEditor editor;
+  editor.add(row(3));
+  const AuthoredScene before = editor.scene();
+  const auto refuses = [&](auto&& edit, const std::string& word) {
+    try {
+      edit();
+      ADD_FAILURE() << word;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(word));
+    }
+    EXPECT_EQ(editor.scene(), before) << word;
+    EXPECT_EQ(editor.undoName(), "add 3 bodies");
+  };
+  refuses([&] { editor.setMass(0); }, "mass");
+  refuses([&] { editor.setSize({1, 0, 1}); }, "size");
+  refuses([&] { editor.scale(0); }, "size");
+  refuses([&] { editor.scale(std::nanf("")); }, "body 0");
+  refuses([&] { editor.move({3e9F, 0, 0}); }, "position");
+  refuses([&] { editor.setVelocity({0, INFINITY, 0}); }, "velocity");
+  refuses([&] { editor.turn({0, 0, 0, 0}); }, "rotation");
+  refuses([&] { editor.setName("a/b"); }, "name");
+  refuses([&] { editor.setWorld({}); }, "world");
+  refuses([&] { editor.setParameters({{"objects", "3"}}); }, "objects");
+  refuses([&] { editor.setParameters({{"frames", "0"}}); }, "frames");
+  refuses([&] { editor.select({3}); }, "no body 3");
+  refuses([&] { editor.add({AuthoredBody{.mass = -1}}); }, "body 3: mass");
+}
+
+TEST(SceneEditor, ParametersOfAnotherEngineAreDropped) {
+  SceneEditor editor;
+  editor.setParameters({{"engine", "boids"}, {"sight", "5"}, {"frames", "0070"}});
+  EXPECT_EQ(editor.scene().parameters,
+            (ParameterValues{{"engine", "boids"}, {"frames", "70"}, {"sight", "5"}}));
+  editor.setParameters({{"engine", "ode"}});
+  EXPECT_EQ(editor.scene().parameters, (ParameterValues{{"engine", "ode"}, {"frames", "70"}}));
+  editor.undo();
+  EXPECT_EQ(editor.scene().parameters.at("sight"), "5");
+}
+
+TEST(SceneEditor, KnowsWhetherItIsSaved) {
+  SceneEditor editor;
+  EXPECT_FALSE(editor.isModified());
+  editor.add(row(2));
+  editor.markSaved();
+  editor.move({1, 0, 0});
+  EXPECT_TRUE(editor.isModified());
+  editor.undo();
+  EXPECT_FALSE(editor.isModified());
+  editor.undo();
+  EXPECT_TRUE(editor.isModified());
+  editor.setName("Other");
+  EXPECT_TRUE(editor.isModified()) << "not the saved scene, though as many steps";
+}
+
+TEST(SceneEditor, TheHistoryIsBoundedAndTheLatestStepStays) {
+  constexpr std::size_t kBound = 100'000;
+  SceneEditor editor({}, kBound);
+  editor.add(row(500));
+  for (int i = 0; i < 100; ++i) {
+    editor.move({1, 0, 0});
+    EXPECT_LE(editor.historyBytes(), kBound);
+  }
+  editor.add(row(5000));
+  EXPECT_EQ(editor.undoName(), "add 5000 bodies");
+  editor.undo();
+  EXPECT_FALSE(editor.canUndo());
+  EXPECT_EQ(editor.scene().bodies.size(), 500U);
+  EXPECT_TRUE(editor.isModified());
+}
+
+/// Edits at random, some in gestures, some refused.
+class Monkey {
+ public:
+  explicit Monkey(unsigned seed) : random_(seed) {}
+
+  void edit(SceneEditor& editor) {
+    try {
+      if (any(8) == 0) {
+        editor.inGesture() ? editor.endGesture() : editor.beginGesture("gesture");
+      }
+      chooseBodies(editor);
+      editOnce(editor);
+    } catch (const InputError&) {
+    }
+  }
+
+ private:
+  unsigned any(unsigned count) { return static_cast<unsigned>(random_() % count); }
+  float number() { return static_cast<float>(any(2001)) / 100 - 10; }
+  Vec3 vector() { return {number(), number(), number()}; }
+
+  void chooseBodies(SceneEditor& editor) {
+    const std::size_t count = editor.scene().bodies.size();
+    if (any(3) != 0 || count == 0) return;
+    BodyIds ids;
+    for (unsigned i = any(12); i > 0; --i) ids.push_back(any(static_cast<unsigned>(count)));
+    any(2) == 0 ? editor.select(ids) : editor.toggle(ids);
+    if (any(10) == 0) editor.selectAll();
+  }
+
+  void editOnce(SceneEditor& editor) {
+    const std::size_t count = editor.scene().bodies.size();
+    switch (any(16)) {
+      case 0:
+      case 1:
+        return editor.add(std::vector<AuthoredBody>(any(6), AuthoredBody{.mass = 1.0 + any(5)}));
+      case 2:
+        return editor.erase();
+      case 3:
+        return count < 200 ? editor.duplicate(vector()) : editor.erase();
+      case 4:
+        return editor.turn({0, 0.6F, 0, 0.8F});
+      case 5:
+        return editor.scale(number());
+      case 6:
+        return editor.setSize({number(), 1, 2});
+      case 7:
+        return any(2) == 0 ? editor.makeBoxes() : editor.makeSpheres();
+      case 8:
+        return editor.setMass(number());
+      case 9:
+        return editor.setFrozen(any(2) == 0);
+      case 10:
+        return editor.setVelocity(vector());
+      case 11:
+        return editor.setAngularVelocity(vector());
+      case 12:
+        return editor.setName(std::string(any(3), 'x'));
+      case 13:
+        return editor.setWorld({{number(), -20, -20, 0}, {number(), 20, 20, 0}});
+      case 14:
+        return editor.setParameters(
+            {{"frames", std::to_string(any(5))}, {"engine", any(2) == 0 ? "ode" : "boids"}});
+      default:
+        return editor.move(vector());
+    }
+  }
+
+  std::mt19937 random_;
+};
+
+struct State {
+  AuthoredScene scene;
+  BodyIds selection;
+  std::uint64_t revision;
+};
+
+State stateOf(const SceneEditor& editor) {
+  return {editor.scene(), editor.selection(), editor.revision()};
+}
+
+TEST(SceneEditor, AnySequenceIsUndoneAndRedoneExactly) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    SceneEditor editor;
+    Monkey monkey(seed);
+    const AuthoredScene first = editor.scene();
+    for (int i = 0; i < 150; ++i) {
+      monkey.edit(editor);
+      if (i % 29 == 0) editor.undo();
+      if (i % 31 == 0) editor.redo();
+    }
+    editor.endGesture();
+    const AuthoredScene last = editor.scene();
+    std::vector<State> states;
+    while (editor.canUndo()) {
+      states.push_back(stateOf(editor));
+      editor.undo();
+      ASSERT_TRUE(editor.selection().empty() ||
+                  editor.selection().back() < editor.scene().bodies.size());
+    }
+    ASSERT_EQ(editor.scene(), first) << seed;
+    ASSERT_FALSE(editor.isModified());
+    ASSERT_GT(states.size(), 20U);
+    while (!states.empty()) {
+      editor.redo();
+      ASSERT_EQ(editor.scene(), states.back().scene) << seed;
+      ASSERT_EQ(editor.revision(), states.back().revision) << seed;
+      states.pop_back();
+    }
+    ASSERT_EQ(editor.scene(), last) << seed;
+    ASSERT_FALSE(editor.canRedo());
+  }
+}
+
+TEST(SceneEditor, ASelectionIsThatBeforeAndAfterItsStep) {
+  for (unsigned seed = 100; seed < 120; ++seed) {
+    SceneEditor editor;
+    Monkey monkey(seed);
+    for (int i = 0; i < 50; ++i) {
+      editor.endGesture();
+      const State before = stateOf(editor);
+      monkey.edit(editor);
+      if (editor.inGesture() || editor.revision() == before.revision) continue;
+      const State after = stateOf(editor);
+      editor.undo();
+      ASSERT_EQ(editor.scene(), before.scene);
+      ASSERT_EQ(editor.revision(), before.revision);
+      editor.redo();
+      ASSERT_EQ(editor.scene(), after.scene);
+      ASSERT_EQ(editor.selection(), after.selection);
+    }
+  }
+}
+
+// ---- Brushes
+
+class EveryBrush : public ::testing::TestWithParam<BrushEntry> {};
+
+TEST_P(EveryBrush, PaintsTheSameBodiesForTheSameSeed) {
+  const auto brush = GetParam().create();
+  for (const ObjectType& type : objectTypes()) {
+    Paint colour;
+    colour.object_type.value = type.listing.id;
+    const Stroke stroke = paint(*brush, colour, {1, 2, 3}, {});
+    EXPECT_EQ(paint(*brush, colour, {1, 2, 3}, {}).bodies, stroke.bodies);
+    EXPECT_GT(stroke.bodies.size(), 0U);
+    EXPECT_EQ(static_cast<double>(stroke.bodies.size() + stroke.left_out),
+              std::floor(brush->count(1)));
+    for (const AuthoredBody& body : stroke.bodies) EXPECT_EQ(faultOfBody(body), "");
+    if (!brush->scatters()) continue;
+    colour.seed = 2;
+    EXPECT_NE(paint(*brush, colour, {1, 2, 3}, {}).bodies, stroke.bodies);
+  }
+}
+
+TEST_P(EveryBrush, LeavesRoomUnlessItMayOverlap) {
+  const auto brush = GetParam().create();
+  Paint colour;
+  colour.object_type.value = "assorted";
+  std::vector<AuthoredBody> bodies = {AuthoredBody{.shape = BoxShape{{50, 0.5F, 50}}}};
+  for (int stroke = 0; stroke < 3; ++stroke) {
+    colour.seed = stroke;
+    for (AuthoredBody& body : paint(*brush, colour, {0, 0, 0}, bodies).bodies) {
+      bodies.push_back(body);
+    }
+  }
+  const std::vector<Aabb> boxes = boxesOf({.bodies = bodies});
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      Aabb inner = boxes[a];
+      for (int axis = 0; axis < 3; ++axis) {
+        const float skin = 2e-3F * (inner.max[axis] - inner.min[axis]);
+        inner.min[axis] += skin;
+        inner.max[axis] -= skin;
+      }
+      EXPECT_FALSE(overlaps(inner, boxes[b])) << a << " " << b;
+    }
+  }
+  colour.overlap = true;
+  EXPECT_EQ(paint(*brush, colour, {0, 0, 0}, bodies).left_out, 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryBrush, ::testing::ValuesIn(brushEntries()),
+                         [](const auto& tested) { return tested.param.listing.id; });
+
+const std::unique_ptr<Brush> brushWith(const std::string& id, const ParameterValues& values) {
+  for (const BrushEntry& entry : brushEntries()) {
+    if (entry.listing.id != id) continue;
+    auto brush = entry.create();
+    setParameters(*brush, values);
+    return brush;
+  }
+  throw std::runtime_error("no brush " + id);
+}
+
+TEST(Brush, ALatticeOfTouchingCubesIsWhole) {
+  const auto lattice = brushWith(
+      "lattice", {{"count_x", "7"}, {"count_y", "3"}, {"count_z", "5"}, {"spacing", "0.1"}});
+  Paint colour;
+  colour.scale = 0.1;
+  const Stroke stroke = paint(*lattice, colour, {}, {});
+  EXPECT_EQ(stroke.left_out, 0U);
+  ASSERT_EQ(stroke.bodies.size(), 105U);
+  EXPECT_NEAR(stroke.bodies.front().pose.position[0], -0.3, 1e-6);
+  EXPECT_NEAR(stroke.bodies.back().pose.position[2], 0.2, 1e-6);
+}
+
+TEST(Brush, ARandomOneFillsToItsDensity) {
+  const auto random = brushWith(
+      "random", {{"density", "0.05"}, {"size_x", "20"}, {"size_y", "10"}, {"size_z", "5"}});
+  const Stroke stroke = paint(*random, {}, {}, {});
+  EXPECT_EQ(stroke.bodies.size(), 50U);
+  EXPECT_EQ(stroke.left_out, 0U);
+}
+
+TEST(Brush, WhereThereIsNoRoomBodiesAreLeftOut) {
+  const Stroke stroke = paint(*brushWith("ball", {{"count", "50"}, {"radius", "1"}}), {}, {}, {});
+  EXPECT_GT(stroke.left_out, 20U);
+  EXPECT_EQ(stroke.bodies.size() + stroke.left_out, 50U);
+}
+
+TEST(Brush, TooManyBodiesAreRefused) {
+  const auto random = brushWith("random", {{"density", "1"}, {"size_x", "1e6"}, {"size_y", "1e6"}});
+  EXPECT_THROW(paint(*random, {}, {}, {}), InputError);
+}
+
+}  // namespace
+}  // namespace broadmark::scenes
