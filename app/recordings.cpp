@@ -19,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// In results, beside the parameters of an authored scene: where its bodies are.
+constexpr const char* kSceneFile = "scene_file";
+
 bool isSceneName(const std::string& source) {
   return std::ranges::any_of(builtinScenes(),
                              [&](const SceneListing& scene) { return scene.id == source; });
@@ -70,9 +73,8 @@ RecordingReference referenceTo(Simulation& simulation) {
   RecordingReference reference;
   reference.scene = simulation.scene();
   reference.scene_parameters = parameterValues(simulation);
-  // What an authored scene is made from is no parameter of it.
   if (simulation.listing().id == kAuthoredSceneId) {
-    reference.scene_parameters["input"] = simulation.input().string();
+    reference.scene_parameters[kSceneFile] = simulation.input().string();
   }
   // A replay has none.
   if (const auto seed = reference.scene_parameters.find("seed");
@@ -237,9 +239,12 @@ Source referredSource(const RecordingReference& reference, const fs::path& resul
     source = recordingSource(besides(results_file, reference.path));
   } else {
     ParameterValues parameters = reference.scene_parameters;
-    const auto engine = parameters.extract("engine");  // which brings parameters of its own
-    auto simulation =
-        makeSimulation(reference.scene.name, engine.empty() ? std::string() : engine.mapped());
+    const auto file = parameters.extract(kSceneFile);
+    // Which brings parameters of its own.
+    const std::string engine = parameters.contains("engine") ? parameters["engine"] : "";
+    auto simulation = file.empty()
+                          ? makeSimulation(reference.scene.name, engine)
+                          : simulationOf(besides(results_file, file.mapped()).string(), engine);
     setParameters(*simulation, parameters);
     source = simulationSource(std::move(simulation));
   }

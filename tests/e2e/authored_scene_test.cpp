@@ -42,11 +42,24 @@ TEST_F(AuthoredScenes, RunLikeBuiltInOnes) {
   EXPECT_EQ(first.at("status"), "ok");
   EXPECT_GT(first.at("pairs").at("max"), 3) << "they overlap their neighbours";
   const Json source = first.at("recording").at("source");
-  EXPECT_EQ(source.at("input"), "my scene.json");
+  EXPECT_EQ(source.at("scene_file"), "my scene.json");
   EXPECT_EQ(source.at("frames"), "6");
   EXPECT_EQ(first.at("recording").at("seed"), nullptr);
   const Ended verified = runQuietly({"verify", recordingIn("kept", kName)});
   EXPECT_THAT(verified.out, HasSubstr("as baked"));
+}
+
+TEST_F(AuthoredScenes, ACaseOfResultsIsRunAgainWhileTheSceneIsTheSame) {
+  runQuietly({"--headless", "my scene.json", "--frames", "4", "--engine", "ode", "--algorithm",
+              "sap", "--json", "results.json"});
+  const Json before = readJson(file("results.json")).at("cases").at(0);
+  const Arguments again = {"--headless", "results.json", "--case", before.at("id"),
+                           "--json",     "again.json",   "--quiet"};
+  runQuietly(Arguments(again.begin(), again.end() - 1));
+  EXPECT_EQ(readJson(file("again.json")).at("cases").at(0).at("recording"), before.at("recording"));
+  writeScene(0.5);
+  fs::remove(file("again.json"));
+  expectRefusal(again, {before.at("recording").at("hash").get<std::string>()});
 }
 
 TEST_F(AuthoredScenes, BakeAndKeepWhatIsThereUntilTheSceneChanges) {
