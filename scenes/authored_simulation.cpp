@@ -188,9 +188,9 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
   const Frame wanted = frameOf(source, frame, initial);
   if (auto* whole = dynamic_cast<SceneSource*>(&source)) return whole->authoredScene();
 
-  AuthoredScene scene{.name = info.name, .world = info.world, .parameters = {}, .bodies = {}};
   // Nothing is known of forces: as they are, the bodies float.
-  scene.parameters["gravity_y"] = "0";
+  AuthoredScene scene{
+      .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
   if (frame > 0 && !unturned.empty()) {
     const auto posed = poses->poses();
     for (std::size_t i = 0; i < unturned.size(); ++i) {

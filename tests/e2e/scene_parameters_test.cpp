@@ -91,7 +91,7 @@ TEST_F(SceneParameters, BadFilesAreRefused) {
   writeParameters("type.json", "brownian", {{"objects", "many"}});
   writeParameters("range.json", "brownian", {{"density", 7}});
   writeParameters("scene.json", "brownain", Json::object());
-  writeFile(file("other.json"), R"({"schema": "broadmark-descriptions/1"})");
+  writeFile(file("other.json"), R"({"schema": "broadmark-other/1"})");
   writeFile(file("broken.json"), "{");
   for (const Arguments& call :
        {Arguments{"--headless"}, {"bake", "--output", "out", "--parameters"}}) {
@@ -106,7 +106,7 @@ TEST_F(SceneParameters, BadFilesAreRefused) {
     refuses("type.json", {"objects", "integer"});
     refuses("range.json", {"density", "1e-06…1"});
     refuses("scene.json", {"brownain", "did you mean 'brownian'"});
-    refuses("other.json", {"broadmark-descriptions/1"});
+    refuses("other.json", {"broadmark-other/1"});
     refuses("broken.json", {"JSON"});
     refuses("missing.json", {});
   }
