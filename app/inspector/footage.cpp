@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "broadmark/error.h"
+#include "scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
@@ -57,6 +58,11 @@ Footage::Footage(std::unique_ptr<Simulation> simulation)
   keep(first.boxes);
 }
 
+Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes)
+    : scene_(std::move(scene)), kept_(std::make_shared<const FileDescriptor>(unnamedFile())) {
+  keep(boxes);
+}
+
 void Footage::keep(std::span<const Aabb> boxes) {
   boxes_.assign(boxes.begin(), boxes.end());
   writeAll(kept_->get(), std::as_bytes(boxes), kKeptName);
@@ -74,6 +80,16 @@ Frame Footage::read(std::uint32_t index) {
   boxes_.resize(scene_.objects);
   readKept(*kept_, index, boxes_);
   return {index, boxes_};
+}
+
+scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
+  if (recording_) return scenes::sceneFromFrame(*recording_, index);
+  if (auto* whole = dynamic_cast<scenes::SceneSource*>(simulation_.get());
+      whole && index == known_) {
+    return whole->authoredScene();
+  }
+  // Of all else, a replay among them, only the boxes are at hand.
+  return scenes::sceneFromFrame(*source(index), index);
 }
 
 std::unique_ptr<FrameSource> Footage::source(std::uint32_t last) const {

@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "broadmark/recording.h"
+#include "scenes/authored_scene.h"
 #include "scenes/simulation.h"
 
 namespace broadmark {
@@ -20,6 +22,8 @@ class Footage {
   explicit Footage(std::unique_ptr<Recording> recording);
   /// The simulation begins with its present parameters.
   explicit Footage(std::unique_ptr<Simulation> simulation);
+  /// A scene of a single frame; `scene.frames` is 0.
+  Footage(SceneInfo scene, std::span<const Aabb> boxes);
 
   /// Its `frames` counts all there may ever be.
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
@@ -32,6 +36,10 @@ class Footage {
   void extend();
   /// A known frame; valid until the next call. Throws InputError (a broken recording).
   Frame read(std::uint32_t index);
+
+  /// A known frame as a scene of its own, with all that is known of its bodies. Of a live
+  /// simulation it has to be the latest. Throws InputError when it holds what no body can be.
+  [[nodiscard]] scenes::AuthoredScene authoredScene(std::uint32_t index);
 
   /// The frames up to `last`, which are known, as a source of their own, for use from any thread,
   /// also when this is gone. Throws InputError.

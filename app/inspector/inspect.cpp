@@ -89,12 +89,16 @@ void inspectInWindow(const InspectOptions& options) {
     Movie movie;
     auto before = std::chrono::steady_clock::now();
     const auto bind = [&gl] { gl.BindFramebuffer(GL_FRAMEBUFFER, 0); };
-    while (!inspector.closing() && !window.closing()) {
+    while (!inspector.closing()) {
       const auto now = std::chrono::steady_clock::now();
       const double seconds = std::chrono::duration<double>(now - before).count();
       const bool lively = inspector.lively() || script || !window.input().empty();
       window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
       for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
+      if (window.closing()) {
+        window.stayOpen();  // until it is known what becomes of unsaved changes
+        inspector.close();
+      }
       if (script) {
         script->update(inspector, window.input());
         if (script->done()) script.reset();

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <utility>
 
+#include "app/inspector/author_dialogs.h"
 #include "broadmark/atomic_file.h"
 #include "broadmark/environment.h"
 #include "render/fonts.h"
@@ -118,8 +119,7 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
 }
 
 bool Inspector::lively() {
-  return session_.playback.playing || view_.lively() || !session_.runs.settled() ||
-         ImGui::GetIO().WantTextInput;
+  return session_.busy() || view_.lively() || ImGui::GetIO().WantTextInput;
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
@@ -183,7 +183,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   const float view_bottom =
       std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
-  PanelContext context{ui_, session_, progress, view_};
+  PanelContext context{ui_, session_, progress, view_, files_};
   if (left > 0) {
     drawPlace(Place::left, context, {0, top}, {left, status_top - top});
     splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
@@ -214,6 +214,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
 
   session_.wanted_panels.clear();
   files_.draw(ui_);
+  drawLeaving(ui_, files_, session_);
   drawHelp();
   drawErrors();
   ImGui::PopStyleVar();
@@ -258,7 +259,11 @@ void Inspector::drawMenus(const RunProgress& progress) {
       ui_.note("Open recent");
     }
     ImGui::Separator();
-    if (ui_.menuItem("Save recording…", "Ctrl+S", false, progress.snapshot != nullptr)) {
+    if (ui_.menuItem("Save scene…", session_.authoring() ? "Ctrl+S" : nullptr)) {
+      askSaveScene(files_, session_);
+    }
+    if (ui_.menuItem("Save recording…", session_.authoring() ? nullptr : "Ctrl+S", false,
+                     progress.snapshot != nullptr)) {
       askSaveRecording();
     }
     if (ui_.menuItem("Export timings…", nullptr, false, !progress.lanes.empty())) {
@@ -274,7 +279,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       movie_directory_.clear();
     }
     ImGui::Separator();
-    if (ui_.menuItem("Quit", "Ctrl+Q")) closing_ = true;
+    if (ui_.menuItem("Quit", "Ctrl+Q")) close();
     ImGui::EndMenu();
   }
   if (ui_.beginMenu("View")) {

@@ -51,7 +51,10 @@ class Inspector {
   [[nodiscard]] View& view() { return view_; }
   [[nodiscard]] const Preferences& preferences() const { return preferences_; }
   [[nodiscard]] bool closing() const { return closing_; }
-  void close() { closing_ = true; }
+  /// Closes, once unsaved changes are saved or given up.
+  void close() {
+    session_.leaveDocument([this] { closing_ = true; });
+  }
   /// Whether pictures would change though nothing happens at mouse and keyboard.
   [[nodiscard]] bool lively();
   /// Brings a panel to the front.
@@ -79,6 +82,7 @@ class Inspector {
   void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
   void makeShortcuts();
   void handleShortcuts();
+  void editAuthored(void (scenes::SceneEditor::*change)());
   void askOpen();
   void askSaveRecording();
   void askExportTimings();

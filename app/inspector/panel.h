@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/inspector/file_dialog.h"
 #include "app/inspector/session.h"
 #include "app/inspector/ui.h"
 
@@ -20,6 +21,7 @@ struct PanelContext {
   Session& session;
   const RunProgress& progress;
   View& view;
+  FileDialog& files;  ///< to ask for a file
 };
 
 /// One implementation per file, listed in CMakeLists.txt. Keeps what only it needs between two

@@ -30,6 +30,9 @@ struct FootageRequest {
   /// Called on the run thread. Throws InputError.
   std::function<std::unique_ptr<Footage>()> open;
   std::string title;
+  /// Requests of the same number, unless 0, show the same scene, perhaps changed: who looks at it
+  /// stays where he is.
+  std::uint64_t scene = 0;
 };
 
 /// What the interface wants.

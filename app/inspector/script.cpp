@@ -337,7 +337,7 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
     const std::optional<std::string> now = inspector.value(words[0]);
     if (now && holds(*now, words[1], words[2])) return true;
     // It may yet become so, as long as something goes on.
-    const bool idle = inspector.session().runs.settled() && !inspector.session().playback.playing;
+    const bool idle = !inspector.session().busy();
     if (secondsSince(start) < (idle ? idle_patience_ : kPatience)) return false;
     if (!now) fail(fmt::format("there is no value '{}'", words[0]));
     fail(fmt::format("{} {} {} is expected, but it is '{}'", words[0], words[1], words[2], *now));

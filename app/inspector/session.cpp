@@ -10,6 +10,8 @@
 #include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "broadmark/original_settings.h"
+#include "scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
@@ -48,6 +50,7 @@ Session::Session(std::vector<Algorithm> available)
     : algorithms(std::move(available)), draft(makeSimulation("freefall")) {}
 
 void Session::advance(const RunProgress& progress, double seconds) {
+  noticeBake();
   if (progress.footage != wish.footage || !progress.footage) return;
   scene_ = progress.scene;
   scene_known_ = true;
@@ -59,6 +62,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
     }
   }
   wish.frame = std::min(wish.frame, scene_.frames);
+  noticeAuthored(progress);
   noticeStop(progress);
   const bool there = progress.doing.empty() && progress.snapshot &&
                      progress.snapshot->footage == wish.footage &&
@@ -130,9 +134,10 @@ void Session::simulate() {
   });
 }
 
-void Session::show(std::string title, std::function<std::unique_ptr<Footage>()> open) {
+void Session::show(std::string title, std::function<std::unique_ptr<Footage>()> open,
+                   std::uint64_t scene) {
   wish.footage = std::make_shared<const FootageRequest>(
-      FootageRequest{.open = std::move(open), .title = std::move(title)});
+      FootageRequest{.open = std::move(open), .title = std::move(title), .scene = scene});
   wish.frame = 0;
   wish.known_mismatch.reset();
   noticed_stop_.reset();
@@ -160,8 +165,99 @@ void Session::open(const fs::path& path) {
 
 void Session::openJson(const fs::path& path) {
   const std::string text = readTextFile(path);
+  if (jsonKind(text, path.string()) == scenes::kAuthoredSceneSchema) {
+    const auto scene =
+        std::make_shared<scenes::AuthoredScene>(scenes::parseAuthoredScene(text, path.string()));
+    leaveDocument([this, scene, path] { author(std::move(*scene), path); });
+    return;
+  }
   draft = parseSceneParameters(text, path.string());
   simulate();
+}
+
+void Session::author(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
+  desk.start(std::move(scene), std::move(path), unsaved);
+  author_scene_ = 0;
+  showAuthored();
+  wanted_panels.emplace_back("Author");
+}
+
+void Session::authorFrame() {
+  if (!wish.footage || authoringAtRest()) return;
+  // What is looked at is opened anew and goes on to that frame: then its bodies are known wholly.
+  FrameToAuthor wanted{.shown = {}, .scene = std::make_shared<scenes::AuthoredScene>()};
+  show(fmt::format("frame {} of {}", wish.frame, wish.footage->title),
+       [former = wish.footage, frame = wish.frame, scene = wanted.scene] {
+         *scene = sceneFromFootage(*former, frame);
+         return stillOf(*scene);
+       });
+  wanted.shown = wish.footage;
+  frame_to_author_ = std::move(wanted);
+}
+
+void Session::noticeAuthored(const RunProgress& progress) {
+  if (!frame_to_author_ || frame_to_author_->shown != progress.footage) return;
+  const FrameToAuthor wanted = *std::exchange(frame_to_author_, {});
+  if (progress.failure.empty()) author(std::move(*wanted.scene), {}, true);
+}
+
+void Session::edit(const std::function<void(scenes::SceneEditor&)>& change) {
+  const std::uint64_t before = desk.editor.revision();
+  attempt([&] { change(desk.editor); });
+  if (desk.editor.revision() != before || !authoring()) {
+    showAuthored();
+  } else {
+    selection = desk.editor.selection();
+  }
+}
+
+void Session::showDocument(std::function<std::unique_ptr<Footage>()> open, bool moves) {
+  // Another world is looked at from anew.
+  const Aabb& world = desk.editor.scene().world;
+  if (author_scene_ == 0 || world != author_world_) author_scene_ = ++last_author_scene_;
+  author_world_ = world;
+  playback.playing = false;
+  source_path.clear();
+  show(desk.title() + (moves ? " (live)" : ""), std::move(open), author_scene_);
+  author_footage_ = wish.footage;
+  author_moves_ = moves;
+  selection = desk.editor.selection();
+}
+
+void Session::showAuthored() { showDocument(desk.still(), false); }
+
+void Session::simulateAuthored() { showDocument(desk.live(), true); }
+
+bool Session::saveAuthored(const fs::path& path) {
+  return attempt([&] {
+    desk.save(path);
+    say(fmt::format("saved: {}", desk.path().string()));
+    if (on_file) on_file(desk.path());
+  });
+}
+
+void Session::bakeAuthored(fs::path path) {
+  if (!path.has_extension()) path += kAabbsExtension;
+  attempt([&] { bake.start(desk.simulation(), std::move(path)); });
+}
+
+void Session::noticeBake() {
+  if (!bake.takeEnd()) return;
+  const BackgroundBake::Report report = bake.report();
+  if (!report.failure.empty()) complain(report.failure);
+  say(report.text(), report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
+}
+
+void Session::leaveDocument(std::function<void()> then) {
+  if (desk.isModified()) {
+    leaving = std::move(then);
+  } else {
+    then();
+  }
+}
+
+std::size_t Session::bodyCount() const {
+  return authoring() ? desk.editor.scene().bodies.size() : scene_.objects;
 }
 
 void Session::saveRecording(const fs::path& path) {
@@ -184,6 +280,7 @@ void Session::saveRecording(const fs::path& path) {
 }
 
 void Session::play(bool on) {
+  if (on && authoringAtRest()) simulateAuthored();
   if (on && wish.frame == scene_.frames && scene_.frames > 0) wish.frame = 0;
   if (on) acknowledgeStop();
   playback.playing = on;
@@ -247,8 +344,10 @@ LaneEdit* Session::lane(int number) {
 void Session::select(std::vector<std::uint32_t> bodies) {
   std::ranges::sort(bodies);
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  std::erase_if(bodies, [&](std::uint32_t body) { return body >= scene_.objects; });
+  const std::size_t count = bodyCount();
+  std::erase_if(bodies, [&](std::uint32_t body) { return body >= count; });
   selection = std::move(bodies);
+  if (authoring()) desk.editor.select(selection);
 }
 
 void Session::toggleSelected(std::uint32_t body) {
@@ -258,6 +357,7 @@ void Session::toggleSelected(std::uint32_t body) {
   } else {
     selection.insert(place, body);
   }
+  select(std::move(selection));
 }
 
 bool Session::isSelected(std::uint32_t body) const {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "app/inspector/author_desk.h"
+#include "app/inspector/background_bake.h"
 #include "app/inspector/run_thread.h"
 #include "broadmark/algorithm.h"
 #include "broadmark/pair.h"
@@ -80,10 +82,36 @@ class Session {
   void chooseScene(const std::string& scene, const std::string& engine = {});
   /// Opens a file of any kind that can be looked at. A bad one becomes an error message.
   void open(const std::filesystem::path& path);
-  /// Shows what `open` gives, from frame 0 on.
-  void show(std::string title, std::function<std::unique_ptr<Footage>()> open);
+  /// Shows what `open` gives, from frame 0 on; `scene`: see FootageRequest.
+  void show(std::string title, std::function<std::unique_ptr<Footage>()> open,
+            std::uint64_t scene = 0);
   /// Writes the frames known so far as a recording.
   void saveRecording(const std::filesystem::path& path);
+
+  // Authoring: what is looked at is the document on the desk, at rest or in motion.
+  [[nodiscard]] bool authoring() const {
+    return author_footage_ && author_footage_ == wish.footage;
+  }
+  /// At rest: as it starts.
+  [[nodiscard]] bool authoringAtRest() const { return authoring() && !author_moves_; }
+  /// Takes another document and shows it. Does not ask.
+  void author(scenes::AuthoredScene scene, std::filesystem::path path = {}, bool unsaved = false);
+  /// Makes a document of the frame that is looked at, once its bodies are known.
+  void authorFrame();
+  /// Changes the document and shows it at rest. What goes wrong becomes an error message.
+  void edit(const std::function<void(scenes::SceneEditor&)>& change);
+  /// Shows the document at rest, or moves it on from its first frame.
+  void showAuthored();
+  void simulateAuthored();
+  /// Returns whether it could be written.
+  bool saveAuthored(const std::filesystem::path& path);
+  /// Bakes the document's simulation in the background.
+  void bakeAuthored(std::filesystem::path path);
+  /// Does what ends the document, once nothing is lost by that: with unsaved changes it becomes
+  /// `leaving`, for the user to decide.
+  void leaveDocument(std::function<void()> then);
+  /// Whether anything goes on by itself.
+  [[nodiscard]] bool busy() { return playback.playing || !runs.settled() || bake.running(); }
 
   // Playback. Frames out of range are brought into it.
   void play(bool on);
@@ -135,17 +163,36 @@ class Session {
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;
 
+  AuthorDesk desk;                ///< its selection is that of the session, while authoring()
+  std::function<void()> leaving;  ///< waits for unsaved changes to be saved or given up
+
   Wish wish;  ///< edit it and it is committed
   RunThread runs;
+  BackgroundBake bake;
 
  private:
   void noticeStop(const RunProgress& progress);
   /// Who goes on knows of the mismatch at which it stopped.
   void acknowledgeStop();
   void openJson(const std::filesystem::path& path);
+  void noticeAuthored(const RunProgress& progress);
+  void noticeBake();
+  void showDocument(std::function<std::unique_ptr<Footage>()> open, bool moves);
+  [[nodiscard]] std::size_t bodyCount() const;
 
   SceneInfo scene_;
-  bool scene_known_ = false;  ///< what is wished for has been opened
+  bool scene_known_ = false;                              ///< what is wished for has been opened
+  std::shared_ptr<const FootageRequest> author_footage_;  ///< that shows the document last
+  bool author_moves_ = false;
+  std::uint64_t author_scene_ = 0;  ///< see FootageRequest
+  std::uint64_t last_author_scene_ = 0;
+  Aabb author_world_{};
+  /// A frame that becomes a document when `shown` is open.
+  struct FrameToAuthor {
+    std::shared_ptr<const FootageRequest> shown;
+    std::shared_ptr<scenes::AuthoredScene> scene;
+  };
+  std::optional<FrameToAuthor> frame_to_author_;
   std::optional<RunProgress::Stop> noticed_stop_;
   std::string noticed_failure_;
   std::vector<std::function<void()>> put_off_;

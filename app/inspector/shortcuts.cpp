@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "app/inspector/author_dialogs.h"
 #include "app/inspector/inspector.h"
 
 namespace broadmark {
@@ -42,15 +43,32 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_C, false, false, "C", "the next colouring", [this] { ++session_.view.colouring; }},
       {GLFW_KEY_ESCAPE, false, false, "Escape", "select nothing", [this] { session_.select({}); }},
       {GLFW_KEY_O, true, false, "Ctrl+O", "open a file", [this] { askOpen(); }},
-      {GLFW_KEY_S, true, false, "Ctrl+S", "save the frames known so far as a recording",
+      {GLFW_KEY_S, true, false, "Ctrl+S",
+       "save the scene that is authored, or the frames known so far as a recording",
        [this] {
-         if (session_.wish.footage) askSaveRecording();
+         if (session_.authoring()) {
+           saveScene(files_, session_);
+         } else if (session_.wish.footage) {
+           askSaveRecording();
+         }
        }},
+      {GLFW_KEY_Z, true, false, "Ctrl+Z", "undo an edit of the scene",
+       [this] { editAuthored(&scenes::SceneEditor::undo); }},
+      {GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "redo it",
+       [this] { editAuthored(&scenes::SceneEditor::redo); }},
+      {GLFW_KEY_A, true, false, "Ctrl+A", "select all bodies of the scene that is authored",
+       [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
+      {GLFW_KEY_DELETE, false, false, "Delete", "delete the selected bodies",
+       [this] { editAuthored(&scenes::SceneEditor::erase); }},
       {GLFW_KEY_F1, false, false, "F1", "this page", [this] { help_ = !help_; }},
       {GLFW_KEY_F12, false, false, "F12", "save a picture of the window",
        [this] { screenshot_asked_ = true; }},
-      {GLFW_KEY_Q, true, false, "Ctrl+Q", "quit", [this] { closing_ = true; }},
+      {GLFW_KEY_Q, true, false, "Ctrl+Q", "quit", [this] { close(); }},
   };
+}
+
+void Inspector::editAuthored(void (scenes::SceneEditor::*change)()) {
+  if (session_.authoring()) session_.edit(change);
 }
 
 void Inspector::handleShortcuts() {

@@ -12,6 +12,7 @@ namespace {
 
 /// Inputs are as wide as this share of their panel; their labels stand in the rest.
 constexpr float kInputShare = 0.52F;
+constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds
 
 ImVec4 vec(Rgb rgb, float alpha = 1) {
@@ -236,9 +237,34 @@ bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::
 
 bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
   labelledWidth();
+  return enterNumber(label, label, value, min, max, tip);
+}
+
+bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
+                const char* tip) {
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x / 2;
+  // Three numbers need more room than one; they end where other inputs do not.
+  const float width = std::floor((ImGui::GetContentRegionAvail().x * kVectorShare - 2 * gap) / 3);
+  bool changed = false;
+  ImGui::PushID(label);
+  for (std::size_t axis = 0; axis < value.size(); ++axis) {
+    if (axis > 0) ImGui::SameLine(0, gap);
+    ImGui::SetNextItemWidth(std::max(width, 1.0F));
+    changed |= enterNumber(fmt::format("##{}", kAxes[axis]).c_str(),
+                           fmt::format("{} {}", label, kAxes[axis]), value[axis], min, max, tip);
+  }
+  ImGui::PopID();
+  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::TextUnformatted(label);
+  return changed;
+}
+
+bool Ui::enterNumber(const char* label, std::string_view name, double& value, double min,
+                     double max, const char* tip) {
   double entered = value;
   ImGui::InputScalar(label, ImGuiDataType_Double, &entered, nullptr, nullptr, "%.6g");
-  note(label);
+  note(name);
   tooltip(tip);
   if (ImGui::IsItemActive()) {
     value = entered;

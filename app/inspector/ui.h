@@ -4,6 +4,7 @@
 
 #include <imgui.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -72,6 +73,9 @@ class Ui {
                const char* tooltip = nullptr);
   bool number(const char* label, double& value, double min, double max,
               const char* tooltip = nullptr);
+  /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
+  bool vector(const char* label, std::array<double, 3>& value, double min, double max,
+              const char* tooltip = nullptr);
   bool slider(const char* label, int& value, int min, int max, const char* format = "%d");
   bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
                 bool enabled = true);
@@ -103,6 +107,9 @@ class Ui {
 
  private:
   [[nodiscard]] std::string fullName(std::string_view label) const;
+  /// What number() does, as wide as has been set.
+  bool enterNumber(const char* label, std::string_view name, double& value, double min, double max,
+                   const char* tooltip);
   /// Width of an input whose label stands to its right.
   void labelledWidth() const;
 

@@ -50,6 +50,48 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
   return text;
 }
 
+void addAuthored(Values& values, Session& session) {
+  const AuthorDesk& desk = session.desk;
+  const scenes::AuthoredScene& scene = desk.editor.scene();
+  const auto yes = [](bool is) { return is ? "yes" : "no"; };
+  values["author.shown"] = yes(session.authoring());
+  values["author.at_rest"] = yes(session.authoringAtRest());
+  values["author.name"] = scene.name;
+  values["author.bodies"] = std::to_string(scene.bodies.size());
+  values["author.selection"] = std::to_string(desk.editor.selection().size());
+  values["author.undo"] = desk.editor.undoName();
+  values["author.redo"] = desk.editor.redoName();
+  values["author.modified"] = yes(desk.isModified());
+  values["author.path"] = desk.path().string();
+  values["author.leaving"] = yes(session.leaving != nullptr);
+  for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
+  if (desk.editor.selection().empty()) return;
+  const scenes::AuthoredBody& body = scene.bodies[desk.editor.selection().front()];
+  const auto vec = [](const Vec3& v) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]);
+  };
+  values["author.body.position"] = vec(body.pose.position);
+  values["author.body.velocity"] = vec(body.linear_velocity);
+  values["author.body.angular_velocity"] = vec(body.angular_velocity);
+  values["author.body.mass"] = fmt::format("{:.6g}", body.mass);
+  values["author.body.frozen"] = yes(body.frozen);
+  const auto* box = std::get_if<scenes::BoxShape>(&body.shape);
+  values["author.body.shape"] = box ? "box" : "sphere";
+  values["author.body.size"] =
+      vec(box ? Vec3{2 * box->half_extents[0], 2 * box->half_extents[1], 2 * box->half_extents[2]}
+              : Vec3{2 * std::get<scenes::SphereShape>(body.shape).radius, 0, 0});
+}
+
+void addBatch(Values& values, const BackgroundBake& bake) {
+  using Outcome = BackgroundBake::Outcome;
+  const BackgroundBake::Report report = bake.report();
+  values["batch.state"] = bakeStateName(report.state);
+  values["batch.recordings"] = std::to_string(report.items.size());
+  values["batch.done"] = std::to_string(report.count(Outcome::baked));
+  values["batch.kept"] = std::to_string(report.count(Outcome::kept));
+  values["batch.failed"] = std::to_string(report.failed());
+}
+
 Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
   values["frame"] = std::to_string(session.frame());
@@ -80,6 +122,8 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   }
   const LaneEdit* shown = session.lane(session.wish.shown_lane);
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
+  addAuthored(values, session);
+  addBatch(values, session.bake);
   addLanes(values, progress);
   addSnapshot(values, progress.snapshot.get());
   return values;

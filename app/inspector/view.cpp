@@ -75,14 +75,19 @@ void View::takeFlightRequest(Session& session) {
 }
 
 void View::update(Session& session, const RunProgress& progress, bool dark) {
-  const bool new_scene = progress.snapshot && footage_ != progress.snapshot->footage;
+  if (!progress.snapshot) return;
   const ViewOptions& options = session.view;
-  const bool same = progress.snapshot == shown_.snapshot && session.selection == shown_.selection &&
+  // What has just been added is selected already, but not to be seen yet.
+  std::vector<std::uint32_t> selection = session.selection;
+  std::erase_if(selection, [&](std::uint32_t b) { return b >= progress.snapshot->boxes->size(); });
+  const bool same = progress.snapshot == shown_.snapshot && selection == shown_.selection &&
                     options == shown_.options && dark == shown_.dark;
-  if (same || !progress.snapshot) return;
-  shown_ = {progress.snapshot, session.selection, options, dark};
+  if (same) return;
+  const auto seen = std::exchange(footage_, progress.snapshot->footage);
+  const bool new_scene =
+      !seen || (seen != footage_ && (seen->scene == 0 || seen->scene != footage_->scene));
+  shown_ = {progress.snapshot, std::move(selection), options, dark};
   if (new_scene) {
-    footage_ = progress.snapshot->footage;
     const Aabb all = shownBox(progress.snapshot->scene.world, *progress.snapshot->boxes);
     content_.space = viewSpaceOf(all);
     camera_ = focusedOn(lookedFrom({}, Direction::figure), content_.space.toView(all), aspect());

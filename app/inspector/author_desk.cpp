@@ -1,0 +1,80 @@
+#include "app/inspector/author_desk.h"
+
+#include <utility>
+
+#include "app/inspector/run_thread.h"
+#include "broadmark/atomic_file.h"
+#include "scenes/authored_simulation.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+SceneInfo infoOf(const scenes::AuthoredScene& scene) {
+  return {.name = scene.name,
+          .object_type = scenes::objectTypeName(scene),
+          .objects = static_cast<std::uint32_t>(scene.bodies.size()),
+          .frames = 0,
+          .world = scene.world};
+}
+
+}  // namespace
+
+AuthorDesk::AuthorDesk() { chooseBrush(0); }
+
+void AuthorDesk::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
+  editor = scenes::SceneEditor(std::move(scene));
+  path_ = std::move(path);
+  unsaved_ = unsaved;
+}
+
+void AuthorDesk::save(fs::path path) {
+  if (!path.has_extension()) path += ".json";
+  writeTextFile(path, scenes::formatAuthoredScene(editor.scene()));
+  editor.markSaved();
+  path_ = std::move(path);
+  unsaved_ = false;
+}
+
+std::string AuthorDesk::title() const {
+  return path_.empty() ? editor.scene().name : path_.filename().string();
+}
+
+std::function<std::unique_ptr<Footage>()> AuthorDesk::still() const {
+  auto boxes = std::make_shared<const std::vector<Aabb>>(boxesOf(editor.scene()));
+  return [info = infoOf(editor.scene()), boxes] { return std::make_unique<Footage>(info, *boxes); };
+}
+
+std::function<std::unique_ptr<Footage>()> AuthorDesk::live() const {
+  return [scene = std::make_shared<const scenes::AuthoredScene>(editor.scene()), path = path_] {
+    return std::make_unique<Footage>(scenes::makeAuthoredSimulation(*scene, path));
+  };
+}
+
+std::unique_ptr<Simulation> AuthorDesk::simulation() const {
+  return scenes::makeAuthoredSimulation(editor.scene(), path_);
+}
+
+void AuthorDesk::chooseBrush(std::size_t which) {
+  brush_ = brushes.at(which).create();
+  chosen_brush_ = which;
+}
+
+std::size_t AuthorDesk::addStroke() {
+  scenes::Stroke stroke = scenes::paint(*brush_, paint, paint_at, editor.scene().bodies);
+  editor.add(std::move(stroke.bodies));
+  return stroke.left_out;
+}
+
+scenes::AuthoredScene sceneFromFootage(const FootageRequest& request, std::uint32_t frame) {
+  const std::unique_ptr<Footage> footage = request.open();
+  while (footage->known() < frame) footage->extend();
+  return footage->authoredScene(frame);
+}
+
+std::unique_ptr<Footage> stillOf(const scenes::AuthoredScene& scene) {
+  return std::make_unique<Footage>(infoOf(scene), boxesOf(scene));
+}
+
+}  // namespace broadmark

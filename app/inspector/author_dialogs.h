@@ -1,0 +1,23 @@
+// What is asked about the document that is being authored.
+#pragma once
+
+#include <functional>
+
+#include "app/inspector/file_dialog.h"
+#include "app/inspector/session.h"
+#include "app/inspector/ui.h"
+
+namespace broadmark {
+
+/// Asks for a scene, and opens it.
+void askOpenScene(FileDialog& files, Session& session);
+/// Asks for a file and saves the document there, then goes on.
+void askSaveScene(FileDialog& files, Session& session, std::function<void()> then = {});
+/// Saves the document in its file, or asks for one if it has none; then goes on.
+void saveScene(FileDialog& files, Session& session, std::function<void()> then = {});
+/// Asks for a recording to bake the document into.
+void askBakeScene(FileDialog& files, Session& session);
+/// While `session.leaving` waits: whether to save or to discard the changes, or to stay.
+void drawLeaving(Ui& ui, FileDialog& files, Session& session);
+
+}  // namespace broadmark

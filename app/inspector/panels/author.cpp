@@ -1,0 +1,330 @@
+// Putting a scene together: its file, brushes, the selected bodies, how it is simulated.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/inspector/author_dialogs.h"
+#include "app/inspector/panel.h"
+#include "scenes/authored_simulation.h"
+
+namespace broadmark::panels::author {
+namespace {
+
+using scenes::SceneEditor;
+using Numbers = std::array<double, 3>;
+
+constexpr double kFar = 1e9;
+constexpr double kFast = 1e6;
+
+Numbers numbers(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vec3 vec(const Numbers& n) {
+  return {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
+}
+
+/// Several buttons side by side that share the width.
+class ButtonRow {
+ public:
+  ButtonRow(Ui& ui, int count) : ui_(&ui), count_(count) {
+    const float gaps = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(count - 1);
+    width_ = std::floor((ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(count));
+    width_ = std::max(width_, 1.0F);
+  }
+  bool button(const char* label, const char* tooltip, bool enabled = true) {
+    if (drawn_++ % count_ != 0) ImGui::SameLine();
+    ImGui::BeginDisabled(!enabled);
+    const bool pressed = ui_->button(label, tooltip, width_);
+    ImGui::EndDisabled();
+    return pressed;
+  }
+
+ private:
+  Ui* ui_;
+  int count_;
+  int drawn_ = 0;
+  float width_ = 0;
+};
+
+/// What stands in the inputs until it is entered.
+struct Inputs {
+  std::string name;
+  Numbers world_min{};
+  Numbers world_max{};
+  scenes::AuthoredParameters parameters;
+  Numbers size{};
+  bool sphere = false;
+  double mass = 1;
+  bool frozen = false;
+  Numbers velocity{};
+  Numbers spin{};
+};
+
+class AuthorPanel final : public Panel {
+ public:
+  AuthorPanel() : Panel("Author", Place::left, "Putting a scene together, body by body") {}
+
+  void draw(PanelContext& context) override {
+    Session& session = context.session;
+    reload(session);
+    drawFile(context);
+    drawState(context.ui, session);
+    drawBrush(context.ui, session);
+    drawSelection(context.ui, session);
+    drawScene(context.ui, session);
+    while (!changes_.empty()) {
+      const auto change = std::move(changes_.front());
+      changes_.erase(changes_.begin());
+      session.edit(change);
+    }
+  }
+
+ private:
+  /// Done once the panel is drawn.
+  void edit(std::function<void(SceneEditor&)> change) { changes_.push_back(std::move(change)); }
+
+  /// Takes over what the document says, if that has changed.
+  void reload(const Session& session) {
+    const SceneEditor& editor = session.desk.editor;
+    const bool same = known_ && revision_ == editor.revision() && name_ == session.desk.title() &&
+                      selection_ == editor.selection();
+    if (same) return;
+    known_ = true;
+    revision_ = editor.revision();
+    name_ = session.desk.title();
+    selection_ = editor.selection();
+    const scenes::AuthoredScene& scene = editor.scene();
+    inputs_ = {.name = scene.name, .parameters = scenes::AuthoredParameters(scene.parameters)};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      inputs_.world_min[axis] = scene.world.min[axis];
+      inputs_.world_max[axis] = scene.world.max[axis];
+    }
+    if (selection_.empty()) return;
+    const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
+    if (const auto* sphere = std::get_if<scenes::SphereShape>(&body.shape)) {
+      inputs_.sphere = true;
+      inputs_.size.fill(2 * static_cast<double>(sphere->radius));
+    } else {
+      const Vec3& half = std::get<scenes::BoxShape>(body.shape).half_extents;
+      for (std::size_t axis = 0; axis < 3; ++axis) inputs_.size[axis] = 2.0 * half[axis];
+    }
+    inputs_.mass = body.mass;
+    inputs_.frozen = body.frozen;
+    inputs_.velocity = numbers(body.linear_velocity);
+    inputs_.spin = numbers(body.angular_velocity);
+  }
+
+  static void drawFile(PanelContext& context) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    ButtonRow first(ui, 2);
+    if (first.button("New", "An empty scene")) {
+      session.leaveDocument([&session] { session.author({}); });
+    }
+    if (first.button("From this frame", "Makes a scene of the frame that is looked at",
+                     session.wish.footage && !session.authoringAtRest())) {
+      session.leaveDocument([&session] { session.authorFrame(); });
+    }
+    ButtonRow second(ui, 3);
+    if (second.button("Open…", "Opens a scene (.json)")) askOpenScene(context.files, session);
+    if (second.button("Save", "Saves the scene (Ctrl+S)")) saveScene(context.files, session);
+    if (second.button("Save as…", "Saves the scene in another file")) {
+      askSaveScene(context.files, session);
+    }
+    const SceneEditor& editor = session.desk.editor;
+    ButtonRow third(ui, 2);
+    const auto tip = [](const char* key, const std::string& name) {
+      return name.empty() ? std::string(key) : fmt::format("{} ({})", name, key);
+    };
+    if (third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo())) {
+      session.edit(&SceneEditor::undo);
+    }
+    if (third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo())) {
+      session.edit(&SceneEditor::redo);
+    }
+    ButtonRow fourth(ui, 2);
+    const bool bodies = !editor.scene().bodies.empty();
+    if (fourth.button("Simulate", "Moves the scene on, frame by frame as it is watched (Space)",
+                      bodies)) {
+      session.simulateAuthored();
+      session.play(true);
+    }
+    if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
+                      bodies && !session.bake.running())) {
+      askBakeScene(context.files, session);
+    }
+    drawBake(ui, session);
+  }
+
+  static void drawBake(Ui& ui, Session& session) {
+    if (!session.bake.running()) return;
+    ImGui::ProgressBar(session.bake.report().fraction, {-60 * ui.scale, 0});
+    ImGui::SameLine();
+    if (ui.button("Cancel", "Leaves no recording behind", ImGui::GetContentRegionAvail().x)) {
+      session.bake.cancel();
+    }
+  }
+
+  static void drawState(Ui& ui, Session& session) {
+    const AuthorDesk& desk = session.desk;
+    ImGui::Spacing();
+    ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
+    if (desk.isModified()) ui.tooltip("*: changed since it was saved");
+    ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
+                                  desk.editor.selection().size()));
+    if (session.authoringAtRest()) return;
+    if (ui.button(session.authoring() ? "Back to the start###show" : "Show the scene###show",
+                  "Shows the bodies where they start", ImGui::GetContentRegionAvail().x)) {
+      session.showAuthored();
+    }
+  }
+
+  static void drawBrush(Ui& ui, Session& session) {
+    if (!ImGui::CollapsingHeader("Brush", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const auto scope = ui.scope("Brush");
+    ImGui::PushID("brush");
+    AuthorDesk& desk = session.desk;
+    std::vector<std::string> ids;
+    for (const scenes::BrushEntry& entry : desk.brushes) ids.push_back(entry.listing.id);
+    std::size_t chosen = desk.chosenBrush();
+    if (ui.combo("brush", chosen, ids, desk.brushes[chosen].listing.summary.c_str())) {
+      desk.chooseBrush(chosen);
+    }
+    ui.parameters(desk.brush());
+    Numbers at = numbers(desk.paint_at);
+    ui.vector("at", at, -kFar, kFar, "The point that is painted at, in world units");
+    desk.paint_at = vec(at);
+    ui.parameters(desk.paint);
+    if (ui.button("Add", "Paints once, and selects what was added",
+                  ImGui::GetContentRegionAvail().x)) {
+      std::size_t left_out = 0;
+      session.edit([&](SceneEditor&) { left_out = desk.addStroke(); });
+      const std::size_t added = desk.editor.selection().size();
+      session.say(left_out == 0 ? fmt::format("{} bodies added", added)
+                                : fmt::format("no room for {} bodies", left_out),
+                  left_out == 0 ? Message::Kind::note : Message::Kind::warning);
+    }
+    ImGui::PopID();
+  }
+
+  void drawSelection(Ui& ui, Session& session) {
+    if (!ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const auto scope = ui.scope("Selection");
+    ImGui::PushID("selection");
+    const bool any = !selection_.empty();
+    ButtonRow choose(ui, 2);
+    if (choose.button("All", "Selects all bodies (Ctrl+A)")) edit(&SceneEditor::selectAll);
+    if (choose.button("None", "Selects nothing (Escape)", any)) edit(&SceneEditor::selectNone);
+    if (any) {
+      drawPlaces(ui, session);
+      drawProperties(ui);
+    } else {
+      ImGui::PushTextWrapPos(0);
+      ui.faint("Click a body in the view to select it; drag with Shift to select several.");
+      ImGui::PopTextWrapPos();
+    }
+    ImGui::PopID();
+  }
+
+  void drawPlaces(Ui& ui, Session& session) {
+    ui.vector("by", by_, -kFar, kFar, "How far Move and Duplicate go, in world units");
+    ui.number("factor", factor_, 1e-6, 1e6, "Of Scale: on sizes and distances to the centre");
+    ButtonRow row(ui, 2);
+    if (row.button("Move", "Moves the selected bodies")) {
+      edit([by = vec(by_)](SceneEditor& editor) { editor.move(by); });
+    }
+    if (row.button("Scale", "Scales places and sizes about the common centre")) {
+      edit([f = static_cast<float>(factor_)](SceneEditor& editor) { editor.scale(f); });
+    }
+    if (row.button("Duplicate", "Copies the selected bodies, moved")) {
+      edit([by = vec(by_)](SceneEditor& editor) { editor.duplicate(by); });
+    }
+    if (row.button("Delete", "Deletes the selected bodies (Delete)")) edit(&SceneEditor::erase);
+    if (row.button("Fly there", "Looks at the selected bodies (F)")) {
+      session.fly_to = session.selection;
+    }
+    if (row.button("Paint here", "The brush paints at the centre of the selection")) {
+      session.desk.paint_at = session.desk.editor.selectionCentre();
+    }
+  }
+
+  void drawProperties(Ui& ui) {
+    if (selection_.size() == 1) {
+      ui.heading(fmt::format("Body {}", selection_.front()).c_str());
+    } else {
+      ui.heading(fmt::format("{} bodies; values of body {}", selection_.size(), selection_.front())
+                     .c_str());
+    }
+    std::size_t shape = inputs_.sphere ? 1 : 0;
+    if (ui.combo("shape", shape, {"box", "sphere"})) {
+      edit(shape == 1 ? &SceneEditor::makeSpheres : &SceneEditor::makeBoxes);
+    }
+    if (ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
+                  "Edges, in world units; of a sphere the first is the diameter")) {
+      edit([size = vec(inputs_.size)](SceneEditor& editor) { editor.setSize(size); });
+    }
+    if (ui.number("mass", inputs_.mass, 1e-6, 1e9)) {
+      edit([mass = inputs_.mass](SceneEditor& editor) { editor.setMass(mass); });
+    }
+    if (ui.checkbox("frozen", inputs_.frozen, "An immovable obstacle")) {
+      edit([frozen = inputs_.frozen](SceneEditor& editor) { editor.setFrozen(frozen); });
+    }
+    if (ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second")) {
+      edit([v = vec(inputs_.velocity)](SceneEditor& editor) { editor.setVelocity(v); });
+    }
+    if (ui.vector("spin", inputs_.spin, -kFast, kFast,
+                  "Angular velocity about each axis, in radians per second")) {
+      edit([v = vec(inputs_.spin)](SceneEditor& editor) { editor.setAngularVelocity(v); });
+    }
+  }
+
+  void drawScene(Ui& ui, const Session& session) {
+    if (!ImGui::CollapsingHeader("Whole scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    const auto scope = ui.scope("Whole scene");
+    ImGui::PushID("scene");
+    if (ui.text("name", inputs_.name)) {
+      edit([name = inputs_.name](SceneEditor& editor) { editor.setName(name); });
+      known_ = false;  // a name that is refused does not stay
+    }
+    const bool low = ui.vector("world min", inputs_.world_min, -kFar, kFar, "Walls stand there");
+    const bool high = ui.vector("world max", inputs_.world_max, -kFar, kFar, "Walls stand there");
+    if (low || high) {
+      const Vec3 min = vec(inputs_.world_min);
+      const Vec3 max = vec(inputs_.world_max);
+      edit([min, max](SceneEditor& editor) {
+        editor.setWorld({{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}});
+      });
+      known_ = false;
+    }
+    if (ui.parameters(inputs_.parameters)) enterParameters(session.desk.editor);
+    ImGui::PopID();
+  }
+
+  void enterParameters(const SceneEditor& editor) {
+    const ParameterValues before = scenes::AuthoredParameters(editor.scene().parameters).values();
+    ParameterValues changed = inputs_.parameters.values();
+    // Another engine comes with parameters of its own, which keep their defaults.
+    if (changed.at("engine") != before.at("engine")) changed = {{"engine", changed.at("engine")}};
+    std::erase_if(changed, [&](const auto& value) {
+      const auto found = before.find(value.first);
+      return found != before.end() && found->second == value.second;
+    });
+    edit([changed](SceneEditor& e) { e.setParameters(changed); });
+  }
+
+  bool known_ = false;  ///< whether the inputs are those of:
+  std::uint64_t revision_ = 0;
+  std::string name_;
+  scenes::BodyIds selection_;
+  Inputs inputs_;
+  Numbers by_ = {1, 0, 0};
+  double factor_ = 2;
+  std::vector<std::function<void(SceneEditor&)>> changes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<AuthorPanel>(); }
+
+}  // namespace broadmark::panels::author

@@ -1,0 +1,257 @@
+// Baking many recordings: scenes × object types × object counts.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "app/bake_plan.h"
+#include "app/inspector/panel.h"
+#include "broadmark/error.h"
+
+namespace broadmark::panels::batch {
+namespace {
+
+using Outcome = BackgroundBake::Outcome;
+namespace fs = std::filesystem;
+
+std::string sizeText(std::uint64_t bytes) {
+  constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
+  auto size = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
+  return fmt::format("{:.3g} {}", size, kUnits[unit]);
+}
+
+std::string timeText(double seconds) {
+  if (!(seconds < 1e6)) return "";
+  const auto whole = static_cast<long>(std::ceil(seconds));
+  return whole < 60 ? fmt::format("{} s left", whole)
+                    : fmt::format("{}:{:02} min left", whole / 60, whole % 60);
+}
+
+const char* outcomeName(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::waiting:
+      return "";
+    case Outcome::kept:
+      return "kept";
+    case Outcome::baked:
+      return "baked";
+    case Outcome::failed:
+      return "failed";
+  }
+  return "";
+}
+
+/// What a parameter of built-in scenes can be chosen from.
+std::vector<std::string> optionsOf(std::string_view parameter) {
+  std::vector<std::string> options;
+  makeSimulation("freefall")->visitParameters([&](const Parameter& p) {
+    if (Choice* const* choice = std::get_if<Choice*>(&p.value); choice && p.name == parameter) {
+      options = (*choice)->options;
+    }
+  });
+  return options;
+}
+
+/// A box for each of `all`; the marked ones are `chosen`. Returns whether they changed.
+bool chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
+                std::vector<std::string>& chosen) {
+  ui.heading(name);
+  const auto scope = ui.scope(name);
+  bool changed = false;
+  const float half = ImGui::GetContentRegionAvail().x / 2;
+  int column = 0;
+  for (const std::string& each : all) {
+    if (column++ % 2 == 1) ImGui::SameLine(half);
+    bool marked = std::ranges::find(chosen, each) != chosen.end();
+    if (!ui.checkbox(each.c_str(), marked)) continue;
+    changed = true;
+    if (marked) {
+      chosen.push_back(each);
+    } else {
+      std::erase(chosen, each);
+    }
+  }
+  return changed;
+}
+
+/// What is going to be baked, as far as it can be told before.
+struct Preview {
+  std::vector<std::pair<fs::path, std::uint64_t>> recordings;
+  std::uint64_t bytes = 0;
+  std::string fault;  ///< "": none
+};
+
+class BatchPanel final : public Panel {
+ public:
+  BatchPanel() : Panel("Batch", Place::left, "Baking many recordings") {
+    for (const SceneListing& scene : builtinScenes()) scenes_.push_back(scene.id);
+    for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
+    types_ = optionsOf("object_type");
+    engines_ = optionsOf("engine");
+    options_.scenes = {scenes_.front()};
+    options_.scene.object_types = {types_.front()};
+    options_.scene.recorders = {recorders_.front()};
+    options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+  }
+
+  void draw(PanelContext& context) override {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    const BackgroundBake::Report report = session.bake.report();
+    const bool running = session.bake.running();
+    if (running) {
+      drawProgress(ui, session, report);
+    } else {
+      if (ui.button("Start", "Bakes in the background; what is there already is kept",
+                    ImGui::GetContentRegionAvail().x)) {
+        update();
+        if (!preview_.fault.empty()) {
+          session.complain(preview_.fault);
+        } else {
+          session.attempt([&] { session.bake.start(options_); });
+        }
+      }
+    }
+    ImGui::BeginDisabled(running);
+    drawOptions(context);
+    ImGui::EndDisabled();
+    if (stale_) update();
+    if (report.state != BackgroundBake::State::idle) drawItems(ui, session, report);
+    if (!running) drawPreview(ui);
+  }
+
+ private:
+  void drawOptions(PanelContext& context) {
+    Ui& ui = context.ui;
+    stale_ |= chooseSome(ui, "scenes", scenes_, options_.scenes);
+    stale_ |= chooseSome(ui, "object types", types_, options_.scene.object_types);
+    stale_ |= chooseSome(ui, "recorders", recorders_, options_.scene.recorders);
+    ui.heading("Each of them");
+    stale_ |= ui.text("objects", counts_, "1000, 8000");
+    ui.tooltip("How many bodies: one recording for each number");
+    stale_ |= ui.integer("frames", frames_, 1, 1'000'000, "Frames after the initial pose");
+    stale_ |= ui.combo("engine", engine_, engines_, "Physics engine");
+    std::int64_t threads = options_.threads;
+    if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
+      options_.threads = static_cast<int>(threads);
+    }
+    stale_ |= ui.text("directory", directory_, "where to");
+    if (ui.button("Browse…", "Chooses the directory", ImGui::GetContentRegionAvail().x)) {
+      context.files.ask({.title = "Directory for recordings",
+                         .purpose = FileDialog::Purpose::directory,
+                         .extensions = {},
+                         .suggestion = directory_,
+                         .chosen = [this](const fs::path& path) {
+                           directory_ = path.string();
+                           stale_ = true;
+                         }});
+    }
+  }
+
+  /// Takes over the inputs and finds out what they come to.
+  void update() {
+    stale_ = false;
+    preview_ = {};
+    try {
+      if (options_.scenes.empty()) throw InputError("no scene is chosen");
+      if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
+      if (options_.scene.recorders.empty()) throw InputError("no recorder is chosen");
+      if (directory_.empty()) throw InputError("a directory is needed");
+      options_.scene.objects = parseCounts(counts_);
+      if (options_.scene.objects.empty()) throw InputError("a number of objects is needed");
+      options_.scene.parameters = {{"frames", std::to_string(frames_)},
+                                   {"engine", engines_.at(engine_)}};
+      options_.output = directory_;
+      BakeOptions all = options_;
+      all.force = true;  // reads no file
+      const auto plan = planBake(all);
+      preview_.bytes = plan->bytes();
+      for (const BakeJob& job : plan->pending) {
+        for (const fs::path& path : job.paths) {
+          preview_.recordings.emplace_back(path, recordingBytes(job.scene));
+        }
+      }
+    } catch (const InputError& error) {
+      preview_.fault = error.what();
+    }
+  }
+
+  static void drawProgress(Ui& ui, Session& session, const BackgroundBake::Report& report) {
+    ImGui::ProgressBar(report.fraction, {-70 * ui.scale, 0});
+    ImGui::SameLine();
+    if (ui.button("Cancel", "Keeps what is finished", ImGui::GetContentRegionAvail().x)) {
+      session.bake.cancel();
+    }
+    ImGui::PushTextWrapPos(0);
+    const std::string left =
+        report.state == BackgroundBake::State::baking ? timeText(report.seconds_left) : "";
+    ui.faint(left.empty() ? report.doing : fmt::format("{}; {}", left, report.doing));
+    ImGui::PopTextWrapPos();
+  }
+
+  static void drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report) {
+    ui.heading(fmt::format("{}: {}", bakeStateName(report.state), report.text()).c_str());
+    const auto scope = ui.scope("recordings");
+    for (const BackgroundBake::Item& item : report.items) {
+      const bool there = item.outcome == Outcome::kept || item.outcome == Outcome::baked;
+      const std::string name = item.path.filename().string();
+      ImGui::PushID(item.path.c_str());
+      ImGui::BeginDisabled(!there);
+      if (ui.selectable(name.c_str(), false,
+                        there ? "Opens the recording" : item.failure.c_str())) {
+        session.open(item.path);
+      }
+      ImGui::EndDisabled();
+      ImGui::PopID();
+      const std::string outcome = outcomeName(item.outcome);
+      ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(outcome.c_str()).x);
+      ui.coloured(item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good, outcome);
+    }
+  }
+
+  void drawPreview(Ui& ui) const {
+    if (!preview_.fault.empty()) {
+      ui.heading("To bake");
+      ImGui::PushTextWrapPos(0);
+      ui.coloured(ui.theme.warning, preview_.fault);
+      ImGui::PopTextWrapPos();
+      return;
+    }
+    ui.heading(fmt::format("To bake: {} recordings, {}", preview_.recordings.size(),
+                           sizeText(preview_.bytes))
+                   .c_str());
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(preview_.recordings.size()));
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
+        const std::string size = sizeText(bytes);
+        ImGui::TextUnformatted(path.filename().string().c_str());
+        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
+        ui.faint(size);
+      }
+    }
+  }
+
+  std::vector<std::string> scenes_;
+  std::vector<std::string> types_;
+  std::vector<std::string> recorders_;
+  std::vector<std::string> engines_;
+  BakeOptions options_;
+  std::string counts_ = "1000";
+  std::int64_t frames_ = 100;
+  std::size_t engine_ = 0;
+  std::string directory_ = "recordings";
+  bool stale_ = true;  ///< the preview is not that of the inputs
+  Preview preview_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<BatchPanel>(); }
+
+}  // namespace broadmark::panels::batch

@@ -1,0 +1,245 @@
+// Authoring in the session, without any drawing.
+#include "app/inspector/author_desk.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/inspector/session.h"
+#include "broadmark/algorithms.h"
+#include "broadmark/atomic_file.h"
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using scenes::AuthoredBody;
+using scenes::AuthoredScene;
+using scenes::SceneEditor;
+
+AuthoredScene threeBodies() {
+  AuthoredScene scene{.name = "Three", .parameters = {{"frames", "12"}}};
+  for (int i = 0; i < 3; ++i) {
+    AuthoredBody body;
+    body.pose.position = {2.0F * static_cast<float>(i), 1, 0};
+    body.linear_velocity = {0, 0, static_cast<float>(i)};
+    scene.bodies.push_back(body);
+  }
+  scene.bodies[2].shape = scenes::SphereShape{0.4F};
+  return scene;
+}
+
+class AuthoringTest : public testing::Test {
+ protected:
+  RunProgress settle() {
+    RunProgress seen;
+    for (int picture = 0; picture < 4; ++picture) {
+      session.commit();
+      EXPECT_TRUE(session.runs.settle(60s));
+      session.runs.look([&](const RunProgress& progress) {
+        session.advance(progress, 0);
+        seen = progress;
+      });
+    }
+    return seen;
+  }
+
+  Session session{builtinAlgorithms()};
+  TemporaryDirectory directory;
+};
+
+TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
+  for (const Algorithm& algorithm : builtinAlgorithms()) {
+    if (algorithm.family != "GPU") session.addLane(algorithm.id);
+  }
+  session.author({});
+  const RunProgress seen = settle();
+  ASSERT_TRUE(seen.snapshot);
+  EXPECT_TRUE(seen.snapshot->boxes->empty());
+  EXPECT_TRUE(session.authoringAtRest());
+  EXPECT_FALSE(session.desk.isModified());
+  EXPECT_TRUE(session.errors.empty());
+}
+
+TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
+  session.author(threeBodies());
+  const RunProgress first = settle();
+  ASSERT_EQ(first.snapshot->boxes->size(), 3U);
+  const std::uint64_t scene = first.footage->scene;
+  EXPECT_NE(scene, 0U);
+  session.select({1});
+  session.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
+  RunProgress seen = settle();
+  EXPECT_EQ(seen.footage->scene, scene);
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
+  EXPECT_EQ(session.selection, std::vector<std::uint32_t>{3});
+  EXPECT_TRUE(session.desk.isModified());
+  session.edit(&SceneEditor::undo);
+  seen = settle();
+  EXPECT_EQ(*seen.snapshot->boxes, *first.snapshot->boxes);
+  EXPECT_EQ(session.selection, std::vector<std::uint32_t>{1});
+  EXPECT_FALSE(session.desk.isModified());
+}
+
+TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
+  session.author(threeBodies());
+  settle();
+  session.select({2, 0, 7});
+  EXPECT_THAT(session.desk.editor.selection(), testing::ElementsAre(0, 2));
+  session.toggleSelected(1);
+  session.toggleSelected(0);
+  EXPECT_THAT(session.desk.editor.selection(), testing::ElementsAre(1, 2));
+  session.edit(&SceneEditor::selectAll);
+  EXPECT_THAT(session.selection, testing::ElementsAre(0, 1, 2));
+  // What is selected elsewhere is none of the document's business.
+  setParameters(*session.draft, {{"objects", "40"}, {"frames", "5"}});
+  session.simulate();
+  settle();
+  session.select({30});
+  EXPECT_EQ(session.desk.editor.selection().size(), 3U);
+}
+
+TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {
+  session.author(threeBodies());
+  const std::uint64_t before = settle().footage->scene;
+  session.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
+  EXPECT_NE(settle().footage->scene, before);
+}
+
+TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
+  session.author(threeBodies());
+  settle();
+  session.edit([](SceneEditor& editor) { editor.setName("a/b"); });
+  EXPECT_EQ(session.errors.size(), 1U);
+  EXPECT_EQ(session.desk.editor.scene(), threeBodies());
+}
+
+TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
+  session.author(threeBodies());
+  session.edit([](SceneEditor& editor) {
+    editor.selectAll();
+    editor.turn({0, 0.6F, 0, 0.8F});
+  });
+  const AuthoredScene scene = session.desk.editor.scene();
+  EXPECT_TRUE(session.saveAuthored(directory / "three"));  // gets its extension
+  EXPECT_EQ(session.desk.path(), directory / "three.json");
+  EXPECT_FALSE(session.desk.isModified());
+  session.author({});
+  session.open(directory / "three.json");
+  settle();
+  EXPECT_TRUE(session.errors.empty());
+  EXPECT_TRUE(session.authoring());
+  EXPECT_EQ(session.desk.editor.scene(), scene);
+  EXPECT_TRUE(session.saveAuthored(directory / "again.json"));
+  EXPECT_EQ(readTextFile(directory / "again.json"), readTextFile(directory / "three.json"));
+}
+
+TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
+  session.author(threeBodies());
+  settle();
+  writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
+  session.open(directory / "bad.json");
+  session.open(directory / "missing.json");
+  EXPECT_FALSE(session.saveAuthored(directory / "no such" / "directory.json"));
+  ASSERT_EQ(session.errors.size(), 3U);
+  EXPECT_THAT(session.errors[0], testing::HasSubstr("bad.json"));
+  EXPECT_THAT(session.errors[1], testing::HasSubstr("missing.json"));
+  EXPECT_THAT(session.errors[2], testing::HasSubstr("no such"));
+  EXPECT_EQ(session.desk.editor.scene(), threeBodies());
+}
+
+TEST_F(AuthoringTest, UnsavedChangesWaitForADecision) {
+  session.author(threeBodies());
+  int left = 0;
+  session.leaveDocument([&] { ++left; });
+  EXPECT_EQ(left, 1);
+  session.edit([](SceneEditor& editor) { editor.setName("Other"); });
+  session.leaveDocument([&] { ++left; });
+  EXPECT_EQ(left, 1);
+  ASSERT_TRUE(session.leaving);
+  session.leaving();
+  EXPECT_EQ(left, 2);
+}
+
+TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
+  session.author(threeBodies());
+  settle();
+  session.play(true);
+  EXPECT_TRUE(session.authoring());
+  EXPECT_FALSE(session.authoringAtRest());
+  session.seek(12);
+  RunProgress seen = settle();
+  EXPECT_EQ(seen.scene.frames, 12U);
+  EXPECT_EQ(seen.snapshot->frame, 12U);
+  EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
+  session.edit([](SceneEditor& editor) { editor.setName("Other"); });
+  seen = settle();
+  EXPECT_TRUE(session.authoringAtRest());
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
+}
+
+TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
+  setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
+  session.simulate();
+  session.seek(9);
+  const RunProgress live = settle();
+  session.authorFrame();
+  const RunProgress seen = settle();
+  EXPECT_TRUE(session.errors.empty());
+  EXPECT_TRUE(session.authoringAtRest());
+  EXPECT_TRUE(session.desk.isModified());
+  EXPECT_EQ(*seen.snapshot->boxes, *live.snapshot->boxes);
+  const auto& bodies = session.desk.editor.scene().bodies;
+  ASSERT_EQ(bodies.size(), 30U);
+  EXPECT_TRUE(std::ranges::any_of(
+      bodies, [](const AuthoredBody& body) { return body.linear_velocity[1] < 0; }));
+}
+
+TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
+  setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
+  session.simulate();
+  session.seek(9);
+  settle();
+  session.saveRecording(directory / "some.aabbs");
+  settle();
+  session.open(directory / "some.aabbs");
+  settle();
+  session.seek(4);
+  const RunProgress recorded = settle();
+  session.authorFrame();
+  const RunProgress seen = settle();
+  EXPECT_TRUE(session.errors.empty());
+  EXPECT_EQ(seen.snapshot->boxes->size(), recorded.snapshot->boxes->size());
+  EXPECT_TRUE(session.authoringAtRest());
+}
+
+TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
+  session.author({});
+  AuthorDesk& desk = session.desk;
+  for (std::size_t brush = 0; brush < desk.brushes.size(); ++brush) {
+    desk.chooseBrush(brush);
+    desk.paint_at = {100.0F * static_cast<float>(brush), 0, 0};
+    const std::size_t before = desk.editor.scene().bodies.size();
+    session.edit([&](SceneEditor&) { desk.addStroke(); });
+    EXPECT_GT(desk.editor.scene().bodies.size(), before) << desk.brushes[brush].listing.id;
+    EXPECT_NEAR(desk.editor.selectionCentre()[0], desk.paint_at[0], 12);
+  }
+  EXPECT_EQ(settle().snapshot->boxes->size(), desk.editor.scene().bodies.size());
+}
+
+TEST_F(AuthoringTest, BakesTheWholeScene) {
+  session.author(threeBodies());
+  session.bakeAuthored(directory / "three");
+  while (session.bake.running()) std::this_thread::sleep_for(1ms);
+  settle();
+  EXPECT_TRUE(session.errors.empty());
+  EXPECT_EQ(session.bake.report().state, BackgroundBake::State::done);
+  session.open(directory / "three.aabbs");
+  const RunProgress seen = settle();
+  EXPECT_EQ(seen.scene.frames, 12U);
+  EXPECT_EQ(seen.scene.objects, 3U);
+  EXPECT_EQ(seen.scene.name, "Three");
+}
+
+}  // namespace
+}  // namespace broadmark::tests

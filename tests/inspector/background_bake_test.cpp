@@ -1,0 +1,96 @@
+// Baking in the background.
+#include "app/inspector/background_bake.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "broadmark/atomic_file.h"
+#include "broadmark/error.h"
+#include "tests/engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using State = BackgroundBake::State;
+using Outcome = BackgroundBake::Outcome;
+
+class BackgroundBakeTest : public testing::Test {
+ protected:
+  BakeOptions options(std::vector<std::uint32_t> objects, int frames) const {
+    return {.scenes = {"freefall"},
+            .scene = {.objects = std::move(objects),
+                      .object_types = {"cubes"},
+                      .parameters = {{"frames", std::to_string(frames)}},
+                      .recorders = {"aabbs"}},
+            .output = directory / "baked",
+            .threads = 2};
+  }
+
+  BackgroundBake::Report wait() {
+    while (bake.running()) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(bake.takeEnd());
+    EXPECT_FALSE(bake.takeEnd());
+    return bake.report();
+  }
+
+  TemporaryDirectory directory;
+  BackgroundBake bake;
+};
+
+TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
+  EXPECT_EQ(bake.report().state, State::idle);
+  bake.start(options({20, 30}, 5));
+  BackgroundBake::Report report = wait();
+  EXPECT_EQ(report.state, State::done);
+  ASSERT_EQ(report.items.size(), 2U);
+  for (const auto& item : report.items) {
+    EXPECT_EQ(item.outcome, Outcome::baked) << item.failure;
+    EXPECT_EQ(openRecordingFile(item.path)->scene().frames, 5U);
+  }
+  bake.start(options({20, 30, 40}, 5));
+  report = wait();
+  EXPECT_EQ(report.count(Outcome::kept), 2U);
+  EXPECT_EQ(report.count(Outcome::baked), 1U);
+  EXPECT_EQ(report.text(), "1 baked, 2 kept");
+}
+
+TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
+  bake.start(options({3000}, 100'000));
+  while (bake.report().state == State::planning) std::this_thread::sleep_for(1ms);
+  EXPECT_THROW(bake.start(options({20}, 5)), InputError);
+  bake.cancel();
+  const BackgroundBake::Report report = wait();
+  EXPECT_EQ(report.state, State::cancelled);
+  EXPECT_EQ(report.count(Outcome::waiting), 1U);
+  EXPECT_FALSE(std::filesystem::exists(report.items.front().path));
+  bake.start(options({20}, 5));  // and it can begin anew
+  EXPECT_EQ(wait().state, State::done);
+}
+
+TEST_F(BackgroundBakeTest, EndsWithItsOwner) {
+  BackgroundBake another;
+  another.start(options({3000}, 100'000));
+}
+
+TEST_F(BackgroundBakeTest, WhatCannotBeWrittenIsAFailure) {
+  writeTextFile(directory / "baked", "a file where the directory should be");
+  bake.start(options({20}, 5));
+  const BackgroundBake::Report report = wait();
+  EXPECT_EQ(report.state, State::failed);
+  EXPECT_THAT(report.failure, testing::HasSubstr("baked"));
+}
+
+TEST(ParseCounts, UnderstandsListsAndNamesWhatIsWrong) {
+  EXPECT_THAT(parseCounts("1000,8000"), testing::ElementsAre(1000, 8000));
+  EXPECT_THAT(parseCounts(" 1  2, 3,"), testing::ElementsAre(1, 2, 3));
+  EXPECT_TRUE(parseCounts("").empty());
+  for (const char* bad : {"0", "-3", "1e3", "many", "10000001", "99999999999"}) {
+    EXPECT_THROW(parseCounts(bad), InputError) << bad;
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests
