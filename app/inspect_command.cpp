@@ -11,6 +11,7 @@
 #include "app/plugins.h"
 #include "app/recordings.h"
 #include "broadmark/error.h"
+#include "scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
@@ -26,7 +27,10 @@ void addCase(Session& session, const Case& run) {
 }
 
 void openSource(Session& session, Source source) {
-  if (source.simulation) {
+  if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
+    session.author(authored->document(), source.simulation->input());
+    session.simulateAuthored();
+  } else if (source.simulation) {
     session.draft = std::move(source.simulation);
     session.simulate();
   } else {

@@ -185,7 +185,10 @@ void Session::author(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
 void Session::authorFrame() {
   if (!wish.footage || authoringAtRest()) return;
   // What is looked at is opened anew and goes on to that frame: then its bodies are known wholly.
-  FrameToAuthor wanted{.shown = {}, .scene = std::make_shared<scenes::AuthoredScene>()};
+  FrameToAuthor wanted{.former = wish.footage,
+                       .frame = wish.frame,
+                       .shown = {},
+                       .scene = std::make_shared<scenes::AuthoredScene>()};
   show(fmt::format("frame {} of {}", wish.frame, wish.footage->title),
        [former = wish.footage, frame = wish.frame, scene = wanted.scene] {
          *scene = sceneFromFootage(*former, frame);
@@ -198,7 +201,13 @@ void Session::authorFrame() {
 void Session::noticeAuthored(const RunProgress& progress) {
   if (!frame_to_author_ || frame_to_author_->shown != progress.footage) return;
   const FrameToAuthor wanted = *std::exchange(frame_to_author_, {});
-  if (progress.failure.empty()) author(std::move(*wanted.scene), {}, true);
+  if (progress.failure.empty()) {
+    author(std::move(*wanted.scene), {}, true);
+  } else {
+    wish.footage = wanted.former;
+    wish.frame = wanted.frame;
+    scene_known_ = false;
+  }
 }
 
 void Session::edit(const std::function<void(scenes::SceneEditor&)>& change) {

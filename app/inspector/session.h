@@ -189,6 +189,8 @@ class Session {
   Aabb author_world_{};
   /// A frame that becomes a document when `shown` is open.
   struct FrameToAuthor {
+    std::shared_ptr<const FootageRequest> former;  ///< to return to when that fails
+    std::uint32_t frame = 0;
     std::shared_ptr<const FootageRequest> shown;
     std::shared_ptr<scenes::AuthoredScene> scene;
   };
