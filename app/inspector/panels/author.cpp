@@ -170,7 +170,6 @@ class AuthorPanel final : public Panel {
     const AuthorDesk& desk = session.desk;
     ImGui::Spacing();
     ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
-    if (desk.isModified()) ui.tooltip("*: changed since it was saved");
     ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
                                   desk.editor.selection().size()));
     if (session.authoringAtRest()) return;
