@@ -119,6 +119,18 @@ InputError missingCase(const Results& results, const fs::path& results_file) {
                                 results_file.string(), someIds(results)));
 }
 
+void requireExportable(const fs::path& file, const fs::path& original) {
+  if (file.extension() != kAabbsExtension) {
+    throw InputError(fmt::format("exporting a case: {}: a name that ends in {} is expected",
+                                 file.string(), kAabbsExtension));
+  }
+  if (!original.empty() && fs::weakly_canonical(file) == fs::weakly_canonical(original)) {
+    throw InputError(fmt::format(
+        "exporting a case: {}: the recording itself: another name is needed", file.string()));
+  }
+  AtomicFile probe(file);
+}
+
 std::string reproducingCommand(const Case& run, const fs::path& recording) {
   std::string command = "broadmark --headless " + pathWord(recording);
   const auto add = [&](std::string_view option, const std::string& word) {

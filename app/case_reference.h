@@ -29,6 +29,10 @@ CaseReference openCase(const std::filesystem::path& results_file, const std::str
 /// The complaint about a results file that is given without a case of it.
 InputError missingCase(const Results&, const std::filesystem::path& results_file);
 
+/// Throws InputError when no recording can be written to `file`, or when it is `original` itself
+/// (which may be ""). To fail before a long search rather than after it.
+void requireExportable(const std::filesystem::path& file, const std::filesystem::path& original);
+
 /// The call that runs a case on a recording and checks it, for a shell:
 /// "broadmark --headless 'FreeFall case.aabbs' --algorithm sap-mt --threads 2 --check full".
 std::string reproducingCommand(const Case&, const std::filesystem::path& recording);

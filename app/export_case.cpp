@@ -14,21 +14,6 @@
 namespace broadmark {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// Fails now rather than after the search.
-void requireWritable(const fs::path& path, const Source& source) {
-  if (path.extension() != kAabbsExtension) {
-    throw InputError(fmt::format("--export-case: {}: a name that ends in {} is expected",
-                                 path.string(), kAabbsExtension));
-  }
-  if (fs::weakly_canonical(path) == fs::weakly_canonical(source.reference.path)) {
-    throw InputError(fmt::format("--export-case: {}: the recording itself: another name is needed",
-                                 path.string()));
-  }
-  AtomicFile probe(path);
-}
-
 std::string sizeText(std::size_t bodies, std::size_t frames) {
   return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
                      frames == 1 ? "frame" : "frames");
@@ -52,7 +37,7 @@ int runExportCase(const HeadlessOptions& options) {
     throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
                                  options.case_id, statusName(reference.result.status)));
   }
-  requireWritable(options.export_case, reference.source);
+  requireExportable(options.export_case, reference.source.reference.path);
   const InterruptGuard guard;
   const auto recording = openRecording(reference.source, {}, {}, options.quiet);
   if (!recording) throw InputError("interrupted");

@@ -10,39 +10,24 @@
 #include "app/options.h"
 #include "app/plugins.h"
 #include "app/recordings.h"
+#include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
 
-/// Adds a lane that runs this case.
-void addCase(Session& session, const Case& run) {
-  LaneEdit& lane = session.addLane(run.algorithm.id);
-  lane.isa = run.algorithm.vectorised ? run.isa : lane.isa;
-  lane.threads = run.algorithm.parallel ? run.threads : lane.threads;
-  lane.device = run.device;
-  setParameters(*lane.parameters, run.parameters);
-  session.lanesChanged();
-}
-
-void openSource(Session& session, Source source) {
-  if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
-    session.author(authored->document(), source.simulation->input());
-    session.simulateAuthored();
-  } else if (source.simulation) {
-    session.draft = std::move(source.simulation);
-    session.simulate();
-  } else {
-    session.open(source.reference.path);
-  }
+bool isResultsFile(const std::string& source) {
+  return std::filesystem::path(source).extension() == ".json" &&
+         jsonKind(readTextFile(source), source) == kResultsSchema;
 }
 
 /// What the session begins with.
 struct Beginning {
   std::vector<Source> sources;  ///< one at most
   std::vector<Case> cases;
-  std::optional<std::uint32_t> frame;  ///< to go to
+  std::optional<CaseReference> failed;  ///< instead of these
+  std::filesystem::path results;        ///< or a file one of whose cases is to be chosen
 };
 
 /// Understands everything before a window is opened: a mistake on the command line is told there.
@@ -53,10 +38,11 @@ Beginning beginningOf(const HeadlessOptions& options, const std::vector<Algorith
         fmt::format("'{}': the inspector looks at one source at a time", options.sources[1]));
   }
   if (!options.case_id.empty()) {
-    CaseReference one = openCase(options.sources.front(), options.case_id, known);
-    beginning.sources.push_back(std::move(one.source));
-    beginning.cases = {one.run};
-    if (one.difference) beginning.frame = one.difference->frame;
+    beginning.failed = openCase(options.sources.front(), options.case_id, known);
+    return beginning;
+  }
+  if (!options.sources.empty() && isResultsFile(options.sources.front())) {
+    beginning.results = options.sources.front();
     return beginning;
   }
   if (!options.sources.empty()) beginning.sources = resolveSources(options);
@@ -75,9 +61,10 @@ int runInspector(const HeadlessOptions& options) {
   const std::vector<Algorithm> known = availableAlgorithms(options.plugins);
   const auto beginning = std::make_shared<Beginning>(beginningOf(options, known));
   const auto begin = [beginning](Session& session) {
-    for (const Case& run : beginning->cases) addCase(session, run);
-    for (Source& source : beginning->sources) openSource(session, std::move(source));
-    if (beginning->frame) session.wish.frame = *beginning->frame;
+    for (const Case& run : beginning->cases) session.addLane(run);
+    for (Source& source : beginning->sources) session.open(std::move(source));
+    if (beginning->failed) session.open(std::move(*beginning->failed));
+    if (!beginning->results.empty()) session.open(beginning->results);
   };
   const InspectOptions inspect{.algorithms = known,
                                .begin = begin,

@@ -168,11 +168,9 @@ std::unique_ptr<Recording> simulateTemporary(Simulation& simulation, bool quiet)
 }
 
 void requireExpected(const Source& source) {
-  if (source.reference.hash == source.expected_hash) return;
-  const std::string what =
-      source.simulation ? source.reference.scene.name + " simulated anew" : source.reference.path;
-  throw InputError(fmt::format("{}: not the recording that the case ran on: its hash is {}, not {}",
-                               what, source.reference.hash, source.expected_hash));
+  requireHash(
+      source.simulation ? source.reference.scene.name + " simulated anew" : source.reference.path,
+      source.reference.hash, source.expected_hash);
 }
 
 /// The engine asked for, by its own option or by --param; "": the default.
@@ -266,6 +264,12 @@ std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directo
   if (recording) source.reference.hash = recording->hash();
   if (recording && !source.expected_hash.empty()) requireExpected(source);
   return recording;
+}
+
+void requireHash(const std::string& what, const std::string& hash, const std::string& expected) {
+  if (hash == expected) return;
+  throw InputError(fmt::format("{}: not the recording that the case ran on: its hash is {}, not {}",
+                               what, hash, expected));
 }
 
 std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo& scene,

@@ -53,6 +53,9 @@ std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& d
 std::unique_ptr<Recording> openRecording(Source&, const std::filesystem::path& directory,
                                          const std::vector<std::string>& recorders, bool quiet);
 
+/// Throws InputError, naming `what`, unless it has the hash of the recording that a case ran on.
+void requireHash(const std::string& what, const std::string& hash, const std::string& expected);
+
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);
 

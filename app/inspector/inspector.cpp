@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "app/inspector/author_dialogs.h"
+#include "app/inspector/case_chooser.h"
 #include "broadmark/atomic_file.h"
 #include "broadmark/environment.h"
 #include "render/fonts.h"
@@ -215,6 +216,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   session_.wanted_panels.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
+  drawCaseChooser(ui_, session_);
   drawHelp();
   drawErrors();
   ImGui::PopStyleVar();

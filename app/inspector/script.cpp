@@ -108,6 +108,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        "how long from here on an expectation may take although nothing goes on (at first 2)"},
       {"places", "FILE", 1, 1, &P::places,
        "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name"},
+      {"write", "VALUE FILE", 2, 2, &P::write, "writes a value of the session to a file"},
       {"resize", "WIDTHxHEIGHT", 1, 1, &P::resize, "changes the size of the picture"},
       {"screenshot", "FILE", 1, 1, &P::screenshot, "saves what is seen"},
   };
@@ -354,6 +355,15 @@ void ScriptPlayer::places(const Words& words, Inspector& inspector) {
                         place.max.y, name);
   }
   writeTextFile(words[0], text);
+}
+
+void ScriptPlayer::write(const Words& words, Inspector&) {
+  steps_.push_back([this, words](Inspector& inspector, InputQueue&) {
+    const std::optional<std::string> now = inspector.value(words[0]);
+    if (!now) fail(fmt::format("there is no value '{}'", words[0]));
+    writeTextFile(words[1], *now + "\n");
+    return true;
+  });
 }
 
 void ScriptPlayer::resize(const Words& words, Inspector&) {

@@ -76,6 +76,7 @@ class ScriptPlayer {
   void expect(const Words& words, Inspector& inspector);
   void patience(const Words& words, Inspector& inspector);
   void places(const Words& words, Inspector& inspector);
+  void write(const Words& words, Inspector& inspector);
   void resize(const Words& words, Inspector& inspector);
   void screenshot(const Words& words, Inspector& inspector);
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "app/case_reference.h"
 #include "app/cases.h"
+#include "app/inspector/mismatch.h"
 #include "broadmark/atomic_file.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -51,6 +53,7 @@ Session::Session(std::vector<Algorithm> available)
 
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeBake();
+  noticeExport();
   if (progress.footage != wish.footage || !progress.footage) return;
   scene_ = progress.scene;
   scene_known_ = true;
@@ -67,6 +70,10 @@ void Session::advance(const RunProgress& progress, double seconds) {
   const bool there = progress.doing.empty() && progress.snapshot &&
                      progress.snapshot->footage == wish.footage &&
                      progress.snapshot->frame == wish.frame;
+  if (there) visitStop(progress);
+  if (there && std::exchange(searching_, false)) {
+    say(fmt::format("no further mismatch up to frame {}", wish.frame));
+  }
   if (!playback.playing || !there) return;
   playback.due += seconds * playback.frames_per_second;
   if (playback.due < 1) return;
@@ -91,8 +98,9 @@ void Session::noticeStop(const RunProgress& progress) {
   }
   const bool known = wish.known_mismatch && *wish.known_mismatch >= progress.stop->frame;
   if (known || (noticed_stop_ && noticed_stop_->frame == progress.stop->frame)) return;
-  noticed_stop_ = progress.stop;
+  noticed_stop_ = to_visit_ = progress.stop;
   playback.playing = false;
+  searching_ = false;
   wish.frame = progress.stop->frame;
   wish.shown_lane = progress.stop->lane;
   wanted_panels.emplace_back("Mismatches");
@@ -100,6 +108,27 @@ void Session::noticeStop(const RunProgress& progress) {
   say(fmt::format("{} is wrong in frame {}", wrong ? wrong->algorithm.id : "an algorithm",
                   progress.stop->frame),
       Message::Kind::error);
+}
+
+void Session::visitStop(const RunProgress& progress) {
+  const Snapshot& seen = *progress.snapshot;
+  if (!to_visit_ || !seen.checked || seen.frame != to_visit_->frame || seen.lane != to_visit_->lane)
+    return;
+  to_visit_.reset();
+  const auto report =
+      std::ranges::find(progress.lanes, seen.lane, [](const auto& l) { return l.spec.number; });
+  const float margin = report == progress.lanes.end() ? 0 : report->margin;
+  const std::vector<WrongPair> wrong = wrongPairs(seen.difference, *seen.boxes, margin);
+  if (!wrong.empty()) visit(wrong.front().pair);
+}
+
+void Session::noticeExport() {
+  if (!case_export.takeEnd()) return;
+  const CaseExport::Report report = case_export.report();
+  if (report.state == CaseExport::State::failed) complain(report.failure);
+  if (report.state == CaseExport::State::done) {
+    say(fmt::format("exported: {}", report.file.string()));
+  }
 }
 
 void Session::commit() {
@@ -150,17 +179,23 @@ void Session::show(std::string title, std::function<std::unique_ptr<Footage>()> 
 
 void Session::open(const fs::path& path) {
   attempt([&] {
-    const std::string extension = path.extension().string();
-    if (extension == ".json") {
+    if (path.extension() == ".json") {
       openJson(path);
     } else {
-      openRecordingFile(path);  // a bad one is told at once, and what is looked at stays
-      show(path.filename().string(),
-           [path] { return std::make_unique<Footage>(openRecordingFile(path)); });
-      source_path = path;
+      openRecording(path, {});
     }
     if (on_file) on_file(path);
   });
+}
+
+void Session::openRecording(const fs::path& path, const std::string& hash) {
+  openRecordingFile(path);  // a bad one is told at once, and what is looked at stays
+  show(path.filename().string(), [path, hash] {
+    std::unique_ptr<Recording> recording = openRecordingFile(path);
+    if (!hash.empty()) requireHash(path.string(), recording->hash(), hash);
+    return std::make_unique<Footage>(std::move(recording));
+  });
+  source_path = path;
 }
 
 void Session::openJson(const fs::path& path) {
@@ -169,6 +204,18 @@ void Session::openJson(const fs::path& path) {
     const auto scene =
         std::make_shared<scenes::AuthoredScene>(scenes::parseAuthoredScene(text, path.string()));
     leaveDocument([this, scene, path] { author(std::move(*scene), path); });
+    return;
+  }
+  if (jsonKind(text, path.string()) == kResultsSchema) {
+    CaseChoice choice{.file = path};
+    for (const CaseResult& result : parseResults(text, path.string()).cases) {
+      choice.cases.push_back({.id = result.id,
+                              .status = result.status,
+                              .reason = result.reason,
+                              .wrong = !result.differences.empty()});
+    }
+    choice.all = std::ranges::none_of(choice.cases, &CaseChoice::Item::wrong);
+    case_choice = std::move(choice);
     return;
   }
   draft = parseSceneParameters(text, path.string());
@@ -269,6 +316,34 @@ std::size_t Session::bodyCount() const {
   return authoring() ? desk.editor.scene().bodies.size() : scene_.objects;
 }
 
+void Session::open(Source source) {
+  if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
+    author(authored->document(), source.simulation->input());
+    simulateAuthored();
+  } else if (source.simulation) {
+    // Its hash would be known only after the last frame.
+    draft = std::move(source.simulation);
+    simulate();
+  } else {
+    openRecording(source.reference.path, source.expected_hash);
+    if (on_file) on_file(source.reference.path);
+  }
+}
+
+void Session::openCase(const fs::path& results, const std::string& id) {
+  attempt([&] { open(broadmark::openCase(results, id, algorithms)); });
+}
+
+void Session::open(CaseReference reference) {
+  open(std::move(reference.source));
+  lanes.clear();
+  addLane(reference.run);
+  if (!reference.difference) return;
+  wish.frame = reference.difference->frame;
+  wish.check = wish.stop_at_mismatch = true;
+  wanted_panels.emplace_back("Mismatches");
+}
+
 void Session::saveRecording(const fs::path& path) {
   later([this, path] {
     bool saved = false;
@@ -306,6 +381,7 @@ void Session::seek(std::int64_t frame) {
   const auto wanted = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
   if (wanted > wish.frame) acknowledgeStop();
   wish.frame = wanted;
+  searching_ = false;
 }
 
 void Session::step(int frames) {
@@ -330,6 +406,16 @@ LaneEdit& Session::addLane(const std::string& algorithm_id) {
   return added;
 }
 
+LaneEdit& Session::addLane(const Case& run) {
+  LaneEdit& added = addLane(run.algorithm.id);
+  if (run.algorithm.vectorised) added.isa = run.isa;
+  if (run.algorithm.parallel) added.threads = run.threads;
+  added.device = run.device;
+  setParameters(*added.parameters, run.parameters);
+  lanesChanged();
+  return added;
+}
+
 void Session::removeLane(int number) {
   std::erase_if(lanes, [&](const LaneEdit& edit) { return edit.number == number; });
   if (wish.shown_lane == number) wish.shown_lane = lanes.empty() ? 0 : lanes.front().number;
@@ -348,6 +434,56 @@ void Session::lanesChanged() {
 LaneEdit* Session::lane(int number) {
   const auto found = std::ranges::find(lanes, number, &LaneEdit::number);
   return found == lanes.end() ? nullptr : &*found;
+}
+
+void Session::nextMismatch(const RunProgress& progress) {
+  playback.playing = false;
+  wish.check = wish.stop_at_mismatch = true;
+  if (const auto known = nextKnownMismatch(progress.lanes, wish.frame)) {
+    seek(known->frame);
+    showLane(known->lane);
+    return;
+  }
+  seek(scene_.frames);
+  searching_ = true;
+}
+
+void Session::endSearch(const RunProgress& progress) {
+  searching_ = false;
+  std::uint32_t reached = progress.snapshot ? progress.snapshot->frame : 0;
+  for (const LaneReport& lane : progress.lanes) reached = std::max(reached, lane.frame);
+  wish.frame = std::min(reached, wish.frame);
+}
+
+void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot, fs::path file) {
+  if (!file.has_extension()) file += kAabbsExtension;
+  later([this, run, snapshot, file] {
+    requireExportable(file, source_path);
+    std::unique_ptr<FrameSource> source;
+    std::string failure = "exporting a case: another scene has been opened meanwhile";
+    if (snapshot->footage == wish.footage) {
+      runs.withFootage([&](Footage* footage) {
+        try {
+          if (footage != nullptr) source = footage->source(snapshot->frame);
+        } catch (const std::exception& error) {
+          failure = error.what();
+        }
+      });
+    }
+    if (!source) throw InputError(failure);
+    case_export.start(run, std::move(source), snapshot->difference, file);
+  });
+}
+
+void Session::openExport() {
+  const CaseExport::Report report = case_export.report();
+  attempt([&] {
+    openRecording(report.file, {});
+    lanes.clear();
+    addLane(report.run);
+    wish.frame = static_cast<std::uint32_t>(report.frames);
+    if (on_file) on_file(report.file);
+  });
 }
 
 void Session::select(std::vector<std::uint32_t> bodies) {

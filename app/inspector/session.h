@@ -13,6 +13,7 @@
 
 #include "app/inspector/author_desk.h"
 #include "app/inspector/background_bake.h"
+#include "app/inspector/case_export.h"
 #include "app/inspector/run_thread.h"
 #include "broadmark/algorithm.h"
 #include "broadmark/pair.h"
@@ -62,6 +63,22 @@ struct Message {
   std::string text;
 };
 
+struct CaseReference;
+struct Source;
+
+/// A results file that has been opened, one of whose cases is to be chosen.
+struct CaseChoice {
+  struct Item {
+    std::string id;
+    Status status = Status::ok;
+    std::string reason;
+    bool wrong = false;  ///< gave a wrong answer
+  };
+  std::filesystem::path file;
+  std::vector<Item> cases;  ///< as in the file
+  bool all = false;         ///< show also those that were right
+};
+
 class Session {
  public:
   /// Algorithms that can be chosen.
@@ -80,8 +97,16 @@ class Session {
   void simulate();
   /// Takes over another built-in scene as the draft.
   void chooseScene(const std::string& scene, const std::string& engine = {});
-  /// Opens a file of any kind that can be looked at. A bad one becomes an error message.
+  /// Opens a file of any kind that can be looked at. A bad one becomes an error message. Of a
+  /// results file one case is to be chosen.
   void open(const std::filesystem::path& path);
+  /// Opens the source of a run. Throws InputError.
+  void open(Source source);
+  /// Opens a case of a results file at the first frame in which it is wrong, instead of all present
+  /// algorithms. A bad one becomes an error message.
+  void openCase(const std::filesystem::path& results, const std::string& id);
+  /// Likewise. Throws InputError.
+  void open(CaseReference reference);
   /// Shows what `open` gives, from frame 0 on; `scene`: see FootageRequest.
   void show(std::string title, std::function<std::unique_ptr<Footage>()> open,
             std::uint64_t scene = 0);
@@ -111,7 +136,9 @@ class Session {
   /// `leaving`, for the user to decide.
   void leaveDocument(std::function<void()> then);
   /// Whether anything goes on by itself.
-  [[nodiscard]] bool busy() { return playback.playing || !runs.settled() || bake.running(); }
+  [[nodiscard]] bool busy() {
+    return playback.playing || !runs.settled() || bake.running() || case_export.running();
+  }
 
   // Playback. Frames out of range are brought into it.
   void play(bool on);
@@ -120,11 +147,26 @@ class Session {
 
   // Algorithms.
   LaneEdit& addLane(const std::string& algorithm_id);
+  LaneEdit& addLane(const Case& run);
   void removeLane(int number);
   void showLane(int number);
   /// To be called after a lane was edited.
   void lanesChanged();
   [[nodiscard]] LaneEdit* lane(int number);
+
+  // Mismatches.
+  /// Goes on to the next frame in which an algorithm is wrong, running what has not been run yet.
+  void nextMismatch(const RunProgress& progress);
+  /// Whether it is on the way to one.
+  [[nodiscard]] bool searching() const { return searching_; }
+  /// Stays where the algorithms have got to.
+  void endSearch(const RunProgress& progress);
+  /// Begins to shrink and write the case that is wrong in this snapshot; `file` gets its extension
+  /// if it has none.
+  void exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot,
+                  std::filesystem::path file);
+  /// Opens what has been exported, at the wrong frame.
+  void openExport();
 
   // Selection: bodies, ascending.
   void select(std::vector<std::uint32_t> bodies);
@@ -165,13 +207,18 @@ class Session {
 
   AuthorDesk desk;                ///< its selection is that of the session, while authoring()
   std::function<void()> leaving;  ///< waits for unsaved changes to be saved or given up
+  std::optional<CaseChoice> case_choice;  ///< to be made by the user
 
   Wish wish;  ///< edit it and it is committed
   RunThread runs;
   BackgroundBake bake;
+  CaseExport case_export;
 
  private:
   void noticeStop(const RunProgress& progress);
+  void noticeExport();
+  /// Once the frame that was stopped at is seen: visits its first wrong pair.
+  void visitStop(const RunProgress& progress);
   /// Who goes on knows of the mismatch at which it stopped.
   void acknowledgeStop();
   void openJson(const std::filesystem::path& path);
@@ -179,6 +226,8 @@ class Session {
   void noticeBake();
   void showDocument(std::function<std::unique_ptr<Footage>()> open, bool moves);
   [[nodiscard]] std::size_t bodyCount() const;
+  /// `hash`: what it has to be; "": whatever it is. Throws InputError.
+  void openRecording(const std::filesystem::path& path, const std::string& hash);
 
   SceneInfo scene_;
   bool scene_known_ = false;                              ///< what is wished for has been opened
@@ -196,6 +245,8 @@ class Session {
   };
   std::optional<FrameToAuthor> frame_to_author_;
   std::optional<RunProgress::Stop> noticed_stop_;
+  std::optional<RunProgress::Stop> to_visit_;  ///< stopped at, not seen yet
+  bool searching_ = false;
   std::string noticed_failure_;
   std::vector<std::function<void()>> put_off_;
   Wish committed_;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/inspector/inspector.h"
+#include "app/inspector/mismatch.h"
 
 namespace broadmark {
 namespace {
@@ -35,6 +36,10 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
   values["pairs"] = snapshot ? std::to_string(snapshot->pairs.size()) : "0";
   values["missed"] = snapshot ? std::to_string(snapshot->difference.missed_count) : "0";
   values["extra"] = snapshot ? std::to_string(snapshot->difference.extra_count) : "0";
+  values["mismatch_pairs"] = snapshot ? std::to_string(snapshot->difference.missed_count +
+                                                       snapshot->difference.forbidden_count +
+                                                       snapshot->difference.invalid_count)
+                                      : "0";
   values["structure"] = snapshot && snapshot->structure
                             ? std::to_string(snapshot->structure->boxes().size() +
                                              snapshot->structure->lines().size())
@@ -92,6 +97,35 @@ void addBatch(Values& values, const BackgroundBake& bake) {
   values["batch.failed"] = std::to_string(report.failed());
 }
 
+/// Of the two selected bodies, if there are two.
+void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
+  const auto& bodies = session.selection;
+  const bool chosen = bodies.size() == 2;
+  values["pair"] = chosen ? pairName({bodies[0], bodies[1]}) : "";
+  if (!chosen || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
+  const Aabb& a = (*snapshot->boxes)[bodies[0]];
+  const Aabb& b = (*snapshot->boxes)[bodies[1]];
+  constexpr std::string_view kAxes = "xyz";
+  for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
+    const AxisRelation relation = relationOn(axis, a, b);
+    values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);
+    values[fmt::format("pair.relation.{}", kAxes[axis])] = relationName(relation.kind);
+  }
+  values["pair.axis"] = kAxes[decidingAxis(a, b)];
+  values["pair.overlaps"] = overlaps(a, b) ? "yes" : "no";
+  values["pair.history"] =
+      snapshot->tracks.size() == 2 ? std::to_string(snapshot->tracks[0].boxes.size()) : "0";
+}
+
+void addExport(Values& values, const CaseExport::Report& report) {
+  values["export.state"] = exportStateName(report.state);
+  values["export.trials"] = std::to_string(report.trials);
+  values["export.bodies"] = std::to_string(report.bodies);
+  values["export.frames"] = std::to_string(report.frames);
+  values["export.file"] = report.file.string();
+  values["export.command"] = report.command;
+}
+
 Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
   values["frame"] = std::to_string(session.frame());
@@ -126,6 +160,10 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBatch(values, session.bake);
   addLanes(values, progress);
   addSnapshot(values, progress.snapshot.get());
+  addPair(values, session, progress.snapshot.get());
+  addExport(values, session.case_export.report());
+  values["searching"] = session.searching() ? "yes" : "no";
+  values["cases"] = session.case_choice ? std::to_string(session.case_choice->cases.size()) : "";
   return values;
 }
 

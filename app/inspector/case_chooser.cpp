@@ -1,0 +1,71 @@
+#include "app/inspector/case_chooser.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace broadmark {
+namespace {
+
+constexpr const char* kTitle = "Open a case";
+
+/// Returns the id of the case that is clicked; "": none.
+std::string drawCases(Ui& ui, const CaseChoice& choice) {
+  std::vector<const CaseChoice::Item*> shown;
+  for (const CaseChoice::Item& item : choice.cases) {
+    if (choice.all || item.wrong) shown.push_back(&item);
+  }
+  std::string clicked;
+  ImGui::BeginChild("cases", {0, -ImGui::GetFrameHeightWithSpacing() * 1.2F}, true);
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(shown.size()));
+  while (clipper.Step()) {
+    for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
+      const CaseChoice::Item& item = *shown[static_cast<std::size_t>(row)];
+      const std::string status(statusName(item.status));
+      const float width = ImGui::CalcTextSize(status.c_str()).x;
+      ImGui::PushID(row);
+      if (ui.selectable(item.id.c_str(), false)) clicked = item.id;
+      if (row == 0) ui.note("first");
+      ui.tooltip(item.reason.c_str());
+      ImGui::PopID();
+      ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+      ui.coloured(item.status == Status::ok ? ui.theme.good : ui.theme.bad, status);
+    }
+  }
+  ImGui::EndChild();
+  return clicked;
+}
+
+}  // namespace
+
+void drawCaseChooser(Ui& ui, Session& session) {
+  if (!session.case_choice) return;
+  const auto scope = ui.scope("Cases");
+  if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize(
+      {std::min(620 * ui.scale, screen.x - 20), std::min(420 * ui.scale, screen.y - 20)});
+  bool keep = true;
+  if (!ImGui::BeginPopupModal(kTitle, &keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+    session.case_choice.reset();
+    return;
+  }
+  CaseChoice& choice = *session.case_choice;
+  const auto wrong = std::ranges::count_if(choice.cases, &CaseChoice::Item::wrong);
+  ui.paragraph(fmt::format("{}: {} of {} cases gave wrong answers", choice.file.filename().string(),
+                           wrong, choice.cases.size()));
+  const std::string clicked = drawCases(ui, choice);
+  ui.checkbox("all cases", choice.all, "Also those whose answers were right");
+  ImGui::SameLine();
+  if (ui.button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) keep = false;
+  if (!clicked.empty() || !keep) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  if (clicked.empty() && keep) return;
+  const std::filesystem::path file = choice.file;
+  session.case_choice.reset();
+  if (!clicked.empty()) session.openCase(file, clicked);
+}
+
+}  // namespace broadmark

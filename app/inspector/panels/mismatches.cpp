@@ -1,0 +1,317 @@
+// Why a pair is missed, or wrongly reported: the frames and pairs in which an algorithm is wrong,
+// the two boxes, what led to it, and the smallest recording that shows it.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "app/inspector/mismatch.h"
+#include "app/inspector/pair_drawing.h"
+#include "app/inspector/panel.h"
+
+#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+
+namespace broadmark::panels::mismatches {
+namespace {
+
+/// Height of the lists, in rows.
+constexpr float kListRows = 4.6F;
+
+std::string sizeText(std::size_t bodies, std::size_t frames) {
+  return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
+                     frames == 1 ? "frame" : "frames");
+}
+
+class MismatchesPanel final : public Panel {
+ public:
+  MismatchesPanel()
+      : Panel("Mismatches", Place::right, "Pairs that are missed or wrongly reported, and why") {}
+
+  void draw(PanelContext& context) override {
+    if (context.progress.lanes.empty()) {
+      context.ui.paragraph(
+          "Add an algorithm: its answers are compared with the right ones here, frame by frame.");
+    } else {
+      const LaneReport& lane = chooseLane(context);
+      drawVerdict(context, lane);
+      drawSearch(context);
+      drawLists(context, lane);
+      drawCase(context, lane);
+    }
+    drawExport(context);
+    drawPair(context);
+    if (!context.progress.lanes.empty()) drawStructure(context);
+  }
+
+ private:
+  /// The lane whose answer is shown, or else the first.
+  static const LaneReport& chooseLane(PanelContext& context) {
+    const std::vector<LaneReport>& lanes = context.progress.lanes;
+    std::vector<std::string> names;
+    std::size_t chosen = 0;
+    for (const LaneReport& lane : lanes) {
+      if (lane.spec.number == context.session.wish.shown_lane) chosen = names.size();
+      names.push_back(caseName(lane.spec.run));
+    }
+    if (context.ui.combo("##algorithm", chosen, names, "Whose answers are looked at",
+                         ImGui::GetContentRegionAvail().x)) {
+      context.session.showLane(lanes[chosen].spec.number);
+    }
+    return lanes[chosen];
+  }
+
+  /// Whether the snapshot is this lane's answer, compared with the right one.
+  static bool showsAnswerOf(const PanelContext& context, const LaneReport& lane) {
+    const auto& seen = context.progress.snapshot;
+    return seen && seen->checked && seen->lane == lane.spec.number;
+  }
+
+  static void drawVerdict(PanelContext& context, const LaneReport& lane) {
+    Ui& ui = context.ui;
+    if (!context.session.wish.check) {
+      ui.coloured(ui.theme.warning, "answers are not checked");
+      ImGui::SameLine();
+      if (ui.button("Check them", "Compares every answer with the oracle's")) {
+        context.session.wish.check = true;
+      }
+      return;
+    }
+    if (!lane.spec.run.algorithm.finds_pairs) {
+      ui.faint("it reports no pairs by design");
+      return;
+    }
+    if (!showsAnswerOf(context, lane)) {
+      ui.faint(context.progress.doing.empty() ? "no answer for this frame" : "on its way…");
+      return;
+    }
+    const Snapshot& seen = *context.progress.snapshot;
+    const FrameDifference& difference = seen.difference;
+    if (!difference.isMismatch()) {
+      ui.coloured(ui.theme.good, fmt::format("right in frame {}", seen.frame));
+      return;
+    }
+    ui.coloured(ui.theme.bad, fmt::format("frame {}: {} missed, {} extra, {} invalid", seen.frame,
+                                          difference.missed_count, difference.forbidden_count,
+                                          difference.invalid_count));
+  }
+
+  static void drawSearch(PanelContext& context) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    if (session.searching()) {
+      if (ui.button("Stop here", "Stays at the frame that has been reached")) {
+        session.endSearch(context.progress);
+      }
+      ImGui::SameLine();
+      ui.faint(context.progress.doing);
+    } else if (ui.button("Next mismatch", "Goes on to the next frame with a wrong answer")) {
+      session.nextMismatch(context.progress);
+    }
+  }
+
+  static void drawLists(PanelContext& context, const LaneReport& lane) {
+    const float height = kListRows * ImGui::GetTextLineHeightWithSpacing();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::BeginChild("frames", {0.38F * width, height}, true);
+    drawFrames(context, lane);
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("pairs", {0, height}, true);
+    drawPairs(context, lane);
+    ImGui::EndChild();
+  }
+
+  static void drawFrames(PanelContext& context, const LaneReport& lane) {
+    std::vector<std::uint32_t> wrong;
+    for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
+      if (lane.frames[frame - 1].mismatch) wrong.push_back(frame);
+    }
+    if (wrong.empty()) context.ui.faint("no frames");
+    clipped(wrong.size(), [&](std::size_t row) {
+      const std::string name = fmt::format("frame {}", wrong[row]);
+      if (context.ui.selectable(name.c_str(), wrong[row] == context.session.frame())) {
+        context.session.playback.playing = false;
+        context.session.seek(wrong[row]);
+      }
+    });
+  }
+
+  static void drawPairs(PanelContext& context, const LaneReport& lane) {
+    Ui& ui = context.ui;
+    if (!showsAnswerOf(context, lane)) return;
+    const Snapshot& seen = *context.progress.snapshot;
+    const std::vector<WrongPair> wrong = wrongPairs(seen.difference, *seen.boxes, lane.margin);
+    if (wrong.empty()) ui.faint("no wrong pairs");
+    clipped(wrong.size(), [&](std::size_t row) {
+      const WrongPair& one = wrong[row];
+      const std::string name = fmt::format("{} {}", wrongPairName(one.kind), pairName(one.pair));
+      const std::vector<std::uint32_t> bodies = {one.pair.a, one.pair.b};
+      const bool allowed = one.kind == WrongPair::Kind::allowed;
+      ImGui::PushStyleColor(ImGuiCol_Text, colour(allowed ? ui.theme.faint : ui.theme.bad));
+      const bool clicked = ImGui::Selectable(name.c_str(), context.session.selection == bodies);
+      ImGui::PopStyleColor();
+      ui.note(name);
+      if (row == 0) ui.note("first pair");
+      ui.tooltip(allowed ? "Reported though apart, within the algorithm's margin: no fault"
+                         : "Selects both bodies and flies there");
+      if (clicked) context.session.visit(one.pair);
+    });
+    const std::uint64_t all =
+        seen.difference.missed_count + seen.difference.extra_count + seen.difference.invalid_count;
+    if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
+  }
+
+  /// Draws those of `count` rows that are in sight.
+  template <class Row>
+  static void clipped(std::size_t count, Row row) {
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(count));
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        ImGui::PushID(i);
+        row(static_cast<std::size_t>(i));
+        ImGui::PopID();
+      }
+    }
+  }
+
+  /// The button that begins an export.
+  static void drawCase(PanelContext& context, const LaneReport& lane) {
+    Session& session = context.session;
+    const bool wrong = showsAnswerOf(context, lane) &&
+                       context.progress.snapshot->difference.isMismatch() &&
+                       !session.case_export.running();
+    ImGui::BeginDisabled(!wrong);
+    if (context.ui.button("Export case…",
+                          "Writes the smallest recording on which the algorithm is still wrong",
+                          ImGui::GetContentRegionAvail().x)) {
+      context.files.ask(
+          {.title = "Export the smallest recording that fails",
+           .purpose = FileDialog::Purpose::save,
+           .extensions = {".aabbs"},
+           .suggestion = partName(context.progress.scene) + ".aabbs",
+           .chosen = [&session, run = lane.spec.run, seen = context.progress.snapshot](
+                         const auto& file) { session.exportCase(run, seen, file); }});
+    }
+    ImGui::EndDisabled();
+  }
+
+  static void drawExport(PanelContext& context) {
+    Ui& ui = context.ui;
+    CaseExport& export_ = context.session.case_export;
+    const CaseExport::Report report = export_.report();
+    if (report.state == CaseExport::State::idle) return;
+    const auto scope = ui.scope("export");
+    ImGui::PushID("export");
+    if (report.state == CaseExport::State::running) {
+      const double whole = static_cast<double>(report.whole_bodies * report.whole_frames);
+      const double left = static_cast<double>(report.bodies * report.frames);
+      ImGui::ProgressBar(
+          static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
+          fmt::format("{}, {} runs", sizeText(report.bodies, report.frames), report.trials)
+              .c_str());
+      if (ui.button("Cancel", "Nothing is written then")) export_.cancel();
+    } else if (report.state == CaseExport::State::done) {
+      drawExported(context, report);
+    } else {
+      const bool failed = report.state == CaseExport::State::failed;
+      ui.coloured(failed ? ui.theme.bad : ui.theme.faint,
+                  fmt::format("export {}", exportStateName(report.state)));
+    }
+    ImGui::PopID();
+  }
+
+  static void drawExported(PanelContext& context, const CaseExport::Report& report) {
+    Ui& ui = context.ui;
+    ui.coloured(ui.theme.good, fmt::format("{} of {}", sizeText(report.bodies, report.frames),
+                                           sizeText(report.whole_bodies, report.whole_frames)));
+    ui.tooltip(report.file.c_str());
+    std::string command = report.command;
+    ImGui::SetNextItemWidth(-1);
+    ImGui::InputText("##command", &command, ImGuiInputTextFlags_ReadOnly);
+    ui.note("command");
+    ui.tooltip(command.c_str());
+    if (ui.button("Copy", "Copies the command that shows the fault")) {
+      ImGui::SetClipboardText(report.command.c_str());
+    }
+    ImGui::SameLine();
+    if (ui.button("Open it", "Looks at the exported recording instead")) {
+      context.session.openExport();
+    }
+  }
+
+  static void drawPair(PanelContext& context) {
+    Ui& ui = context.ui;
+    const auto& bodies = context.session.selection;
+    const auto& seen = context.progress.snapshot;
+    ui.heading("Pair");
+    if (bodies.size() != 2 || !seen || bodies[1] >= seen->boxes->size()) {
+      ui.paragraph("Click a pair above, or select two bodies.");
+      return;
+    }
+    const BoxPair pair{
+        {bodies[0], bodies[1]}, (*seen->boxes)[bodies[0]], (*seen->boxes)[bodies[1]]};
+    ui.coloured(overlaps(pair.a, pair.b) ? ui.theme.good : ui.theme.bad, sentenceOn(pair));
+    drawPairTable(ui, pair);
+    drawIntervals(ui, pair);
+    drawHistory(context, pair);
+  }
+
+  /// "They overlap, least on y".
+  static std::string sentenceOn(const BoxPair& pair) {
+    constexpr std::string_view kAxes = "xyz";
+    const std::size_t axis = decidingAxis(pair.a, pair.b);
+    const AxisRelation relation = relationOn(axis, pair.a, pair.b);
+    switch (relation.kind) {
+      case AxisRelation::Kind::overlap:
+        return fmt::format("they overlap, least on {}", kAxes[axis]);
+      case AxisRelation::Kind::touch:
+        return fmt::format("they overlap, just touching on {}", kAxes[axis]);
+      case AxisRelation::Kind::gap:
+        return fmt::format("they are apart, most on {}", kAxes[axis]);
+    }
+    return {};
+  }
+
+  static void drawHistory(PanelContext& context, const BoxPair& pair) {
+    Ui& ui = context.ui;
+    const std::vector<Track>& tracks = context.progress.snapshot->tracks;
+    if (tracks.size() != 2 || tracks[0].body != pair.bodies.a || tracks[1].body != pair.bodies.b) {
+      return;
+    }
+    const PairTrack track{tracks[0], tracks[1]};
+    ui.heading("History");
+    const auto began = track.overlapBegan();
+    if (!began) {
+      ui.faint(fmt::format("frames {} to {}: apart at the end", tracks[0].first,
+                           tracks[0].first + track.size() - 1));
+    } else if (*began == tracks[0].first) {
+      ui.faint(fmt::format("overlapping since frame {} or earlier", *began));
+    } else {
+      ui.faint(fmt::format("overlapping since frame {}", *began));
+    }
+    if (const auto clicked = drawPairHistory(ui, track)) {
+      context.session.playback.playing = false;
+      context.session.seek(*clicked);
+    }
+  }
+
+  static void drawStructure(PanelContext& context) {
+    Ui& ui = context.ui;
+    ui.heading("Inside the algorithm");
+    ui.toggle("Show structure", context.session.view.structure,
+              "Draws its cells, nodes or planes in the view, around the pair");
+    for (const LaneReport& lane : context.progress.lanes) {
+      if (lane.spec.number != context.session.wish.shown_lane) continue;
+      if (lane.margin > 0) ui.fact("margin", fmt::format("{}", lane.margin));
+      for (const auto& [name, count] : lane.counters) ui.fact(name.c_str(), std::to_string(count));
+    }
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<MismatchesPanel>(); }
+
+}  // namespace broadmark::panels::mismatches

@@ -1,0 +1,253 @@
+// Exporting a failing case in the background, and the cases of a results file.
+#include "app/inspector/case_export.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "app/inspector/session.h"
+#include "broadmark/algorithms.h"
+#include "broadmark/atomic_file.h"
+#include "broadmark/recording.h"
+#include "tests/engine/helpers.h"
+#include "tests/support/faulty_algorithm.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using State = CaseExport::State;
+
+class CaseExportTest : public testing::Test {
+ protected:
+  CaseExportTest() : session(algorithms()) {}
+
+  static std::vector<Algorithm> algorithms() {
+    std::vector<Algorithm> all = builtinAlgorithms();
+    for (const Algorithm& algorithm : faulty::variants()) all.push_back(algorithm);
+    return all;
+  }
+
+  /// Commits, waits, and takes note: as pictures would.
+  RunProgress settle() {
+    RunProgress seen;
+    for (int picture = 0; picture < 3; ++picture) {
+      session.commit();
+      EXPECT_TRUE(session.runs.settle(60s));
+      session.runs.look([&](const RunProgress& progress) {
+        session.advance(progress, 0);
+        seen = progress;
+      });
+    }
+    return seen;
+  }
+
+  /// Goes to the first mismatch of an algorithm.
+  RunProgress findMismatch(const std::string& algorithm) {
+    session.chooseScene("brownian", "kinematic");
+    setParameters(*session.draft, {{"objects", "200"}, {"frames", "60"}});
+    session.simulate();
+    setParameters(*session.addLane(algorithm).parameters, {{"fat_margin", "0.5"}});
+    session.lanesChanged();
+    session.nextMismatch(settle());
+    const RunProgress seen = settle();
+    EXPECT_TRUE(seen.stop) << "the fault did not show";
+    return seen;
+  }
+
+  CaseExport::Report waitForEnd() {
+    for (int i = 0; i < 60000 && session.case_export.running(); ++i) {
+      std::this_thread::sleep_for(1ms);
+    }
+    return session.case_export.report();
+  }
+
+  Session session;
+  TemporaryDirectory directory;
+};
+
+TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
+  for (const std::string algorithm : {"faulty", "faulty-extra"}) {
+    SCOPED_TRACE(algorithm);
+    session.lanes.clear();
+    const RunProgress seen = findMismatch(algorithm);
+    session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / algorithm);
+    settle();
+    const CaseExport::Report report = waitForEnd();
+    settle();
+    EXPECT_TRUE(session.errors.empty()) << session.errors.front();
+    ASSERT_EQ(report.state, State::done) << report.failure;
+    EXPECT_EQ(report.whole_bodies, 200U);
+    EXPECT_EQ(report.whole_frames, seen.snapshot->frame);
+    EXPECT_EQ(report.bodies, algorithm == "faulty" ? 3U : 2U);
+    EXPECT_LE(report.frames, 2U);
+    EXPECT_GT(report.trials, 0U);
+    EXPECT_THAT(report.command, testing::HasSubstr("--algorithm " + algorithm + " "));
+    EXPECT_THAT(report.command, testing::HasSubstr("--param fat_margin=0.5"));
+    EXPECT_THAT(session.status.text, testing::HasSubstr("exported"));
+    const auto written = openRecordingFile(directory / (algorithm + ".aabbs"));
+    EXPECT_EQ(written->scene().objects, report.bodies);
+    EXPECT_EQ(written->scene().frames, report.frames);
+
+    session.openExport();
+    const RunProgress opened = settle();
+    EXPECT_EQ(opened.scene.objects, report.bodies);
+    ASSERT_TRUE(opened.snapshot);
+    EXPECT_EQ(opened.snapshot->frame, report.frames);
+    EXPECT_TRUE(opened.snapshot->difference.isMismatch());
+    EXPECT_TRUE(session.errors.empty());
+  }
+}
+
+TEST_F(CaseExportTest, TheFirstWrongPairIsVisited) {
+  const RunProgress seen = findMismatch("faulty");
+  ASSERT_FALSE(seen.snapshot->difference.missed.empty());
+  const Pair missed = seen.snapshot->difference.missed.front();
+  EXPECT_THAT(session.selection, testing::ElementsAre(missed.a, missed.b));
+  EXPECT_EQ(session.fly_to, session.selection);
+}
+
+TEST_F(CaseExportTest, BadFilesAreTold) {
+  const RunProgress seen = findMismatch("faulty");
+  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.posrot");
+  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "no/a.aabbs");
+  settle();
+  ASSERT_EQ(session.errors.size(), 2U);
+  EXPECT_THAT(session.errors[0], testing::HasSubstr(".aabbs is expected"));
+  EXPECT_THAT(session.errors[1], testing::HasSubstr("No such file"));
+  EXPECT_EQ(session.case_export.report().state, State::idle);
+}
+
+TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
+  const RunProgress seen = findMismatch("faulty");
+  session.simulate();
+  session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.aabbs");
+  settle();
+  ASSERT_EQ(session.errors.size(), 1U);
+  EXPECT_THAT(session.errors[0], testing::HasSubstr("another scene"));
+}
+
+TEST_F(CaseExportTest, CanBeCancelled) {
+  const RunProgress seen = findMismatch("faulty");
+  CaseExport& work = session.case_export;
+  // It is cancelled before the first trial, then while it may be at any point, or be over.
+  for (const auto pause : {0ms, 2ms, 10ms}) {
+    std::unique_ptr<FrameSource> frames;
+    session.runs.withFootage(
+        [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
+    work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
+               directory / "a.aabbs");
+    std::this_thread::sleep_for(pause);
+    work.cancel();
+    const State state = waitForEnd().state;
+    EXPECT_TRUE(state == State::cancelled || state == State::done);
+    EXPECT_EQ(std::filesystem::exists(directory / "a.aabbs"), state == State::done);
+    std::filesystem::remove(directory / "a.aabbs");
+  }
+  EXPECT_TRUE(work.takeEnd());
+  EXPECT_FALSE(work.takeEnd());
+}
+
+TEST_F(CaseExportTest, EndsWithItsOwner) {
+  const RunProgress seen = findMismatch("faulty");
+  CaseExport work;
+  std::unique_ptr<FrameSource> source;
+  session.runs.withFootage(
+      [&](Footage* footage) { source = footage->source(seen.snapshot->frame); });
+  work.start(seen.lanes[0].spec.run, std::move(source), seen.snapshot->difference,
+             directory / "a.aabbs");
+}
+
+TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
+  const RunProgress seen = findMismatch("faulty");
+  Case right = seen.lanes[0].spec.run;
+  right.algorithm = builtinAlgorithms().front();
+  right.parameters.clear();
+  session.exportCase(right, seen.snapshot, directory / "a.aabbs");
+  settle();
+  EXPECT_EQ(waitForEnd().state, State::failed);
+  settle();
+  ASSERT_EQ(session.errors.size(), 1U);
+  EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
+}
+
+TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
+  setParameters(*session.draft, {{"objects", "50"}, {"frames", "8"}});
+  session.simulate();
+  session.addLane("sap");
+  session.nextMismatch(settle());
+  EXPECT_TRUE(session.searching());
+  settle();
+  EXPECT_FALSE(session.searching());
+  EXPECT_EQ(session.frame(), 8U);
+  EXPECT_EQ(session.status.text, "no further mismatch up to frame 8");
+}
+
+TEST_F(CaseExportTest, TheSearchGoesOnFromMismatchToMismatch) {
+  const std::uint32_t first = findMismatch("faulty-extra").stop->frame;
+  RunProgress seen = settle();
+  session.nextMismatch(seen);
+  seen = settle();
+  const std::uint32_t second = seen.snapshot->frame;
+  EXPECT_GT(second, first);
+  EXPECT_TRUE(seen.snapshot->difference.isMismatch());
+  // Those known already are gone to directly.
+  session.step(-static_cast<int>(session.frame()));
+  settle();
+  session.nextMismatch(settle());
+  EXPECT_FALSE(session.searching());
+  settle();
+  EXPECT_EQ(session.frame(), first);
+}
+
+TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
+  const RunProgress seen = findMismatch("faulty");
+  ASSERT_TRUE(seen.stop);
+  const std::uint32_t wrong = seen.stop->frame;
+  session.saveRecording(directory / "run.aabbs");
+  settle();
+  Results results;
+  CaseResult one;
+  one.id = "some/case";
+  one.algorithm = "faulty";
+  one.family = "Faulty";
+  one.parameters = {{"fat_margin", "0.5"}};
+  one.status = Status::mismatch;
+  one.differences = {seen.snapshot->difference};
+  const auto recording = openRecordingFile(directory / "run.aabbs");
+  one.recording = {.scene = recording->scene(),
+                   .hash = recording->hash(),
+                   .path = (directory / "run.aabbs").string()};
+  CaseResult right = one;
+  right.id = "right/case";
+  right.status = Status::ok;
+  right.differences.clear();
+  results.cases = {right, one};
+  for (const ResultWriter& writer : resultWriters()) {
+    if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
+  }
+  session.open(directory / "r.json");
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front();
+  ASSERT_TRUE(session.case_choice);
+  ASSERT_EQ(session.case_choice->cases.size(), 2U);
+  EXPECT_FALSE(session.case_choice->all);
+  EXPECT_FALSE(session.case_choice->cases[0].wrong);
+  EXPECT_TRUE(session.case_choice->cases[1].wrong);
+  EXPECT_EQ(session.case_choice->cases[1].status, Status::mismatch);
+
+  session.openCase(directory / "r.json", "some/case");
+  const RunProgress opened = settle();
+  ASSERT_TRUE(session.errors.empty()) << session.errors.front();
+  ASSERT_EQ(session.lanes.size(), 1U);
+  EXPECT_EQ(opened.snapshot->frame, wrong);
+  EXPECT_TRUE(opened.snapshot->difference.isMismatch());
+  EXPECT_THAT(session.wanted_panels, testing::Contains("Mismatches"));
+
+  session.openCase(directory / "r.json", "other/case");
+  ASSERT_EQ(session.errors.size(), 1U);
+  EXPECT_THAT(session.errors.front(), testing::HasSubstr("no case 'other/case'"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,108 @@
+// What is told of a wrong pair.
+#include "app/inspector/mismatch.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace broadmark::tests {
+namespace {
+
+using Kind = AxisRelation::Kind;
+
+Aabb box(float min, float max) { return {{min, 0, 0, 0}, {max, 1, 1, 0}}; }
+
+TEST(AxisRelations, TellOverlapTouchAndGap) {
+  EXPECT_EQ(relationOn(0, box(0, 2), box(1, 3)).kind, Kind::overlap);
+  EXPECT_EQ(relationOn(0, box(0, 2), box(1, 3)).gap, -1);
+  EXPECT_EQ(relationOn(0, box(0, 2), box(2, 3)).kind, Kind::touch);
+  EXPECT_EQ(relationOn(0, box(4, 5), box(2, 3)).kind, Kind::gap);
+  EXPECT_EQ(relationOn(0, box(4, 5), box(2, 3)).gap, 1);
+}
+
+TEST(AxisRelations, NeighbouringFloatsDoNotTouch) {
+  const float high = std::nextafter(1e-30F, 1.0F);
+  EXPECT_EQ(relationOn(0, box(0, 1e-30F), box(high, 1)).kind, Kind::gap);
+  EXPECT_EQ(relationOn(0, box(0, high), box(1e-30F, 1)).kind, Kind::overlap);
+  const float tiny = std::numeric_limits<float>::denorm_min();
+  EXPECT_EQ(relationOn(0, box(-1, 0), box(tiny, 1)).kind, Kind::gap);
+}
+
+TEST(AxisRelations, AgreeWithTheDefinitionOfOverlap) {
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> place(0, 5);
+  int overlapping = 0;
+  for (int trial = 0; trial < 5000; ++trial) {
+    Aabb a;
+    Aabb b;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (Aabb* one : {&a, &b}) {
+        one->min[axis] = static_cast<float>(place(random)) / 3;
+        one->max[axis] = one->min[axis] + static_cast<float>(place(random)) / 3;
+      }
+    }
+    bool apart = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      apart = apart || relationOn(axis, a, b).kind == Kind::gap;
+    }
+    ASSERT_EQ(!apart, overlaps(a, b));
+    ASSERT_EQ(relationOn(decidingAxis(a, b), a, b).kind == Kind::gap, apart);
+    overlapping += apart ? 0 : 1;
+  }
+  EXPECT_GT(overlapping, 100);
+}
+
+TEST(DecidingAxis, HasTheWidestGapOrTheLeastOverlap) {
+  const Aabb a{{0, 0, 0, 0}, {4, 4, 4, 0}};
+  EXPECT_EQ(decidingAxis(a, {{1, 3, 2, 0}, {5, 7, 6, 0}}), 1U);
+  EXPECT_EQ(decidingAxis(a, {{5, 3, 7, 0}, {6, 7, 8, 0}}), 2U);
+}
+
+TEST(WrongPairs, StandByKindAndTellAllowedOnesApart) {
+  const std::vector<Aabb> boxes = {box(0, 1), box(1.5F, 2), box(9, 10)};
+  FrameDifference difference;
+  difference.extra = {{0, 1}, {0, 2}};
+  difference.invalid = {{1, 1}, {0, 77}};
+  difference.missed = {{1, 2}};
+  std::vector<std::string> names;
+  for (const WrongPair& wrong : wrongPairs(difference, boxes, 0.25F)) {
+    names.push_back(std::string(wrongPairName(wrong.kind)) + " " + pairName(wrong.pair));
+  }
+  EXPECT_THAT(names, testing::ElementsAre("missed 1-2", "extra 0-2", "invalid 1-1", "invalid 0-77",
+                                          "allowed 0-1"));
+}
+
+TEST(PairTracks, TellSinceWhenTheyOverlap) {
+  const Track still{.body = 1, .first = 10, .boxes = std::vector<Aabb>(5, box(0, 1))};
+  Track other{.body = 2, .first = 10, .boxes = {box(0, 1), box(4, 5), box(3, 4)}};
+  other.boxes.push_back(box(1, 2));
+  other.boxes.push_back(box(1, 2));
+  EXPECT_EQ((PairTrack{still, other}.overlapBegan()), 13U);
+  EXPECT_FALSE(movedAt(other, 0));
+  EXPECT_TRUE(movedAt(other, 3));
+  EXPECT_FALSE(movedAt(other, 4));
+  other.boxes.back() = box(7, 8);
+  EXPECT_EQ((PairTrack{still, other}.overlapBegan()), std::nullopt);
+  EXPECT_EQ((PairTrack{still, still}.overlapBegan()), 10U);
+}
+
+TEST(KnownMismatches, TheNextOfAnyLane) {
+  std::vector<LaneReport> lanes(2);
+  for (LaneReport& lane : lanes) {
+    lane.spec.number = static_cast<int>(&lane - lanes.data()) + 1;
+    lane.frames.resize(9);
+  }
+  EXPECT_FALSE(nextKnownMismatch(lanes, 0));
+  lanes[0].frames[7].mismatch = true;  // frame 8
+  lanes[1].frames[3].mismatch = true;
+  EXPECT_EQ(nextKnownMismatch(lanes, 0)->frame, 4U);
+  EXPECT_EQ(nextKnownMismatch(lanes, 0)->lane, 2);
+  EXPECT_EQ(nextKnownMismatch(lanes, 4)->frame, 8U);
+  EXPECT_FALSE(nextKnownMismatch(lanes, 8));
+}
+
+}  // namespace
+}  // namespace broadmark::tests
