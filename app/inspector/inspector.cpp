@@ -406,8 +406,10 @@ void Inspector::drawErrors() {
   }
   if (!session_.errors.empty()) ui_.paragraph(session_.errors.front());
   ImGui::Spacing();
-  const bool escaped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) ||
-                       ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false);
+  // The key that led to the error is no answer to it.
+  const bool escaped = !ImGui::IsWindowAppearing() &&
+                       (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) ||
+                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false));
   if (ui_.button("OK", nullptr, 80 * ui_.scale) || escaped) {
     if (!session_.errors.empty()) session_.errors.pop_front();
     if (session_.errors.empty()) ImGui::CloseCurrentPopup();

@@ -19,7 +19,7 @@ constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
 constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
-constexpr float kSurroundings = 4;  // what is looked at is shown with so many times its size around
+constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
 
 constexpr Rgb kMissed = 0xE5484D;
 constexpr Rgb kLine = 0x4C8DFF;
@@ -43,7 +43,9 @@ void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); 
 void View::lookAtAll() {
   if (!shown_.snapshot) return;
   const Aabb all = shownBox(shown_.snapshot->scene.world, *shown_.snapshot->boxes);
-  fly(focusedOn(camera_, content_.space.toView(all), aspect()));
+  OrbitCamera whole = focusedOn(camera_, content_.space.toView(all), aspect());
+  whole.cut = OrbitCamera::kUncut;
+  fly(whole);
 }
 
 void View::fly(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
@@ -70,8 +72,10 @@ void View::takeFlightRequest(Session& session) {
     lookAtAll();
     return;
   }
-  const Aabb bounds = enlargedBy(boundsOf(bodies), kSurroundings);
-  fly(focusedOn(camera_, content_.space.toView(bounds), aspect()));
+  const Aabb bounds = boundsOf(bodies);
+  const Aabb surroundings = content_.space.toView(enlargedBy(bounds, kSurroundings));
+  // What stands before them would hide them.
+  fly(cutAway(focusedOn(camera_, surroundings, aspect()), content_.space.toView(bounds)));
 }
 
 void View::update(Session& session, const RunProgress& progress, bool dark) {
