@@ -165,6 +165,9 @@ std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCu
       static_cast<std::size_t>(std::max(0.0F, (axes.max.y - axes.min.y - line / 2) / line));
   std::optional<std::size_t> hovered;
   ImVec2 at{axes.max.x - width, axes.min.y + line / 4};
+  const auto rows = static_cast<float>(std::min(curves.size(), fitting));
+  draw.AddRectFilled({at.x, at.y - line / 8}, {axes.max.x, at.y + rows * line},
+                     (palette.background & ~IM_COL32_A_MASK) | (ImU32{215} << IM_COL32_A_SHIFT), 3);
   for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
     const PlotCurve& curve = curves[i];
     if (ImGui::IsMouseHoveringRect(at, {axes.max.x, at.y + line})) hovered = i;

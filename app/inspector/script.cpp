@@ -99,7 +99,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
       {"wheel", "WIDGET TURNS", 2, 2, &P::wheel, "turns the wheel over a widget"},
       {"panel", "NAME", 1, 1, &P::panel, "brings a panel to the front"},
       {"open", "FILE", 1, 1, &P::open, "drops a file onto the window"},
-      {"wait", "settled|PICTURES", 1, 1, &P::wait,
+      {"wait", "PICTURES or settled", 1, 1, &P::wait,
        "until all that is wished for is computed, or for some pictures"},
       {"expect", "VALUE RELATION TEXT", 3, 3, &P::expect,
        "waits for a value of the session to be =, !=, <, >, <= or >= to the text, or to contain it "

@@ -373,6 +373,7 @@ void applyTheme(Ui& ui, bool dark, float scale) {
   style.TabRounding = 4;
   style.WindowBorderSize = 0;
   style.PopupBorderSize = 1;
+  style.FrameBorderSize = dark ? 0 : 1;
   style.WindowMenuButtonPosition = ImGuiDir_None;
   style.ScaleAllSizes(scale);
   ImGui::GetStyle() = style;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "broadmark/atomic_file.h"
 #include "tests/engine/helpers.h"
 
 namespace broadmark::tests {
@@ -24,6 +25,16 @@ TEST(Script, WrongLinesAreNamed) {
   EXPECT_THAT(inputErrorOf([] { parseScript("enter Scene/objects", "s"); }),
               testing::HasSubstr("'enter WIDGET TEXT' is expected"));
   EXPECT_THAT(inputErrorOf([] { parseScript("wait", "s"); }), testing::HasSubstr("wait"));
+}
+
+TEST(Script, EveryVerbIsDocumented) {
+  const std::string text =
+      readTextFile(std::filesystem::path(BROADMARK_SOURCE_DIR) / "docs/inspector.md");
+  for (const ScriptVerb& verb : scriptVerbs()) {
+    const std::string row =
+        "| `" + std::string(verb.name) + " " + verb.arguments + "` | " + verb.doc + " |\n";
+    EXPECT_THAT(text, testing::HasSubstr(row));
+  }
 }
 
 }  // namespace
