@@ -8,6 +8,7 @@
 
 #include <random>
 #include <set>
+#include <thread>
 
 #include "broadmark/algorithms.h"
 #include "render/framebuffer.h"
@@ -28,7 +29,13 @@ class InspectorTest : public testing::Test {
     std::filesystem::current_path(directory / "");  // screenshots go there
     setParameters(*inspector.session().draft, {{"objects", "40"}, {"frames", "20"}});
   }
-  ~InspectorTest() override { std::filesystem::current_path(former_directory); }
+  ~InspectorTest() override {
+    // A batch that has been begun writes below the directory that is about to go.
+    BackgroundBake& bake = inspector.session().bake;
+    bake.cancel();
+    while (bake.running()) std::this_thread::sleep_for(1ms);
+    std::filesystem::current_path(former_directory);
+  }
 
   void draw(int pictures = 1) {
     for (int i = 0; i < pictures; ++i) {
