@@ -8,24 +8,20 @@
 #include "app/options.h"
 #include "app/plugins.h"
 #include "app/progress.h"
+#include "app/words.h"
 #include "broadmark/error.h"
 #include "broadmark/shrink.h"
 
 namespace broadmark {
 namespace {
 
-std::string sizeText(std::size_t bodies, std::size_t frames) {
-  return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
-                     frames == 1 ? "frame" : "frames");
-}
-
 /// What is left, in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
   const FrameDifference& difference = shrunk.difference;
   return fmt::format("{}: {} of {} ({} runs): {} missed, {} false, {} invalid", partName(whole),
-                     sizeText(shrunk.selection.bodies.size(), shrunk.selection.frames.size() - 1),
-                     sizeText(whole.objects, whole.frames), shrunk.trials, difference.missed_count,
-                     difference.forbidden_count, difference.invalid_count);
+                     extentText(shrunk.selection.bodies.size(), shrunk.selection.frames.size() - 1),
+                     extentText(whole.objects, whole.frames), shrunk.trials,
+                     difference.missed_count, difference.forbidden_count, difference.invalid_count);
 }
 
 }  // namespace
@@ -49,7 +45,7 @@ int runExportCase(const HeadlessOptions& options) {
       reference.run, *recording, *reference.difference,
       {.progress =
            [&](const ShrinkProgress& now) {
-             progress.detail(sizeText(now.bodies, now.frames));
+             progress.detail(extentText(now.bodies, now.frames));
              progress.update(size - std::min<std::uint64_t>(size, now.bodies * now.frames));
            },
        .cancelled = InterruptGuard::requested});

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 
+#include "app/words.h"
+
 namespace broadmark {
 namespace {
 
@@ -35,13 +37,6 @@ std::string shortened(const std::string& text, std::size_t bytes) {
 }
 
 }  // namespace
-
-std::string waitingTime(double seconds) {
-  const auto whole = static_cast<long>(seconds + 0.5);
-  if (whole < 60) return fmt::format("{} s", whole);
-  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
-  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
-}
 
 Progress::Progress(std::string task, std::uint64_t steps, bool quiet)
     : task_(std::move(task)), steps_(steps), quiet_(quiet), terminal_(::isatty(2) != 0) {}

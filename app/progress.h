@@ -9,9 +9,6 @@
 
 namespace broadmark {
 
-/// A time that a person waits, in words: "2 min 05 s".
-std::string waitingTime(double seconds);
-
 /// Shows on standard error how far a task is. On a terminal one line is rewritten, never longer
 /// than the terminal is wide; elsewhere there is a plain line now and then, and one when the task
 /// ends. Shows nothing when `quiet`.

@@ -5,18 +5,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/words.h"
+
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string sizeText(std::uintmax_t bytes) {
-  constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
-  auto size = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
-  return fmt::format("{:.3g} {}", size, kUnits[unit]);
-}
 
 }  // namespace
 
@@ -97,7 +91,7 @@ void FileDialog::drawEntries(Ui& ui) {
                                            ImGuiSelectableFlags_AllowDoubleClick);
     ui.note(label);
     if (!entry.is_directory) {
-      const std::string size = sizeText(entry.bytes);
+      const std::string size = bytesText(entry.bytes);
       ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
       ui.faint(size);
     }

@@ -13,6 +13,7 @@
 #include "broadmark/algorithms.h"
 #include "render/framebuffer.h"
 #include "tests/engine/helpers.h"
+#include "tests/support/pictures.h"
 
 namespace broadmark::tests {
 namespace {
@@ -136,6 +137,16 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
   }
   settle();
   EXPECT_NE(inspector.ui().find("Scene/Simulate"), nullptr);
+}
+
+TEST_F(InspectorTest, LooksAsItDid) {
+  inspector.session().chooseScene("brownian", "kinematic");
+  inspector.session().simulate();
+  settle();
+  const Framebuffer target(gl, width, height, 1);
+  inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
+  EXPECT_TRUE(looksLikeGolden(target.read(), std::filesystem::path(BROADMARK_SOURCE_DIR) /
+                                                 "tests/inspector/golden/inspector.png"));
 }
 
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {

@@ -8,6 +8,7 @@
 
 #include "app/bake_plan.h"
 #include "app/inspector/panel.h"
+#include "app/words.h"
 #include "broadmark/error.h"
 
 namespace broadmark::panels::batch {
@@ -15,21 +16,6 @@ namespace {
 
 using Outcome = BackgroundBake::Outcome;
 namespace fs = std::filesystem;
-
-std::string sizeText(std::uint64_t bytes) {
-  constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
-  auto size = static_cast<double>(bytes);
-  std::size_t unit = 0;
-  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
-  return fmt::format("{:.3g} {}", size, kUnits[unit]);
-}
-
-std::string timeText(double seconds) {
-  if (!(seconds < 1e6)) return "";
-  const auto whole = static_cast<long>(std::ceil(seconds));
-  return whole < 60 ? fmt::format("{} s left", whole)
-                    : fmt::format("{}:{:02} min left", whole / 60, whole % 60);
-}
 
 const char* outcomeName(Outcome outcome) {
   switch (outcome) {
@@ -187,8 +173,9 @@ class BatchPanel final : public Panel {
       session.bake.cancel();
     }
     ImGui::PushTextWrapPos(0);
-    const std::string left =
-        report.state == BackgroundBake::State::baking ? timeText(report.seconds_left) : "";
+    const std::string left = report.state == BackgroundBake::State::baking
+                                 ? fmt::format("about {} left", waitingTime(report.seconds_left))
+                                 : "";
     ui.faint(left.empty() ? report.doing : fmt::format("{}; {}", left, report.doing));
     ImGui::PopTextWrapPos();
   }
@@ -222,14 +209,14 @@ class BatchPanel final : public Panel {
       return;
     }
     ui.heading(fmt::format("To bake: {} recordings, {}", preview_.recordings.size(),
-                           sizeText(preview_.bytes))
+                           bytesText(preview_.bytes))
                    .c_str());
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(preview_.recordings.size()));
     while (clipper.Step()) {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
         const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
-        const std::string size = sizeText(bytes);
+        const std::string size = bytesText(bytes);
         ImGui::TextUnformatted(path.filename().string().c_str());
         ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
         ui.faint(size);

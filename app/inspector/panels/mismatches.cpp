@@ -9,6 +9,7 @@
 #include "app/inspector/mismatch.h"
 #include "app/inspector/pair_drawing.h"
 #include "app/inspector/panel.h"
+#include "app/words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 
@@ -17,11 +18,6 @@ namespace {
 
 /// Height of the lists, in rows.
 constexpr float kListRows = 4.6F;
-
-std::string sizeText(std::size_t bodies, std::size_t frames) {
-  return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
-                     frames == 1 ? "frame" : "frames");
-}
 
 class MismatchesPanel final : public Panel {
  public:
@@ -209,7 +205,7 @@ class MismatchesPanel final : public Panel {
       const double left = static_cast<double>(report.bodies * report.frames);
       ImGui::ProgressBar(
           static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
-          fmt::format("{}, {} runs", sizeText(report.bodies, report.frames), report.trials)
+          fmt::format("{}, {} runs", extentText(report.bodies, report.frames), report.trials)
               .c_str());
       if (ui.button("Cancel", "Nothing is written then")) export_.cancel();
     } else if (report.state == CaseExport::State::done) {
@@ -224,8 +220,8 @@ class MismatchesPanel final : public Panel {
 
   static void drawExported(PanelContext& context, const CaseExport::Report& report) {
     Ui& ui = context.ui;
-    ui.coloured(ui.theme.good, fmt::format("{} of {}", sizeText(report.bodies, report.frames),
-                                           sizeText(report.whole_bodies, report.whole_frames)));
+    ui.coloured(ui.theme.good, fmt::format("{} of {}", extentText(report.bodies, report.frames),
+                                           extentText(report.whole_bodies, report.whole_frames)));
     ui.tooltip(report.file.c_str());
     std::string command = report.command;
     ImGui::SetNextItemWidth(-1);

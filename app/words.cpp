@@ -1,0 +1,29 @@
+#include "app/words.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace broadmark {
+
+std::string bytesText(std::uint64_t bytes) {
+  constexpr const char* kUnits[] = {"B", "kB", "MB", "GB", "TB"};
+  auto size = static_cast<double>(bytes);
+  std::size_t unit = 0;
+  for (; size >= 1000 && unit + 1 < std::size(kUnits); ++unit) size /= 1000;
+  return fmt::format("{:.3g} {}", size, kUnits[unit]);
+}
+
+std::string extentText(std::size_t bodies, std::size_t frames) {
+  return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
+                     frames == 1 ? "frame" : "frames");
+}
+
+std::string waitingTime(double seconds) {
+  const auto whole = static_cast<long>(seconds + 0.5);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace broadmark
