@@ -12,16 +12,16 @@ TEST(DrawGate, NeverTimesWhileDrawing) {
   DrawGate gate;
   std::atomic<bool> drawing = false;
   std::atomic<int> met = 0;
+  std::atomic<int> drawn = 0;
   std::atomic<bool> done = false;
   std::thread timer([&] {
-    for (int i = 0; i < 2000; ++i) {
+    while (drawn < 500) {
       gate.beginTiming();
       const bool seen = drawing;
       if (!gate.endTiming() && seen) ++met;
     }
     done = true;
   });
-  int drawn = 0;
   while (!done) {
     gate.beginDrawing();
     drawing = true;
@@ -31,7 +31,6 @@ TEST(DrawGate, NeverTimesWhileDrawing) {
   }
   timer.join();
   EXPECT_EQ(met, 0);
-  EXPECT_GT(drawn, 0);
 }
 
 TEST(DrawGate, ALongFrameLetsTheOtherSideDrawAndIsCalledDisturbed) {
