@@ -6,21 +6,13 @@
 #include <exception>
 #include <set>
 
+#include "render/colouring.h"
+
 namespace broadmark {
 namespace {
 
 /// How many frames of a tracked body are looked back at.
 constexpr std::uint32_t kTrackFrames = 60;
-
-std::vector<std::uint32_t> countOverlaps(std::size_t bodies, std::span<const Pair> pairs) {
-  std::vector<std::uint32_t> counts(bodies, 0);
-  for (const Pair& pair : pairs) {
-    // A faulty algorithm may name bodies that do not exist.
-    if (pair.a < bodies) ++counts[pair.a];
-    if (pair.b < bodies) ++counts[pair.b];
-  }
-  return counts;
-}
 
 std::vector<Pair> joined(PairRuns runs) {
   std::vector<Pair> pairs;
@@ -77,11 +69,20 @@ bool RunThread::settle(std::chrono::milliseconds patience) {
 }
 
 void RunThread::withFootage(const std::function<void(Footage*)>& act) {
+  std::exception_ptr failure;
+  const std::function<void(Footage*)> errand = [&](Footage* footage) {
+    try {
+      act(footage);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return errand_ == nullptr; });
-  errand_ = &act;
+  errand_ = &errand;
   changed_.notify_all();
-  changed_.wait(lock, [&] { return errand_ != &act; });
+  changed_.wait(lock, [&] { return errand_ != &errand; });
+  if (failure) std::rethrow_exception(failure);
 }
 
 void RunThread::loop() {
@@ -346,7 +347,8 @@ void RunThread::show() {
     const std::span<const Pair> pairs = oracle_.pairs(frame);
     snapshot->pairs.assign(pairs.begin(), pairs.end());
   }
-  snapshot->overlaps = countOverlaps(snapshot->boxes->size(), snapshot->pairs);
+  const PairRun answer = snapshot->pairs;
+  snapshot->overlaps = overlapCounts(snapshot->boxes->size(), {&answer, 1});
   shown_ = true;
   const std::lock_guard lock(mutex_);
   progress_.snapshot = std::move(snapshot);

@@ -107,7 +107,8 @@ class RunThread {
   [[nodiscard]] bool settled();
   /// Waits for that. Returns whether it came in time.
   bool settle(std::chrono::milliseconds patience);
-  /// Does something with the footage between two frames; nothing is open: null. Returns when done.
+  /// Does something with the footage between two frames; nothing is open: null. Returns when done,
+  /// and throws what that throws.
   void withFootage(const std::function<void(Footage*)>& act);
 
   DrawGate& gate() { return gate_; }

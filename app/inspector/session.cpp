@@ -200,13 +200,14 @@ void Session::openRecording(const fs::path& path, const std::string& hash) {
 
 void Session::openJson(const fs::path& path) {
   const std::string text = readTextFile(path);
-  if (jsonKind(text, path.string()) == scenes::kAuthoredSceneSchema) {
+  const std::string kind = jsonKind(text, path.string());
+  if (kind == scenes::kAuthoredSceneSchema) {
     const auto scene =
         std::make_shared<scenes::AuthoredScene>(scenes::parseAuthoredScene(text, path.string()));
     leaveDocument([this, scene, path] { author(std::move(*scene), path); });
     return;
   }
-  if (jsonKind(text, path.string()) == kResultsSchema) {
+  if (kind == kResultsSchema) {
     CaseChoice choice{.file = path};
     for (const CaseResult& result : parseResults(text, path.string()).cases) {
       choice.cases.push_back({.id = result.id,
@@ -346,18 +347,10 @@ void Session::open(CaseReference reference) {
 
 void Session::saveRecording(const fs::path& path) {
   later([this, path] {
-    bool saved = false;
-    std::string failure;
     runs.withFootage([&](Footage* footage) {
-      try {
-        if (footage == nullptr) throw InputError("nothing is open that could be recorded");
-        footage->save(path);
-        saved = true;
-      } catch (const std::exception& error) {
-        failure = error.what();
-      }
+      if (footage == nullptr) throw InputError("nothing is open that could be recorded");
+      footage->save(path);
     });
-    if (!saved) throw InputError(failure);
     say(fmt::format("recorded: {}", path.string()));
     if (on_file) on_file(path);
   });
@@ -460,17 +453,12 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
   later([this, run, snapshot, file] {
     requireExportable(file, source_path);
     std::unique_ptr<FrameSource> source;
-    std::string failure = "exporting a case: another scene has been opened meanwhile";
     if (snapshot->footage == wish.footage) {
       runs.withFootage([&](Footage* footage) {
-        try {
-          if (footage != nullptr) source = footage->source(snapshot->frame);
-        } catch (const std::exception& error) {
-          failure = error.what();
-        }
+        if (footage != nullptr) source = footage->source(snapshot->frame);
       });
     }
-    if (!source) throw InputError(failure);
+    if (!source) throw InputError("exporting a case: another scene has been opened meanwhile");
     case_export.start(run, std::move(source), snapshot->difference, file);
   });
 }

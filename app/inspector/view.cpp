@@ -237,7 +237,7 @@ void View::handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
   if (ImGui::IsItemActivated()) beginDrag(mouse);
-  if (ImGui::IsItemActive()) handleDrag(session, corner, size);
+  if (ImGui::IsItemActive()) handleDrag(corner, size);
   if (ImGui::IsItemDeactivated()) {
     if (drag_ == Drag::rectangle && dragged_) {
       selectWithin(session, drag_from_, mouse);
@@ -263,7 +263,7 @@ void View::handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   }
 }
 
-void View::handleDrag(Session&, ImVec2 corner, ImVec2 size) {
+void View::handleDrag(ImVec2 corner, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
   if (!dragged_ && std::hypot(mouse.x - drag_from_.x, mouse.y - drag_from_.y) <= kClickPixels) {

@@ -52,7 +52,7 @@ class View {
   void fly(const OrbitCamera& to);
   void moveOn(float seconds);
   void handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
-  void handleDrag(Session& session, ImVec2 corner, ImVec2 size);
+  void handleDrag(ImVec2 corner, ImVec2 size);
   void handleKeys();
   void beginDrag(ImVec2 mouse);
   void click(Session& session, ImVec2 at, bool fly_there);

@@ -8,6 +8,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/atomic_file.h"
 #include "tests/engine/helpers.h"
+#include "tests/inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {
@@ -31,18 +32,7 @@ AuthoredScene threeBodies() {
 
 class AuthoringTest : public testing::Test {
  protected:
-  RunProgress settle() {
-    RunProgress seen;
-    for (int picture = 0; picture < 4; ++picture) {
-      session.commit();
-      EXPECT_TRUE(session.runs.settle(60s));
-      session.runs.look([&](const RunProgress& progress) {
-        session.advance(progress, 0);
-        seen = progress;
-      });
-    }
-    return seen;
-  }
+  RunProgress settle() { return settled(session); }
 
   Session session{builtinAlgorithms()};
   TemporaryDirectory directory;

@@ -11,7 +11,7 @@
 #include "broadmark/atomic_file.h"
 #include "broadmark/recording.h"
 #include "tests/engine/helpers.h"
-#include "tests/support/faulty_algorithm.h"
+#include "tests/inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {
@@ -21,27 +21,9 @@ using State = CaseExport::State;
 
 class CaseExportTest : public testing::Test {
  protected:
-  CaseExportTest() : session(algorithms()) {}
+  CaseExportTest() : session(algorithmsAndFaultyOnes()) {}
 
-  static std::vector<Algorithm> algorithms() {
-    std::vector<Algorithm> all = builtinAlgorithms();
-    for (const Algorithm& algorithm : faulty::variants()) all.push_back(algorithm);
-    return all;
-  }
-
-  /// Commits, waits, and takes note: as pictures would.
-  RunProgress settle() {
-    RunProgress seen;
-    for (int picture = 0; picture < 3; ++picture) {
-      session.commit();
-      EXPECT_TRUE(session.runs.settle(60s));
-      session.runs.look([&](const RunProgress& progress) {
-        session.advance(progress, 0);
-        seen = progress;
-      });
-    }
-    return seen;
-  }
+  RunProgress settle() { return settled(session); }
 
   /// Goes to the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {

@@ -6,7 +6,7 @@
 
 #include "broadmark/algorithms.h"
 #include "tests/engine/helpers.h"
-#include "tests/support/faulty_algorithm.h"
+#include "tests/inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {
@@ -15,29 +15,11 @@ using namespace std::chrono_literals;
 
 class SessionTest : public testing::Test {
  protected:
-  SessionTest() : session(algorithms()) {
+  SessionTest() : session(algorithmsAndFaultyOnes()) {
     setParameters(*session.draft, {{"objects", "60"}, {"frames", "40"}, {"density", "0.3"}});
   }
 
-  static std::vector<Algorithm> algorithms() {
-    std::vector<Algorithm> all = builtinAlgorithms();
-    for (const Algorithm& algorithm : faulty::variants()) all.push_back(algorithm);
-    return all;
-  }
-
-  /// Commits, waits, and takes note: as pictures would.
-  RunProgress settle() {
-    RunProgress seen;
-    for (int picture = 0; picture < 3; ++picture) {
-      session.commit();
-      EXPECT_TRUE(session.runs.settle(60s));
-      session.runs.look([&](const RunProgress& progress) {
-        session.advance(progress, 0);
-        seen = progress;
-      });
-    }
-    return seen;
-  }
+  RunProgress settle() { return settled(session); }
 
   /// Lets pictures pass until the playback ends, or `most` have.
   void playOn(int most = 2000) {
