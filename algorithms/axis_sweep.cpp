@@ -24,8 +24,8 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/bullet_broad_phase.h"
-#include "algorithms/radix_sort.h"
+#include "bullet_broad_phase.h"
+#include "radix_sort.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::axis_sweep {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/axis_overlap.h"
-#include "algorithms/simd/overlap_kernels.h"
+#include "axis_overlap.h"
+#include "simd/overlap_kernels.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::brute_force {

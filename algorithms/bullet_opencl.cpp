@@ -31,8 +31,8 @@
 #include <memory>
 #include <mutex>
 
-#include "algorithms/opencl/device_context.h"
-#include "algorithms/opencl/timer.h"
+#include "opencl/device_context.h"
+#include "opencl/timer.h"
 #include "broadmark/algorithm.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"

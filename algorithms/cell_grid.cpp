@@ -1,7 +1,7 @@
 // Fitting a grid to boxes. The region is taken from quantiles of a sample and not from the bounds:
 // one body that has fallen out of the world would otherwise leave all others in one cell.
 
-#include "algorithms/cell_grid.h"
+#include "cell_grid.h"
 
 #include <algorithm>
 #include <cmath>

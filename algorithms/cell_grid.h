@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "algorithms/marked_body.h"
+#include "marked_body.h"
 #include "broadmark/aabb.h"
 
 namespace broadmark {

@@ -20,7 +20,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/bullet_broad_phase.h"
+#include "bullet_broad_phase.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::dbvt {

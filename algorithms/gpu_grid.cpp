@@ -12,7 +12,7 @@
 #include <bit>
 #include <cmath>
 
-#include "algorithms/opencl/device_broad_phase.h"
+#include "opencl/device_broad_phase.h"
 #include "broadmark/algorithm.h"
 #include "opencl_kernels.h"
 

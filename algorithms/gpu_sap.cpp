@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "algorithms/opencl/device_broad_phase.h"
+#include "opencl/device_broad_phase.h"
 #include "broadmark/algorithm.h"
 #include "opencl_kernels.h"
 

@@ -31,9 +31,9 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/cell_grid.h"
-#include "algorithms/row_shares.h"
-#include "algorithms/simd/overlap_kernels.h"
+#include "cell_grid.h"
+#include "row_shares.h"
+#include "simd/overlap_kernels.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::grid {

@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/kd/search.h"
-#include "algorithms/kd/tree.h"
+#include "kd/search.h"
+#include "kd/tree.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::kd {

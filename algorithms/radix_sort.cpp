@@ -1,4 +1,4 @@
-#include "algorithms/radix_sort.h"
+#include "radix_sort.h"
 
 #include <utility>
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/simd/overlap_kernels.h"
+#include "simd/overlap_kernels.h"
 #include "broadmark/execution.h"
 
 namespace broadmark {

@@ -18,12 +18,12 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/axis_overlap.h"
-#include "algorithms/boundary_near.h"
-#include "algorithms/moments.h"
-#include "algorithms/radix_sort.h"
-#include "algorithms/row_shares.h"
-#include "algorithms/simd/overlap_kernels.h"
+#include "axis_overlap.h"
+#include "boundary_near.h"
+#include "moments.h"
+#include "radix_sort.h"
+#include "row_shares.h"
+#include "simd/overlap_kernels.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::sweep_and_prune {

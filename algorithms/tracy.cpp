@@ -28,9 +28,9 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/tracy/cell.h"
-#include "algorithms/tracy/grid.h"
-#include "algorithms/tracy/pair_set.h"
+#include "tracy/cell.h"
+#include "tracy/grid.h"
+#include "tracy/pair_set.h"
 #include "broadmark/algorithm.h"
 
 namespace broadmark::tracy {

@@ -9,12 +9,12 @@
 #include <optional>
 #include <set>
 
-#include "app/bake_plan.h"
-#include "app/batch.h"
-#include "app/interrupt.h"
-#include "app/movie.h"
-#include "app/options.h"
-#include "app/progress.h"
+#include "bake_plan.h"
+#include "batch.h"
+#include "interrupt.h"
+#include "movie.h"
+#include "options.h"
+#include "progress.h"
 #include "broadmark/error.h"
 
 namespace broadmark {

@@ -1,15 +1,15 @@
 // Planning is cheap but for recordings that are there: each is read through once, by its hash.
 
-#include "app/bake_plan.h"
+#include "bake_plan.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "app/cases.h"
-#include "app/recordings.h"
-#include "broadmark/atomic_file.h"
+#include "cases.h"
+#include "recordings.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 

@@ -8,10 +8,20 @@
 #include <optional>
 #include <vector>
 
-#include "app/batch.h"
-#include "app/options.h"
+#include "batch.h"
+#include "scene_options.h"
 
 namespace broadmark {
+
+/// What is to be baked.
+struct BakeOptions {
+  std::vector<std::string> scenes;           ///< built-in ones, and files that describe one
+  SceneOptions scene;
+  ParameterValues parameters;                ///< --param
+  std::filesystem::path output;
+  int threads = 1;
+  bool force = false;  ///< also what is already there
+};
 
 /// A batch before it begins.
 struct BakePlan {

@@ -1,7 +1,7 @@
 // A pool of threads that take the largest job not yet begun: longest processing time first, which
 // ends at most a third later than the best schedule (Graham 1969).
 
-#include "app/batch.h"
+#include "batch.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <new>
 #include <utility>
 
-#include "app/interrupt.h"
+#include "interrupt.h"
 #include "broadmark/environment.h"
 #include "broadmark/error.h"
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 

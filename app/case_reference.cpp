@@ -1,12 +1,12 @@
 // Cases of results files, opened again.
 
-#include "app/case_reference.h"
+#include "case_reference.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/names.h"
 
 namespace broadmark {

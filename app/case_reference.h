@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/recordings.h"
+#include "recordings.h"
 #include "broadmark/error.h"
 #include "broadmark/results.h"
 #include "broadmark/runner.h"

@@ -1,6 +1,6 @@
 // Selecting algorithms and making cases of them.
 
-#include "app/cases.h"
+#include "cases.h"
 
 #include <fmt/format.h>
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/options.h"
+#include "options.h"
 #include "broadmark/algorithm.h"
-#include "broadmark/original_settings.h"
+#include "original/settings.h"
 #include "broadmark/runner.h"
 
 namespace broadmark {

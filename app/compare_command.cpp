@@ -5,9 +5,9 @@
 
 #include <map>
 
-#include "app/options.h"
-#include "app/table.h"
-#include "broadmark/atomic_file.h"
+#include "options.h"
+#include "table.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/results.h"
 #include "broadmark/statistics.h"

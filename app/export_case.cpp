@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include "app/case_reference.h"
-#include "app/interrupt.h"
-#include "app/options.h"
-#include "app/plugins.h"
-#include "app/progress.h"
-#include "app/words.h"
+#include "case_reference.h"
+#include "interrupt.h"
+#include "options.h"
+#include "plugins.h"
+#include "progress.h"
+#include "words.h"
 #include "broadmark/error.h"
 #include "broadmark/shrink.h"
 

@@ -3,16 +3,16 @@
 
 #include <fmt/format.h>
 
-#include "app/case_reference.h"
-#include "app/cases.h"
-#include "app/inspector/inspect.h"
-#include "app/inspector/session.h"
-#include "app/options.h"
-#include "app/plugins.h"
-#include "app/recordings.h"
-#include "broadmark/atomic_file.h"
+#include "case_reference.h"
+#include "cases.h"
+#include "inspector/inspect.h"
+#include "inspector/session.h"
+#include "options.h"
+#include "plugins.h"
+#include "recordings.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
-#include "scenes/authored_simulation.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

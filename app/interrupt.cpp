@@ -1,6 +1,6 @@
 // A signal handler can reach nothing but a global flag: the one place where there is one.
 
-#include "app/interrupt.h"
+#include "interrupt.h"
 
 #include <atomic>
 #include <csignal>

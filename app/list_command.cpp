@@ -5,14 +5,14 @@
 #include <functional>
 #include <map>
 
-#include "app/cases.h"
-#include "app/options.h"
-#include "app/plugins.h"
-#include "app/table.h"
+#include "cases.h"
+#include "options.h"
+#include "plugins.h"
+#include "table.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 namespace {

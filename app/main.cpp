@@ -7,7 +7,7 @@
 #include <iostream>
 #include <system_error>
 
-#include "app/options.h"
+#include "options.h"
 #include "broadmark/error.h"
 
 namespace {

@@ -1,11 +1,11 @@
 // Frames to PNG files: reading, finding the pairs, drawing and compressing, one frame at a time.
 
-#include "app/movie.h"
+#include "movie.h"
 
 #include <fmt/format.h>
 
-#include "app/recordings.h"
-#include "broadmark/atomic_file.h"
+#include "recordings.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/oracle.h"

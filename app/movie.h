@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

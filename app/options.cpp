@@ -1,6 +1,6 @@
 // The command line: what is accepted, and how it is explained.
 
-#include "app/options.h"
+#include "options.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,10 +12,10 @@
 #include <limits>
 #include <thread>
 
-#include "app/recordings.h"
+#include "recordings.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "app/movie.h"
+#include "movie.h"
 #include "broadmark/parameters.h"
 #include "broadmark/runner.h"
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

@@ -1,6 +1,6 @@
 // Loading algorithms from shared libraries.
 
-#include "app/plugins.h"
+#include "plugins.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/plugin.h"
 

@@ -1,6 +1,6 @@
 // Progress on standard error.
 
-#include "app/progress.h"
+#include "progress.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-#include "app/words.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {

@@ -1,16 +1,16 @@
 // Sources of a run, and baking.
 
-#include "app/recordings.h"
+#include "recordings.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "app/case_reference.h"
-#include "app/cases.h"
-#include "app/interrupt.h"
-#include "app/progress.h"
-#include "broadmark/atomic_file.h"
+#include "case_reference.h"
+#include "cases.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 

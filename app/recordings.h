@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "app/options.h"
-#include "broadmark/original_settings.h"
+#include "options.h"
+#include "original/settings.h"
 #include "broadmark/recording.h"
 #include "broadmark/results.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 

@@ -1,12 +1,12 @@
 // Off-screen pictures of a run's recordings.
 
-#include "app/screenshot.h"
+#include "screenshot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

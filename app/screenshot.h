@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "app/options.h"
+#include "options.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recording.h"
 

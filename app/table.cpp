@@ -1,6 +1,6 @@
 // The table of a recording's cases.
 
-#include "app/table.h"
+#include "table.h"
 
 #include <fmt/format.h>
 

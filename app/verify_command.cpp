@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
-#include "app/interrupt.h"
-#include "app/options.h"
-#include "app/progress.h"
-#include "app/table.h"
-#include "broadmark/atomic_file.h"
+#include "interrupt.h"
+#include "options.h"
+#include "progress.h"
+#include "table.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
 #include "broadmark/scene_statistics.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 namespace {

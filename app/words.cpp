@@ -1,4 +1,4 @@
-#include "app/words.h"
+#include "words.h"
 
 #include <fmt/format.h>
 

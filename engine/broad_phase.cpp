@@ -2,6 +2,8 @@
 
 #include "broadmark/broad_phase.h"
 
+#include <stdexcept>
+
 namespace broadmark {
 
 void PairBroadPhase::initialize(const SceneInfo&, const Frame&, Execution& execution) {
@@ -15,14 +17,18 @@ void PairBroadPhase::cleanCache() {
   runs_.clear();
 }
 
-void PairBroadPhase::publishPairs() {
+void PairBroadPhase::searchOverlaps() {
+  if (execution_ == nullptr) {
+    throw std::logic_error("an override of initialize() does not call its base's");
+  }
+  findPairs();
   runs_.clear();
   for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
 }
 
 void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   PairBroadPhase::initialize(scene, first, execution);
-  updateObjects(first);
+  boxes_.assign(first.boxes.begin(), first.boxes.end());
 }
 
 void BoxBroadPhase::updateObjects(const Frame& frame) {
@@ -31,7 +37,7 @@ void BoxBroadPhase::updateObjects(const Frame& frame) {
 
 void SimdBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   PairBroadPhase::initialize(scene, first, execution);
-  updateObjects(first);
+  arrays_.assign(first.boxes);
 }
 
 void SimdBroadPhase::updateObjects(const Frame& frame) { arrays_.assign(frame.boxes); }

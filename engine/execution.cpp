@@ -30,20 +30,6 @@ int spinsFor(std::size_t workers) {
 
 }  // namespace
 
-std::string_view isaName(Isa isa) {
-  switch (isa) {
-    case Isa::scalar:
-      return "scalar";
-    case Isa::sse2:
-      return "sse2";
-    case Isa::avx2:
-      return "avx2";
-    case Isa::avx512:
-      return "avx512";
-  }
-  return "?";
-}
-
 bool isaSupported(Isa isa) {
   __builtin_cpu_init();
   switch (isa) {
@@ -64,8 +50,8 @@ bool isaSupported(Isa isa) {
 
 Isa bestIsa() {
   Isa best = Isa::scalar;
-  for (const Isa isa : kAllIsas) {
-    if (isaSupported(isa)) best = isa;
+  for (const auto& isa : kIsas.entries) {
+    if (isaSupported(isa.value)) best = isa.value;
   }
   return best;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "json_fields.h"
+#include "broadmark/json_fields.h"
 #include "result_writers.h"
 
 namespace broadmark {

@@ -8,6 +8,8 @@
 
 #include "broadmark/oracle.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -154,22 +156,31 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes) {
   return pairs;
 }
 
-std::span<const Pair> Oracle::pairs(const Frame& frame) {
-  if (const auto kept = kept_.find(frame.index); kept != kept_.end()) return kept->second;
-  scratch_ = frame.boxes.size() <= kBruteForceLimit ? bruteForcePairs(frame.boxes)
-                                                    : sweptPairs(frame.boxes);
+Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, bool with_pairs) {
+  const auto [place, is_new] = answers_.try_emplace(hashOf(std::as_bytes(boxes)));
+  Answer& answer = place->second;
+  if (!is_new && (answer.pairs || !with_pairs)) return answer;
+  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes) : sweptPairs(boxes);
   const PairRun run = scratch_;
-  digests_[frame.index] = digest({&run, 1});
+  answer.digest = digest({&run, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);
-  if (bytes > budget_bytes_) return scratch_;
-  budget_bytes_ -= bytes;
-  scratch_.shrink_to_fit();
-  return kept_.emplace(frame.index, std::move(scratch_)).first->second;
+  if (bytes <= budget_bytes_) {
+    budget_bytes_ -= bytes;
+    answer.pairs.emplace(scratch_.begin(), scratch_.end());
+  }
+  return answer;
 }
 
-PairDigest Oracle::pairDigest(const Frame& frame) {
-  if (!digests_.contains(frame.index)) pairs(frame);
-  return digests_.at(frame.index);
+std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes) {
+  const Answer& answer = find(boxes, true);
+  return answer.pairs ? *answer.pairs : scratch_;
+}
+
+PairDigest Oracle::pairDigest(std::span<const Aabb> boxes) { return find(boxes, false).digest; }
+
+std::string mismatchText(const FrameDifference& difference) {
+  return fmt::format("{} missed, {} false, {} invalid", difference.missed_count,
+                     difference.false_count, difference.invalid_count);
 }
 
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
@@ -182,7 +193,7 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, con
       if (pair.a < pair.b && pair.b < frame.boxes.size()) {
         given.push_back(pair);
       } else {
-        note(difference.invalid_count, difference.invalid, pair);
+        note(difference.invalid_count, difference.invalid_pairs, pair);
       }
     }
   }
@@ -192,23 +203,24 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, con
   for (std::size_t i = 0; i < given.size(); ++i) {
     const Pair pair = given[i];
     if (i > 0 && pair == given[i - 1]) {
-      note(difference.invalid_count, difference.invalid, pair);
+      note(difference.invalid_count, difference.invalid_pairs, pair);
       continue;
     }
     for (; expected != right.end() && *expected < pair; ++expected) {
-      note(difference.missed_count, difference.missed, *expected);
+      note(difference.missed_count, difference.missed_pairs, *expected);
     }
     if (expected != right.end() && *expected == pair) {
       ++expected;
       continue;
     }
-    note(difference.extra_count, difference.extra, pair);
-    const Aabb& a = frame.boxes[pair.a];
-    const Aabb& b = frame.boxes[pair.b];
-    if (!overlaps(enlarged(a, margin), enlarged(b, margin))) ++difference.forbidden_count;
+    if (overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
+      note(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
+    } else {
+      note(difference.false_count, difference.false_pairs, pair);
+    }
   }
   for (; expected != right.end(); ++expected) {
-    note(difference.missed_count, difference.missed, *expected);
+    note(difference.missed_count, difference.missed_pairs, *expected);
   }
   return difference;
 }

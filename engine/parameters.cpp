@@ -106,4 +106,27 @@ ParameterValues parameterValues(Parametrised& object) {
   return values;
 }
 
+ParameterValues changedValues(ParameterValues values, Parametrised& fresh) {
+  const ParameterValues defaults = parameterValues(fresh);
+  std::erase_if(values, [&](const auto& value) {
+    const auto by_default = defaults.find(value.first);
+    return by_default != defaults.end() && by_default->second == value.second;
+  });
+  return values;
+}
+
+ParameterValues applicableValues(Parametrised& object, const ParameterValues& values) {
+  ParameterValues own;
+  for (const std::string& name : parameterNames(object)) {
+    if (const auto value = values.find(name); value != values.end()) own.insert(*value);
+  }
+  return own;
+}
+
+std::vector<std::string> parameterNames(Parametrised& object) {
+  std::vector<std::string> names;
+  object.visitParameters([&](const Parameter& parameter) { names.emplace_back(parameter.name); });
+  return names;
+}
+
 }  // namespace broadmark

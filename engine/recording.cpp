@@ -70,21 +70,6 @@ Recording::Recording(FileDescriptor file, std::string name)
   }
 }
 
-std::optional<Frame> Recording::next() {
-  if (position_ >= scene_.frames) return std::nullopt;
-  return read(position_ + 1);
-}
-
-Frame Recording::read(std::uint32_t index) {
-  if (index > scene_.frames) {
-    throw InputError(
-        fmt::format("{}: no frame {}: the last one is {}", name_, index, scene_.frames));
-  }
-  const std::span<const Aabb> boxes = readBoxes(index);
-  position_ = index;
-  return {index, boxes};
-}
-
 void Recording::readSet(std::uint32_t index, std::span<std::byte> bytes) const {
   readAll(file_.get(), bytes, setOffset(scene_, index), name_);
 }

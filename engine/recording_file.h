@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/frame.h"
 #include "broadmark/posrot.h"
-#include "hasher.h"
+#include "broadmark/hasher.h"
 
 namespace broadmark {
 

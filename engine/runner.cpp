@@ -12,7 +12,7 @@
 #include <map>
 #include <mutex>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 
 namespace broadmark {

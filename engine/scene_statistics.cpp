@@ -9,7 +9,7 @@
 #include "broadmark/execution.h"
 #include "broadmark/oracle.h"
 #include "broadmark/statistics.h"
-#include "json_fields.h"
+#include "broadmark/json_fields.h"
 
 namespace broadmark {
 namespace {

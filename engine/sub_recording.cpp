@@ -2,32 +2,12 @@
 
 #include "broadmark/sub_recording.h"
 
-#include <fmt/format.h>
-
 #include <numeric>
+#include <string_view>
 
-#include "broadmark/error.h"
 #include "broadmark/recording.h"
 
 namespace broadmark {
-
-FrameSeeker::FrameSeeker(FrameSource& source)
-    : source_(source), recording_(dynamic_cast<Recording*>(&source)) {}
-
-Frame FrameSeeker::at(std::uint32_t index) {
-  if (recording_ != nullptr) return recording_->read(index);
-  if (!started_ || index < present_.index) present_ = source_.rewind();
-  started_ = true;
-  while (present_.index < index) {
-    const std::optional<Frame> next = source_.next();
-    if (!next) {
-      throw InputError(
-          fmt::format("{}: no frame {}: the last one is {}", scene().name, index, present_.index));
-    }
-    present_ = *next;
-  }
-  return present_;
-}
 
 Selection wholeSelection(const SceneInfo& scene, std::uint32_t last_frame) {
   Selection all;
@@ -38,7 +18,7 @@ Selection wholeSelection(const SceneInfo& scene, std::uint32_t last_frame) {
   return all;
 }
 
-SubRecording::SubRecording(FrameSeeker& whole, Selection selection, std::string name)
+SubRecording::SubRecording(IndexedFrames& whole, Selection selection, std::string name)
     : whole_(whole), selection_(std::move(selection)), scene_(whole.scene()) {
   scene_.name = std::move(name);
   scene_.objects = static_cast<std::uint32_t>(selection_.bodies.size());
@@ -46,33 +26,24 @@ SubRecording::SubRecording(FrameSeeker& whole, Selection selection, std::string 
   boxes_.resize(scene_.objects);
 }
 
-std::optional<Frame> SubRecording::next() {
-  if (index_ == scene_.frames) return std::nullopt;
-  return at(index_ + 1);
-}
-
-Frame SubRecording::at(std::uint32_t index) {
+std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
   const Frame frame = whole_.at(selection_.frames[index]);
   for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = frame.boxes[selection_.bodies[i]];
-  index_ = index;
-  return {index, boxes_};
+  return boxes_;
 }
 
-FrameList::FrameList(FrameSource& source) : scene_(source.scene()) {
-  boxes_.reserve(std::size_t{scene_.objects} * (std::size_t{scene_.frames} + 1));
-  for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
-    boxes_.insert(boxes_.end(), frame->boxes.begin(), frame->boxes.end());
-  }
+std::string partName(const SceneInfo& scene) {
+  constexpr std::string_view kSuffix = " case";
+  if (scene.name.ends_with(kSuffix)) return scene.name;
+  return scene.name.substr(0, kLongestName - kSuffix.size()).append(kSuffix);
 }
 
-std::optional<Frame> FrameList::next() {
-  if (index_ == scene_.frames) return std::nullopt;
-  return at(index_ + 1);
-}
-
-Frame FrameList::at(std::uint32_t index) {
-  index_ = index;
-  return {index, std::span(boxes_).subspan(std::size_t{index} * scene_.objects, scene_.objects)};
+std::string writePart(const std::filesystem::path& path, IndexedFrames& whole,
+                      const Selection& selection) {
+  SubRecording part(whole, selection, partName(whole.scene()));
+  RecordingWriter writer(path, part.scene());
+  recordAll(part, writer);
+  return writer.finish();
 }
 
 }  // namespace broadmark

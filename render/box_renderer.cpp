@@ -1,9 +1,9 @@
-#include "render/box_renderer.h"
+#include "broadmark/render/box_renderer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/box_look.h"
+#include "broadmark/render/box_look.h"
 #include "render_assets.h"
 
 namespace broadmark {

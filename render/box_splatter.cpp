@@ -2,13 +2,13 @@
 // against the box's slabs, eight at a time, keeping the nearest hit. Only then is each pixel
 // coloured, once. The picture is cut into bands of rows, which the workers take one after another;
 // O(boxes + pixels tested).
-#include "render/box_splatter.h"
+#include "broadmark/render/box_splatter.h"
 
 #include <algorithm>
 
-#include "render/box_look.h"
-#include "render/camera.h"
-#include "render/colour.h"
+#include "broadmark/render/box_look.h"
+#include "broadmark/render/camera.h"
+#include "colour.h"
 
 namespace broadmark {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/caption.h"
+#include "caption.h"
 
 #include <stb/stb_truetype.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/fonts.h"
+#include "broadmark/render/fonts.h"
 
 namespace broadmark {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "broadmark/debug_draw.h"
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

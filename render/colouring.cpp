@@ -1,7 +1,7 @@
 // Every mode sorts the bodies into a few classes, each with a colour and a line of the legend.
 // Scales grow darker on a light background and brighter on a dark one, so that lightness alone
 // tells their steps apart; single colours are after Okabe and Ito.
-#include "render/colouring.h"
+#include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/draw_frame.h"
+#include "draw_frame.h"
 
 namespace broadmark {
 namespace {
@@ -176,17 +176,5 @@ constexpr ColourMode kModes[] = {
 }  // namespace
 
 std::span<const ColourMode> colourModes() { return kModes; }
-
-std::vector<std::uint32_t> overlapCounts(std::size_t n, PairRuns pairs) {
-  std::vector<std::uint32_t> counts(n, 0);
-  for (const PairRun run : pairs) {
-    for (const Pair pair : run) {
-      if (pair.a >= n || pair.b >= n) continue;
-      ++counts[pair.a];
-      ++counts[pair.b];
-    }
-  }
-  return counts;
-}
 
 }  // namespace broadmark

@@ -1,13 +1,13 @@
 // A picture of one frame, as in the paper's figures.
-#include "render/draw_frame.h"
+#include "draw_frame.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "render/camera.h"
-#include "render/caption.h"
-#include "render/scene_view.h"
+#include "broadmark/render/camera.h"
+#include "caption.h"
+#include "broadmark/render/scene_view.h"
 
 namespace broadmark {
 namespace {

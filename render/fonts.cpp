@@ -1,4 +1,4 @@
-#include "render/fonts.h"
+#include "broadmark/render/fonts.h"
 
 #include "render_assets.h"
 

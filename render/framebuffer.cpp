@@ -1,4 +1,4 @@
-#include "render/framebuffer.h"
+#include "broadmark/render/framebuffer.h"
 
 #include <fmt/format.h>
 

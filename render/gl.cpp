@@ -1,4 +1,4 @@
-#include "render/gl.h"
+#include "broadmark/render/gl.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "render/offscreen_context.h"
+#include "broadmark/render/offscreen_context.h"
 
 namespace broadmark {
 

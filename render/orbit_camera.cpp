@@ -1,4 +1,4 @@
-#include "render/orbit_camera.h"
+#include "broadmark/render/orbit_camera.h"
 
 #include <Eigen/Dense>
 #include <algorithm>

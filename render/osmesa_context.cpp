@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "render/gl.h"
-#include "render/offscreen_context.h"
-#include "render/shared_library.h"
+#include "broadmark/render/gl.h"
+#include "broadmark/render/offscreen_context.h"
+#include "shared_library.h"
 
 namespace broadmark {
 namespace {

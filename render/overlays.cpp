@@ -1,4 +1,4 @@
-#include "render/overlays.h"
+#include "broadmark/render/overlays.h"
 
 #include <algorithm>
 #include <tuple>

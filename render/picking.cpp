@@ -1,6 +1,6 @@
 // Picking: rays against boxes by slabs, and selection by the planes of a frustum. O(n), in double
 // precision in world coordinates: neither far-off nor tiny bodies are lost.
-#include "render/picking.h"
+#include "broadmark/render/picking.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "render/plot.h"
+#include "broadmark/render/plot.h"
 
 #include <fmt/format.h>
 #include <imgui.h>

@@ -4,9 +4,9 @@
 #define STBI_WRITE_NO_STDIO
 #include <stb/stb_image_write.h>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 namespace {

@@ -1,10 +1,10 @@
-#include "render/primitive_renderer.h"
+#include "broadmark/render/primitive_renderer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "render/box_look.h"
-#include "render/colour.h"
+#include "broadmark/render/box_look.h"
+#include "colour.h"
 
 namespace broadmark {
 namespace {

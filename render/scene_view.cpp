@@ -1,13 +1,13 @@
 // The order of drawing: boxes first; floor and grid wherever there is no box; then lines, tested
 // against the boxes' depths, which the processor hands over where it has drawn them.
-#include "render/scene_view.h"
+#include "broadmark/render/scene_view.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string_view>
 
-#include "render/colour.h"
+#include "colour.h"
 
 namespace broadmark {
 namespace {

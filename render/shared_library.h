@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

@@ -1,13 +1,13 @@
-#include "render/splat_kernels.h"
+#include "broadmark/render/splat_kernels.h"
 
-#include "render/box_look.h"
+#include "broadmark/render/box_look.h"
 
 namespace broadmark {
 namespace {
 
 // Without a target: the compiler splits the vectors for whatever the processor has at least.
 namespace baseline {
-#include "render/splat_kernels.inl"
+#include "splat_kernels.inl"
 }  // namespace baseline
 
 // Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
@@ -20,7 +20,7 @@ namespace baseline {
 #pragma GCC target("avx2")
 #endif
 namespace avx2 {
-#include "render/splat_kernels.inl"
+#include "splat_kernels.inl"
 }  // namespace avx2
 #if defined(__clang__)
 #pragma clang attribute pop

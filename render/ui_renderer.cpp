@@ -1,4 +1,4 @@
-#include "render/ui_renderer.h"
+#include "broadmark/render/ui_renderer.h"
 
 #include <imgui.h>
 

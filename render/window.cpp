@@ -1,4 +1,4 @@
-#include "render/window.h"
+#include "broadmark/render/window.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,6 +1,6 @@
-#include "scenes/physics_simulation.h"
+#include "broadmark/scenes/physics_simulation.h"
 
-#include "scenes/authored_simulation.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark::scenes {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenes/random.h"
+#include "broadmark/scenes/random.h"
 
 namespace broadmark::scenes {
 

@@ -1,12 +1,12 @@
 // Collects what is listed in CMakeLists.txt.
 
-#include "scenes/registry.h"
+#include "broadmark/scenes/registry.h"
 
 #include <algorithm>
 #include <iterator>
 
-#include "scenes/recorder.h"
-#include "scenes/replay.h"
+#include "recorders/recorder.h"
+#include "engines/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark::scenes {

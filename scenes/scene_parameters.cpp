@@ -1,7 +1,7 @@
 // Scene parameters as JSON and back. Values have the types of the parameters; what is not stated
 // keeps its default.
 
-#include "scenes/scene_parameters.h"
+#include "scene_parameters.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "broadmark/original_settings.h"
-#include "engine/json_fields.h"
-#include "scenes/authored_simulation.h"
+#include "original/settings.h"
+#include "broadmark/json_fields.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

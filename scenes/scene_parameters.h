@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 

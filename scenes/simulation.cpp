@@ -1,6 +1,6 @@
 // The simulations of built-in scenes, and where they are found by name.
 
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,8 +8,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "scenes/physics_simulation.h"
-#include "scenes/replay.h"
+#include "broadmark/scenes/physics_simulation.h"
+#include "engines/replay.h"
 #include "scenes/scene.h"
 
 namespace broadmark {

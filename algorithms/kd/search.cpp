@@ -9,12 +9,12 @@
 // the axis on which own bodies vary most. Either way a few boxes are tested against a vector of
 // boxes at once.
 
-#include "algorithms/kd/search.h"
+#include "kd/search.h"
 
 #include <algorithm>
 
-#include "algorithms/boundary_near.h"
-#include "algorithms/moments.h"
+#include "boundary_near.h"
+#include "moments.h"
 
 namespace broadmark::kd {
 namespace {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "algorithms/kd/tree.h"
-#include "algorithms/radix_sort.h"
-#include "algorithms/simd/overlap_kernels.h"
+#include "kd/tree.h"
+#include "radix_sort.h"
+#include "simd/overlap_kernels.h"
 #include "broadmark/box_arrays.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"

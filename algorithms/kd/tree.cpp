@@ -13,7 +13,7 @@
 // at the same time; what lies above them is done by one, after the first pass and before the
 // second.
 
-#include "algorithms/kd/tree.h"
+#include "kd/tree.h"
 
 #include <fmt/format.h>
 
@@ -23,7 +23,7 @@
 #include <numeric>
 #include <utility>
 
-#include "algorithms/moments.h"
+#include "moments.h"
 
 namespace broadmark::kd {
 namespace {

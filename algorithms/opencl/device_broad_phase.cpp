@@ -1,10 +1,10 @@
-#include "algorithms/opencl/device_broad_phase.h"
+#include "opencl/device_broad_phase.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "algorithms/opencl/timer.h"
+#include "opencl/timer.h"
 #include "broadmark/error.h"
 #include "opencl_kernels.h"
 

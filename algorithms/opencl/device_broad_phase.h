@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "algorithms/opencl/device_context.h"
-#include "algorithms/opencl/device_sorter.h"
-#include "algorithms/opencl/launch.h"
+#include "opencl/device_context.h"
+#include "opencl/device_sorter.h"
+#include "opencl/launch.h"
 #include "broadmark/broad_phase.h"
 
 namespace broadmark::opencl {

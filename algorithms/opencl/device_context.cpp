@@ -1,4 +1,4 @@
-#include "algorithms/opencl/device_context.h"
+#include "opencl/device_context.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "algorithms/opencl/timer.h"
+#include "opencl/timer.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
 

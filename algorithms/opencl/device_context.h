@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "algorithms/opencl/opencl.h"
+#include "opencl/opencl.h"
 #include "broadmark/execution.h"
 
 namespace broadmark::opencl {

@@ -1,8 +1,8 @@
-#include "algorithms/opencl/device_sorter.h"
+#include "opencl/device_sorter.h"
 
 #include <algorithm>
 
-#include "algorithms/opencl/launch.h"
+#include "opencl/launch.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {

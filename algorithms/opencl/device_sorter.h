@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "algorithms/opencl/device_context.h"
+#include "opencl/device_context.h"
 
 namespace broadmark::opencl {
 

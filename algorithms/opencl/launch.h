@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "algorithms/opencl/opencl.h"
+#include "opencl/opencl.h"
 
 namespace broadmark::opencl {
 

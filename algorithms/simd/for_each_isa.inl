@@ -21,7 +21,7 @@ namespace broadmark::simd {
 namespace {
 
 namespace scalar {
-#include "algorithms/simd/vector_scalar.inl"
+#include "simd/vector_scalar.inl"
 #include BROADMARK_KERNELS
 }  // namespace scalar
 
@@ -29,21 +29,21 @@ namespace scalar {
 
 BROADMARK_TARGET_BEGIN("sse2")
 namespace sse2 {
-#include "algorithms/simd/vector_sse2.inl"
+#include "simd/vector_sse2.inl"
 #include BROADMARK_KERNELS
 }  // namespace sse2
 BROADMARK_TARGET_END
 
 BROADMARK_TARGET_BEGIN("avx2")
 namespace avx2 {
-#include "algorithms/simd/vector_avx2.inl"
+#include "simd/vector_avx2.inl"
 #include BROADMARK_KERNELS
 }  // namespace avx2
 BROADMARK_TARGET_END
 
 BROADMARK_TARGET_BEGIN("avx512f")
 namespace avx512 {
-#include "algorithms/simd/vector_avx512.inl"
+#include "simd/vector_avx512.inl"
 #include BROADMARK_KERNELS
 }  // namespace avx512
 BROADMARK_TARGET_END

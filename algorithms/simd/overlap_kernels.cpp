@@ -1,4 +1,4 @@
-#include "algorithms/simd/overlap_kernels.h"
+#include "simd/overlap_kernels.h"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -10,7 +10,7 @@
 #endif
 
 #define BROADMARK_KERNELS "algorithms/simd/overlap_kernels.inl"
-#include "algorithms/simd/for_each_isa.inl"
+#include "simd/for_each_isa.inl"
 
 namespace broadmark {
 

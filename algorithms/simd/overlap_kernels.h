@@ -4,18 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "algorithms/marked_body.h"
+#include "marked_body.h"
 #include "broadmark/box_arrays.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
+#include "broadmark/range.h"
 
 namespace broadmark {
-
-/// Positions [begin, end).
-struct Range {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
 
 struct OverlapKernels {
   /// Adds every overlapping pair (i, j) with i in `rows`, j in `columns` and i < j.

@@ -1,9 +1,9 @@
-#include "algorithms/tracy/cell.h"
+#include "tracy/cell.h"
 
 #include <algorithm>
 #include <bit>
 
-#include "algorithms/axis_overlap.h"
+#include "axis_overlap.h"
 
 namespace broadmark::tracy {
 namespace {

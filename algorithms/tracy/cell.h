@@ -31,8 +31,8 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/tracy/grid.h"
-#include "algorithms/tracy/segmented_list.h"
+#include "tracy/grid.h"
+#include "tracy/segmented_list.h"
 #include "broadmark/pair.h"
 
 namespace broadmark::tracy {

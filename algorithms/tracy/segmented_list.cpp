@@ -1,4 +1,4 @@
-#include "algorithms/tracy/segmented_list.h"
+#include "tracy/segmented_list.h"
 
 #include <algorithm>
 #include <utility>

@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "algorithms/radix_sort.h"
+#include "radix_sort.h"
 
 namespace broadmark::tracy {
 

@@ -1,10 +1,10 @@
-#include "app/inspector/author_desk.h"
+#include "inspector/author_desk.h"
 
 #include <utility>
 
-#include "app/inspector/run_thread.h"
-#include "broadmark/atomic_file.h"
-#include "scenes/authored_simulation.h"
+#include "inspector/run_thread.h"
+#include "broadmark/files.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

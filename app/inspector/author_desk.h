@@ -7,9 +7,9 @@
 #include <functional>
 #include <memory>
 
-#include "app/inspector/footage.h"
-#include "scenes/brush.h"
-#include "scenes/scene_editor.h"
+#include "inspector/footage.h"
+#include "broadmark/scenes/brush.h"
+#include "broadmark/scenes/scene_editor.h"
 
 namespace broadmark {
 

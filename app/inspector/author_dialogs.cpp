@@ -1,4 +1,4 @@
-#include "app/inspector/author_dialogs.h"
+#include "inspector/author_dialogs.h"
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 
 #include <functional>
 
-#include "app/inspector/file_dialog.h"
-#include "app/inspector/session.h"
-#include "app/inspector/ui.h"
+#include "inspector/file_dialog.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

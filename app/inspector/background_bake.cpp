@@ -1,4 +1,4 @@
-#include "app/inspector/background_bake.h"
+#include "inspector/background_bake.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <new>
 #include <utility>
 
-#include "app/bake_plan.h"
-#include "app/recordings.h"
+#include "bake_plan.h"
+#include "recordings.h"
 #include "broadmark/error.h"
 
 namespace broadmark {

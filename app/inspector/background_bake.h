@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "app/batch.h"
-#include "app/options.h"
+#include "batch.h"
+#include "options.h"
 
 namespace broadmark {
 

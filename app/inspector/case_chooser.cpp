@@ -1,4 +1,4 @@
-#include "app/inspector/case_chooser.h"
+#include "inspector/case_chooser.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 // Choosing one of the cases of a results file.
 #pragma once
 
-#include "app/inspector/session.h"
-#include "app/inspector/ui.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

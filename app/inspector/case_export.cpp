@@ -1,6 +1,6 @@
-#include "app/inspector/case_export.h"
+#include "inspector/case_export.h"
 
-#include "app/case_reference.h"
+#include "case_reference.h"
 #include "broadmark/error.h"
 
 namespace broadmark {

@@ -1,11 +1,11 @@
-#include "app/inspector/file_dialog.h"
+#include "inspector/file_dialog.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "app/words.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {

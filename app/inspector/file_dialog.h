@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/inspector/ui.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

@@ -1,10 +1,10 @@
-#include "app/inspector/footage.h"
+#include "inspector/footage.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include "broadmark/error.h"
-#include "scenes/authored_simulation.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "broadmark/recording.h"
-#include "scenes/authored_scene.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/authored_scene.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 

@@ -1,4 +1,4 @@
-#include "app/inspector/inspect.h"
+#include "inspector/inspect.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -6,12 +6,12 @@
 #include <chrono>
 #include <iostream>
 
-#include "app/inspector/inspector.h"
-#include "app/inspector/script.h"
-#include "broadmark/atomic_file.h"
+#include "inspector/inspector.h"
+#include "inspector/script.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
-#include "render/framebuffer.h"
-#include "render/window.h"
+#include "broadmark/render/framebuffer.h"
+#include "broadmark/render/window.h"
 
 namespace broadmark {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark {
 

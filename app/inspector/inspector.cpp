@@ -1,6 +1,6 @@
 // The window's contents: menus, places for panels, transport and status bar, dialogs.
 
-#include "app/inspector/inspector.h"
+#include "inspector/inspector.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -12,11 +12,11 @@
 #include <cmath>
 #include <utility>
 
-#include "app/inspector/author_dialogs.h"
-#include "app/inspector/case_chooser.h"
-#include "broadmark/atomic_file.h"
+#include "inspector/author_dialogs.h"
+#include "inspector/case_chooser.h"
+#include "broadmark/files.h"
 #include "broadmark/environment.h"
-#include "render/fonts.h"
+#include "broadmark/render/fonts.h"
 
 namespace broadmark {
 namespace {

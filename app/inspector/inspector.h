@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "app/inspector/file_dialog.h"
-#include "app/inspector/panel.h"
-#include "app/inspector/preferences.h"
-#include "app/inspector/session.h"
-#include "app/inspector/ui.h"
-#include "app/inspector/view.h"
-#include "render/gl.h"
-#include "render/input_queue.h"
-#include "render/ui_renderer.h"
+#include "inspector/file_dialog.h"
+#include "inspector/panel.h"
+#include "inspector/preferences.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
+#include "inspector/view.h"
+#include "broadmark/render/gl.h"
+#include "broadmark/render/input_queue.h"
+#include "broadmark/render/ui_renderer.h"
 
 struct ImGuiContext;
 

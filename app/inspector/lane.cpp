@@ -1,4 +1,4 @@
-#include "app/inspector/lane.h"
+#include "inspector/lane.h"
 
 #include <fmt/format.h>
 

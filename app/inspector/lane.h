@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/inspector/draw_gate.h"
+#include "inspector/draw_gate.h"
 #include "broadmark/runner.h"
 
 namespace broadmark {

@@ -1,4 +1,4 @@
-#include "app/inspector/mismatch.h"
+#include "inspector/mismatch.h"
 
 #include <fmt/format.h>
 

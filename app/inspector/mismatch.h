@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/inspector/run_thread.h"
+#include "inspector/run_thread.h"
 
 namespace broadmark {
 

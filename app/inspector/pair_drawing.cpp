@@ -1,4 +1,4 @@
-#include "app/inspector/pair_drawing.h"
+#include "inspector/pair_drawing.h"
 
 #include <fmt/format.h>
 

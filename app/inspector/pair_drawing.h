@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "app/inspector/mismatch.h"
-#include "app/inspector/ui.h"
+#include "inspector/mismatch.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

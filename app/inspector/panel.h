@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "app/inspector/file_dialog.h"
-#include "app/inspector/session.h"
-#include "app/inspector/ui.h"
+#include "inspector/file_dialog.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

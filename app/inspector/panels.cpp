@@ -1,6 +1,6 @@
 // The list of panels.
 
-#include "app/inspector/panel.h"
+#include "inspector/panel.h"
 
 namespace broadmark {
 

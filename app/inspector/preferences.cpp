@@ -1,10 +1,10 @@
-#include "app/inspector/preferences.h"
+#include "inspector/preferences.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 
 namespace broadmark {

@@ -1,4 +1,4 @@
-#include "app/inspector/run_thread.h"
+#include "inspector/run_thread.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <exception>
 #include <set>
 
-#include "render/colouring.h"
+#include "broadmark/render/colouring.h"
 
 namespace broadmark {
 namespace {

@@ -17,9 +17,9 @@
 #include <thread>
 #include <vector>
 
-#include "app/inspector/draw_gate.h"
-#include "app/inspector/footage.h"
-#include "app/inspector/lane.h"
+#include "inspector/draw_gate.h"
+#include "inspector/footage.h"
+#include "inspector/lane.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
 

@@ -1,4 +1,4 @@
-#include "app/inspector/script.h"
+#include "inspector/script.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -9,7 +9,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 

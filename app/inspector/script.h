@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/inspector/inspector.h"
+#include "inspector/inspector.h"
 
 namespace broadmark {
 

@@ -1,4 +1,4 @@
-#include "app/inspector/session.h"
+#include "inspector/session.h"
 
 #include <fmt/format.h>
 
@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "app/case_reference.h"
-#include "app/cases.h"
-#include "app/inspector/mismatch.h"
-#include "broadmark/atomic_file.h"
+#include "case_reference.h"
+#include "cases.h"
+#include "inspector/mismatch.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "broadmark/original_settings.h"
-#include "scenes/authored_simulation.h"
+#include "original/settings.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

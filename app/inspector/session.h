@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "app/inspector/author_desk.h"
-#include "app/inspector/background_bake.h"
-#include "app/inspector/case_export.h"
-#include "app/inspector/run_thread.h"
+#include "inspector/author_desk.h"
+#include "inspector/background_bake.h"
+#include "inspector/case_export.h"
+#include "inspector/run_thread.h"
 #include "broadmark/algorithm.h"
 #include "broadmark/pair.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "app/inspector/author_dialogs.h"
-#include "app/inspector/inspector.h"
+#include "inspector/author_dialogs.h"
+#include "inspector/inspector.h"
 
 namespace broadmark {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/inspector/ui.h"
+#include "inspector/ui.h"
 
 #include <fmt/format.h>
 #include <imgui_internal.h>

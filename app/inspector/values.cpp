@@ -4,8 +4,8 @@
 
 #include <map>
 
-#include "app/inspector/inspector.h"
-#include "app/inspector/mismatch.h"
+#include "inspector/inspector.h"
+#include "inspector/mismatch.h"
 
 namespace broadmark {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/inspector/view.h"
+#include "inspector/view.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "render/input_queue.h"
-#include "render/ui_renderer.h"
+#include "broadmark/render/input_queue.h"
+#include "broadmark/render/ui_renderer.h"
 
 namespace broadmark {
 namespace {

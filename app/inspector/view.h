@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "app/inspector/session.h"
-#include "app/inspector/ui.h"
-#include "render/colouring.h"
-#include "render/gl.h"
-#include "render/orbit_camera.h"
-#include "render/overlays.h"
-#include "render/scene_view.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
+#include "broadmark/render/colouring.h"
+#include "broadmark/render/gl.h"
+#include "broadmark/render/orbit_camera.h"
+#include "broadmark/render/overlays.h"
+#include "broadmark/render/scene_view.h"
 
 namespace broadmark {
 

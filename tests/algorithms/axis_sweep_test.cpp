@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <list>
 
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

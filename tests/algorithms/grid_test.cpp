@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "algorithms/cell_grid.h"
-#include "algorithms/row_shares.h"
-#include "tests/algorithms/runs.h"
+#include "cell_grid.h"
+#include "row_shares.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

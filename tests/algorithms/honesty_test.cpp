@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "broadmark/runner.h"
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "broadmark/compute_devices.h"
 #include "broadmark/runner.h"
-#include "tests/algorithms/runs.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -16,7 +16,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"
-#include "tests/support/inputs.h"
+#include "support/inputs.h"
 
 namespace broadmark {
 

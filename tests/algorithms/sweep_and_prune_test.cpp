@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "algorithms/radix_sort.h"
-#include "algorithms/simd/overlap_kernels.h"
-#include "tests/algorithms/runs.h"
+#include "radix_sort.h"
+#include "simd/overlap_kernels.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

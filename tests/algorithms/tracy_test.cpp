@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "algorithms/tracy/pair_set.h"
-#include "algorithms/tracy/segmented_list.h"
-#include "tests/algorithms/runs.h"
+#include "tracy/pair_set.h"
+#include "tracy/segmented_list.h"
+#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {

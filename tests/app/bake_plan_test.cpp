@@ -1,14 +1,14 @@
 // A batch as a window runs it: planned, started, watched, cancelled, with nothing printed.
 
-#include "app/bake_plan.h"
+#include "bake_plan.h"
 
 #include <gmock/gmock.h>
 
 #include <set>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/error.h"
-#include "scenes/authored_simulation.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "tests/benchmarks/contest.h"
-#include "tests/support/inputs.h"
+#include "benchmarks/contest.h"
+#include "support/inputs.h"
 
 namespace {
 

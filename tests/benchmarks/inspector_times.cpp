@@ -11,9 +11,9 @@
 #include <algorithm>
 #include <chrono>
 
-#include "app/inspector/inspector.h"
+#include "inspector/inspector.h"
 #include "broadmark/algorithms.h"
-#include "render/framebuffer.h"
+#include "broadmark/render/framebuffer.h"
 
 namespace {
 

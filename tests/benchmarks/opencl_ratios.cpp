@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "broadmark/error.h"
-#include "tests/benchmarks/contest.h"
-#include "tests/support/inputs.h"
+#include "benchmarks/contest.h"
+#include "support/inputs.h"
 
 namespace {
 

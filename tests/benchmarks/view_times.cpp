@@ -9,9 +9,9 @@
 #include <random>
 #include <vector>
 
-#include "render/colouring.h"
-#include "render/offscreen_context.h"
-#include "render/scene_view.h"
+#include "broadmark/render/colouring.h"
+#include "broadmark/render/offscreen_context.h"
+#include "broadmark/render/scene_view.h"
 
 namespace broadmark {
 namespace {

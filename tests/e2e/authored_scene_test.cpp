@@ -1,6 +1,6 @@
 // Authored scenes as sources: run, baked, baked anew when they change, refused when they are wrong.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

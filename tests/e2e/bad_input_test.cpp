@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "scenes/simulation.h"
-#include "tests/e2e/end_to_end.h"
+#include "broadmark/scenes/simulation.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,6 +1,6 @@
 // Comparing two result files.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,7 +1,7 @@
 // Compute devices from outside: listed, chosen, absent.
 
 #include "broadmark/compute_devices.h"
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "broadmark/aabb.h"
-#include "tests/support/program.h"
+#include "support/program.h"
 
 namespace broadmark::testing {
 

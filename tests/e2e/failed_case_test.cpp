@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "broadmark/recording.h"
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,8 +1,8 @@
 // What the program says about itself.
 
 #include "broadmark/algorithms.h"
-#include "scenes/simulation.h"
-#include "tests/e2e/end_to_end.h"
+#include "broadmark/scenes/simulation.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

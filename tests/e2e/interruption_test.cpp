@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <sys/mount.h>
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

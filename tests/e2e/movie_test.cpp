@@ -1,7 +1,7 @@
 // bake --movie: recordings as numbered pictures.
 
-#include "render/picture.h"
-#include "tests/e2e/end_to_end.h"
+#include "broadmark/render/picture.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

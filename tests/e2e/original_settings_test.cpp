@@ -1,6 +1,6 @@
 // Settings files of the original Broadmark run as they did there.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

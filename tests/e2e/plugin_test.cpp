@@ -1,6 +1,6 @@
 // Algorithms loaded from shared libraries.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

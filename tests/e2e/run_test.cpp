@@ -7,8 +7,8 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/execution.h"
-#include "render/picture.h"
-#include "tests/e2e/end_to_end.h"
+#include "broadmark/render/picture.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

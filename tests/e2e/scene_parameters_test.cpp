@@ -1,6 +1,6 @@
 // Scenes described in files: run, baked, repeated from the sidecar of a recording.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,6 +1,6 @@
 // verify: what was baked is as it was, and what it is like.
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

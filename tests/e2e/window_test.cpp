@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "tests/e2e/end_to_end.h"
+#include "e2e/end_to_end.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,6 +1,6 @@
 // Files that appear whole or not at all.
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <atomic>
 #include <thread>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

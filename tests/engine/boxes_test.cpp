@@ -8,7 +8,7 @@
 #include <list>
 
 #include "broadmark/broad_phase.h"
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

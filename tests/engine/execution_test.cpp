@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

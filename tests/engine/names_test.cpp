@@ -7,7 +7,7 @@
 
 #include <climits>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <random>
 
-#include "tests/engine/helpers.h"
-#include "tests/support/inputs.h"
+#include "engine/helpers.h"
+#include "support/inputs.h"
 
 namespace broadmark::tests {
 namespace {

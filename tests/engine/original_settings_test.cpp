@@ -1,13 +1,13 @@
 // The original Broadmark's settings files and logs.
 
-#include "broadmark/original_settings.h"
+#include "original/settings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

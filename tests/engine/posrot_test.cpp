@@ -13,7 +13,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

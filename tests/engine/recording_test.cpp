@@ -15,8 +15,8 @@
 #include <limits>
 #include <utility>
 
-#include "tests/engine/helpers.h"
-#include "tests/support/inputs.h"
+#include "engine/helpers.h"
+#include "support/inputs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

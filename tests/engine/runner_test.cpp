@@ -13,7 +13,7 @@
 #include <numeric>
 #include <thread>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

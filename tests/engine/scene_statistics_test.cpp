@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

@@ -9,9 +9,9 @@
 #include <functional>
 
 #include "broadmark/recording.h"
-#include "tests/engine/helpers.h"
-#include "tests/support/faulty_algorithm.h"
-#include "tests/support/wandering_boxes.h"
+#include "engine/helpers.h"
+#include "support/faulty_algorithm.h"
+#include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
 namespace {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "broadmark/recording.h"
-#include "tests/engine/helpers.h"
-#include "tests/support/wandering_boxes.h"
+#include "engine/helpers.h"
+#include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
 namespace {

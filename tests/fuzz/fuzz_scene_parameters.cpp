@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "broadmark/error.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "broadmark/error.h"
-#include "broadmark/original_settings.h"
+#include "original/settings.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;

@@ -1,14 +1,14 @@
 // Authoring in the session, without any drawing.
-#include "app/inspector/author_desk.h"
+#include "inspector/author_desk.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "app/inspector/session.h"
+#include "inspector/session.h"
 #include "broadmark/algorithms.h"
-#include "broadmark/atomic_file.h"
-#include "tests/engine/helpers.h"
-#include "tests/inspector/helpers.h"
+#include "broadmark/files.h"
+#include "engine/helpers.h"
+#include "inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {

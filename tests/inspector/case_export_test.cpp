@@ -1,17 +1,17 @@
 // Exporting a failing case in the background, and the cases of a results file.
-#include "app/inspector/case_export.h"
+#include "inspector/case_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <thread>
 
-#include "app/inspector/session.h"
+#include "inspector/session.h"
 #include "broadmark/algorithms.h"
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/recording.h"
-#include "tests/engine/helpers.h"
-#include "tests/inspector/helpers.h"
+#include "engine/helpers.h"
+#include "inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,4 +1,4 @@
-#include "app/inspector/draw_gate.h"
+#include "inspector/draw_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <vector>
 
-#include "app/inspector/session.h"
+#include "inspector/session.h"
 #include "broadmark/algorithms.h"
-#include "tests/support/faulty_algorithm.h"
+#include "support/faulty_algorithm.h"
 
 namespace broadmark::tests {
 

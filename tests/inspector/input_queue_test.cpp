@@ -1,4 +1,4 @@
-#include "render/input_queue.h"
+#include "broadmark/render/input_queue.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,5 +1,5 @@
 // The window's contents, drawn off-screen, through the real queue of events.
-#include "app/inspector/inspector.h"
+#include "inspector/inspector.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -11,9 +11,9 @@
 #include <thread>
 
 #include "broadmark/algorithms.h"
-#include "render/framebuffer.h"
-#include "tests/engine/helpers.h"
-#include "tests/support/pictures.h"
+#include "broadmark/render/framebuffer.h"
+#include "engine/helpers.h"
+#include "support/pictures.h"
 
 namespace broadmark::tests {
 namespace {

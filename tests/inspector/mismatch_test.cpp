@@ -1,5 +1,5 @@
 // What is told of a wrong pair.
-#include "app/inspector/mismatch.h"
+#include "inspector/mismatch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "render/plot.h"
+#include "broadmark/render/plot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "app/inspector/preferences.h"
+#include "inspector/preferences.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/engine/helpers.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,10 +1,10 @@
-#include "app/inspector/script.h"
+#include "inspector/script.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "broadmark/atomic_file.h"
-#include "tests/engine/helpers.h"
+#include "broadmark/files.h"
+#include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,12 +1,12 @@
 // The session and its run thread, without any drawing.
-#include "app/inspector/session.h"
+#include "inspector/session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadmark/algorithms.h"
-#include "tests/engine/helpers.h"
-#include "tests/inspector/helpers.h"
+#include "engine/helpers.h"
+#include "inspector/helpers.h"
 
 namespace broadmark::tests {
 namespace {

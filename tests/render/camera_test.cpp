@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "broadmark/render/camera.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/colouring.h"
+#include "broadmark/render/colouring.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-#include "render/colour.h"
-#include "render/overlays.h"
+#include "colour.h"
+#include "broadmark/render/overlays.h"
 
 namespace broadmark::tests {
 namespace {

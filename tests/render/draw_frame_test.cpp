@@ -1,4 +1,4 @@
-#include "render/draw_frame.h"
+#include "draw_frame.h"
 
 #include <dlfcn.h>
 #include <gmock/gmock.h>
@@ -10,10 +10,10 @@
 #include <limits>
 #include <random>
 
-#include "render/camera.h"
-#include "render/gl.h"
-#include "render/offscreen_context.h"
-#include "tests/support/pictures.h"
+#include "broadmark/render/camera.h"
+#include "broadmark/render/gl.h"
+#include "broadmark/render/offscreen_context.h"
+#include "support/pictures.h"
 
 namespace broadmark::tests {
 namespace {

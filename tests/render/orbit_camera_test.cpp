@@ -1,11 +1,11 @@
-#include "render/orbit_camera.h"
+#include "broadmark/render/orbit_camera.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "render/picking.h"
+#include "broadmark/render/picking.h"
 
 namespace broadmark::tests {
 namespace {

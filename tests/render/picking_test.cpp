@@ -1,11 +1,11 @@
-#include "render/picking.h"
+#include "broadmark/render/picking.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "render/orbit_camera.h"
+#include "broadmark/render/orbit_camera.h"
 
 namespace broadmark::tests {
 namespace {

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "broadmark/error.h"
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark::tests {
 namespace {

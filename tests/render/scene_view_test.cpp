@@ -1,4 +1,4 @@
-#include "render/scene_view.h"
+#include "broadmark/render/scene_view.h"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <random>
 
-#include "render/offscreen_context.h"
-#include "tests/support/pictures.h"
+#include "broadmark/render/offscreen_context.h"
+#include "support/pictures.h"
 
 namespace broadmark::tests {
 namespace {

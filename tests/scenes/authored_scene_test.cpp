@@ -1,6 +1,6 @@
 // Authored scenes: as JSON, in motion, and made from frames of others.
 
-#include "scenes/authored_scene.h"
+#include "broadmark/scenes/authored_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -11,8 +11,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/posrot.h"
-#include "scenes/authored_simulation.h"
-#include "tests/scenes/scene_runs.h"
+#include "broadmark/scenes/authored_simulation.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::scenes {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 namespace {

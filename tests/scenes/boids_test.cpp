@@ -2,9 +2,9 @@
 
 #include <numbers>
 
-#include "scenes/registry.h"
+#include "broadmark/scenes/registry.h"
 #include "scenes/scene.h"
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

@@ -1,6 +1,6 @@
 // City: nearly all of it stands still, in very different sizes.
 
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

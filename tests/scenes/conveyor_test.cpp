@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <cstdlib>
 
-#include "broadmark/atomic_file.h"
-#include "scenes/authored_simulation.h"
-#include "scenes/brush.h"
-#include "scenes/scene_editor.h"
-#include "tests/scenes/scene_runs.h"
+#include "broadmark/files.h"
+#include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/scenes/brush.h"
+#include "broadmark/scenes/scene_editor.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::scenes {
 namespace {

@@ -1,6 +1,6 @@
 // Explosion: dense at first, ever thinner then.
 
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

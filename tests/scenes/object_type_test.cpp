@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "scenes/registry.h"
+#include "broadmark/scenes/registry.h"
 
 namespace broadmark::scenes {
 namespace {

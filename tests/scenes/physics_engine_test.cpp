@@ -1,6 +1,6 @@
 // Every physics engine: bodies fall, rest, stay inside and freeze as a scene expects.
 
-#include "scenes/physics_engine.h"
+#include "broadmark/scenes/physics_engine.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-#include "scenes/registry.h"
+#include "broadmark/scenes/registry.h"
 
 namespace broadmark::scenes {
 namespace {

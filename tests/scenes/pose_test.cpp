@@ -1,6 +1,6 @@
 // Boxes around posed shapes, and random sampling.
 
-#include "scenes/pose.h"
+#include "broadmark/scenes/shape.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scenes/random.h"
+#include "broadmark/scenes/random.h"
 
 namespace broadmark::scenes {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "broadmark/oracle.h"
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark {
 namespace {

@@ -12,8 +12,8 @@
 #include <set>
 
 #include "broadmark/posrot.h"
-#include "scenes/simulation.h"
-#include "tests/engine/helpers.h"
+#include "broadmark/scenes/simulation.h"
+#include "engine/helpers.h"
 
 namespace broadmark {
 namespace {

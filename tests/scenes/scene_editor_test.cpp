@@ -1,14 +1,14 @@
 // Editing with undo and redo: whatever the order of edits, what was there comes back.
 
-#include "scenes/scene_editor.h"
+#include "broadmark/scenes/scene_editor.h"
 
 #include <gmock/gmock.h>
 
 #include <random>
 
 #include "broadmark/error.h"
-#include "scenes/brush.h"
-#include "scenes/registry.h"
+#include "broadmark/scenes/brush.h"
+#include "broadmark/scenes/registry.h"
 
 namespace broadmark::scenes {
 namespace {

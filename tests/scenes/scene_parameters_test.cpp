@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadmark/error.h"
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 namespace broadmark::testing {
 

@@ -1,6 +1,6 @@
 // Whole simulations: parameters, determinism, and bodies that behave.
 
-#include "scenes/simulation.h"
+#include "broadmark/scenes/simulation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Swarm: flocks that stay flocks, wherever they go.
 
-#include "tests/scenes/scene_runs.h"
+#include "scenes/scene_runs.h"
 
 namespace broadmark::testing {
 namespace {

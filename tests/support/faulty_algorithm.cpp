@@ -16,7 +16,7 @@
 // The fault of "faulty-extra": pairs of two bodies that moved in this frame go into the answer as
 // they are found, that is, for their fat boxes.
 
-#include "tests/support/faulty_algorithm.h"
+#include "support/faulty_algorithm.h"
 
 #include <array>
 #include <chrono>

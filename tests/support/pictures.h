@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render/picture.h"
+#include "broadmark/render/picture.h"
 
 namespace broadmark::tests {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "broadmark/frame.h"
-#include "tests/support/inputs.h"
+#include "support/inputs.h"
 
 namespace broadmark::tests {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "app/inspector/panel.h"
+#include "inspector/panel.h"
 
 namespace broadmark::panels::algorithms {
 namespace {

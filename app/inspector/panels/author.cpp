@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "app/inspector/author_dialogs.h"
-#include "app/inspector/panel.h"
-#include "scenes/authored_simulation.h"
+#include "inspector/author_dialogs.h"
+#include "inspector/panel.h"
+#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark::panels::author {
 namespace {

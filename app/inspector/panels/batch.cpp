@@ -6,9 +6,9 @@
 #include <cmath>
 #include <thread>
 
-#include "app/bake_plan.h"
-#include "app/inspector/panel.h"
-#include "app/words.h"
+#include "bake_plan.h"
+#include "inspector/panel.h"
+#include "words.h"
 #include "broadmark/error.h"
 
 namespace broadmark::panels::batch {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "app/inspector/mismatch.h"
-#include "app/inspector/pair_drawing.h"
-#include "app/inspector/panel.h"
-#include "app/words.h"
+#include "inspector/mismatch.h"
+#include "inspector/pair_drawing.h"
+#include "inspector/panel.h"
+#include "words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 

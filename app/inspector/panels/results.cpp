@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "app/inspector/curve_colours.h"
-#include "app/inspector/panel.h"
-#include "render/plot.h"
+#include "inspector/curve_colours.h"
+#include "inspector/panel.h"
+#include "broadmark/render/plot.h"
 
 namespace broadmark::panels::results {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "app/inspector/panel.h"
+#include "inspector/panel.h"
 
 namespace broadmark::panels::scene {
 namespace {

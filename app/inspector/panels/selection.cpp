@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/inspector/panel.h"
+#include "inspector/panel.h"
 #include "broadmark/scene_statistics.h"
 
 namespace broadmark::panels::selection {

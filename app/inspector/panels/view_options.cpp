@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/inspector/panel.h"
-#include "app/inspector/view.h"
+#include "inspector/panel.h"
+#include "inspector/view.h"
 
 namespace broadmark::panels::view_options {
 namespace {

@@ -1,9 +1,10 @@
 // How an algorithm is listed: everything that help, tables, command line and tests derive from.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,36 +12,42 @@
 
 namespace broadmark {
 
-/// A name by which the original Broadmark calls an algorithm, and the instruction set it implies.
-struct OriginalId {
-  std::string name;
-  std::optional<Isa> isa;
+/// What holds for every instance of an algorithm. Whoever runs, lists or tests it goes by this.
+struct AlgorithmTraits {
+  bool parallel = false;     ///< uses as many threads as it is given
+  bool vectorised = false;   ///< heeds the instruction set
+  bool on_device = false;    ///< runs on a compute device, whose driver has threads of its own
+  bool incremental = false;  ///< keeps pairs from frame to frame
+  /// False for the self-checks, which report no pairs and are not checked for them.
+  bool finds_pairs = true;
+  /// A library beneath it allocates in a steady state, out of its reach.
+  bool library_allocates = false;
+  /// Largest number of bodies it can handle.
+  std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
+  /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two
+  /// calls others may have used it.
+  std::string exclusive = {};
+};
+
+/// What the paper's Table 1 tells of an algorithm, beyond its traits.
+struct AlgorithmDescription {
+  std::string principle;      ///< "brute force", "sorting", "grid", "tree"
+  std::string optimisations;  ///< besides SIMD, threads and devices; "": none
+  std::string time;           ///< complexity: "O(n²)"
+  std::string space;          ///< "O(n + k)", k the number of pairs
+  std::string source;         ///< paper and section, or library
 };
 
 /// One algorithm variant.
 struct Algorithm {
-  std::string id;           ///< "sap-simd-mt"
-  std::string family;       ///< "SAP"
-  std::string summary;      ///< one sentence
-  bool parallel = false;    ///< uses several threads
-  bool vectorised = false;  ///< heeds the instruction set
-  bool on_device = false;   ///< runs on a compute device, whose driver has threads of its own
-  /// False for the self-checks, which report no pairs and are not checked for them.
-  bool finds_pairs = true;
-  std::vector<OriginalId> original_ids;
+  std::string id;       ///< "sap-simd-mt"
+  std::string family;   ///< "SAP"
+  std::string summary;  ///< one sentence
+  AlgorithmTraits traits = {};
+  AlgorithmDescription description = {};
+  /// A new instance with default parameters.
   std::function<std::unique_ptr<BroadPhase>()> create;
-  /// A library beneath it allocates in a steady state, out of its reach.
-  bool library_allocates = false;
-  std::string plugin;  ///< the file it was loaded from; "": built in
-
-  // The paper's Table 1.
-  std::string principle;            ///< "brute force", "sorting", "grid", "tree"
-  std::string optimisations;        ///< "SIMD, threads"
-  bool incremental = false;         ///< keeps pairs from frame to frame
-  std::string exactness = "exact";  ///< or what its margin is
-  std::string time;                 ///< complexity: "O(n²)"
-  std::string space;                ///< "O(n + k)", k the number of pairs
-  std::string source;               ///< paper and section, or library
+  std::string plugin = {};  ///< the file it was loaded from; "": built in
 };
 
 }  // namespace broadmark

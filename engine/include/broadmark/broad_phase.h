@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,19 +16,7 @@
 
 namespace broadmark {
 
-/// What an instance promises, given its present parameters.
-struct Capabilities {
-  /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
-  /// each is enlarged by this much on every side (world units).
-  float margin = 0;
-  /// Largest number of bodies it can handle.
-  std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
-  /// Name of the process-wide state it depends on: of all executions with instances of the same
-  /// name only one may live at a time. Empty: none.
-  std::string_view exclusive = {};
-};
-
-/// Shows one count of work done in the present frame ("swaps", "moves", "skipped subtrees").
+/// Shows one number and what it counts: "swaps", "moves", "skipped subtrees".
 using CounterVisitor = std::function<void(std::string_view name, std::uint64_t count)>;
 
 /// How much of a frame went into copying to and from a compute device, in nanoseconds.
@@ -45,7 +32,9 @@ struct TransferTimes {
 /// use the workers of its Execution. A steady state allocates nothing.
 class BroadPhase : public Parametrised {
  public:
-  [[nodiscard]] virtual Capabilities capabilities() const { return {}; }
+  /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
+  /// each is enlarged by this much on every side (world units). Depends on the parameters alone.
+  [[nodiscard]] virtual float margin() const { return 0; }
 
   /// Builds everything for the initial pose. `execution` outlives the instance. Throws
   /// UnsupportedError when it cannot run here.
@@ -71,23 +60,35 @@ class BroadPhase : public Parametrised {
   virtual void drawStructure(DebugDraw&) const {}
   /// Shows the work counters of the last frame (incremental algorithms).
   virtual void visitCounters(const CounterVisitor&) const {}
+  /// Shows what was counted once, in initialize(): the time to build kernels, for instance.
+  virtual void visitSetup(const CounterVisitor&) const {}
   /// Checks the inner invariants: "" or what is broken. For tests; may be slow.
   [[nodiscard]] virtual std::string validate() const { return {}; }
 };
 
-/// Layer 1: keeps the execution and one pair buffer per worker, and answers with them.
+// Three helper layers. Those who keep their pairs from frame to frame (KD, Tracy) or get them from
+// elsewhere as a whole (compute devices) stand directly on BroadPhase: pair buffers that are emptied
+// for every frame would be in their way. All others use a layer.
+
+/// Layer 1: keeps the execution and one pair buffer per worker, and answers with them. Phases 2 and
+/// 4 are its own: an algorithm adds pairs in findPairs(), to buffers that are empty, and they are
+/// the answer. Whoever overrides initialize() calls this one first; forgetting that is noticed in
+/// the first search.
 class PairBroadPhase : public BroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
-  void cleanCache() override;
-  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+  void cleanCache() final;
+  void searchOverlaps() final;
+  [[nodiscard]] PairRuns overlaps() const final { return runs_; }
 
  protected:
+  /// Adds every pair of the frame to the buffer of any worker.
+  virtual void findPairs() = 0;
+
   Execution& execution() { return *execution_; }
   ThreadTeam& team() { return execution_->team(); }
-  /// The pair buffer of one worker. Call publishPairs() once all have been filled.
+  /// The pair buffer of one worker.
   PairBuffer& pairs(int worker = 0) { return buffers_[static_cast<std::size_t>(worker)]; }
-  void publishPairs();
 
  private:
   Execution* execution_ = nullptr;

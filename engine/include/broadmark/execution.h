@@ -3,10 +3,8 @@
 
 #include <atomic>
 #include <concepts>
-#include <cstddef>
 #include <exception>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -14,13 +12,19 @@
 #include <utility>
 #include <vector>
 
+#include "broadmark/names.h"
+#include "broadmark/range.h"
+
 namespace broadmark {
 
 enum class Isa { scalar, sse2, avx2, avx512 };
+/// All of them, the narrowest first.
+inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
+                                  {Isa::sse2, "sse2"},
+                                  {Isa::avx2, "avx2"},
+                                  {Isa::avx512, "avx512"}}};
+constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }
 
-inline constexpr Isa kAllIsas[] = {Isa::scalar, Isa::sse2, Isa::avx2, Isa::avx512};
-
-std::string_view isaName(Isa);
 /// Whether this processor (and system) can run it.
 bool isaSupported(Isa);
 /// The widest instruction set that this processor can run.
@@ -65,13 +69,6 @@ class ThreadTeam {
   std::exception_ptr failure_;
   std::vector<std::thread> threads_;
 };
-
-/// The part-th of `parts` nearly equal, contiguous shares of [0, count): [first, second).
-constexpr std::pair<std::size_t, std::size_t> share(std::size_t count, int parts, int part) {
-  const auto n = static_cast<std::size_t>(parts);
-  const auto k = static_cast<std::size_t>(part);
-  return {count * k / n, count * (k + 1) / n};
-}
 
 /// Something costly that all instances under one Execution share, such as a device's context.
 class SharedResource {

@@ -1,18 +1,23 @@
 // What an algorithm gets to see: a scene, frame after frame.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "broadmark/aabb.h"
 
 namespace broadmark {
 
+/// Longest name of a scene or an object type, in characters: what a recording's header holds.
+inline constexpr std::size_t kLongestName = 127;
+
 /// What is known of a scene before its first frame: a recording's header.
 struct SceneInfo {
-  std::string name;         ///< "FreeFall"; printable ASCII, at most 127 characters
+  std::string name;         ///< "FreeFall"; printable ASCII, at most kLongestName characters
   std::string object_type;  ///< "Cubes"; likewise
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;  ///< the initial pose not counted
@@ -28,8 +33,8 @@ struct Frame {
   std::span<const Aabb> boxes;
 };
 
-/// Where frames come from: a recording read ahead, or a live simulation. Runner and inspector do
-/// not know which.
+/// Where frames come from, one after the other: a recording, or a live simulation. Who runs a case
+/// does not know which.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -41,6 +46,41 @@ class FrameSource {
 
   /// The next frame, wholly in resident memory, or nothing after the last one.
   virtual std::optional<Frame> next() = 0;
+};
+
+/// Frames by their number, in any order: a recording, or frames held in memory.
+class IndexedFrames : public FrameSource {
+ public:
+  /// Frame `index`, from 0, the initial pose, to scene().frames; next() goes on from there. Valid
+  /// until the next call. Throws InputError when there is no such frame.
+  Frame at(std::uint32_t index);
+
+  Frame rewind() final { return at(0); }
+  std::optional<Frame> next() final;
+
+  /// What stands for it in messages.
+  [[nodiscard]] virtual const std::string& name() const { return scene().name; }
+
+ protected:
+  /// The boxes of frame `index`, which exists.
+  virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
+
+ private:
+  std::uint32_t position_ = 0;
+};
+
+/// All frames of a source, held in memory: 32 · objects · (1 + frames) bytes.
+class FrameList final : public IndexedFrames {
+ public:
+  explicit FrameList(FrameSource& source);
+
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+
+ private:
+  std::span<const Aabb> readBoxes(std::uint32_t index) override;
+
+  SceneInfo scene_;
+  std::vector<Aabb> boxes_;
 };
 
 }  // namespace broadmark

@@ -1,12 +1,49 @@
 // Names that people type: finding what they meant.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace broadmark {
+
+/// A value and what people call it.
+template <class Value>
+struct NamedValue {
+  Value value;
+  std::string_view name;
+};
+
+/// Values with their names, stated once for both ways.
+template <class Value, std::size_t size>
+struct NameTable {
+  std::array<NamedValue<Value>, size> entries;
+
+  /// `value` is in the table.
+  [[nodiscard]] constexpr std::string_view nameOf(Value value) const {
+    for (const auto& entry : entries) {
+      if (entry.value == value) return entry.name;
+    }
+    return "?";
+  }
+  [[nodiscard]] constexpr std::optional<Value> find(std::string_view name) const {
+    for (const auto& entry : entries) {
+      if (entry.name == name) return entry.value;
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : entries) names.emplace_back(entry.name);
+    return names;
+  }
+};
+template <class Value, std::size_t size>
+NameTable(const NamedValue<Value> (&)[size]) -> NameTable<Value, size>;
 
 /// The known name with the smallest edit distance to `name`, or "" when none is near.
 std::string nearestName(std::string_view name, std::span<const std::string> known);

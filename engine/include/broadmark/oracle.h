@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broadmark/frame.h"
+#include "broadmark/hasher.h"
 #include "broadmark/pair.h"
 
 namespace broadmark {
@@ -28,23 +31,34 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb>);
 /// O(n log n + candidates). Tested against bruteForcePairs.
 std::vector<Pair> sweptPairs(std::span<const Aabb>);
 
-/// The right answers of one scene's frames, computed once and kept while they fit in a budget.
+/// The right answer for any boxes, computed once and kept while it fits in a budget. An answer is
+/// found again by the boxes' hash: two scenes may share an oracle, and equal frames share an answer.
 class Oracle {
  public:
   explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30) : budget_bytes_(budget_bytes) {}
 
-  /// The pairs of this frame, ascending; valid until the next call.
-  std::span<const Pair> pairs(const Frame&);
-  PairDigest pairDigest(const Frame&);
+  /// The overlapping pairs of these boxes, ascending; valid until the next call.
+  std::span<const Pair> pairs(std::span<const Aabb> boxes);
+  PairDigest pairDigest(std::span<const Aabb> boxes);
 
  private:
-  std::map<std::uint32_t, std::vector<Pair>> kept_;
-  std::map<std::uint32_t, PairDigest> digests_;
+  struct Answer {
+    PairDigest digest;
+    std::optional<std::vector<Pair>> pairs;  ///< nothing when they did not fit in the budget
+  };
+  /// The pairs asked for are in the answer, or else in scratch_.
+  Answer& find(std::span<const Aabb> boxes, bool with_pairs);
+
+  std::map<HashValue, Answer> answers_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
 };
 
 /// How an answer differs from the right one in one frame.
+///
+/// An extra pair was reported though the two boxes do not overlap: it is *allowed* when they do once
+/// enlarged by the algorithm's margin, else it is *false*. An invalid pair is a duplicate, has
+/// a >= b, or names a body that does not exist.
 struct FrameDifference {
   /// At most this many pairs of each kind are listed; the counts are always complete.
   static constexpr std::size_t kListed = 1000;
@@ -52,20 +66,23 @@ struct FrameDifference {
   int repetition = 0;
   std::uint32_t frame = 0;
   std::uint64_t missed_count = 0;
-  std::uint64_t extra_count = 0;      ///< false pairs, allowed ones included
-  std::uint64_t forbidden_count = 0;  ///< of these, pairs beyond the algorithm's margin
-  std::uint64_t invalid_count = 0;    ///< duplicates, a >= b, or bodies that do not exist
-  std::vector<Pair> missed;
-  std::vector<Pair> extra;
-  std::vector<Pair> invalid;
+  std::uint64_t false_count = 0;
+  std::uint64_t allowed_extra_count = 0;
+  std::uint64_t invalid_count = 0;
+  std::vector<Pair> missed_pairs;
+  std::vector<Pair> false_pairs;
+  std::vector<Pair> allowed_extra_pairs;
+  std::vector<Pair> invalid_pairs;
 
-  [[nodiscard]] bool any() const { return missed_count + extra_count + invalid_count > 0; }
-  [[nodiscard]] bool isMismatch() const {
-    return missed_count + forbidden_count + invalid_count > 0;
-  }
+  /// Allowed extra pairs are no mismatch.
+  [[nodiscard]] bool isMismatch() const { return missed_count + false_count + invalid_count > 0; }
 };
 
-/// Compares an answer with the right pairs (ascending). `margin` as in Capabilities.
+/// "12 missed, 0 false, 1 invalid"
+std::string mismatchText(const FrameDifference&);
+
+/// Compares an answer with the right pairs (ascending) of these boxes. `margin` as in
+/// BroadPhase::margin().
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
                                float margin = 0);
 

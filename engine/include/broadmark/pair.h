@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace broadmark {
 
@@ -33,6 +34,10 @@ constexpr std::uint64_t pairCount(PairRuns runs) {
   for (const PairRun run : runs) count += run.size();
   return count;
 }
+
+/// For each of `bodies` bodies, in how many of the pairs it is. Bodies that do not exist count for
+/// nothing.
+std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pairs);
 
 /// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it hands out
 /// uninitialised room, so that SIMD kernels can write first and count afterwards.

@@ -54,5 +54,11 @@ void setParameters(Parametrised&, const ParameterValues&);
 
 /// All parameters with their present values.
 ParameterValues parameterValues(Parametrised&);
+/// Those of `values` that differ from the values of `fresh`, which has its defaults.
+ParameterValues changedValues(ParameterValues values, Parametrised& fresh);
+/// Those of `values` that the object has.
+ParameterValues applicableValues(Parametrised&, const ParameterValues& values);
+/// The names of all parameters.
+std::vector<std::string> parameterNames(Parametrised&);
 
 }  // namespace broadmark

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/atomic_file.h"
+#include "broadmark/files.h"
 #include "broadmark/frame.h"
 
 namespace broadmark {
@@ -34,27 +34,20 @@ std::string recordingFileName(const SceneInfo&, std::string_view extension = kAa
 /// A recording of any kind and length, read with the memory of one frame. Every frame is checked as
 /// it is read. All errors are InputErrors that name the file and the byte offset, or frame and
 /// body.
-class Recording : public FrameSource {
+class Recording : public IndexedFrames {
  public:
   [[nodiscard]] const SceneInfo& scene() const final { return scene_; }
-  Frame rewind() final { return read(0); }
-  std::optional<Frame> next() final;
-
-  /// Reads frame `index` (0 = initial pose). next() goes on from there.
-  Frame read(std::uint32_t index);
 
   /// XXH3-128 of the whole file as 32 hex digits; reads it through on first use.
   const std::string& hash();
 
   /// The path, or what stands for it in messages.
-  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& name() const final { return name_; }
 
  protected:
   /// Checks the header and the length of an open file.
   Recording(FileDescriptor file, std::string name);
 
-  /// The boxes of frame `index`, which exists.
-  virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
   /// Reads set `index`, which holds `bytes.size()` bytes.
   void readSet(std::uint32_t index, std::span<std::byte> bytes) const;
 
@@ -62,7 +55,6 @@ class Recording : public FrameSource {
   std::string name_;
   FileDescriptor file_;
   SceneInfo scene_;
-  std::uint32_t position_ = 0;
   std::string hash_;
 };
 

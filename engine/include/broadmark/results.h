@@ -1,7 +1,6 @@
 // What a run leaves behind: cases with their times and verdicts, and files to keep them in.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -12,49 +11,20 @@
 
 #include "broadmark/environment.h"
 #include "broadmark/execution.h"
+#include "broadmark/frame.h"
+#include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
 #include "broadmark/parameters.h"
 #include "broadmark/statistics.h"
+#include "broadmark/status.h"
 
 namespace broadmark {
-
-/// The timed phases of a frame. A phase names the call, not the work: only the total compares
-/// across algorithm families. Upload and download are the parts of the four calls before them that
-/// went into copying to and from a compute device; without a device they are 0.
-enum class Phase {
-  update_objects,
-  clean_cache,
-  update_structures,
-  search_overlaps,
-  upload,
-  download,
-  total
-};
-inline constexpr std::array kAllPhases = {Phase::update_objects,
-                                          Phase::clean_cache,
-                                          Phase::update_structures,
-                                          Phase::search_overlaps,
-                                          Phase::upload,
-                                          Phase::download,
-                                          Phase::total};
-std::string_view phaseName(Phase);
-
-/// Durations of one frame's phases in nanoseconds of a steady clock.
-struct FrameTimes {
-  std::array<std::int64_t, kAllPhases.size()> ns{};
-
-  std::int64_t& operator[](Phase phase) { return ns[static_cast<std::size_t>(phase)]; }
-  std::int64_t operator[](Phase phase) const { return ns[static_cast<std::size_t>(phase)]; }
-};
 
 /// One pass of a fresh instance over the whole recording.
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
 };
-
-enum class Status { ok, mismatch, timeout, unsupported, error };
-std::string_view statusName(Status);
 
 /// The recording a case ran on.
 struct RecordingReference {
@@ -82,14 +52,18 @@ struct CaseResult {
 
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
-  bool checked = false;      ///< when false, missed and extra mean nothing
-  std::uint64_t missed = 0;  ///< over all frames and repetitions
-  std::uint64_t extra = 0;
-  std::uint64_t invalid = 0;
-  std::vector<FrameDifference> differences;
+  bool checked = false;  ///< when false, the counts of wrong pairs mean nothing
+  // Pairs over all frames and repetitions, as in FrameDifference.
+  std::uint64_t missed_count = 0;
+  std::uint64_t false_count = 0;
+  std::uint64_t allowed_extra_count = 0;
+  std::uint64_t invalid_count = 0;
+  std::vector<FrameDifference> differences;  ///< of the frames that are mismatches
   std::optional<std::uint64_t> peak_bytes;
   /// The algorithm's own counts of work, mean per frame.
   std::map<std::string, double> counters;
+  /// What it counted once, in the first initialisation.
+  std::map<std::string, std::uint64_t> setup;
 
   std::vector<Repetition> repetitions;
 

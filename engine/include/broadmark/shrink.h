@@ -3,12 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
-#include <string>
 
+#include "broadmark/case.h"
 #include "broadmark/oracle.h"
-#include "broadmark/runner.h"
 #include "broadmark/sub_recording.h"
 
 namespace broadmark {
@@ -45,14 +43,7 @@ struct ShrunkCase {
 /// The pairs that `known` lists only tell where to look first. Cancelled: the best so far. Throws
 /// InputError when the case does not fail in that frame, when the algorithm finds no pairs by
 /// design, or for a bad recording.
-ShrunkCase shrinkCase(const Case& run, FrameSource& source, const FrameDifference& known,
+ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options = {});
-
-/// What a part of a scene is called: "FreeFall case".
-std::string partName(const SceneInfo&);
-
-/// Writes the selected part of `source` as an .aabbs recording. Returns its hash. Throws
-/// InputError.
-std::string writePart(const std::filesystem::path& path, FrameSource& source, const Selection&);
 
 }  // namespace broadmark

@@ -2,33 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "broadmark/frame.h"
 
 namespace broadmark {
-
-class Recording;
-
-/// Any frame of any source, forwards or backwards: a recording goes there at once, any other source
-/// steps, from the start if need be.
-class FrameSeeker {
- public:
-  /// `source` outlives this and is used by nobody else meanwhile.
-  explicit FrameSeeker(FrameSource& source);
-
-  [[nodiscard]] const SceneInfo& scene() const { return source_.scene(); }
-  /// Frame `index`, valid until the next call. Throws InputError when there is none.
-  Frame at(std::uint32_t index);
-
- private:
-  FrameSource& source_;
-  Recording* recording_;  ///< the same, when it is one
-  Frame present_;
-  bool started_ = false;
-};
 
 /// Which part. Bodies and frames keep their order and are numbered anew, from 0.
 struct Selection {
@@ -42,40 +22,26 @@ struct Selection {
 Selection wholeSelection(const SceneInfo&, std::uint32_t last_frame);
 
 /// The selected part as a source of its own: same world, the given name.
-class SubRecording final : public FrameSource {
+class SubRecording final : public IndexedFrames {
  public:
   /// `whole` outlives this; the selection's numbers exist in it.
-  SubRecording(FrameSeeker& whole, Selection selection, std::string name);
+  SubRecording(IndexedFrames& whole, Selection selection, std::string name);
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-  Frame rewind() override { return at(0); }
-  std::optional<Frame> next() override;
 
  private:
-  Frame at(std::uint32_t index);
+  std::span<const Aabb> readBoxes(std::uint32_t index) override;
 
-  FrameSeeker& whole_;
+  IndexedFrames& whole_;
   Selection selection_;
   SceneInfo scene_;
-  std::uint32_t index_ = 0;
   std::vector<Aabb> boxes_;
 };
 
-/// A source's frames, held in memory: scene().objects · (1 + scene().frames) · 32 bytes.
-class FrameList final : public FrameSource {
- public:
-  explicit FrameList(FrameSource& source);
+/// What a part of a scene is called: "FreeFall case".
+std::string partName(const SceneInfo&);
 
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-  Frame rewind() override { return at(0); }
-  std::optional<Frame> next() override;
-
- private:
-  Frame at(std::uint32_t index);
-
-  SceneInfo scene_;
-  std::uint32_t index_ = 0;
-  std::vector<Aabb> boxes_;
-};
+/// Writes the selected part of `whole` as an .aabbs recording. Returns its hash. Throws InputError.
+std::string writePart(const std::filesystem::path& path, IndexedFrames& whole, const Selection&);
 
 }  // namespace broadmark

@@ -1,0 +1,20 @@
+// What is simulated when a source is a scene, or a batch is baked.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "broadmark/parameters.h"
+
+namespace broadmark {
+
+struct SceneOptions {
+  std::vector<std::uint32_t> objects;     ///< ascending; empty: the scene's default
+  std::vector<std::string> object_types;  ///< likewise
+  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
+  ParameterValues parameters;
+  std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on
+};
+
+}  // namespace broadmark

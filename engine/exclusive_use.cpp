@@ -1,0 +1,50 @@
+// Named readers-writer locks in which a waiting writer lets no further reader pass.
+
+#include "broadmark/exclusive_use.h"
+
+#include <functional>
+#include <map>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+
+namespace broadmark {
+
+struct NamedLock {
+  std::mutex door;  ///< held by a writer while it waits, and by everybody on the way in
+  std::shared_mutex room;
+};
+
+namespace {
+
+NamedLock* lockOf(std::string_view name) {
+  if (name.empty()) return nullptr;
+  static std::mutex guard;
+  static std::map<std::string, NamedLock, std::less<>> locks;
+  const std::lock_guard hold(guard);
+  return &locks[std::string(name)];
+}
+
+}  // namespace
+
+ExclusiveUse::ExclusiveUse(std::string_view name) : lock_(lockOf(name)) {
+  if (lock_ == nullptr) return;
+  const std::lock_guard entering(lock_->door);
+  lock_->room.lock();
+}
+
+ExclusiveUse::~ExclusiveUse() {
+  if (lock_ != nullptr) lock_->room.unlock();
+}
+
+SharedUse::SharedUse(std::string_view name) : lock_(lockOf(name)) {
+  if (lock_ == nullptr) return;
+  const std::lock_guard entering(lock_->door);
+  lock_->room.lock_shared();
+}
+
+SharedUse::~SharedUse() {
+  if (lock_ != nullptr) lock_->room.unlock_shared();
+}
+
+}  // namespace broadmark

@@ -1,0 +1,37 @@
+// Frames by their number.
+
+#include "broadmark/frame.h"
+
+#include <fmt/format.h>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+
+Frame IndexedFrames::at(std::uint32_t index) {
+  if (index > scene().frames) {
+    throw InputError(
+        fmt::format("{}: no frame {}: the last one is {}", name(), index, scene().frames));
+  }
+  const std::span<const Aabb> boxes = readBoxes(index);
+  position_ = index;
+  return {index, boxes};
+}
+
+std::optional<Frame> IndexedFrames::next() {
+  if (position_ >= scene().frames) return std::nullopt;
+  return at(position_ + 1);
+}
+
+FrameList::FrameList(FrameSource& source) : scene_(source.scene()) {
+  boxes_.reserve(std::size_t{scene_.objects} * (std::size_t{scene_.frames} + 1));
+  for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
+    boxes_.insert(boxes_.end(), frame->boxes.begin(), frame->boxes.end());
+  }
+}
+
+std::span<const Aabb> FrameList::readBoxes(std::uint32_t index) {
+  return std::span(boxes_).subspan(std::size_t{index} * scene_.objects, scene_.objects);
+}
+
+}  // namespace broadmark

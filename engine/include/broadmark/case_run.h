@@ -1,0 +1,106 @@
+// A case being run, frame by frame: the one place where time is taken and answers are judged.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "broadmark/case.h"
+#include "broadmark/frame_times.h"
+#include "broadmark/oracle.h"
+#include "broadmark/status.h"
+
+namespace broadmark {
+
+/// How answers are compared with the oracle's: as sets, or by count and hash (sets all the same
+/// for a conservative algorithm, and where the hashes differ), or not at all.
+enum class CheckMode { full, hash, off };
+
+inline constexpr NameTable kCheckModes{{NamedValue{CheckMode::full, "full"},
+                                        {CheckMode::hash, "hash"},
+                                        {CheckMode::off, "off"}}};
+
+/// What a run may take, and how its answers are judged.
+struct RunPolicy {
+  CheckMode check = CheckMode::full;
+  /// On the running mean of a frame's total, judged after three frames.
+  double frame_limit_seconds = 0.5;
+  double initialize_limit_seconds = 60;
+
+  /// Any time will do.
+  static RunPolicy unlimited(CheckMode check) {
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    return {.check = check, .frame_limit_seconds = kNoLimit, .initialize_limit_seconds = kNoLimit};
+  }
+};
+
+/// Runs one case, as often as wanted, each pass with a fresh instance. All passes share one
+/// Execution: threads, a device's context and its kernels are made once.
+///
+/// Every call into the algorithm holds its traits' exclusive use, so that any number of runs may
+/// live at the same time, on one thread or on several; waiting is not timed. What an algorithm
+/// throws becomes the status, and ends the pass; only an InputError goes on to the caller.
+class CaseRun {
+ public:
+  /// Makes neither instance nor threads yet. Throws InputError for a bad parameter.
+  explicit CaseRun(Case run, RunPolicy policy = {});
+  ~CaseRun();
+  CaseRun(const CaseRun&) = delete;
+  CaseRun& operator=(const CaseRun&) = delete;
+
+  [[nodiscard]] const Case& description() const { return case_; }
+  /// As BroadPhase::margin().
+  [[nodiscard]] float margin() const { return margin_; }
+
+  /// Begins a pass: a fresh instance at the initial pose. Returns whether it is running: what the
+  /// processor, the number of bodies or the time limit forbids is a status. Throws InputError (a
+  /// device that does not exist).
+  bool start(const SceneInfo& scene, const Frame& first);
+  /// Runs the four phases on the next frame and times them. Returns whether it is still running: a
+  /// time beyond the limit ends the pass, but the frame counts. Only while running().
+  bool step(const Frame& frame);
+  /// Judges the answer for this frame, the last one run; nothing when the policy or the algorithm's
+  /// nature has it that answers are not checked. Only while answered().
+  std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
+  /// Ends the pass and frees the instance.
+  void stop();
+
+  [[nodiscard]] Status status() const { return status_; }
+  [[nodiscard]] const std::string& reason() const { return reason_; }
+  /// Whether step() may be called.
+  [[nodiscard]] bool running() const { return instance_ != nullptr && !ended_; }
+  /// Whether there is an answer: a frame has been run, and its instance is still there.
+  [[nodiscard]] bool answered() const { return instance_ != nullptr && frames_ > 0; }
+
+  // Of the present pass, or the last one.
+  [[nodiscard]] std::int64_t initializeNanoseconds() const { return initialize_ns_; }
+  /// Of the last frame.
+  [[nodiscard]] const FrameTimes& times() const { return times_; }
+  /// The instance: to ask for its answer, counters and structure. Only between start() and stop().
+  [[nodiscard]] const BroadPhase& algorithm() const { return *instance_; }
+  /// To call its phases one by one, as tests do; then nothing is timed or judged.
+  BroadPhase& algorithm() { return *instance_; }
+
+ private:
+  /// Calls into the algorithm; what that throws becomes the status. Whether all went well.
+  template <class Call>
+  bool attempt(Call&& call);
+  void fail(Status status, std::string reason);
+
+  Case case_;
+  RunPolicy policy_;
+  std::optional<Execution> execution_;  ///< from the first start() on
+  std::unique_ptr<BroadPhase> instance_;
+  float margin_ = 0;
+  bool ended_ = false;  ///< by the time limit: the instance is still there to be looked at
+  Status status_ = Status::ok;
+  std::string reason_;
+  std::int64_t initialize_ns_ = 0;
+  FrameTimes times_;
+  std::int64_t total_ns_ = 0;  ///< of all frames in this pass
+  std::uint32_t frames_ = 0;   ///< in this pass
+};
+
+}  // namespace broadmark

@@ -1,0 +1,43 @@
+// The timed phases of a frame, and how long each took.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "broadmark/names.h"
+
+namespace broadmark {
+
+/// The timed phases of a frame. A phase names the call, not the work: only the total compares
+/// across algorithm families. Upload and download are the parts of the four calls before them that
+/// went into copying to and from a compute device; without a device they are 0.
+enum class Phase {
+  update_objects,
+  clean_cache,
+  update_structures,
+  search_overlaps,
+  upload,
+  download,
+  total
+};
+/// All of them, in order.
+inline constexpr NameTable kPhases{{NamedValue{Phase::update_objects, "update_objects"},
+                                    {Phase::clean_cache, "clean_cache"},
+                                    {Phase::update_structures, "update_structures"},
+                                    {Phase::search_overlaps, "search_overlaps"},
+                                    {Phase::upload, "upload"},
+                                    {Phase::download, "download"},
+                                    {Phase::total, "total"}}};
+constexpr std::string_view phaseName(Phase phase) { return kPhases.nameOf(phase); }
+
+/// Durations of one frame's phases in nanoseconds of a steady clock.
+struct FrameTimes {
+  std::array<std::int64_t, kPhases.entries.size()> ns{};
+
+  std::int64_t& operator[](Phase phase) { return ns[static_cast<std::size_t>(phase)]; }
+  std::int64_t operator[](Phase phase) const { return ns[static_cast<std::size_t>(phase)]; }
+};
+
+}  // namespace broadmark

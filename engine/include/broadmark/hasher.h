@@ -1,0 +1,41 @@
+// The hash by which recordings, what they are made from, and frames are told apart.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace broadmark {
+
+/// XXH3-128, fed piece by piece.
+class Hasher {
+ public:
+  Hasher();
+  ~Hasher();
+  Hasher(Hasher&&) noexcept;
+  Hasher& operator=(Hasher&&) noexcept;
+
+  void add(std::span<const std::byte> bytes);
+  /// Of all bytes so far: 32 hex digits.
+  [[nodiscard]] std::string hex() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// 128 bits that stand for some bytes.
+struct HashValue {
+  std::uint64_t low = 0;
+  std::uint64_t high = 0;
+
+  friend auto operator<=>(const HashValue&, const HashValue&) = default;
+};
+
+/// XXH3-128 of the bytes.
+HashValue hashOf(std::span<const std::byte> bytes);
+
+}  // namespace broadmark

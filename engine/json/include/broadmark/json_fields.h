@@ -1,0 +1,152 @@
+// Reading JSON fields with errors that name the file, the key and what would be right.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+
+using Json = nlohmann::ordered_json;
+
+/// Parses a text; `name` stands for it in messages. Throws InputError with line and column.
+Json parseJson(std::string_view text, std::string_view name);
+
+/// As a text that ends in a line feed; `indent` spaces a level. Texts that are not UTF-8 (names may
+/// come from file names) are made so.
+std::string formatJson(const Json& json, int indent = 1);
+
+/// A text for messages, control characters escaped.
+std::string onOneLine(const std::string& text);
+
+/// The kind of file that a JSON text says it is: the value of its "schema" ("broadmark-results/1"),
+/// or "" if it has none. What follows is not read. Throws InputError if it is not JSON.
+std::string jsonSchema(std::string_view text, std::string_view name);
+/// Whether a JSON text is an object with this key. Reads no further than to it. Throws InputError
+/// if it is not JSON.
+bool jsonHasKey(std::string_view text, std::string_view key, std::string_view name);
+
+/// What to do with the parts of a JSON text as they are read, when the whole is not wanted in
+/// memory. Ignores all of them; a method that returns false ends the reading.
+class JsonEvents : public nlohmann::json_sax<Json> {
+ public:
+  /// `name` stands for the text in messages.
+  explicit JsonEvents(std::string_view name) : name_(name) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t& /*as written*/) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(string_t&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t, const std::string&,
+                   const nlohmann::detail::exception& error) override;
+
+ protected:
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
+};
+
+/// Hands the parts of a text to `events`, until one of its methods returns false. Throws InputError
+/// if it is not JSON.
+void readJson(std::string_view text, JsonEvents& events);
+
+/// A view of one JSON object within a file.
+class JsonFields {
+ public:
+  JsonFields(const Json& json, std::string name) : json_(json), name_(std::move(name)) {
+    if (!json_.is_object()) throw InputError(name_ + ": a JSON object is expected");
+  }
+
+  [[nodiscard]] bool has(const char* key) const {
+    return json_.contains(key) && !json_[key].is_null();
+  }
+
+  [[nodiscard]] const Json& at(const char* key) const {
+    const auto field = json_.find(key);
+    if (field == json_.end()) throw InputError(fmt::format("{}: '{}' is missing", name_, key));
+    return *field;
+  }
+
+  [[nodiscard]] JsonFields object(const char* key) const { return {at(key), path(key)}; }
+
+  [[nodiscard]] const Json& array(const char* key) const {
+    return expect(key, at(key).is_array(), "an array");
+  }
+
+  [[nodiscard]] std::string text(const char* key) const {
+    return expect(key, at(key).is_string(), "a text").template get<std::string>();
+  }
+
+  [[nodiscard]] bool boolean(const char* key) const {
+    return expect(key, at(key).is_boolean(), "true or false").template get<bool>();
+  }
+
+  [[nodiscard]] double number(const char* key) const {
+    return expect(key, at(key).is_number(), "a number").template get<double>();
+  }
+
+  /// An integer within the range of `Integer`, or from `min` on.
+  template <class Integer>
+  [[nodiscard]] Integer integer(const char* key,
+                                Integer min = std::numeric_limits<Integer>::min()) const {
+    return integerOf<Integer>(at(key), path(key), min);
+  }
+
+  /// The elements of an array, each as an object.
+  template <class Visit>
+  void eachObject(const char* key, Visit&& visit) const {
+    const Json& elements = array(key);
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      visit(JsonFields(elements[i], fmt::format("{}[{}]", path(key), i)));
+    }
+  }
+
+  [[nodiscard]] std::string path(const char* key) const {
+    return fmt::format("{}: {}", name_, key);
+  }
+
+  template <class Integer>
+  static Integer integerOf(const Json& value, const std::string& name,
+                           Integer min = std::numeric_limits<Integer>::min()) {
+    constexpr auto kMax = std::numeric_limits<Integer>::max();
+    bool right = false;
+    if (value.is_number_unsigned()) {
+      const auto number = value.get<std::uint64_t>();
+      right = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
+    } else if (value.is_number_integer()) {
+      const auto number = value.get<std::int64_t>();
+      right = std::cmp_less_equal(number, kMax) && std::cmp_greater_equal(number, min);
+    }
+    if (!right) {
+      throw InputError(fmt::format("{}: an integer from {} to {} is expected", name, min, kMax));
+    }
+    return value.get<Integer>();
+  }
+
+ private:
+  const Json& expect(const char* key, bool right, std::string_view what) const {
+    if (!right) throw InputError(fmt::format("{}: {} is expected", path(key), what));
+    return json_[key];
+  }
+
+  const Json& json_;
+  std::string name_;
+};
+
+}  // namespace broadmark

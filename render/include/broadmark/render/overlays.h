@@ -1,0 +1,48 @@
+// What is drawn over the bodies: the lines of pairs, and the structure of an algorithm.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "broadmark/pair.h"
+#include "broadmark/recorded_drawing.h"
+#include "broadmark/render/scene_view.h"
+
+namespace broadmark {
+
+/// What to draw with SceneView, and how much there was besides.
+struct Overlay {
+  std::vector<SceneLine> lines;
+  std::vector<SceneWireBox> boxes;
+  std::size_t left_out = 0;  ///< lines and boxes beyond the limit
+};
+
+struct PairLineStyle {
+  Rgb colour = 0;
+  float width = 1.5F;
+  Behind behind = Behind::faint;
+  std::size_t most = 50'000;  ///< lines
+};
+
+/// A line from middle to middle for each pair; with `only`, for the pairs that one of these bodies
+/// is in. Pairs of bodies that do not exist are left out.
+Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineStyle& style,
+                  std::optional<std::span<const std::uint32_t>> only = {});
+
+struct StructureFilter {
+  int first_level = 0;
+  int last_level = std::numeric_limits<int>::max();
+  std::optional<Aabb> near;   ///< only what touches this box
+  std::size_t most = 20'000;  ///< boxes, and as many lines
+};
+
+/// The part of an algorithm's structure that passes the filter. Lines have no level.
+Overlay structureOverlay(const RecordedDrawing& drawing, const StructureFilter& filter);
+
+/// The greatest level of a drawing's boxes; 0 without any.
+int deepestLevel(const RecordedDrawing& drawing);
+
+}  // namespace broadmark

@@ -1,0 +1,207 @@
+#include "broadmark/scenes/authored_simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "broadmark/recording.h"
+#include "broadmark/hasher.h"
+
+namespace broadmark::scenes {
+namespace {
+
+/// Every part of a scene is right.
+void requireSound(const AuthoredScene& scene) {
+  const auto require = [&](const std::string& fault) {
+    if (!fault.empty()) throw InputError(fmt::format("authored scene: {}", fault));
+  };
+  require(faultOfName(scene.name));
+  require(faultOfWorld(scene.world));
+  if (scene.bodies.size() > kMostAuthoredBodies) {
+    require(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMostAuthoredBodies));
+  }
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const std::string fault = faultOfBody(scene.bodies[i]);
+    if (!fault.empty()) require(fmt::format("body {}: {}", i, fault));
+  }
+}
+
+SceneListing listingOf(const AuthoredScene& scene) {
+  return {.id = std::string(kAuthoredSceneId),
+          .name = scene.name,
+          .summary = "bodies that somebody has placed"};
+}
+
+class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument {
+ public:
+  AuthoredSimulation(AuthoredScene scene, std::filesystem::path file)
+      : PhysicsSimulation(listingOf(scene)),
+        scene_(std::move(scene)),
+        file_(std::move(file)),
+        parameters_(scene_.parameters) {
+    requireSound(scene_);
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    parameters_.visitParameters(visit);
+  }
+
+  [[nodiscard]] AuthoredScene document() override {
+    AuthoredScene document = scene_;
+    document.parameters = parameters_.values();
+    return document;
+  }
+
+  [[nodiscard]] std::filesystem::path input() const override { return file_; }
+
+  [[nodiscard]] std::string inputHash() override {
+    if (hash_.empty()) {
+      const std::string text = formatAuthoredScene(scene_);
+      Hasher hasher;
+      hasher.add(std::as_bytes(std::span(text)));
+      hash_ = hasher.hex();
+    }
+    return hash_;
+  }
+
+ private:
+  [[nodiscard]] SceneInfo describe() const override {
+    return {.name = scene_.name,
+            .object_type = objectTypeName(scene_),
+            .objects = static_cast<std::uint32_t>(scene_.bodies.size()),
+            .frames = parameters_.frames(),
+            .world = scene_.world};
+  }
+
+  [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() override {
+    return parameters_.createEngine();
+  }
+
+  void start() override {
+    for (const AuthoredBody& body : scene_.bodies) {
+      PhysicsBody& added = addBody({.shape = body.shape,
+                                    .mass = body.mass,
+                                    .pose = body.pose,
+                                    .linear_velocity = body.linear_velocity,
+                                    .angular_velocity = body.angular_velocity});
+      if (body.frozen) added.freeze();
+    }
+    engine()->setGravity(parameters_.gravity());
+  }
+
+  AuthoredScene scene_;
+  std::filesystem::path file_;
+  AuthoredParameters parameters_;
+  std::string hash_;
+};
+
+/// A body that fills this box; a sphere where recordings say so.
+AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
+  AuthoredBody body;
+  Vec3 half;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float edge = box.max[axis] - box.min[axis];
+    body.pose.position[axis] = box.min[axis] + edge / 2;
+    half[axis] = std::max(edge, kLeastEdge) / 2;  // flat ones have a little thickness here
+  }
+  if (object_type == "Spheres") {
+    body.shape = SphereShape{half[0]};
+  } else {
+    body.shape = BoxShape{half};
+  }
+  return body;
+}
+
+/// Moves a source on to a frame of it.
+Frame frameOf(FrameSource& source, std::uint32_t index, Frame frame) {
+  if (auto* recording = dynamic_cast<Recording*>(&source)) return recording->read(index);
+  while (frame.index < index) frame = *source.next();
+  return frame;
+}
+
+/// The unturned bodies of a source that stands at its initial pose; empty when only boxes are
+/// known.
+std::vector<Aabb> unturnedBoxes(PoseSource* source) {
+  if (source == nullptr) return {};
+  try {
+    const auto boxes = source->unturnedBoxes();
+    return {boxes.begin(), boxes.end()};
+  } catch (const InputError&) {  // the replay of a recording of boxes
+    return {};
+  }
+}
+
+}  // namespace
+
+AuthoredParameters::AuthoredParameters(const ParameterValues& stated)
+    : engine_(choiceOf(engineEntries())) {
+  setParameters(*this, stated);
+}
+
+AuthoredParameters::AuthoredParameters(const ParameterValues& other, const Vec3& gravity)
+    : engine_(choiceOf(engineEntries())) {
+  visitParameters([&](const Parameter& parameter) {
+    const auto value = other.find(std::string(parameter.name));
+    if (value != other.end()) setParameter(parameter, value->second);
+  });
+  gravity_x_ = gravity[0];
+  gravity_y_ = gravity[1];
+  gravity_z_ = gravity[2];
+}
+
+void AuthoredParameters::visitParameters(const ParameterVisitor& visit) {
+  constexpr double kMostGravity = 1e6;
+  visit({"frames", "number of frames after the initial pose", &frames_, 1, 1'000'000});
+  visit({"engine", "physics engine that moves the bodies", &engine_});
+  visit({"gravity_x", "gravity along x, in world units per second squared", &gravity_x_,
+         -kMostGravity, kMostGravity});
+  visit(
+      {"gravity_y", "gravity along y, which points up", &gravity_y_, -kMostGravity, kMostGravity});
+  visit({"gravity_z", "gravity along z", &gravity_z_, -kMostGravity, kMostGravity});
+  physics_.visit(visit);
+  engine_parameters_.parameters(engine_, physics_).visitParameters(visit);
+}
+
+Vec3 AuthoredParameters::gravity() const {
+  return {static_cast<float>(gravity_x_), static_cast<float>(gravity_y_),
+          static_cast<float>(gravity_z_)};
+}
+
+std::unique_ptr<PhysicsEngine> AuthoredParameters::createEngine() {
+  return engine_parameters_.create(engine_, physics_);
+}
+
+std::unique_ptr<Simulation> makeAuthoredSimulation(AuthoredScene scene,
+                                                   std::filesystem::path file) {
+  return std::make_unique<AuthoredSimulation>(std::move(scene), std::move(file));
+}
+
+AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
+  const Frame initial = source.rewind();
+  const SceneInfo info = source.scene();
+  if (frame > info.frames) {
+    throw InputError(
+        fmt::format("{}: there is no frame {}: the last one is {}", info.name, frame, info.frames));
+  }
+  auto* poses = dynamic_cast<PoseSource*>(&source);
+  const std::vector<Aabb> unturned = unturnedBoxes(poses);
+  const Frame wanted = frameOf(source, frame, initial);
+  if (auto* whole = dynamic_cast<SceneSource*>(&source)) return whole->authoredScene();
+
+  // Nothing is known of forces: as they are, the bodies float.
+  AuthoredScene scene{
+      .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
+  if (frame > 0 && !unturned.empty()) {
+    const auto posed = poses->poses();
+    for (std::size_t i = 0; i < unturned.size(); ++i) {
+      scene.bodies.push_back(bodyIn(unturned[i], info.object_type));
+      scene.bodies.back().pose = posed[i];
+    }
+  } else {
+    for (const Aabb& box : wanted.boxes) scene.bodies.push_back(bodyIn(box, info.object_type));
+  }
+  requireSound(scene);
+  return scene;
+}
+
+}  // namespace broadmark::scenes

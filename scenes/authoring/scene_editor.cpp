@@ -1,0 +1,479 @@
+// Every change is an exchange: it holds values that the scene does not have now, and applying it
+// swaps them with those that it has. So undo and redo are the same operation, nothing is ever
+// computed backwards, and what comes back is what was there, bit for bit.
+
+#include "broadmark/scenes/scene_editor.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/scenes/authored_simulation.h"
+
+namespace broadmark::scenes {
+
+class SceneEditor::Change {
+ public:
+  virtual ~Change() = default;
+  /// Exchanges what the scene has for what this holds.
+  virtual void exchange(AuthoredScene&) = 0;
+  /// Most memory that it takes, done or undone.
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+  /// Whether undoing this one brings back all that `later` changes, with nothing but changes of
+  /// values done between the two.
+  [[nodiscard]] virtual bool covers(const Change& later) const = 0;
+  /// Whether the bodies' ids mean others afterwards.
+  [[nodiscard]] virtual bool renumbers() const { return false; }
+};
+
+namespace {
+
+using SharedIds = std::shared_ptr<const BodyIds>;
+using Change = SceneEditor::Change;
+
+/// New values of one property of some bodies.
+template <class Value>
+class BodyChange final : public Change {
+ public:
+  BodyChange(Value AuthoredBody::*property, SharedIds bodies, std::unique_ptr<Value[]> values)
+      : property_(property), bodies_(std::move(bodies)), values_(std::move(values)) {}
+
+  void exchange(AuthoredScene& scene) override {
+    for (std::size_t i = 0; i < bodies_->size(); ++i) {
+      std::swap(scene.bodies[(*bodies_)[i]].*property_, values_[i]);
+    }
+  }
+  [[nodiscard]] std::size_t bytes() const override {
+    return bodies_->size() * (sizeof(Value) + sizeof(std::uint32_t));
+  }
+  [[nodiscard]] bool covers(const Change& later) const override {
+    const auto* other = dynamic_cast<const BodyChange*>(&later);
+    return other != nullptr && other->property_ == property_ &&
+           (other->bodies_ == bodies_ || *other->bodies_ == *bodies_);
+  }
+
+ private:
+  Value AuthoredBody::*property_;
+  SharedIds bodies_;
+  std::unique_ptr<Value[]> values_;
+};
+
+/// Bodies that come or go. Their ids are those that they have while they are there.
+class Presence final : public Change {
+ public:
+  /// `absent`: bodies to come, in the order of their ids; none: those that are there go.
+  Presence(SharedIds ids, std::vector<AuthoredBody> absent)
+      : ids_(std::move(ids)), absent_(std::move(absent)) {}
+
+  void exchange(AuthoredScene& scene) override {
+    if (absent_.empty()) {
+      takeOut(scene.bodies);
+    } else {
+      putIn(scene.bodies);
+    }
+  }
+  [[nodiscard]] std::size_t bytes() const override {
+    return ids_->size() * (sizeof(AuthoredBody) + sizeof(std::uint32_t));
+  }
+  [[nodiscard]] bool covers(const Change&) const override { return false; }
+  [[nodiscard]] bool renumbers() const override { return true; }
+
+ private:
+  void takeOut(std::vector<AuthoredBody>& bodies) {
+    absent_.reserve(ids_->size());
+    std::size_t kept = ids_->empty() ? bodies.size() : ids_->front();
+    for (std::size_t i = kept; i < bodies.size(); ++i) {
+      if (absent_.size() < ids_->size() && (*ids_)[absent_.size()] == i) {
+        absent_.push_back(bodies[i]);
+      } else {
+        bodies[kept++] = bodies[i];
+      }
+    }
+    bodies.resize(kept);
+  }
+
+  /// From the last id down, so that each body moves once.
+  void putIn(std::vector<AuthoredBody>& bodies) {
+    std::size_t left = bodies.size();
+    bodies.resize(bodies.size() + absent_.size());
+    std::size_t coming = absent_.size();
+    for (std::size_t i = bodies.size(); coming > 0;) {
+      --i;
+      bodies[i] = (*ids_)[coming - 1] == i ? absent_[--coming] : bodies[--left];
+    }
+    absent_ = {};
+  }
+
+  SharedIds ids_;
+  std::vector<AuthoredBody> absent_;
+};
+
+/// A new value of one property of the scene.
+template <class Value>
+class SceneChange final : public Change {
+ public:
+  SceneChange(Value AuthoredScene::*property, Value value)
+      : property_(property), value_(std::move(value)) {}
+
+  void exchange(AuthoredScene& scene) override { std::swap(scene.*property_, value_); }
+  [[nodiscard]] std::size_t bytes() const override {
+    constexpr std::size_t kUsualText = 4096;  // names and parameters have no bodies in them
+    return kUsualText;
+  }
+  [[nodiscard]] bool covers(const Change& later) const override {
+    const auto* other = dynamic_cast<const SceneChange*>(&later);
+    return other != nullptr && other->property_ == property_;
+  }
+
+ private:
+  Value AuthoredScene::*property_;
+  Value value_;
+};
+
+Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+
+/// The point `factor` times as far from the centre.
+Vec3 scaledAbout(const Vec3& centre, const Vec3& point, float factor) {
+  Vec3 scaled;
+  for (int axis = 0; axis < 3; ++axis) {
+    scaled[axis] = centre[axis] + factor * (point[axis] - centre[axis]);
+  }
+  return scaled;
+}
+
+Shape scaled(const Shape& shape, float factor) {
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+    return SphereShape{factor * sphere->radius};
+  }
+  const auto& [x, y, z] = std::get<BoxShape>(shape).half_extents;
+  return BoxShape{{factor * x, factor * y, factor * z}};
+}
+
+/// The pose after turning about a point.
+Pose turnedAbout(const Vec3& centre, const Pose& pose, const Eigen::Quaternionf& by) {
+  using Eigen::Vector3f;
+  const Vector3f middle(centre.data());
+  const Vector3f to = middle + by * (Vector3f(pose.position.data()) - middle);
+  const Eigen::Quaternionf rotation = (by * Eigen::Quaternionf(pose.rotation.data())).normalized();
+  return {{to.x(), to.y(), to.z()}, {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
+}
+
+BodyIds idsFrom(std::size_t first, std::size_t end) {
+  BodyIds ids(end - first);
+  std::iota(ids.begin(), ids.end(), static_cast<std::uint32_t>(first));
+  return ids;
+}
+
+SharedIds shared(BodyIds ids) { return std::make_shared<const BodyIds>(std::move(ids)); }
+
+void require(const std::string& fault) {
+  if (!fault.empty()) throw InputError(fault);
+}
+
+void requireBody(const AuthoredBody& body, std::size_t id) {
+  const std::string fault = faultOfBody(body);
+  if (!fault.empty()) throw InputError(fmt::format("body {}: {}", id, fault));
+}
+
+}  // namespace
+
+/// What is undone at once, in the order in which it was done.
+struct SceneEditor::Step {
+  [[nodiscard]] std::size_t bytes() const {
+    std::size_t sum = sizeof(Step) + (before->size() + after->size()) * sizeof(std::uint32_t);
+    for (const auto& change : changes) sum += change->bytes();
+    return sum;
+  }
+  /// Whether a change that was just made need not be kept, since undoing an earlier one is enough.
+  [[nodiscard]] bool covers(const Change& change) const {
+    for (auto earlier = changes.rbegin(); earlier != changes.rend(); ++earlier) {
+      if ((*earlier)->covers(change)) return true;
+      if ((*earlier)->renumbers()) return false;
+    }
+    return false;
+  }
+
+  std::string name;
+  std::vector<std::unique_ptr<Change>> changes;
+  SharedIds before;  ///< the selection
+  SharedIds after;
+  std::uint64_t revision = 0;  ///< of the scene once it is done
+};
+
+SceneEditor::SceneEditor(AuthoredScene scene, std::size_t history_bytes)
+    : scene_(std::move(scene)), selection_(shared({})), history_bytes_(history_bytes) {}
+SceneEditor::~SceneEditor() = default;
+SceneEditor::SceneEditor(SceneEditor&&) noexcept = default;
+SceneEditor& SceneEditor::operator=(SceneEditor&&) noexcept = default;
+
+std::uint64_t SceneEditor::revision() const {
+  return done_ == 0 ? first_revision_ : history_[done_ - 1]->revision;
+}
+
+void SceneEditor::select(BodyIds bodies) {
+  std::ranges::sort(bodies);
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  if (!bodies.empty() && bodies.back() >= scene_.bodies.size()) {
+    throw InputError(
+        fmt::format("there is no body {}: there are {}", bodies.back(), scene_.bodies.size()));
+  }
+  // The same list stays the same object: steps share it, and gestures know it again.
+  if (bodies != *selection_) selection_ = shared(std::move(bodies));
+}
+
+void SceneEditor::selectAll() { select(idsFrom(0, scene_.bodies.size())); }
+
+void SceneEditor::toggle(const BodyIds& bodies) {
+  BodyIds sorted = bodies;
+  std::ranges::sort(sorted);
+  BodyIds toggled;
+  std::ranges::set_symmetric_difference(*selection_, sorted, std::back_inserter(toggled));
+  select(std::move(toggled));
+}
+
+Vec3 SceneEditor::selectionCentre() const {
+  std::array<double, 3> sum{};
+  for (const std::uint32_t id : *selection_) {
+    for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += scene_.bodies[id].pose.position[axis];
+  }
+  Vec3 centre{};
+  if (selection_->empty()) return centre;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    centre[axis] = static_cast<float>(sum[axis] / static_cast<double>(selection_->size()));
+  }
+  return centre;
+}
+
+void SceneEditor::add(std::vector<AuthoredBody> bodies) { addCopies("add", std::move(bodies)); }
+
+void SceneEditor::erase() {
+  if (selection_->empty()) return;
+  perform(nameOf("delete", selection_->size()),
+          std::make_unique<Presence>(selection_, std::vector<AuthoredBody>()), shared({}));
+}
+
+void SceneEditor::duplicate(const Vec3& offset) {
+  std::vector<AuthoredBody> copies;
+  copies.reserve(selection_->size());
+  for (const std::uint32_t id : *selection_) {
+    copies.push_back(scene_.bodies[id]);
+    copies.back().pose.position = plus(copies.back().pose.position, offset);
+  }
+  addCopies("duplicate", std::move(copies));
+}
+
+void SceneEditor::move(const Vec3& by) {
+  changeBodies("move", &AuthoredBody::pose, [&](const AuthoredBody& body) {
+    return Pose{plus(body.pose.position, by), body.pose.rotation};
+  });
+}
+
+void SceneEditor::turn(const Quaternion& by) {
+  const Vec3 centre = selectionCentre();
+  const Eigen::Quaternionf rotation(by.data());
+  changeBodies("turn", &AuthoredBody::pose,
+               [&](const AuthoredBody& body) { return turnedAbout(centre, body.pose, rotation); });
+}
+
+void SceneEditor::scale(float factor) {
+  const Vec3 centre = selectionCentre();
+  const auto place = [&](const AuthoredBody& body) {
+    return Pose{scaledAbout(centre, body.pose.position, factor), body.pose.rotation};
+  };
+  // Two properties change: if either went wrong, neither may.
+  for (const std::uint32_t id : *selection_) {
+    AuthoredBody body = scene_.bodies[id];
+    body.pose = place(body);
+    body.shape = scaled(body.shape, factor);
+    requireBody(body, id);
+  }
+  const bool alone = !in_gesture_;
+  if (alone) beginGesture(nameOf("scale", selection_->size()));
+  changeBodies("scale", &AuthoredBody::pose, place);
+  changeBodies("scale", &AuthoredBody::shape,
+               [&](const AuthoredBody& body) { return scaled(body.shape, factor); });
+  if (alone) endGesture();
+}
+
+void SceneEditor::setSize(const Vec3& edges) {
+  changeBodies("resize", &AuthoredBody::shape, [&](const AuthoredBody& body) -> Shape {
+    if (std::holds_alternative<SphereShape>(body.shape)) return SphereShape{edges[0] / 2};
+    return BoxShape{{edges[0] / 2, edges[1] / 2, edges[2] / 2}};
+  });
+}
+
+void SceneEditor::makeBoxes() {
+  changeBodies("make boxes of", &AuthoredBody::shape, [](const AuthoredBody& body) -> Shape {
+    const auto* sphere = std::get_if<SphereShape>(&body.shape);
+    if (sphere == nullptr) return body.shape;
+    return BoxShape{{sphere->radius, sphere->radius, sphere->radius}};
+  });
+}
+
+void SceneEditor::makeSpheres() {
+  changeBodies("make spheres of", &AuthoredBody::shape, [](const AuthoredBody& body) -> Shape {
+    const auto* box = std::get_if<BoxShape>(&body.shape);
+    if (box == nullptr) return body.shape;
+    const auto& [x, y, z] = box->half_extents;
+    return SphereShape{(x + y + z) / 3};
+  });
+}
+
+void SceneEditor::setMass(double mass) {
+  changeBodies("set the mass of", &AuthoredBody::mass, [&](const AuthoredBody&) { return mass; });
+}
+
+void SceneEditor::setFrozen(bool frozen) {
+  changeBodies(frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen,
+               [&](const AuthoredBody&) { return frozen; });
+}
+
+void SceneEditor::setVelocity(const Vec3& linear) {
+  changeBodies("set the velocity of", &AuthoredBody::linear_velocity,
+               [&](const AuthoredBody&) { return linear; });
+}
+
+void SceneEditor::setAngularVelocity(const Vec3& angular) {
+  changeBodies("set the spin of", &AuthoredBody::angular_velocity,
+               [&](const AuthoredBody&) { return angular; });
+}
+
+void SceneEditor::setName(std::string name) {
+  const std::string fault = faultOfName(name);
+  changeScene("rename the scene", &AuthoredScene::name, std::move(name), fault);
+}
+
+void SceneEditor::setWorld(const Aabb& world) {
+  changeScene("change the world", &AuthoredScene::world, world, faultOfWorld(world));
+}
+
+void SceneEditor::setParameters(const ParameterValues& values) {
+  ParameterValues wanted = scene_.parameters;
+  AuthoredParameters present(wanted);
+  if (const auto engine = values.find("engine");
+      engine != values.end() && engine->second != present.values().at("engine")) {
+    AuthoredParameters other({{"engine", engine->second}});
+    const ParameterValues known = other.values();
+    std::erase_if(wanted, [&](const auto& value) { return !known.contains(value.first); });
+  }
+  for (const auto& [name, value] : values) wanted[name] = value;
+  // As the parameters themselves write them: the same value is the same text.
+  const ParameterValues all = AuthoredParameters(wanted).values();
+  for (auto& [name, value] : wanted) value = all.at(name);
+  changeScene("change parameters", &AuthoredScene::parameters, std::move(wanted), {});
+}
+
+void SceneEditor::beginGesture(std::string name) {
+  in_gesture_ = true;
+  gesture_has_step_ = false;
+  gesture_name_ = std::move(name);
+}
+
+void SceneEditor::endGesture() { in_gesture_ = gesture_has_step_ = false; }
+
+std::string SceneEditor::undoName() const { return canUndo() ? history_[done_ - 1]->name : ""; }
+std::string SceneEditor::redoName() const { return canRedo() ? history_[done_]->name : ""; }
+
+void SceneEditor::undo() {
+  endGesture();
+  if (!canUndo()) return;
+  Step& step = *history_[--done_];
+  for (auto change = step.changes.rbegin(); change != step.changes.rend(); ++change) {
+    (*change)->exchange(scene_);
+  }
+  selection_ = step.before;
+}
+
+void SceneEditor::redo() {
+  endGesture();
+  if (!canRedo()) return;
+  Step& step = *history_[done_++];
+  for (const auto& change : step.changes) change->exchange(scene_);
+  selection_ = step.after;
+}
+
+std::size_t SceneEditor::historyBytes() const {
+  std::size_t sum = 0;
+  for (const auto& step : history_) sum += step->bytes();
+  return sum;
+}
+
+template <class Value, class Make>
+void SceneEditor::changeBodies(std::string_view verb, Value AuthoredBody::*property, Make&& make) {
+  const BodyIds& ids = *selection_;
+  auto values = std::make_unique<Value[]>(ids.size());
+  bool differs = false;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    AuthoredBody body = scene_.bodies[ids[i]];
+    values[i] = make(std::as_const(body));
+    differs |= !(values[i] == body.*property);
+    body.*property = values[i];
+    requireBody(body, ids[i]);
+  }
+  if (!differs) return;
+  perform(nameOf(verb, ids.size()),
+          std::make_unique<BodyChange<Value>>(property, selection_, std::move(values)), selection_);
+}
+
+template <class Value>
+void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, Value value,
+                              const std::string& fault) {
+  require(fault);
+  if (value == scene_.*property) return;
+  perform(std::move(name), std::make_unique<SceneChange<Value>>(property, std::move(value)),
+          selection_);
+}
+
+void SceneEditor::addCopies(std::string_view verb, std::vector<AuthoredBody> bodies) {
+  if (bodies.empty()) return;
+  const std::size_t first = scene_.bodies.size();
+  if (bodies.size() > kMostAuthoredBodies - std::min(first, kMostAuthoredBodies)) {
+    throw InputError(fmt::format("{} more bodies: a scene holds at most {}", bodies.size(),
+                                 kMostAuthoredBodies));
+  }
+  for (std::size_t i = 0; i < bodies.size(); ++i) requireBody(bodies[i], first + i);
+  const SharedIds ids = shared(idsFrom(first, first + bodies.size()));
+  std::string name = nameOf(verb, bodies.size());
+  perform(std::move(name), std::make_unique<Presence>(ids, std::move(bodies)), ids);
+}
+
+void SceneEditor::perform(std::string name, std::unique_ptr<Change> change,
+                          SharedIds selected_after) {
+  change->exchange(scene_);
+  if (!gesture_has_step_) {
+    history_.erase(history_.begin() + static_cast<std::ptrdiff_t>(done_), history_.end());
+    auto step = std::make_unique<Step>();
+    step->name = in_gesture_ ? gesture_name_ : std::move(name);
+    step->before = selection_;
+    step->after = selection_;
+    history_.push_back(std::move(step));
+    done_ = history_.size();
+    gesture_has_step_ = in_gesture_;
+  }
+  Step& step = *history_.back();
+  if (!step.covers(*change)) step.changes.push_back(std::move(change));
+  step.revision = ++last_revision_;
+  step.after = selection_ = std::move(selected_after);
+  forgetOldest();
+}
+
+void SceneEditor::forgetOldest() {
+  std::size_t bytes = historyBytes();
+  while (bytes > history_bytes_ && history_.size() > 1) {
+    bytes -= history_.front()->bytes();
+    first_revision_ = history_.front()->revision;
+    history_.pop_front();
+    --done_;
+  }
+}
+
+std::string SceneEditor::nameOf(std::string_view verb, std::size_t bodies) const {
+  return fmt::format("{} {} {}", verb, bodies, bodies == 1 ? "body" : "bodies");
+}
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,21 @@
+// Single: one body.
+
+#include "broadmark/scenes/brush.h"
+
+namespace broadmark::scenes::single_brush {
+namespace {
+
+class SingleBrush final : public Brush {
+ public:
+  [[nodiscard]] double count(double) const override { return 1; }
+  [[nodiscard]] Vec3 place(std::size_t, Random&) const override { return {}; }
+};
+
+}  // namespace
+
+BrushEntry entry() {
+  return {.listing = {"single", "one body"},
+          .create = []() -> std::unique_ptr<Brush> { return std::make_unique<SingleBrush>(); }};
+}
+
+}  // namespace broadmark::scenes::single_brush

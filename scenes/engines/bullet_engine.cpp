@@ -1,0 +1,393 @@
+// Rigid bodies by Bullet (single precision): dynamic AABB trees, sequential impulses.
+//
+// Bullet keeps some process-wide settings; this engine only ever reads them, so that several worlds
+// can live side by side.
+
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+
+#include "broadmark/scenes/registry.h"
+
+namespace broadmark::scenes::bullet_engine {
+namespace {
+
+btVector3 toBullet(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Vec3 fromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+
+btTransform toBullet(const Pose& pose) {
+  const auto& q = pose.rotation;
+  return btTransform(btQuaternion(q[0], q[1], q[2], q[3]), toBullet(pose.position));
+}
+
+Pose fromBullet(const btTransform& transform) {
+  const btQuaternion q = transform.getRotation();
+  return {fromBullet(transform.getOrigin()), {q.x(), q.y(), q.z(), q.w()}};
+}
+
+/// A half-space at the origin of the world, with finite sides. Bullet's own plane has an infinite
+/// box, which makes a pair with every body of the world; walls along the axes need only those that
+/// reach them.
+class HalfSpaceShape final : public btStaticPlaneShape {
+ public:
+  using btStaticPlaneShape::btStaticPlaneShape;
+
+  void getAabb(const btTransform& transform, btVector3& min, btVector3& max) const override {
+    btStaticPlaneShape::getAabb(transform, min, max);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (m_planeNormal[axis] == 1) max[axis] = m_planeConstant;
+      if (m_planeNormal[axis] == -1) min[axis] = -m_planeConstant;
+    }
+  }
+};
+
+/// The points of a shape that can be the first to touch a wall, in the shape's own coordinates: the
+/// corners of a box, the deepest point of a sphere.
+int wallPoints(const btBoxShape& box) { return box.getNumVertices(); }
+btVector3 wallPoint(const btBoxShape& box, int corner, const btVector3& /*into_wall*/) {
+  btVector3 at;
+  box.getVertex(corner, at);
+  return at;
+}
+int wallPoints(const btSphereShape&) { return 1; }
+btVector3 wallPoint(const btSphereShape& sphere, int, const btVector3& into_wall) {
+  return sphere.getRadius() * into_wall;
+}
+
+/// Contacts of a body with a wall: one for each point that the coming step could carry into the
+/// wall, given the body's present motion. The solver then stops it at the wall, where a fast body
+/// would else end up inside. (Bullet's own algorithm finds the nearest point only, once it
+/// touches.)
+template <class BodyShape>
+class WallContact final : public btCollisionAlgorithm {
+ public:
+  WallContact(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
+              const btCollisionObjectWrapper* b)
+      : btCollisionAlgorithm(info),
+        manifold_(m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject())),
+        resting_threshold_(manifold_->getContactBreakingThreshold()) {}
+  ~WallContact() override { m_dispatcher->releaseManifold(manifold_); }
+
+  void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                        const btDispatcherInfo& info, btManifoldResult*) override {
+    const bool wall_is_a = a->getCollisionShape()->getShapeType() == STATIC_PLANE_PROXYTYPE;
+    const btCollisionObjectWrapper& body = wall_is_a ? *b : *a;
+    const btCollisionObjectWrapper& wall = wall_is_a ? *a : *b;
+    const auto& shape = static_cast<const BodyShape&>(*body.getCollisionShape());
+    const auto& plane = static_cast<const btStaticPlaneShape&>(*wall.getCollisionShape());
+    const btVector3& normal = plane.getPlaneNormal();
+    const btTransform& pose = body.getWorldTransform();
+    const btVector3 into_wall = -normal * pose.getBasis();
+    const btScalar reach =
+        resting_threshold_ +
+        info.m_timeStep *
+            approachSpeed(static_cast<const btRigidBody&>(*body.getCollisionObject()), normal);
+    manifold_->setContactBreakingThreshold(reach);
+
+    const btPersistentManifold before = *manifold_;
+    manifold_->clearManifold();
+    for (int i = 0; i < wallPoints(shape); ++i) {
+      const btVector3 at = pose * wallPoint(shape, i, into_wall);
+      const btScalar distance = normal.dot(at) - plane.getPlaneConstant();
+      if (distance >= reach) continue;
+      const btVector3 on_wall = at - distance * normal;
+      btManifoldPoint point(at, on_wall, normal, distance);
+      point.m_positionWorldOnA = wall_is_a ? on_wall : at;
+      point.m_positionWorldOnB = wall_is_a ? at : on_wall;
+      point.m_normalWorldOnB = wall_is_a ? -normal : normal;
+      point.m_combinedFriction = btManifoldResult::calculateCombinedFriction(
+          a->getCollisionObject(), b->getCollisionObject());
+      point.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(
+          a->getCollisionObject(), b->getCollisionObject());
+      point.m_index0 = i;
+      warmStart(point, before);
+      manifold_->addManifoldPoint(point);  // keeps the four that carry best
+    }
+  }
+
+  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
+                                 btManifoldResult*) override {
+    return 1;
+  }
+  void getAllContactManifolds(btManifoldArray& manifolds) override {
+    manifolds.push_back(manifold_);
+  }
+
+  /// Tells Bullet how to make one.
+  struct CreateFunc final : btCollisionAlgorithmCreateFunc {
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override {
+      void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(sizeof(WallContact));
+      return new (memory) WallContact(info, a, b);
+    }
+  };
+
+ private:
+  /// An upper bound on how fast any point of the body nears the wall.
+  static btScalar approachSpeed(const btRigidBody& body, const btVector3& normal) {
+    const btScalar spin =
+        body.getAngularVelocity().length() * body.getCollisionShape()->getAngularMotionDisc();
+    return std::max(btScalar(0), -body.getLinearVelocity().dot(normal)) + spin;
+  }
+
+  /// The last step's impulses are the solver's first guess for the same point.
+  static void warmStart(btManifoldPoint& point, const btPersistentManifold& before) {
+    for (int i = 0; i < before.getNumContacts(); ++i) {
+      const btManifoldPoint& old = before.getContactPoint(i);
+      if (old.m_index0 != point.m_index0) continue;
+      point.m_appliedImpulse = old.m_appliedImpulse;
+      point.m_appliedImpulseLateral1 = old.m_appliedImpulseLateral1;
+      point.m_appliedImpulseLateral2 = old.m_appliedImpulseLateral2;
+    }
+  }
+
+  btPersistentManifold* manifold_;
+  btScalar resting_threshold_;
+};
+
+/// Slow for this long, in seconds, a body that something carries is held.
+constexpr btScalar kHoldAfter = 0.5F;
+/// A body is carried when contacts take at least this share of its weight.
+constexpr btScalar kCarriedShare = 0.75F;
+
+/// Bullet's world with a limit on angular speeds, and piles that come to rest: few iterations leave
+/// each body in a large pile some motion, and Bullet lets none of a pile sleep before all are
+/// quiet.
+class World final : public btDiscreteDynamicsWorld {
+ public:
+  World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
+        btCollisionConfiguration* configuration, btScalar max_angular_speed)
+      : btDiscreteDynamicsWorld(dispatcher, broad_phase, solver, configuration),
+        max_angular_speed_(max_angular_speed) {}
+
+ protected:
+  void integrateTransforms(btScalar time_step) override {
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+      btRigidBody& body = *m_nonStaticRigidBodies[i];
+      limitAngularSpeed(body);
+      if (isHeld(body, time_step)) {
+        body.setLinearVelocity(btVector3(0, 0, 0));
+        body.setAngularVelocity(btVector3(0, 0, 0));
+      }
+    }
+    btDiscreteDynamicsWorld::integrateTransforms(time_step);
+  }
+
+ private:
+  void limitAngularSpeed(btRigidBody& body) const {
+    const btVector3& velocity = body.getAngularVelocity();
+    const btScalar speed_squared = velocity.length2();
+    if (speed_squared > max_angular_speed_ * max_angular_speed_) {
+      body.setAngularVelocity(velocity * (max_angular_speed_ / btSqrt(speed_squared)));
+    }
+  }
+
+  /// Whether the body has long been slow, and is not about to fall.
+  [[nodiscard]] bool isHeld(const btRigidBody& body, btScalar time_step) const {
+    if (body.getDeactivationTime() < kHoldAfter) return false;
+    const btScalar freely_fallen = body.getGravity().length2() * time_step;
+    return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
+  }
+
+  btScalar max_angular_speed_;
+};
+
+class BulletBody final : public PhysicsBody {
+ public:
+  BulletBody(const BodyDescription& description,
+             const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
+      : shape_(description.shape), world_(world), body_(info) {
+    body_.setLinearVelocity(toBullet(description.linear_velocity));
+    body_.setAngularVelocity(toBullet(description.angular_velocity));
+    world_.addRigidBody(&body_);
+  }
+
+  [[nodiscard]] const Shape& shape() const override { return shape_; }
+  [[nodiscard]] Pose pose() const override { return fromBullet(body_.getWorldTransform()); }
+  [[nodiscard]] Vec3 linearVelocity() const override {
+    return fromBullet(body_.getLinearVelocity());
+  }
+  [[nodiscard]] Vec3 angularVelocity() const override {
+    return fromBullet(body_.getAngularVelocity());
+  }
+
+  void setPose(const Pose& pose) override {
+    body_.setWorldTransform(toBullet(pose));
+    body_.setInterpolationWorldTransform(body_.getWorldTransform());
+    world_.updateSingleAabb(&body_);
+    wake();
+  }
+
+  void setVelocity(const Vec3& linear, const Vec3& angular) override {
+    if (frozen()) return;
+    body_.setLinearVelocity(toBullet(linear));
+    body_.setAngularVelocity(toBullet(angular));
+    wake();
+  }
+
+  [[nodiscard]] bool asleep() const override { return !body_.isActive(); }
+  [[nodiscard]] bool frozen() const override { return body_.isStaticObject(); }
+
+  void freeze() override {
+    body_.setLinearVelocity(btVector3(0, 0, 0));
+    body_.setAngularVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationLinearVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationAngularVelocity(btVector3(0, 0, 0));
+    body_.setInterpolationWorldTransform(body_.getWorldTransform());
+    // No mass is what makes a body static. Unlike a kinematic one it keeps no neighbour awake.
+    body_.setMassProps(0, btVector3(0, 0, 0));
+    body_.updateInertiaTensor();
+    body_.forceActivationState(ISLAND_SLEEPING);
+  }
+
+  /// Has lately moved too fast to fall asleep.
+  [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
+  /// Does nothing to a frozen body.
+  void wake() { body_.activate(); }
+
+ private:
+  Shape shape_;
+  World& world_;
+  btRigidBody body_;
+};
+
+class BulletEngine final : public PhysicsEngine {
+ public:
+  explicit BulletEngine(const PhysicsSettings& settings) : settings_(settings) {
+    // Bullet multiplies the values of the two bodies in contact.
+    material_friction_ = static_cast<btScalar>(std::sqrt(settings.friction));
+    material_restitution_ = static_cast<btScalar>(std::sqrt(settings.restitution));
+    world_.setGravity(btVector3(0, 0, 0));
+    btContactSolverInfo& solver = world_.getSolverInfo();
+    solver.m_numIterations = static_cast<int>(settings.solver_iterations);
+    // Friction in one direction only, Bullet's default, lets piles creep sideways.
+    solver.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
+    // All pairs in one go over the tree, and the tree improved a little in each step: with tens of
+    // thousands of moving bodies twice as fast as one query for each.
+    broad_phase_.m_deferedcollide = true;
+    broad_phase_.m_dupdates = 1;
+    // Sleeping bodies keep their boxes in the broad phase; whoever places one anew updates its box.
+    world_.setForceUpdateAllAabbs(false);
+    useAgainstWalls(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
+    useAgainstWalls(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
+  }
+
+  ~BulletEngine() override {
+    // Bullet's own clean-up goes through all pairs once for each body: O(n²). Drop the pairs first.
+    btOverlappingPairCache& pairs = *broad_phase_.getOverlappingPairCache();
+    while (pairs.getNumOverlappingPairs() > 0) {
+      const btBroadphasePair& last =
+          pairs.getOverlappingPairArrayPtr()[pairs.getNumOverlappingPairs() - 1];
+      pairs.removeOverlappingPair(last.m_pProxy0, last.m_pProxy1, &dispatcher_);
+    }
+  }
+
+  BulletEngine(const BulletEngine&) = delete;
+  BulletEngine& operator=(const BulletEngine&) = delete;
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    btCollisionShape& shape =
+        std::visit([this](const auto& kind) -> btCollisionShape& { return collisionShape(kind); },
+                   description.shape);
+    const auto mass = static_cast<btScalar>(description.mass);
+    btVector3 inertia;
+    shape.calculateLocalInertia(mass, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
+    info.m_startWorldTransform = toBullet(description.pose);
+    info.m_friction = material_friction_;
+    info.m_restitution = material_restitution_;
+    info.m_linearDamping = static_cast<btScalar>(settings_.linear_damping);
+    info.m_angularDamping = static_cast<btScalar>(settings_.angular_damping);
+    setSleepingThresholds(info);
+    return bodies_.emplace_back(description, info, world_);
+  }
+
+  void addWall(const HalfSpace& half_space) override {
+    auto& shape = wall_shapes_.emplace_back(toBullet(half_space.normal), half_space.offset);
+    btCollisionObject& wall = walls_.emplace_back();
+    wall.setCollisionShape(&shape);
+    wall.setFriction(material_friction_);
+    wall.setRestitution(material_restitution_);
+    world_.addCollisionObject(&wall);
+  }
+
+  void setGravity(const Vec3& gravity) override {
+    if (toBullet(gravity) == world_.getGravity()) return;
+    for (BulletBody& body : bodies_) body.wake();  // Bullet tells only those awake
+    world_.setGravity(toBullet(gravity));
+  }
+
+  [[nodiscard]] Vec3 gravity() const override { return fromBullet(world_.getGravity()); }
+
+  void step() override {
+    const double substep = settings_.time_step / static_cast<double>(settings_.substeps);
+    // Each substep by itself: Bullet's own division of a step depends on rounding.
+    for (std::int64_t i = 0; i < settings_.substeps; ++i) {
+      world_.stepSimulation(static_cast<btScalar>(substep), 0);
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    // When every body wants to sleep, the next step lets it; all but those that touch nothing,
+    // which Bullet keeps waiting.
+    return std::ranges::none_of(bodies_, &BulletBody::restless);
+  }
+
+ private:
+  void useAgainstWalls(int shape_type, btCollisionAlgorithmCreateFunc& contact) {
+    dispatcher_.registerCollisionCreateFunc(shape_type, STATIC_PLANE_PROXYTYPE, &contact);
+    dispatcher_.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, shape_type, &contact);
+  }
+
+  // Bodies of the same size share a shape.
+  btCollisionShape& collisionShape(const BoxShape& box) {
+    return box_shapes_.try_emplace(box.half_extents, toBullet(box.half_extents)).first->second;
+  }
+  btCollisionShape& collisionShape(const SphereShape& sphere) {
+    return sphere_shapes_.try_emplace(sphere.radius, sphere.radius).first->second;
+  }
+
+  /// Bullet compares speeds, not energies: those of a body that has the threshold's energy in its
+  /// linear or in its angular motion alone.
+  void setSleepingThresholds(btRigidBody::btRigidBodyConstructionInfo& info) const {
+    const auto speed = static_cast<btScalar>(std::sqrt(2 * settings_.sleep_threshold));
+    const btVector3& inertia = info.m_localInertia;
+    const btScalar mean_inertia = (inertia.x() + inertia.y() + inertia.z()) / 3;
+    info.m_linearSleepingThreshold = speed;
+    info.m_angularSleepingThreshold = speed * std::sqrt(info.m_mass / mean_inertia);
+  }
+
+  PhysicsSettings settings_;
+  btScalar material_friction_ = 0;
+  btScalar material_restitution_ = 0;
+  WallContact<btBoxShape>::CreateFunc box_wall_contact_;
+  WallContact<btSphereShape>::CreateFunc sphere_wall_contact_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broad_phase_;
+  btSequentialImpulseConstraintSolver solver_;
+  std::map<Vec3, btBoxShape> box_shapes_;
+  std::map<float, btSphereShape> sphere_shapes_;
+  std::deque<HalfSpaceShape> wall_shapes_;
+  std::deque<btCollisionObject> walls_;
+  std::deque<BulletBody> bodies_;
+  // Last: on its destruction the world still looks at everything that stands in it.
+  World world_{&dispatcher_, &broad_phase_, &solver_, &configuration_,
+               static_cast<btScalar>(settings_.max_angular_speed)};
+};
+
+}  // namespace
+
+EngineEntry entry() {
+  return {.listing = {"bullet", "Bullet's rigid bodies (single precision)"},
+          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
+            return std::make_unique<BulletEngine>(settings);
+          }};
+}
+
+}  // namespace broadmark::scenes::bullet_engine

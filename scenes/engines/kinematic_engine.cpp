@@ -1,0 +1,219 @@
+// Bodies that move and turn, bounce at the walls, and pass through each other: O(n) per step, for
+// scenes of millions of bodies. Each body goes its own way, so that they are moved one by one.
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <vector>
+
+#include "broadmark/scenes/registry.h"
+
+namespace broadmark::scenes::kinematic_engine {
+namespace {
+
+/// How long a body must be slow before it falls asleep, in seconds. Longer than one at the top of
+/// its path is.
+constexpr double kTimeToSleep = 1;
+
+float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+/// a + factor · b.
+Vec3 plus(const Vec3& a, float factor, const Vec3& b) {
+  return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]};
+}
+
+Vec3 times(const Vec3& v, float factor) { return plus({}, factor, v); }
+
+/// The rotation after turning at this angular velocity for a short time. To first order and brought
+/// back to unit length: no library function that might round differently elsewhere.
+std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float time) {
+  const float h = time / 2;
+  std::array<float, 4> to = {q[0] + h * (w[0] * q[3] + w[1] * q[2] - w[2] * q[1]),
+                             q[1] + h * (w[1] * q[3] + w[2] * q[0] - w[0] * q[2]),
+                             q[2] + h * (w[2] * q[3] + w[0] * q[1] - w[1] * q[0]),
+                             q[3] - h * (w[0] * q[0] + w[1] * q[1] + w[2] * q[2])};
+  const float length = std::sqrt(to[0] * to[0] + to[1] * to[1] + to[2] * to[2] + to[3] * to[3]);
+  for (float& component : to) component /= length;
+  return to;
+}
+
+/// What is the same for all bodies.
+struct World {
+  std::vector<HalfSpace> walls;
+  Vec3 gravity{};
+  float time = 0;           ///< of a substep
+  float linear_factor = 1;  ///< what damping leaves of a velocity after it
+  float angular_factor = 1;
+  float friction = 0;
+  float restitution = 0;
+  float max_angular_speed = 0;
+  float sleep_threshold = 0;
+  std::int64_t substeps_to_sleep = 0;
+};
+
+class KinematicBody final : public PhysicsBody {
+ public:
+  explicit KinematicBody(const BodyDescription& body)
+      : shape_(body.shape),
+        pose_(body.pose),
+        linear_(body.linear_velocity),
+        angular_(body.angular_velocity) {
+    measure();
+  }
+
+  [[nodiscard]] const Shape& shape() const override { return shape_; }
+  [[nodiscard]] Pose pose() const override { return pose_; }
+  [[nodiscard]] Vec3 linearVelocity() const override { return linear_; }
+  [[nodiscard]] Vec3 angularVelocity() const override { return angular_; }
+
+  void setPose(const Pose& pose) override {
+    pose_ = pose;
+    measure();
+    wake();
+  }
+
+  void setVelocity(const Vec3& linear, const Vec3& angular) override {
+    if (frozen_) return;
+    linear_ = linear;
+    angular_ = angular;
+    wake();
+  }
+
+  [[nodiscard]] bool asleep() const override { return asleep_; }
+  [[nodiscard]] bool frozen() const override { return frozen_; }
+
+  void freeze() override {
+    frozen_ = true;
+    fallAsleep();
+  }
+
+  /// Does nothing to a frozen body.
+  void wake() {
+    asleep_ = frozen_;
+    slow_substeps_ = 0;
+  }
+
+  /// One substep of a body that is awake.
+  void move(const World& world) {
+    // Exact under constant gravity.
+    pose_.position = plus(pose_.position, world.time, plus(linear_, world.time / 2, world.gravity));
+    linear_ = times(plus(linear_, world.time, world.gravity), world.linear_factor);
+    if (angular_ != Vec3{}) turn(world);
+    for (const HalfSpace& wall : world.walls) bounce(wall, world);
+    rest(world);
+  }
+
+ private:
+  /// Half the size of the tight box.
+  void measure() {
+    const Aabb box = tightBox(shape_, {.rotation = pose_.rotation});
+    std::copy_n(box.max.begin(), 3, half_size_.begin());
+  }
+
+  void turn(const World& world) {
+    const float speed = std::sqrt(dot(angular_, angular_));
+    const float limit = std::min(1.0F, world.max_angular_speed / speed);
+    angular_ = times(angular_, world.angular_factor * limit);
+    pose_.rotation = turned(pose_.rotation, angular_, world.time);
+    measure();
+  }
+
+  /// Puts the tight box back to the wall where it pokes through, and the velocity as it is after
+  /// the impact: reflected as far as the restitution goes, the sideways part slowed by friction.
+  void bounce(const HalfSpace& wall, const World& world) {
+    const Vec3& normal = wall.normal;
+    const float reach = std::abs(normal[0]) * half_size_[0] + std::abs(normal[1]) * half_size_[1] +
+                        std::abs(normal[2]) * half_size_[2];
+    const float depth = wall.offset - (dot(normal, pose_.position) - reach);
+    if (depth <= 0) return;
+    pose_.position = plus(pose_.position, depth, normal);
+    const float approach = -dot(normal, linear_);
+    if (approach <= 0) return;
+    // Without the speed that gravity gave it behind the wall, lest every impact adds energy.
+    const float gained = -2 * dot(normal, world.gravity) * depth;
+    const float impact = std::sqrt(std::max(0.0F, approach * approach - gained));
+    const Vec3 sideways = plus(linear_, approach, normal);
+    const float sideways_speed = std::sqrt(dot(sideways, sideways));
+    const float held = world.friction * (approach + world.restitution * impact);
+    const float kept = sideways_speed > held ? 1 - held / sideways_speed : 0;
+    linear_ = plus(times(sideways, kept), world.restitution * impact, normal);
+  }
+
+  /// Falls asleep after a while of little energy.
+  void rest(const World& world) {
+    const float energy =
+        dot(linear_, linear_) / 2 + dot(angular_, angular_) * dot(half_size_, half_size_) / 6;
+    slow_substeps_ = energy < world.sleep_threshold ? slow_substeps_ + 1 : 0;
+    if (slow_substeps_ >= world.substeps_to_sleep) fallAsleep();
+  }
+
+  void fallAsleep() {
+    asleep_ = true;
+    linear_ = angular_ = {};
+  }
+
+  Shape shape_;
+  Pose pose_;
+  Vec3 linear_;
+  Vec3 angular_;
+  Vec3 half_size_{};
+  bool frozen_ = false;
+  bool asleep_ = false;
+  std::int64_t slow_substeps_ = 0;
+};
+
+class KinematicEngine final : public PhysicsEngine {
+ public:
+  explicit KinematicEngine(const PhysicsSettings& settings) : substeps_(settings.substeps) {
+    const double time = settings.time_step / static_cast<double>(settings.substeps);
+    world_.time = static_cast<float>(time);
+    world_.linear_factor = static_cast<float>(std::pow(1 - settings.linear_damping, time));
+    world_.angular_factor = static_cast<float>(std::pow(1 - settings.angular_damping, time));
+    world_.friction = static_cast<float>(settings.friction);
+    world_.restitution = static_cast<float>(settings.restitution);
+    world_.max_angular_speed = static_cast<float>(settings.max_angular_speed);
+    world_.sleep_threshold = static_cast<float>(settings.sleep_threshold);
+    world_.substeps_to_sleep = static_cast<std::int64_t>(std::ceil(kTimeToSleep / time));
+  }
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    return bodies_.emplace_back(description);
+  }
+
+  void addWall(const HalfSpace& wall) override { world_.walls.push_back(wall); }
+
+  void setGravity(const Vec3& gravity) override {
+    if (gravity == world_.gravity) return;
+    world_.gravity = gravity;
+    for (KinematicBody& body : bodies_) body.wake();
+  }
+
+  [[nodiscard]] Vec3 gravity() const override { return world_.gravity; }
+
+  void step() override {
+    for (KinematicBody& body : bodies_) {
+      for (std::int64_t i = 0; i < substeps_ && !body.asleep(); ++i) body.move(world_);
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    return std::ranges::all_of(bodies_, &KinematicBody::asleep);
+  }
+
+ private:
+  std::int64_t substeps_;
+  World world_;
+  std::deque<KinematicBody> bodies_;
+};
+
+}  // namespace
+
+EngineEntry entry() {
+  return {.listing = {"kinematic", "bodies bounce at the walls and pass through each other: fast",
+                      Dynamics::passing},
+          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
+            return std::make_unique<KinematicEngine>(settings);
+          }};
+}
+
+}  // namespace broadmark::scenes::kinematic_engine

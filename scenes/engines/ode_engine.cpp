@@ -1,0 +1,378 @@
+// Rigid bodies by the Open Dynamics Engine (double precision): hashed grid, box and sphere
+// colliders, projected Gauss-Seidel over the contacts of each island ("quick step").
+//
+// The quick step shuffles contacts by one random number generator of the whole process. Each world
+// here has a state of its own for it, put in place for the length of a step; steps of several
+// worlds exclude each other meanwhile.
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "broadmark/scenes/registry.h"
+
+namespace broadmark::scenes::ode_engine {
+namespace {
+
+/// Contacts of two bodies: what a face on a face needs.
+constexpr int kContactsPerPair = 4;
+/// Sweeps over the contacts for each iteration that the settings ask for. The quick step knows
+/// nothing of the step before, and needs more of them than solvers that begin where that ended.
+constexpr int kSweepsPerIteration = 2;
+/// How deep bodies may sink into each other for good: contacts at rest last, and do not flicker.
+constexpr double kRestingDepth = 0.005;
+/// Bodies that overlap are pushed apart no faster than this, in units per second: where many start
+/// inside each other, they would else explode.
+constexpr double kSeparationSpeed = 2;
+/// Impacts slower than this do not bounce, in units per second.
+constexpr double kBounceSpeed = 0.1;
+/// How long a body must be slow before it falls asleep, in seconds.
+constexpr double kTimeToSleep = 0.5;
+
+struct WorldDeleter {
+  void operator()(dWorldID world) const { dWorldDestroy(world); }
+};
+struct SpaceDeleter {
+  void operator()(dSpaceID space) const { dSpaceDestroy(space); }
+};
+struct JointGroupDeleter {
+  void operator()(dJointGroupID group) const { dJointGroupDestroy(group); }
+};
+using World = std::unique_ptr<dxWorld, WorldDeleter>;
+using Space = std::unique_ptr<dxSpace, SpaceDeleter>;
+using JointGroup = std::unique_ptr<dxJointGroup, JointGroupDeleter>;
+
+/// The library wants to be told once before its first use.
+void initialiseOde() {
+  static const int initialised = dInitODE2(0);
+  static_cast<void>(initialised);
+}
+
+/// Lends the process's random number generator to one world, which finds it as it left it.
+class RandomLoan {
+ public:
+  explicit RandomLoan(unsigned long& seed) : seed_(seed), lock_(mutex()) { dRandSetSeed(seed_); }
+  ~RandomLoan() { seed_ = dRandGetSeed(); }
+  RandomLoan(const RandomLoan&) = delete;
+  RandomLoan& operator=(const RandomLoan&) = delete;
+
+ private:
+  /// Guards a state of the library, which is the process's.
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+
+  unsigned long& seed_;
+  std::lock_guard<std::mutex> lock_;
+};
+
+Vec3 fromOde(const dReal* v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+/// The points of a shape that can be the first to touch a wall, in the body's own coordinates.
+std::vector<Vec3> wallPoints(const BoxShape& box) {
+  std::vector<Vec3> corners;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Vec3 at = box.half_extents;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1U) != 0) at[axis] = -at[axis];
+    }
+    corners.push_back(at);
+  }
+  return corners;
+}
+/// A sphere's lies where it looks at the wall: its centre, and the wall is nearer by the radius.
+std::vector<Vec3> wallPoints(const SphereShape&) { return {Vec3{}}; }
+
+double pointRadius(const BoxShape&) { return 0; }
+double pointRadius(const SphereShape& sphere) { return sphere.radius; }
+
+/// From the centre to the farthest point.
+double boundingRadius(const BoxShape& box) {
+  const Vec3& half = box.half_extents;
+  return std::hypot(half[0], half[1], half[2]);
+}
+double boundingRadius(const SphereShape& sphere) { return sphere.radius; }
+
+dGeomID makeGeom(dSpaceID space, const BoxShape& box) {
+  const Vec3& half = box.half_extents;
+  return dCreateBox(space, 2 * half[0], 2 * half[1], 2 * half[2]);
+}
+dGeomID makeGeom(dSpaceID space, const SphereShape& sphere) {
+  return dCreateSphere(space, sphere.radius);
+}
+
+void setMass(dMass& mass, double total, const BoxShape& box) {
+  const Vec3& half = box.half_extents;
+  dMassSetBoxTotal(&mass, total, 2 * half[0], 2 * half[1], 2 * half[2]);
+}
+void setMass(dMass& mass, double total, const SphereShape& sphere) {
+  dMassSetSphereTotal(&mass, total, sphere.radius);
+}
+
+class OdeBody final : public PhysicsBody {
+ public:
+  OdeBody(const BodyDescription& description, dWorldID world, dSpaceID space)
+      : shape_(description.shape), body_(dBodyCreate(world)) {
+    std::visit(
+        [&](const auto& shape) {
+          dMass mass;
+          setMass(mass, description.mass, shape);
+          dBodySetMass(body_, &mass);
+          // The diagonal of three rows of four.
+          mean_inertia_ = (mass.I[0] + mass.I[5] + mass.I[10]) / 3 / mass.mass;
+          geom_ = makeGeom(space, shape);
+          wall_points_ = wallPoints(shape);
+          point_radius_ = pointRadius(shape);
+          bounding_radius_ = boundingRadius(shape);
+        },
+        shape_);
+    dGeomSetBody(geom_, body_);
+    dGeomSetData(geom_, this);
+    setPose(description.pose);
+    setVelocity(description.linear_velocity, description.angular_velocity);
+  }
+
+  [[nodiscard]] const Shape& shape() const override { return shape_; }
+
+  [[nodiscard]] Pose pose() const override {
+    if (frozen_) return frozen_pose_;
+    const dReal* q = dBodyGetQuaternion(body_);  // w x y z
+    return {fromOde(dBodyGetPosition(body_)),
+            {static_cast<float>(q[1]), static_cast<float>(q[2]), static_cast<float>(q[3]),
+             static_cast<float>(q[0])}};
+  }
+
+  [[nodiscard]] Vec3 linearVelocity() const override { return fromOde(dBodyGetLinearVel(body_)); }
+  [[nodiscard]] Vec3 angularVelocity() const override { return fromOde(dBodyGetAngularVel(body_)); }
+
+  void setPose(const Pose& pose) override {
+    const Vec3& p = pose.position;
+    const auto& q = pose.rotation;
+    const dQuaternion quaternion = {q[3], q[0], q[1], q[2]};
+    // A body's geom follows it; a frozen one's stands alone.
+    dGeomSetPosition(geom_, p[0], p[1], p[2]);
+    dGeomSetQuaternion(geom_, quaternion);
+    frozen_pose_ = pose;
+    wake();
+  }
+
+  void setVelocity(const Vec3& linear, const Vec3& angular) override {
+    if (frozen_) return;
+    dBodySetLinearVel(body_, linear[0], linear[1], linear[2]);
+    dBodySetAngularVel(body_, angular[0], angular[1], angular[2]);
+    wake();
+  }
+
+  [[nodiscard]] bool asleep() const override { return dBodyIsEnabled(body_) == 0; }
+  [[nodiscard]] bool frozen() const override { return frozen_; }
+
+  void freeze() override {
+    if (frozen_) return;
+    frozen_pose_ = pose();
+    frozen_ = true;
+    // Without a body the geom is an immovable obstacle. It stays where it is.
+    dGeomSetBody(geom_, nullptr);
+    stop();
+  }
+
+  /// Does nothing to a frozen body.
+  void wake() {
+    if (!frozen_) dBodyEnable(body_);
+    slow_time_ = 0;
+  }
+
+  /// Called after every substep: falls asleep after a while of little energy. The library's own way
+  /// leaves out bodies that touch nothing.
+  void rest(double sleep_threshold, double time) {
+    if (asleep()) return;
+    const dReal* v = dBodyGetLinearVel(body_);
+    const dReal* w = dBodyGetAngularVel(body_);
+    const double energy = (dCalcVectorDot3(v, v) + mean_inertia_ * dCalcVectorDot3(w, w)) / 2;
+    slow_time_ = energy < sleep_threshold ? slow_time_ + time : 0;
+    if (slow_time_ >= kTimeToSleep) stop();
+  }
+
+  /// What contacts act on; null: immovable.
+  [[nodiscard]] dBodyID dynamicBody() const { return frozen_ ? nullptr : body_; }
+
+  /// Calls add(point, distance) for the points that may come to the wall within `time`: their
+  /// positions on the body, and how far before the wall they are (negative: behind it).
+  template <class Add>
+  void visitWallPoints(const HalfSpace& wall, double time, const Add& add) const {
+    const dVector3 normal = {wall.normal[0], wall.normal[1], wall.normal[2]};
+    const dReal* centre = dBodyGetPosition(body_);
+    const double height = dCalcVectorDot3(normal, centre) - wall.offset - bounding_radius_;
+    const dReal* turning = dBodyGetAngularVel(body_);
+    const double speed = std::max(0.0, -dCalcVectorDot3(normal, dBodyGetLinearVel(body_))) +
+                         dCalcVectorLength3(turning) * bounding_radius_;
+    const double reach = kRestingDepth + time * speed;
+    if (height > reach) return;
+    for (const Vec3& local : wall_points_) {
+      dVector3 point;
+      dBodyGetRelPointPos(body_, local[0], local[1], local[2], point);
+      const double distance = dCalcVectorDot3(normal, point) - wall.offset - point_radius_;
+      if (distance > reach) continue;
+      for (int axis = 0; axis < 3; ++axis) point[axis] -= point_radius_ * normal[axis];
+      add(point, distance);
+    }
+  }
+
+ private:
+  void stop() {
+    dBodySetLinearVel(body_, 0, 0, 0);
+    dBodySetAngularVel(body_, 0, 0, 0);
+    dBodyDisable(body_);
+  }
+
+  Shape shape_;
+  dBodyID body_;            ///< owned by the world
+  dGeomID geom_ = nullptr;  ///< owned by the space
+  std::vector<Vec3> wall_points_;
+  double point_radius_ = 0;  ///< of the ball around each wall point that belongs to the body
+  double bounding_radius_ = 0;
+  double mean_inertia_ = 0;  ///< per mass
+  double slow_time_ = 0;     ///< for how long it has been slow
+  bool frozen_ = false;
+  Pose frozen_pose_;
+};
+
+class OdeEngine final : public PhysicsEngine {
+ public:
+  explicit OdeEngine(const PhysicsSettings& settings)
+      : settings_(settings),
+        time_(settings.time_step / static_cast<double>(settings.substeps)),
+        world_((initialiseOde(), dWorldCreate())),
+        space_(dHashSpaceCreate(nullptr)),
+        contacts_(dJointGroupCreate(0)) {
+    dWorldID world = world_.get();
+    dWorldSetQuickStepNumIterations(
+        world, kSweepsPerIteration * static_cast<int>(settings.solver_iterations));
+    dWorldSetContactSurfaceLayer(world, kRestingDepth);
+    dWorldSetContactMaxCorrectingVel(world, kSeparationSpeed);
+    dWorldSetMaxAngularSpeed(world, settings.max_angular_speed);
+    dWorldSetDamping(world, shareLost(settings.linear_damping),
+                     shareLost(settings.angular_damping));
+    dWorldSetLinearDampingThreshold(world, 0);
+    dWorldSetAngularDampingThreshold(world, 0);
+  }
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    return bodies_.emplace_back(description, world_.get(), space_.get());
+  }
+
+  void addWall(const HalfSpace& wall) override { walls_.push_back(wall); }
+
+  void setGravity(const Vec3& gravity) override {
+    if (gravity == gravity_) return;
+    gravity_ = gravity;
+    dWorldSetGravity(world_.get(), gravity[0], gravity[1], gravity[2]);
+    for (OdeBody& body : bodies_) body.wake();
+  }
+
+  [[nodiscard]] Vec3 gravity() const override { return gravity_; }
+
+  void step() override {
+    for (std::int64_t i = 0; i < settings_.substeps; ++i) {
+      // Of sleeping bodies too: one that is awake wakes all that it touches, and these must find
+      // what carries them.
+      for (const OdeBody& body : bodies_) {
+        if (!body.frozen()) touchWalls(body);
+      }
+      dSpaceCollide(space_.get(), this, [](void* engine, dGeomID a, dGeomID b) {
+        static_cast<OdeEngine*>(engine)->touch(a, b);
+      });
+      {
+        const RandomLoan loan(random_);
+        dWorldQuickStep(world_.get(), time_);
+      }
+      dJointGroupEmpty(contacts_.get());
+      for (OdeBody& body : bodies_) body.rest(settings_.sleep_threshold, time_);
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    return std::ranges::all_of(bodies_, &OdeBody::asleep);
+  }
+
+ private:
+  /// What damping takes of a velocity in one substep.
+  [[nodiscard]] double shareLost(double per_second) const {
+    return 1 - std::pow(1 - per_second, time_);
+  }
+
+  void touch(dGeomID geom_a, dGeomID geom_b) {
+    const auto& a = *static_cast<const OdeBody*>(dGeomGetData(geom_a));
+    const auto& b = *static_cast<const OdeBody*>(dGeomGetData(geom_b));
+    if (a.frozen() && b.frozen()) return;
+    std::array<dContactGeom, kContactsPerPair> points;
+    const int count =
+        dCollide(geom_a, geom_b, kContactsPerPair, points.data(), sizeof(dContactGeom));
+    for (int i = 0; i < count; ++i) {
+      addContact(points[static_cast<std::size_t>(i)], 0, a.dynamicBody(), b.dynamicBody());
+    }
+  }
+
+  /// Contacts with every wall that the coming substep may carry a point of the body to. The solver
+  /// then stops it at the wall, where a fast body would else end up behind it.
+  void touchWalls(const OdeBody& body) {
+    for (const HalfSpace& wall : walls_) {
+      body.visitWallPoints(wall, time_, [&](const dReal* at, double distance) {
+        dContactGeom point{};
+        std::copy_n(at, 3, point.pos);
+        std::ranges::copy(wall.normal, point.normal);
+        point.depth = std::max(0.0, kRestingDepth - distance);
+        const double ahead = std::max(0.0, distance - kRestingDepth);
+        addContact(point, -ahead / time_, body.dynamicBody(), nullptr);
+      });
+    }
+  }
+
+  /// `approach`: the velocity along the normal at which the bodies may still near each other; 0 or
+  /// negative.
+  void addContact(const dContactGeom& point, double approach, dBodyID a, dBodyID b) {
+    dContact contact{};
+    contact.geom = point;
+    contact.surface.mode = dContactApprox1;
+    contact.surface.mu = settings_.friction;
+    if (approach < 0) {
+      contact.surface.mode |= dContactMotionN;
+      contact.surface.motionN = approach;
+    }
+    if (settings_.restitution > 0) {
+      contact.surface.mode |= dContactBounce;
+      contact.surface.bounce = settings_.restitution;
+      contact.surface.bounce_vel = kBounceSpeed;
+    }
+    dJointAttach(dJointCreateContact(world_.get(), contacts_.get(), &contact), a, b);
+  }
+
+  PhysicsSettings settings_;
+  double time_;  ///< of a substep, in seconds
+  unsigned long random_ = 0;
+  Vec3 gravity_{};
+  World world_;
+  Space space_;
+  JointGroup contacts_;
+  std::vector<HalfSpace> walls_;
+  std::deque<OdeBody> bodies_;
+};
+
+}  // namespace
+
+EngineEntry entry() {
+  return {.listing = {"ode", "the Open Dynamics Engine's rigid bodies (double precision)"},
+          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
+            return std::make_unique<OdeEngine>(settings);
+          }};
+}
+
+}  // namespace broadmark::scenes::ode_engine

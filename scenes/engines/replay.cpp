@@ -1,0 +1,245 @@
+// Finds the recording that is meant and replays it.
+
+#include "engines/replay.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <optional>
+
+#include "broadmark/error.h"
+#include "broadmark/scenes/registry.h"
+
+namespace broadmark::scenes {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A recording in a directory, as its name describes it.
+struct Candidate {
+  fs::path path;
+  std::size_t preference = 0;  ///< 0: the best kind
+  std::uint32_t objects = 0;
+  std::uint32_t frames = 0;
+};
+
+/// What a file's name says, if it is that of a recording of this scene and object type.
+std::optional<Candidate> understand(const fs::path& path, const std::string& scene,
+                                    const std::string& object_type,
+                                    const std::vector<std::string_view>& extensions) {
+  const auto extension = std::ranges::find(extensions, path.extension().string());
+  if (extension == extensions.end()) return {};
+  Candidate candidate{.path = path,
+                      .preference = static_cast<std::size_t>(extension - extensions.begin())};
+  const std::string name = path.stem().string();
+  const std::string start = fmt::format("{} {} ", scene, object_type);
+  int length = 0;
+  if (!name.starts_with(start) ||
+      std::sscanf(name.c_str() + start.size(), "N%9u F%9uframes%n", &candidate.objects,
+                  &candidate.frames, &length) != 2 ||
+      start.size() + static_cast<std::size_t>(length) != name.size()) {
+    return {};
+  }
+  return candidate;
+}
+
+class ReplaySimulation final : public Simulation {
+ public:
+  ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine)
+      : Simulation(scene), entry_(engine), engine_{engine.listing.id, {engine.listing.id}} {
+    for (const ObjectType& type : objectTypes()) {
+      object_type_.options.push_back(type.listing.id);
+      object_type_names_.push_back(type.listing.name);
+    }
+    object_type_.value = object_type_.options.front();
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"objects", "number of bodies", &objects_, 0, 10'000'000});
+    visit({"frames", "number of frames after the initial pose; 0: all that are recorded", &frames_,
+           0, 1'000'000});
+    visit({"object_type", "what the bodies are", &object_type_});
+    visit({"engine", "what replays them", &engine_});
+    visit({"input", "recording to replay, or the directory where it lies under its own name",
+           &input_});
+  }
+
+  [[nodiscard]] const SceneInfo& scene() const override {
+    // Until the first frame the parameters may still change behind our back.
+    if (!replay_) info_ = describe(*open());
+    return info_;
+  }
+
+  [[nodiscard]] fs::path input() const override { return find().path; }
+  [[nodiscard]] std::string inputHash() override { return openRecordingFile(input())->hash(); }
+
+  Frame rewind() override {
+    replay_ = open();
+    info_ = describe(*replay_);
+    index_ = 0;
+    return replay_->rewind();
+  }
+
+  std::optional<Frame> next() override {
+    if (!replay_) rewind();
+    if (index_ == info_.frames) return {};
+    ++index_;
+    return replay_->next();
+  }
+
+  std::span<const Aabb> unturnedBoxes() override { return replay_->unturnedBoxes(); }
+  std::span<const Pose> poses() override { return replay_->poses(); }
+
+ private:
+  [[nodiscard]] std::string objectTypeName() const {
+    const auto chosen = std::ranges::find(object_type_.options, object_type_.value);
+    return object_type_names_[static_cast<std::size_t>(chosen - object_type_.options.begin())];
+  }
+
+  /// Bodies that the recording must have.
+  [[nodiscard]] std::int64_t recordedObjects() const {
+    return objects_ / entry_.bodies_per_recorded;
+  }
+
+  [[nodiscard]] SceneInfo describe(const Replay& replay) const {
+    SceneInfo info = replay.scene();
+    if (frames_ > 0) info.frames = static_cast<std::uint32_t>(frames_);
+    return info;
+  }
+
+  /// Opens the recording that is meant and checks that it is the one.
+  [[nodiscard]] std::unique_ptr<Replay> open() const {
+    const fs::path path = find().path;
+    auto recording = openRecordingFile(path);
+    const SceneInfo& info = recording->scene();
+    if (info.name != listing().name || info.object_type != objectTypeName() ||
+        info.objects != recordedObjects() || info.frames < frames_) {
+      throw InputError(fmt::format("{}: holds {} {} N{} F{}: {} is needed", path.string(),
+                                   info.name, info.object_type, info.objects, info.frames,
+                                   wanted()));
+    }
+    return entry_.create(std::move(recording));
+  }
+
+  [[nodiscard]] std::string wanted() const {
+    return fmt::format("{} {} N{} with at least {} frames ({})", listing().name, objectTypeName(),
+                       recordedObjects(), frames_, fmt::join(entry_.extensions, " or "));
+  }
+
+  /// The recording that is meant: of those long enough the shortest, or, when all frames are asked
+  /// for, the longest; among equals the better kind.
+  [[nodiscard]] Candidate find() const {
+    if (input_.empty()) {
+      throw InputError(
+          fmt::format("--engine {}: --input must name the recording to replay, or its directory",
+                      engine_.value));
+    }
+    const std::vector<Candidate> there = candidates();
+    if (objects_ % entry_.bodies_per_recorded != 0) {
+      throw InputError(fmt::format("--engine {} makes {} bodies of each: {} is no multiple of {}{}",
+                                   engine_.value, entry_.bodies_per_recorded, objects_,
+                                   entry_.bodies_per_recorded, whatIsThere(there)));
+    }
+    if (fs::is_regular_file(input_)) return given();
+    const Candidate* best = nullptr;
+    for (const Candidate& candidate : there) {
+      const bool suits = candidate.objects == recordedObjects() && candidate.frames >= frames_;
+      if (suits && (best == nullptr || isBetter(candidate, *best))) best = &candidate;
+    }
+    if (best == nullptr) {
+      throw InputError(
+          fmt::format("{}: no recording of {}{}", input_, wanted(), whatIsThere(there)));
+    }
+    return *best;
+  }
+
+  /// The very file that `input` names.
+  [[nodiscard]] Candidate given() const {
+    const fs::path path = input_;
+    if (std::ranges::find(entry_.extensions, path.extension().string()) ==
+        entry_.extensions.end()) {
+      throw InputError(fmt::format("{}: --engine {} reads {}", input_, engine_.value,
+                                   fmt::join(entry_.extensions, " or ")));
+    }
+    return {.path = path};
+  }
+
+  [[nodiscard]] bool isBetter(const Candidate& a, const Candidate& b) const {
+    if (a.frames != b.frames) return frames_ == 0 ? a.frames > b.frames : a.frames < b.frames;
+    return a.preference < b.preference;
+  }
+
+  /// The input directory, and the folders in it that recordings are baked into.
+  [[nodiscard]] std::vector<fs::path> directories() const {
+    std::vector<fs::path> all = {input_};
+    for (const RecorderListing& recorder : builtinRecorders()) {
+      const fs::path folder = all.front() / recorder.folder;
+      if (fs::is_directory(folder)) all.push_back(folder);
+    }
+    return all;
+  }
+
+  /// All recordings of this scene and object type that are there, by size.
+  [[nodiscard]] std::vector<Candidate> candidates() const {
+    if (fs::is_regular_file(input_)) return {};
+    std::vector<Candidate> found;
+    for (const fs::path& directory : directories()) {
+      std::error_code error;
+      for (const auto& file : fs::directory_iterator(directory, error)) {
+        const auto candidate =
+            understand(file.path(), listing().name, objectTypeName(), entry_.extensions);
+        if (candidate) found.push_back(*candidate);
+      }
+      if (error) {
+        throw InputError(fmt::format("{}: cannot read: {}", directory.string(), error.message()));
+      }
+    }
+    std::ranges::sort(found, [](const Candidate& a, const Candidate& b) {
+      return std::tie(a.objects, a.frames, a.path) < std::tie(b.objects, b.frames, b.path);
+    });
+    return found;
+  }
+
+  /// "; there is N1000 F50 (gives 8000 bodies), …": for those who asked for something else.
+  [[nodiscard]] std::string whatIsThere(const std::vector<Candidate>& candidates) const {
+    if (fs::is_regular_file(input_)) return {};
+    if (candidates.empty()) {
+      return fmt::format("; there is none of {} {} at all", listing().name, objectTypeName());
+    }
+    std::vector<std::string> names;
+    for (const Candidate& candidate : candidates) {
+      std::string name = fmt::format("N{} F{}", candidate.objects, candidate.frames);
+      if (entry_.bodies_per_recorded > 1) {
+        name += fmt::format(" (gives {} bodies)",
+                            std::uint64_t{candidate.objects} * entry_.bodies_per_recorded);
+      }
+      // They are sorted: recordings of several kinds follow each other.
+      if (names.empty() || names.back() != name) names.push_back(std::move(name));
+    }
+    constexpr std::size_t kMost = 8;
+    if (names.size() > kMost) names[kMost] = "…";
+    names.resize(std::min(names.size(), kMost + 1));
+    return fmt::format("; there is {}", fmt::join(names, ", "));
+  }
+
+  ReplayEntry entry_;
+  std::int64_t objects_ = 1000;
+  std::int64_t frames_ = 0;
+  Choice object_type_;
+  std::vector<std::string> object_type_names_;
+  Choice engine_;
+  std::string input_;
+  mutable SceneInfo info_;
+  std::unique_ptr<Replay> replay_;
+  std::uint32_t index_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine) {
+  return std::make_unique<ReplaySimulation>(scene, engine);
+}
+
+}  // namespace broadmark::scenes

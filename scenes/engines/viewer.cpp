@@ -1,0 +1,42 @@
+// Viewer: the frames of a recording as they are.
+
+#include "broadmark/error.h"
+#include "broadmark/posrot.h"
+#include "engines/replay.h"
+
+namespace broadmark::scenes::viewer {
+namespace {
+
+class Viewer final : public Replay {
+ public:
+  explicit Viewer(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
+
+  [[nodiscard]] const SceneInfo& scene() const override { return recording_->scene(); }
+  Frame rewind() override { return recording_->rewind(); }
+  std::optional<Frame> next() override { return recording_->next(); }
+  std::span<const Aabb> unturnedBoxes() override { return posed().unturnedBoxes(); }
+  std::span<const Pose> poses() override { return posed().poses(); }
+
+ private:
+  [[nodiscard]] PoseSource& posed() const {
+    if (auto* source = dynamic_cast<PoseSource*>(recording_.get())) return *source;
+    throw InputError(recording_->name() + ": holds boxes only: no .posrot can be made from it");
+  }
+
+  std::unique_ptr<Recording> recording_;
+};
+
+}  // namespace
+
+ReplayEntry entry() {
+  return {.listing = {.id = "viewer",
+                      .summary = "replays a recording (.posrot, .aabbs)",
+                      .dynamics = Dynamics::replayed},
+          .bodies_per_recorded = 1,
+          .extensions = {kPosrotExtension, kAabbsExtension},
+          .create = [](std::unique_ptr<Recording> recording) -> std::unique_ptr<Replay> {
+            return std::make_unique<Viewer>(std::move(recording));
+          }};
+}
+
+}  // namespace broadmark::scenes::viewer

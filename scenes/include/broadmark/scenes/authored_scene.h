@@ -1,0 +1,73 @@
+// A scene that a person has put together: the document that is edited, saved and simulated.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/frame.h"
+#include "broadmark/parameters.h"
+#include "broadmark/scenes/shape.h"
+
+namespace broadmark::scenes {
+
+inline constexpr std::string_view kAuthoredSceneSchema = "broadmark-scene/1";
+inline constexpr std::size_t kMostAuthoredBodies = 10'000'000;
+/// Of boxes; for spheres it is the diameter that counts.
+inline constexpr float kLeastEdge = 1e-6F;
+inline constexpr float kMostEdge = 1e6F;
+
+/// A body as it starts.
+struct AuthoredBody {
+  Shape shape = BoxShape{{0.5F, 0.5F, 0.5F}};
+  double mass = 1;
+  bool frozen = false;  ///< an immovable obstacle
+  Pose pose;
+  Vec3 linear_velocity{};   ///< world units per second
+  Vec3 angular_velocity{};  ///< radians per second
+
+  friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
+};
+
+/// A plain value. Lengths are in world units. Body id = position.
+struct AuthoredScene {
+  std::string name = "Untitled";  ///< as recordings call it
+  Aabb world{{-10, -10, -10, 0}, {10, 10, 10, 0}};
+  /// Those of AuthoredParameters that are stated; the others have their defaults.
+  ParameterValues parameters;
+  std::vector<AuthoredBody> bodies;
+
+  friend bool operator==(const AuthoredScene&, const AuthoredScene&) = default;
+};
+
+/// Frames whose bodies are known wholly, so that a scene can be authored from them.
+class SceneSource {
+ public:
+  virtual ~SceneSource() = default;
+  /// The bodies of the frame handed out last, as a scene of their own: with their velocities, and
+  /// the gravity that acts on them.
+  [[nodiscard]] virtual AuthoredScene authoredScene() = 0;
+};
+
+/// "" or what is wrong with a part of a scene and what would be right: "mass: 0 is not in …".
+std::string faultOfBody(const AuthoredBody&);
+std::string faultOfName(std::string_view name);
+std::string faultOfWorld(const Aabb&);
+
+/// The scene as JSON (docs/scene-format.md), one body a line: reading it back gives the same scene,
+/// bit for bit. Throws InputError when a part of the scene is faulty.
+std::string formatAuthoredScene(const AuthoredScene&);
+
+/// Reads such a text, in time and memory proportional to its length; `name` stands for it in
+/// messages. Throws InputError that names the body and the key, and what would be right.
+AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
+
+/// What recordings call its bodies: "Cubes" or "Spheres" when all are, else "Assorted".
+std::string objectTypeName(const AuthoredScene&);
+
+/// The tight box of each body: what frame 0 will show.
+std::vector<Aabb> boxesOf(const AuthoredScene&);
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,80 @@
+// What a scene asks of a physics engine. One implementation per file, listed in CMakeLists.txt.
+#pragma once
+
+#include <cstdint>
+
+#include "broadmark/parameters.h"
+#include "broadmark/scenes/shape.h"
+
+namespace broadmark::scenes {
+
+/// How bodies move and collide; the same for all bodies of a world.
+struct PhysicsSettings {
+  double time_step = 1.0 / 30;  ///< seconds per step()
+  std::int64_t substeps = 4;
+  std::int64_t solver_iterations = 6;
+  double friction = 0.6;      ///< Coulomb coefficient of every contact
+  double restitution = 0;     ///< of every contact
+  double linear_damping = 0;  ///< share of velocity lost per second
+  double angular_damping = 0.05;
+  double max_angular_speed = 7;    ///< radians per second
+  double sleep_threshold = 0.005;  ///< kinetic energy per mass below which a body may fall asleep
+
+  void visit(const ParameterVisitor&);
+};
+
+/// A body to be created.
+struct BodyDescription {
+  Shape shape;
+  double mass = 1;
+  Pose pose;
+  Vec3 linear_velocity{};
+  Vec3 angular_velocity{};
+};
+
+/// The immovable outside of a plane: bodies stay where normal · point >= offset.
+struct HalfSpace {
+  Vec3 normal{};  ///< unit length, towards the free side
+  float offset = 0;
+};
+
+/// A body of a PhysicsEngine, which owns it.
+class PhysicsBody {
+ public:
+  virtual ~PhysicsBody() = default;
+
+  [[nodiscard]] virtual const Shape& shape() const = 0;
+  [[nodiscard]] virtual Pose pose() const = 0;
+  [[nodiscard]] virtual Vec3 linearVelocity() const = 0;
+  [[nodiscard]] virtual Vec3 angularVelocity() const = 0;
+
+  /// Places the body anew and wakes it.
+  virtual void setPose(const Pose&) = 0;
+  /// Launches the body and wakes it; a frozen one stays as it is.
+  virtual void setVelocity(const Vec3& linear, const Vec3& angular) = 0;
+
+  /// Asleep: at rest until something touches it. A frozen body counts as asleep.
+  [[nodiscard]] virtual bool asleep() const = 0;
+  [[nodiscard]] virtual bool frozen() const = 0;
+  /// Makes the body an immovable obstacle from now on.
+  virtual void freeze() = 0;
+};
+
+/// A world of bodies. Deterministic: the same calls give the same bits. Instances do not influence
+/// each other. Visits the parameters that only this engine has; their names must not clash with
+/// those of the settings or of any scene.
+class PhysicsEngine : public Parametrised {
+ public:
+  /// Adds a body. The reference stays valid as long as the engine lives.
+  virtual PhysicsBody& addBody(const BodyDescription&) = 0;
+  virtual void addWall(const HalfSpace&) = 0;
+  /// Acceleration of all bodies. A change wakes them.
+  virtual void setGravity(const Vec3&) = 0;
+  [[nodiscard]] virtual Vec3 gravity() const = 0;
+
+  /// Moves on by one time step.
+  virtual void step() = 0;
+  [[nodiscard]] virtual bool allAsleep() const = 0;
+};
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,39 @@
+// Random numbers that are the same everywhere: the engine is fixed by the C++ standard, and the
+// sampling is written out, since the standard's distributions differ between libraries.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "broadmark/scenes/shape.h"
+
+namespace broadmark::scenes {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [0, 1), in steps of 2^-53.
+  double uniform();
+  /// Uniform in [low, high).
+  double between(double low, double high) { return low + (high - low) * uniform(); }
+  /// Uniform in the ball of this radius around the origin.
+  Vec3 inBall(double radius);
+
+  /// Puts elements into random order.
+  template <class Element>
+  void shuffle(std::vector<Element>& elements) {
+    for (std::size_t left = elements.size(); left > 1; --left) {
+      const auto chosen = static_cast<std::size_t>(uniform() * static_cast<double>(left));
+      std::swap(elements[left - 1], elements[chosen]);
+    }
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,53 @@
+#include "scenes/settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "broadmark/scenes/registry.h"
+
+namespace broadmark::scenes {
+
+void PhysicsSettings::visit(const ParameterVisitor& visit) {
+  visit({"time_step", "time between frames, in seconds", &time_step, 1e-4, 1});
+  visit({"substeps", "physics steps per frame", &substeps, 1, 1000});
+  visit({"solver_iterations", "iterations of the contact solver per physics step",
+         &solver_iterations, 1, 1000});
+  visit({"friction", "Coulomb friction of contacts", &friction, 0, 10});
+  visit({"restitution", "restitution of contacts (1: fully elastic)", &restitution, 0, 1});
+  visit({"linear_damping", "share of its velocity that a body loses per second", &linear_damping, 0,
+         1});
+  visit({"angular_damping", "share of its angular velocity that a body loses per second",
+         &angular_damping, 0, 1});
+  visit({"max_angular_speed", "largest angular speed, in radians per second", &max_angular_speed, 0,
+         1000});
+  visit({"sleep_threshold", "kinetic energy per mass below which a body may fall asleep",
+         &sleep_threshold, 0, 1e6});
+}
+
+Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
+
+void Settings::visit(const ParameterVisitor& visit) {
+  visit({"objects", "number of bodies", &objects, 0, 10'000'000});
+  visit({"frames", "number of frames after the initial pose", &frames, 1, 1'000'000});
+  visit({"object_type", "what the bodies are", &object_type});
+  visit({"engine", "physics engine that moves them", &engine});
+  visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
+  visit({"density", "share of the world's volume that bodies of unit shape and this scale fill",
+         &density, 1e-6, 1});
+  visit({"scale", "factor on the size of all bodies, in world units", &scale, 1e-3, 1e3});
+  visit({"mass", "mass of a body", &mass, 1e-3, 1e6});
+  visit({"initial_radius", "radius of the ball that bodies start in, per side of the world",
+         &initial_radius, 0, 1});
+  visit({"initial_speed", "largest speed of a launched body, in sides of the world per second",
+         &initial_speed, 0, 10});
+  visit({"gravity", "gravity, in sides of the world per second squared", &gravity, 0, 10});
+  physics.visit(visit);
+}
+
+double Settings::side() const {
+  // Of no bodies at all, the world is that of one.
+  const auto bodies = static_cast<double>(std::max<std::int64_t>(objects, 1));
+  return std::cbrt(bodies * scale * scale * scale / density);
+}
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,34 @@
+// The parameters that all scenes share.
+#pragma once
+
+#include <cstdint>
+
+#include "broadmark/parameters.h"
+#include "broadmark/scenes/physics_engine.h"
+
+namespace broadmark::scenes {
+
+/// Lengths are in world units; the world is a cube of side (objects · scale³ / density)^(1/3), so
+/// that a scene looks alike at every size.
+struct Settings {
+  Settings();
+
+  std::int64_t objects = 1000;
+  std::int64_t frames = 1000;
+  Choice object_type;
+  Choice engine;
+  std::int64_t seed = 1;
+  double density = 0.1;
+  double scale = 1;
+  double mass = 1;
+  double initial_radius = 0.45;  ///< of the ball that bodies start in, per side
+  double initial_speed = 0.75;   ///< largest, in sides per second
+  double gravity = 0.0981;       ///< in sides per second squared
+  PhysicsSettings physics;
+
+  void visit(const ParameterVisitor&);
+  /// Edge of the world's cube.
+  [[nodiscard]] double side() const;
+};
+
+}  // namespace broadmark::scenes
