@@ -46,10 +46,11 @@ std::string orEmpty(const std::optional<T>& value) {
 
 }  // namespace
 
-std::string formatCsv(const Results& results) {
+std::string formatCsvResults(const Results& results) {
   std::string csv = fmt::format(
       "{},frames,seed,recording_hash,status,reason,repetitions,seconds_per_frame,median,p95,p99,"
-      "min,stddev,ci95_low,ci95_high,outliers,pairs_mean,pairs_max,missed,extra,invalid,"
+      "min,stddev,ci95_low,ci95_high,outliers,pairs_mean,pairs_max,missed,false,"
+      "allowed_extra,invalid,"
       "peak_bytes\n",
       kCaseColumns);
   for (const CaseResult& result : results.cases) {
@@ -59,22 +60,22 @@ std::string formatCsv(const Results& results) {
     const auto found = [&](std::uint64_t n) { return result.checked ? fmt::format("{}", n) : ""; };
     fmt::format_to(
         std::back_inserter(csv),
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", caseColumns(result),
-        result.recording.scene.frames, orEmpty(result.recording.seed),
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+        caseColumns(result), result.recording.scene.frames, orEmpty(result.recording.seed),
         csvField(result.recording.hash), statusName(result.status), csvField(result.reason),
         result.repetitions.size(), time(summary.seconds_per_frame), time(summary.median),
         time(summary.p95), time(summary.p99), time(summary.min), time(summary.stddev),
         summary.ci95 ? time(summary.ci95->low) : "", summary.ci95 ? time(summary.ci95->high) : "",
         timed ? fmt::format("{}", summary.outliers) : "", result.pairs_mean, result.pairs_max,
-        found(result.missed), found(result.extra), found(result.invalid),
-        orEmpty(result.peak_bytes));
+        found(result.missed_count), found(result.false_count), found(result.allowed_extra_count),
+        found(result.invalid_count), orEmpty(result.peak_bytes));
   }
   return csv;
 }
 
 std::string formatCsvFrames(const Results& results) {
   std::string csv = fmt::format("{},repetition,frame", kCaseColumns);
-  for (const Phase phase : kAllPhases) csv += fmt::format(",{}_ns", phaseName(phase));
+  for (const auto& phase : kPhases.entries) csv += fmt::format(",{}_ns", phase.name);
   csv += '\n';
   for (const CaseResult& result : results.cases) {
     const std::string columns = caseColumns(result);
@@ -82,7 +83,9 @@ std::string formatCsvFrames(const Results& results) {
       const auto& frames = result.repetitions[r].frames;
       for (std::size_t f = 0; f < frames.size(); ++f) {
         csv += fmt::format("{},{},{}", columns, r + 1, f + 1);
-        for (const Phase phase : kAllPhases) csv += fmt::format(",{}", frames[f][phase]);
+        for (const auto& phase : kPhases.entries) {
+          csv += fmt::format(",{}", frames[f][phase.value]);
+        }
         csv += '\n';
       }
     }

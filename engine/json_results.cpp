@@ -148,23 +148,42 @@ std::vector<Pair> pairsFrom(const Json& json, const std::string& name) {
 }
 
 Json toJson(const FrameDifference& d) {
-  return {{"repetition", d.repetition},           {"frame", d.frame},
-          {"missed_count", d.missed_count},       {"extra_count", d.extra_count},
-          {"forbidden_count", d.forbidden_count}, {"invalid_count", d.invalid_count},
-          {"missed", toJson(d.missed)},           {"extra", toJson(d.extra)},
-          {"invalid", toJson(d.invalid)}};
+  return {{"repetition", d.repetition},
+          {"frame", d.frame},
+          {"missed_count", d.missed_count},
+          {"false_count", d.false_count},
+          {"allowed_extra_count", d.allowed_extra_count},
+          {"invalid_count", d.invalid_count},
+          {"missed", toJson(d.missed_pairs)},
+          {"false", toJson(d.false_pairs)},
+          {"allowed_extra", toJson(d.allowed_extra_pairs)},
+          {"invalid", toJson(d.invalid_pairs)}};
 }
 
+/// Files written before false and allowed extra pairs were told apart have "extra" for both, with
+/// the count of the false ones as "forbidden_count".
 FrameDifference differenceFrom(const JsonFields& json) {
-  return {.repetition = json.integer<int>("repetition", 0),
-          .frame = json.integer<std::uint32_t>("frame"),
-          .missed_count = json.integer<std::uint64_t>("missed_count"),
-          .extra_count = json.integer<std::uint64_t>("extra_count"),
-          .forbidden_count = json.integer<std::uint64_t>("forbidden_count"),
-          .invalid_count = json.integer<std::uint64_t>("invalid_count"),
-          .missed = pairsFrom(json.array("missed"), json.path("missed")),
-          .extra = pairsFrom(json.array("extra"), json.path("extra")),
-          .invalid = pairsFrom(json.array("invalid"), json.path("invalid"))};
+  const auto count = [&](const char* key) { return json.integer<std::uint64_t>(key); };
+  const auto pairs = [&](const char* key) { return pairsFrom(json.array(key), json.path(key)); };
+  FrameDifference difference{.repetition = json.integer<int>("repetition", 0),
+                             .frame = json.integer<std::uint32_t>("frame"),
+                             .missed_count = count("missed_count"),
+                             .invalid_count = count("invalid_count"),
+                             .missed_pairs = pairs("missed"),
+                             .invalid_pairs = pairs("invalid")};
+  if (json.has("extra")) {
+    difference.false_count = count("forbidden_count");
+    difference.allowed_extra_count =
+        count("extra_count") - std::min(count("extra_count"), difference.false_count);
+    (difference.false_count > 0 ? difference.false_pairs : difference.allowed_extra_pairs) =
+        pairs("extra");
+  } else {
+    difference.false_count = count("false_count");
+    difference.allowed_extra_count = count("allowed_extra_count");
+    difference.false_pairs = pairs("false");
+    difference.allowed_extra_pairs = pairs("allowed_extra");
+  }
+  return difference;
 }
 
 Json toJson(const Summary& summary) {
@@ -194,9 +213,9 @@ bool isOptional(Phase phase) { return phase == Phase::upload || phase == Phase::
 /// One array of nanoseconds per phase and repetition.
 Json framesToJson(const std::vector<Repetition>& repetitions) {
   Json json = Json::object();
-  for (const Phase phase : kAllPhases) {
+  for (const auto& [phase, name] : kPhases.entries) {
     if (isOptional(phase) && !isUsed(phase, repetitions)) continue;
-    Json& arrays = json[std::string(phaseName(phase))] = Json::array();
+    Json& arrays = json[std::string(name)] = Json::array();
     for (const Repetition& repetition : repetitions) {
       Json& times = arrays.emplace_back(Json::array());
       for (const FrameTimes& frame : repetition.frames) times.push_back(frame[phase]);
@@ -211,8 +230,8 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   for (const Json& ns : initialize_ns) {
     repetitions.push_back({JsonFields::integerOf<std::int64_t>(ns, initialize_name, 0), {}});
   }
-  for (const Phase phase : kAllPhases) {
-    const std::string key(phaseName(phase));
+  for (const auto& [phase, phase_name] : kPhases.entries) {
+    const std::string key(phase_name);
     if (isOptional(phase) && !json.has(key.c_str())) continue;
     const Json& arrays = json.array(key.c_str());
     const std::string name = json.path(key.c_str());
@@ -223,7 +242,7 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
     for (std::size_t r = 0; r < arrays.size(); ++r) {
       if (!arrays[r].is_array()) throw InputError(name + ": arrays of nanoseconds are expected");
       auto& frames = repetitions[r].frames;
-      if (phase == kAllPhases.front()) frames.resize(arrays[r].size());
+      if (phase == kPhases.entries.front().value) frames.resize(arrays[r].size());
       if (frames.size() != arrays[r].size()) {
         throw InputError(name + ": all phases must have the same number of frames");
       }
@@ -250,12 +269,14 @@ Json toJson(const CaseResult& result) {
                {"reason", result.reason},
                {"pairs", {{"mean", result.pairs_mean}, {"max", result.pairs_max}}},
                {"checked", result.checked},
-               {"missed", result.missed},
-               {"extra", result.extra},
-               {"invalid", result.invalid},
+               {"missed", result.missed_count},
+               {"false", result.false_count},
+               {"allowed_extra", result.allowed_extra_count},
+               {"invalid", result.invalid_count},
                {"differences", Json::array()},
                {"peak_bytes", nullptr},
                {"counters", result.counters},
+               {"setup", result.setup},
                {"summary", toJson(result.summary())},
                {"initialize_ns", Json::array()},
                {"frames", framesToJson(result.repetitions)}};
@@ -269,46 +290,56 @@ Json toJson(const CaseResult& result) {
   return json;
 }
 
-/// The value of a list whose name is the text at `key`.
-template <class Value, class Name, std::size_t n>
-Value named(const JsonFields& json, const char* key, const Value (&values)[n], Name&& name) {
+/// The value that the text at `key` names.
+template <class Table>
+auto named(const JsonFields& json, const char* key, const Table& table) {
   const std::string text = json.text(key);
-  for (const Value value : values) {
-    if (name(value) == text) return value;
-  }
-  throw InputError(fmt::format("{}: unknown value '{}'", json.path(key), text));
+  const auto value = table.find(text);
+  if (!value) throw InputError(fmt::format("{}: unknown value '{}'", json.path(key), text));
+  return *value;
 }
 
 CaseResult caseFrom(const JsonFields& json) {
-  static constexpr Status kStatuses[] = {Status::ok, Status::mismatch, Status::timeout,
-                                         Status::unsupported, Status::error};
   CaseResult result;
   result.id = json.text("id");
   result.recording = recordingFrom(json.object("recording"));
   result.algorithm = json.text("algorithm");
   result.family = json.text("family");
-  result.isa = named(json, "isa", kAllIsas, isaName);
+  result.isa = named(json, "isa", kIsas);
   result.vectorised = json.boolean("vectorised");
   result.threads = json.integer<int>("threads", 1);
   // Not in files of earlier versions.
   if (json.has("device")) result.device = json.text("device");
   if (json.has("plugin")) result.plugin = json.text("plugin");
   result.parameters = parametersFrom(json.at("params"), json.path("params"));
-  result.status = named(json, "status", kStatuses, statusName);
+  result.status = named(json, "status", kStatuses);
   result.reason = json.text("reason");
   result.pairs_mean = json.object("pairs").number("mean");
   result.pairs_max = json.object("pairs").integer<std::uint64_t>("max");
   result.checked = json.boolean("checked");
-  result.missed = json.integer<std::uint64_t>("missed");
-  result.extra = json.integer<std::uint64_t>("extra");
-  result.invalid = json.integer<std::uint64_t>("invalid");
   json.eachObject("differences", [&](const JsonFields& difference) {
     result.differences.push_back(differenceFrom(difference));
   });
+  result.missed_count = json.integer<std::uint64_t>("missed");
+  result.invalid_count = json.integer<std::uint64_t>("invalid");
+  if (json.has("extra")) {  // an earlier file: see differenceFrom()
+    for (const FrameDifference& d : result.differences) result.false_count += d.false_count;
+    const auto extra = json.integer<std::uint64_t>("extra");
+    result.allowed_extra_count = extra - std::min(extra, result.false_count);
+  } else {
+    result.false_count = json.integer<std::uint64_t>("false");
+    result.allowed_extra_count = json.integer<std::uint64_t>("allowed_extra");
+  }
   if (json.has("counters")) {
     const JsonFields counters = json.object("counters");
     for (const auto& [name, count] : json.at("counters").items()) {
       result.counters[name] = counters.number(name.c_str());
+    }
+  }
+  if (json.has("setup")) {
+    const JsonFields setup = json.object("setup");
+    for (const auto& [name, count] : json.at("setup").items()) {
+      result.setup[name] = setup.integer<std::uint64_t>(name.c_str());
     }
   }
   if (json.has("peak_bytes")) result.peak_bytes = json.integer<std::uint64_t>("peak_bytes");
@@ -319,14 +350,13 @@ CaseResult caseFrom(const JsonFields& json) {
 
 }  // namespace
 
-std::string formatJson(const Results& results) {
+std::string formatJsonResults(const Results& results) {
   Json json = {{"schema", kResultsSchema},
                {"environment", toJson(results.environment)},
                {"options", results.options},
                {"cases", Json::array()}};
   for (const CaseResult& result : results.cases) json["cases"].push_back(toJson(result));
-  // Names may come from file names, which need not be UTF-8.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return formatJson(json);
 }
 
 Results parseResults(std::string_view text, std::string_view name) {

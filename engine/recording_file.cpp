@@ -49,8 +49,8 @@ std::uint32_t headerCount(std::int32_t value, std::string_view what, std::size_t
 void copyText(char (&field)[kTextBytes], const std::string& text, std::string_view what) {
   if (text.size() >= kTextBytes || !isPrintable(text)) {
     throw InputError(
-        fmt::format("cannot record the {} '{}': at most 127 printable ASCII characters are allowed",
-                    what, text));
+        fmt::format("cannot record the {} '{}': at most {} printable ASCII characters are allowed",
+                    what, text, kLongestName));
   }
   std::ranges::copy(text, field);
 }

@@ -17,11 +17,11 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/frame.h"
-#include "broadmark/posrot.h"
 #include "broadmark/hasher.h"
+#include "broadmark/posrot.h"
 
 namespace broadmark {
 

@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-std::string formatJson(const Results&);
-std::string formatCsv(const Results&);
+std::string formatJsonResults(const Results&);
+std::string formatCsvResults(const Results&);
 std::string formatCsvFrames(const Results&);
 
 }  // namespace broadmark

@@ -7,9 +7,9 @@
 #include <ranges>
 
 #include "broadmark/execution.h"
+#include "broadmark/json_fields.h"
 #include "broadmark/oracle.h"
 #include "broadmark/statistics.h"
-#include "broadmark/json_fields.h"
 
 namespace broadmark {
 namespace {
@@ -157,7 +157,7 @@ std::string formatDescriptions(std::span<const DescribedRecording> recordings) {
   }
   const Json json = {{"schema", "broadmark-descriptions/1"}, {"recordings", std::move(list)}};
   // A path need not be UTF-8.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return formatJson(json);
 }
 
 }  // namespace broadmark

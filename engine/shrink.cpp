@@ -15,10 +15,11 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <tuple>
 
+#include "broadmark/case_run.h"
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
 
 namespace broadmark {
 namespace {
@@ -45,23 +46,17 @@ std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
   return found;
 }
 
-/// Tells where to look first: the bodies of the first wrong pair.
-std::vector<std::uint32_t> suspects(const FrameDifference& difference, std::span<const Aabb> boxes,
-                                    float margin) {
-  const auto exist = [&](const Pair pair) {
-    return pair.a < boxes.size() && pair.b < boxes.size();
-  };
-  const auto is_excused = [&](const Pair pair) {
-    return overlaps(enlarged(boxes[pair.a], margin), enlarged(boxes[pair.b], margin));
-  };
-  std::vector<Pair> wrong = difference.missed;
-  std::ranges::copy_if(difference.extra, std::back_inserter(wrong),
-                       [&](const Pair pair) { return exist(pair) && !is_excused(pair); });
-  std::ranges::copy(difference.invalid, std::back_inserter(wrong));
-  const auto first = std::ranges::find_if(wrong, exist);
-  if (first == wrong.end()) return {};
-  if (first->a == first->b) return {first->a};
-  return {first->a, first->b};
+/// Where to look first: the bodies of the first wrong pair whose bodies exist.
+std::vector<std::uint32_t> suspects(const FrameDifference& difference, std::uint32_t bodies) {
+  for (const auto* pairs :
+       {&difference.missed_pairs, &difference.false_pairs, &difference.invalid_pairs}) {
+    for (const Pair pair : *pairs) {
+      if (pair.a >= bodies || pair.b >= bodies) continue;
+      if (pair.a == pair.b) return {pair.a};
+      return {pair.a, pair.b};
+    }
+  }
+  return {};
 }
 
 /// Squared distance of two boxes, 0 when they overlap.
@@ -111,9 +106,12 @@ struct Cancelled {};
 
 class Shrinker {
  public:
-  Shrinker(const Case& run, FrameSource& source, const FrameDifference& known,
+  Shrinker(const Case& run, IndexedFrames& source, const FrameDifference& known,
            const ShrinkOptions& options)
-      : run_(run), options_(options), whole_(source), known_(known) {
+      : run_(run, RunPolicy::unlimited(CheckMode::full)),
+        options_(options),
+        whole_(source),
+        known_(known) {
     best_.selection = wholeSelection(source.scene(), known.frame);
     best_.difference = known;
   }
@@ -137,7 +135,6 @@ class Shrinker {
   struct Held {
     Selection origin;
     FrameList frames;
-    FrameSeeker seeker{frames};
 
     Held(Selection selection, FrameSource& part) : origin(std::move(selection)), frames(part) {}
   };
@@ -161,7 +158,7 @@ class Shrinker {
   SubRecording part(const Selection& selection) {
     const std::string name = partName(whole_.scene());
     if (!isHeld(selection)) return {whole_, selection, name};
-    return {held_->seeker,
+    return {held_->frames,
             {positions(selection.bodies, held_->origin.bodies),
              positions(selection.frames, held_->origin.frames)},
             name};
@@ -169,37 +166,47 @@ class Shrinker {
 
   /// Runs the case on a part, which becomes the best when it fails there.
   bool fails(const Selection& selection) {
-    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-    SubRecording source = part(selection);
-    CaseResult result;
-    Oracle oracle(0);
-    const bool finished = runRepetition(result, run_, source, oracle,
-                                        {.first_checked = source.scene().frames,
-                                         .frame_limit_seconds = kNoLimit,
-                                         .initialize_limit_seconds = kNoLimit,
-                                         .cancelled = options_.cancelled},
-                                        false);
-    if (!finished) throw Cancelled();
+    std::optional<FrameDifference> difference = lastDifference(selection);
     ++best_.trials;
-    const bool failed = result.status == Status::mismatch;
+    const bool failed = difference && difference->isMismatch();
     if (failed) {
       best_.selection = selection;
-      best_.difference = std::move(result.differences.front());
+      best_.difference = std::move(*difference);
     }
     if (options_.progress) {
       options_.progress({.trials = best_.trials,
                          .bodies = best_.selection.bodies.size(),
                          .frames = best_.selection.frames.size() - 1});
     }
-    if (options_.cancelled && options_.cancelled()) throw Cancelled();
+    throwIfCancelled();
     return failed;
+  }
+
+  /// How the answer for the last frame of a part differs from the right one; nothing when the case
+  /// does not get that far.
+  std::optional<FrameDifference> lastDifference(const Selection& selection) {
+    SubRecording source = part(selection);
+    const std::uint32_t last = source.scene().frames;
+    run_.start(source.scene(), source.rewind());
+    for (std::uint32_t index = 1; index <= last && run_.running(); ++index) {
+      throwIfCancelled();
+      const Frame frame = source.at(index);
+      if (!run_.step(frame) || index < last) continue;
+      Oracle oracle(0);
+      return run_.check(frame, oracle);
+    }
+    return std::nullopt;
+  }
+
+  void throwIfCancelled() const {
+    if (options_.cancelled && options_.cancelled()) throw Cancelled();
   }
 
   /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Whether
   /// any of that failed.
   bool failsAmongNeighbours() {
     const Selection before = best_.selection;
-    const std::vector<std::uint32_t> seeds = knownSuspects();
+    const std::vector<std::uint32_t> seeds = suspects(known_, whole_.scene().objects);
     const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
     if (seeds.empty() || limit < seeds.size()) return false;
     const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(known_.frame).boxes, limit);
@@ -216,12 +223,6 @@ class Shrinker {
     return fails(first(order.size()));
   }
 
-  std::vector<std::uint32_t> knownSuspects() {
-    const auto algorithm = run_.algorithm.create();
-    setParameters(*algorithm, run_.parameters);
-    return suspects(known_, whole_.at(known_.frame).boxes, algorithm->capabilities().margin);
-  }
-
   void requireFailure() {
     if (fails(best_.selection)) {
       known_ = best_.difference;
@@ -229,7 +230,7 @@ class Shrinker {
       return;
     }
     throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
-                                 whole_.scene().name, caseName(run_), known_.frame));
+                                 whole_.scene().name, caseName(run_.description()), known_.frame));
   }
 
   /// Tries longer and longer histories before the last frame.
@@ -288,9 +289,9 @@ class Shrinker {
     }
   }
 
-  const Case& run_;
+  CaseRun run_;  ///< of all trials
   const ShrinkOptions& options_;
-  FrameSeeker whole_;
+  IndexedFrames& whole_;
   FrameDifference known_;
   ShrunkCase best_;
   std::unique_ptr<Held> held_;
@@ -298,34 +299,18 @@ class Shrinker {
 
 }  // namespace
 
-ShrunkCase shrinkCase(const Case& run, FrameSource& source, const FrameDifference& known,
+ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options) {
   const SceneInfo& scene = source.scene();
   if (known.frame < 1 || known.frame > scene.frames) {
     throw InputError(fmt::format("{}: no frame {} to shrink: frames 1 to {} are checked",
                                  scene.name, known.frame, scene.frames));
   }
-  if (!run.algorithm.finds_pairs) {
+  if (!run.algorithm.traits.finds_pairs) {
     throw InputError(
         fmt::format("{} finds no pairs: there is nothing to shrink", run.algorithm.id));
   }
   return Shrinker(run, source, known, options).shrink();
-}
-
-std::string partName(const SceneInfo& scene) {
-  constexpr std::string_view kSuffix = " case";
-  constexpr std::size_t kLongest = 127;  // what a recording's header holds
-  if (scene.name.ends_with(kSuffix)) return scene.name;
-  return scene.name.substr(0, kLongest - kSuffix.size()).append(kSuffix);
-}
-
-std::string writePart(const std::filesystem::path& path, FrameSource& source,
-                      const Selection& selection) {
-  FrameSeeker whole(source);
-  SubRecording part(whole, selection, partName(source.scene()));
-  RecordingWriter writer(path, part.scene());
-  recordAll(part, writer);
-  return writer.finish();
 }
 
 }  // namespace broadmark

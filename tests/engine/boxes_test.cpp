@@ -122,15 +122,34 @@ TEST(BoxArrays, GrowsAgainByLargerSteps) {
   EXPECT_EQ(arrays.min(0), room);
 }
 
+TEST(OverlapCounts, CountsEachBodysPairs) {
+  const std::vector<Pair> first = {{0, 1}, {1, 2}};
+  const std::vector<Pair> second = {{1, 3}, {3, 9}};
+  const PairRun runs[] = {first, second};
+  EXPECT_THAT(overlapCounts(4, runs), ElementsAre(1, 3, 1, 1));
+  EXPECT_THAT(overlapCounts(0, runs), ElementsAre());
+}
+
 /// The least that a broad phase on the helper layers has to write.
 class OnePairPerWorker final : public BoxBroadPhase {
  public:
-  void searchOverlaps() override {
+  void findPairs() override {
     team().run([&](int worker) { pairs(worker).add(0, static_cast<std::uint32_t>(worker) + 1); });
-    publishPairs();
   }
   using BoxBroadPhase::boxes;
 };
+
+TEST(HelperLayers, ForgettingTheBasesInitializeIsNoticed) {
+  class Forgetful final : public BoxBroadPhase {
+   public:
+    void initialize(const SceneInfo&, const Frame&, Execution&) override {}
+
+   private:
+    void findPairs() override {}
+  };
+  Forgetful broad_phase;
+  EXPECT_THROW(broad_phase.searchOverlaps(), std::logic_error);
+}
 
 TEST(HelperLayers, OneRunOfPairsPerWorkerUntilTheNextFrame) {
   Execution execution(3, Isa::scalar);

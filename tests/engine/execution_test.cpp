@@ -113,15 +113,15 @@ TEST(ThreadTeamDeathTest, TooManyThreadsThrow) {
 
 TEST(Isa, NamesAreDistinctAndScalarAlwaysRuns) {
   std::set<std::string_view> names;
-  for (const Isa isa : kAllIsas) names.insert(isaName(isa));
+  for (const auto& [isa, name] : kIsas.entries) names.insert(name);
   EXPECT_EQ(names, (std::set<std::string_view>{"scalar", "sse2", "avx2", "avx512"}));
   EXPECT_TRUE(isaSupported(Isa::scalar));
 }
 
 TEST(Isa, TheBestIsTheWidestSupported) {
   EXPECT_TRUE(isaSupported(bestIsa()));
-  for (const Isa isa : kAllIsas) {
-    EXPECT_FALSE(isa > bestIsa() && isaSupported(isa)) << isaName(isa);
+  for (const auto& [isa, name] : kIsas.entries) {
+    EXPECT_FALSE(isa > bestIsa() && isaSupported(isa)) << name;
   }
 }
 

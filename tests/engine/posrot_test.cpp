@@ -171,7 +171,7 @@ TEST(Posrot, IsWrittenByteForByte) {
   writer.writeBoxes(handMadeBoxes());
   PosrotReader reader = readerOf(handMade());
   for (const std::uint32_t frame : {1U, 2U}) {
-    reader.read(frame);
+    reader.at(frame);
     writer.write(reader.poses());
   }
   const std::string hash = writer.finish();
@@ -218,7 +218,7 @@ TEST(Posrot, BoxesAreThoseAroundTheEightTurnedCorners) {
 
   PosrotReader reader(directory / "a.posrot");
   for (std::size_t f = 1; f < frames.size(); ++f) {
-    const Frame frame = reader.read(static_cast<std::uint32_t>(f));
+    const Frame frame = reader.at(static_cast<std::uint32_t>(f));
     for (std::uint32_t i = 0; i < kBodies; ++i) {
       SCOPED_TRACE(i);
       expectNear(frame.boxes[i], boxByCorners(halves[i], frames[f][i]), 4e-6F);
@@ -228,7 +228,7 @@ TEST(Posrot, BoxesAreThoseAroundTheEightTurnedCorners) {
 
 TEST(Posrot, BoxesOfSpheresDoNotDependOnTheRotation) {
   PosrotReader reader = readerOf(handMade("Spheres"));
-  const Frame frame = reader.read(2);
+  const Frame frame = reader.at(2);
   EXPECT_EQ(frame.boxes[0], (Aabb{{0, 0.5F, -1, 0}, {4, 1.5F, 1, 0}}));
 }
 
@@ -278,11 +278,11 @@ TEST(Posrot, UnusualSizesAreFoundUpToTheRoundingOfTheCorners) {
 
 TEST(Posrot, ReadingAnywhereGoesOnFromThere) {
   PosrotReader reader = readerOf(handMade());
-  EXPECT_EQ(reader.read(1).index, 1U);
+  EXPECT_EQ(reader.at(1).index, 1U);
   reader.hash();
   EXPECT_EQ(reader.next()->index, 2U);
   EXPECT_THAT(reader.rewind().boxes, ElementsAreArray(handMadeBoxes()));
-  EXPECT_THAT(inputErrorOf([&] { reader.read(3); }), HasSubstr("no frame 3"));
+  EXPECT_THAT(inputErrorOf([&] { reader.at(3); }), HasSubstr("no frame 3"));
 }
 
 TEST(Posrot, NoBodiesOrNoFrames) {
@@ -308,10 +308,10 @@ TEST(Posrot, TheExtensionTellsTheKind) {
         .write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
   }
-  EXPECT_EQ(openRecordingFile(directory / "a.posrot")->read(1).boxes[1].max[1], 4.5F);
+  EXPECT_EQ(openRecordingFile(directory / "a.posrot")->at(1).boxes[1].max[1], 4.5F);
   // Read as boxes, poses are nonsense.
   for (const char* name : {"a.aabbs", "a"}) {
-    EXPECT_THAT(inputErrorOf([&] { openRecordingFile(directory / name)->read(1); }),
+    EXPECT_THAT(inputErrorOf([&] { openRecordingFile(directory / name)->at(1); }),
                 HasSubstr("the box is inverted"));
   }
 }
@@ -375,7 +375,7 @@ TEST(BadPosrot, BrokenRecordsAreNamedWithTheirPlace) {
 TEST(BadPosrot, QuaternionsMayBeOffByATolerance) {
   Bytes bytes = handMade();
   putFloat(bytes, 428, 1 + kRotationTolerance / 3);
-  EXPECT_EQ(readerOf(bytes).read(1).boxes.size(), 2U);
+  EXPECT_EQ(readerOf(bytes).at(1).boxes.size(), 2U);
   putFloat(bytes, 428, 1 + kRotationTolerance);
   EXPECT_THAT(faultOf(bytes), HasSubstr("quaternion"));
 }

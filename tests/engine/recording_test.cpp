@@ -151,13 +151,13 @@ TEST(Recording, ReadingAnywhereGoesOnFromThere) {
   RecordingWriter writer({"Drift", "Boxes", 10, 5, {}});
   for (std::uint32_t f = 0; f <= 5; ++f) writer.write(inputs::drifting(10, f, 1));
   const auto reader = writer.finishTemporary();
-  EXPECT_THAT(reader->read(4).boxes, ElementsAreArray(inputs::drifting(10, 4, 1)));
+  EXPECT_THAT(reader->at(4).boxes, ElementsAreArray(inputs::drifting(10, 4, 1)));
   EXPECT_EQ(reader->next()->index, 5U);
   EXPECT_FALSE(reader->next());
-  EXPECT_EQ(reader->read(1).index, 1U);
+  EXPECT_EQ(reader->at(1).index, 1U);
   reader->hash();
   EXPECT_EQ(reader->next()->index, 2U) << "hashing does not move the position";
-  EXPECT_THAT(inputErrorOf([&] { reader->read(6); }),
+  EXPECT_THAT(inputErrorOf([&] { reader->at(6); }),
               AllOf(HasSubstr("no frame 6"), HasSubstr("last one is 5")));
 }
 
@@ -250,7 +250,7 @@ TEST(RecordingWriter, RefusesBoxesThatNoReaderWouldTake) {
   EXPECT_THAT(inputErrorOf([&] { writer.write(boxes); }),
               HasSubstr("frame 1, body 1 (byte 400): the box is infinite"));
   writer.write(chain(2));
-  EXPECT_EQ(writer.finishTemporary()->read(1).boxes.size(), 2U) << "the bad set was not written";
+  EXPECT_EQ(writer.finishTemporary()->at(1).boxes.size(), 2U) << "the bad set was not written";
 }
 
 // Large sets are written while the caller makes the next one, in the same place.
@@ -270,7 +270,7 @@ TEST(RecordingWriter, CopiesLargeSets) {
   }
   const auto reader = writer.finishTemporary();
   for (std::uint32_t f = 0; f <= 3; ++f) {
-    EXPECT_TRUE(std::ranges::equal(reader->read(f).boxes, inputs::drifting(kBodies, f, 1)));
+    EXPECT_TRUE(std::ranges::equal(reader->at(f).boxes, inputs::drifting(kBodies, f, 1)));
   }
 }
 
@@ -284,7 +284,7 @@ TEST(RecordingWriter, SaysWhereItCannotWrite) {
 TEST(RecordAll, CopiesASourceUnlessStopped) {
   const TemporaryDirectory directory;
   RecordingReader source = readerOf(handMade());
-  source.read(1);  // it starts over, wherever the source is
+  source.at(1);  // it starts over, wherever the source is
   RecordingWriter copy(directory / "copy.aabbs", source.scene());
   std::vector<std::uint32_t> told;
   EXPECT_TRUE(recordAll(source, copy, [&](std::uint32_t frame) {

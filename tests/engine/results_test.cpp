@@ -30,7 +30,9 @@ std::string format(const Results& results, std::string_view name) {
 
 FrameTimes times(std::int64_t ns) {
   FrameTimes times;
-  for (const Phase phase : kAllPhases) times[phase] = ns + static_cast<std::int64_t>(phase);
+  for (const auto& phase : kPhases.entries) {
+    times[phase.value] = ns + static_cast<std::int64_t>(phase.value);
+  }
   return times;
 }
 
@@ -75,18 +77,21 @@ Results everything() {
   full.pairs_mean = 1.0 / 3;
   full.pairs_max = std::uint64_t{1} << 33;
   full.checked = true;
-  full.missed = 1;
-  full.extra = 2;
-  full.invalid = 3;
+  full.missed_count = 1;
+  full.false_count = 1;
+  full.allowed_extra_count = 1;
+  full.invalid_count = 3;
   full.differences = {{.repetition = 2,
                        .frame = 1,
                        .missed_count = 1,
-                       .extra_count = 2,
-                       .forbidden_count = 1,
+                       .false_count = 1,
+                       .allowed_extra_count = 1,
                        .invalid_count = 3,
-                       .missed = {{0, 1}},
-                       .extra = {{2, 3}, {4, 5}},
-                       .invalid = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
+                       .missed_pairs = {{0, 1}},
+                       .false_pairs = {{2, 3}},
+                       .allowed_extra_pairs = {{4, 5}},
+                       .invalid_pairs = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
+  full.setup = {{"kernel_build_ns", 77}};
   full.peak_bytes = 12345;
   full.repetitions = {{.initialize_ns = 5, .frames = {times(1000), times(2000)}},
                       {.initialize_ns = 6, .frames = {times(3000)}}};
@@ -114,7 +119,7 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(full.recording.scene, everything().cases[0].recording.scene) << "floats are exact";
   EXPECT_EQ(full.recording.seed, UINT64_MAX);
   EXPECT_EQ(full.pairs_mean, 1.0 / 3);
-  EXPECT_EQ(full.differences.at(0).invalid.at(1), (Pair{9, 0xFFFFFFFF}));
+  EXPECT_EQ(full.differences.at(0).invalid_pairs.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
   EXPECT_EQ(full.device, "pthread");
   EXPECT_EQ(full.plugin, "my plug-in.so");
@@ -128,9 +133,8 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
 }
 
 TEST(ResultsJson, EveryStatusAndInstructionSetSurvives) {
-  for (const Status status :
-       {Status::ok, Status::mismatch, Status::timeout, Status::unsupported, Status::error}) {
-    for (const Isa isa : kAllIsas) {
+  for (const auto& [status, status_name] : kStatuses.entries) {
+    for (const auto& [isa, name] : kIsas.entries) {
       Results results = everything();
       results.cases[0].status = status;
       results.cases[0].isa = isa;
@@ -154,14 +158,15 @@ TEST(ResultsJson, HasTheKeysThatOthersRelyOn) {
   ASSERT_THAT(json["cases"], SizeIs(2));
   const Json& full = json["cases"][0];
   expect_keys(full, {"id", "recording", "algorithm", "family", "isa", "threads", "params", "status",
-                     "reason", "pairs", "missed", "extra", "differences", "peak_bytes", "summary",
-                     "frames"});
+                     "reason", "pairs", "missed", "false", "allowed_extra", "invalid",
+                     "differences", "peak_bytes", "summary", "setup", "frames"});
   expect_keys(full["recording"],
               {"name", "object_type", "objects", "frames", "seed", "hash", "source"});
   expect_keys(full["pairs"], {"mean", "max"});
   expect_keys(full["summary"],
               {"seconds_per_frame", "median", "p95", "p99", "min", "stddev", "ci95"});
-  expect_keys(full["differences"][0], {"repetition", "frame", "missed", "extra"});
+  expect_keys(full["differences"][0],
+              {"repetition", "frame", "missed", "false", "allowed_extra", "invalid"});
   EXPECT_EQ(full["recording"]["source"], "some/file.aabbs");
   EXPECT_EQ(json["cases"][1]["recording"]["source"], (Json{{"density", "0.1"}}));
   EXPECT_TRUE(json["cases"][1]["peak_bytes"].is_null());
@@ -208,8 +213,8 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
        "a.json: cases[0]: recording: world: max: three 32-bit floats"},
       {"/cases/0/differences/0/missed/0", Json::array({1}),
        "a.json: cases[0]: differences[0]: missed: pairs of body numbers"},
-      {"/cases/0/differences/0/extra/0/1", -1,
-       "a.json: cases[0]: differences[0]: extra: an integer from 0 to"},
+      {"/cases/0/differences/0/false/0/1", -1,
+       "a.json: cases[0]: differences[0]: false: an integer from 0 to"},
       {"/cases/0/initialize_ns", Json::array({5}),
        "a.json: cases[0]: frames: update_objects: 2 repetitions instead of the 1"},
       {"/cases/0/frames/total/0", Json::array({5}),
@@ -226,7 +231,7 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
 TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
-    const std::set<std::string> optional = {"peak_bytes", "counters", "device", "plugin"};
+    const std::set<std::string> optional = {"peak_bytes", "counters", "setup", "device", "plugin"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());
@@ -241,6 +246,33 @@ TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
   const Results results = parseResults(json.dump(), "a.json");
   EXPECT_EQ(results.cases[0].device, "");
   EXPECT_EQ(results.cases[0].plugin, "");
+}
+
+// Which had one list for false and allowed extra pairs.
+TEST(ResultsJson, FilesWithExtraPairsOnlyAreRead) {
+  Json json = Json::parse(format(everything(), "json"));
+  const auto restate = [](Json& object, const std::string& suffix) {
+    object.erase("false" + suffix);
+    object.erase("allowed_extra" + suffix);
+    object["extra" + suffix] = 2;
+  };
+  Json& one = json["cases"][0];
+  restate(one, "");
+  Json& difference = one["differences"][0];
+  restate(difference, "_count");
+  restate(difference, "");
+  difference["forbidden_count"] = 1;
+  difference["extra"] = Json::parse("[[2, 3], [4, 5]]");
+  Json& bare = json["cases"][1];
+  restate(bare, "");
+
+  const Results results = parseResults(json.dump(), "a.json");
+  EXPECT_EQ(results.cases[0].false_count, 1U);
+  EXPECT_EQ(results.cases[0].allowed_extra_count, 1U);
+  EXPECT_EQ(results.cases[0].differences[0].false_count, 1U);
+  EXPECT_EQ(results.cases[0].differences[0].allowed_extra_count, 1U);
+  EXPECT_EQ(results.cases[0].differences[0].false_pairs.size(), 2U);
+  EXPECT_EQ(results.cases[1].allowed_extra_count, 2U);
 }
 
 TEST(ResultsJson, WhatIsNoResultsFile) {
@@ -313,7 +345,7 @@ TEST(ResultsCsv, OneRowPerCase) {
 
   auto bare = rowOf(rows, 2);
   for (const char* unknown : {"seconds_per_frame", "median", "ci95_low", "outliers", "missed",
-                              "extra", "invalid", "peak_bytes", "seed"}) {
+                              "false", "allowed_extra", "invalid", "peak_bytes", "seed"}) {
     EXPECT_EQ(bare[unknown], "") << unknown << ": what is not known is empty, not 0";
   }
 }

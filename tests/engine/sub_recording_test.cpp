@@ -23,32 +23,31 @@ std::unique_ptr<RecordingReader> recorded(FrameSource& source) {
   return writer.finishTemporary();
 }
 
-TEST(FrameSeeker, FindsFramesInAnyOrderOfAnySource) {
+TEST(IndexedFrames, GiveTheirFramesInAnyOrder) {
   WanderingBoxes live(5, 9, 1);
   WanderingBoxes again(5, 9, 1);
   const auto recording = recorded(again);
-  FrameSeeker in_live(live);
-  FrameSeeker in_recording(*recording);
+  FrameList list(live);
   std::vector<std::vector<Aabb>> all;
   WanderingBoxes third(5, 9, 1);
   recordAll(third, [&](const Frame& frame) { all.push_back(boxesOf(frame)); });
   for (const std::uint32_t index : {3U, 9U, 0U, 0U, 4U, 5U, 2U, 9U}) {
-    for (FrameSeeker* seeker : {&in_live, &in_recording}) {
-      const Frame frame = seeker->at(index);
+    for (IndexedFrames* frames : std::initializer_list<IndexedFrames*>{&list, recording.get()}) {
+      const Frame frame = frames->at(index);
       EXPECT_EQ(frame.index, index);
       EXPECT_EQ(boxesOf(frame), all[index]);
     }
   }
-  EXPECT_THAT(inputErrorOf([&] { in_live.at(10); }), HasSubstr("no frame 10"));
-  EXPECT_THAT(inputErrorOf([&] { in_recording.at(10); }), HasSubstr("no frame 10"));
-  EXPECT_EQ(boxesOf(in_live.at(1)), all[1]);
+  EXPECT_THAT(inputErrorOf([&] { list.at(10); }), HasSubstr("no frame 10"));
+  EXPECT_THAT(inputErrorOf([&] { recording->at(10); }), HasSubstr("no frame 10"));
+  EXPECT_EQ(boxesOf(list.at(1)), all[1]);
+  EXPECT_EQ(boxesOf(*list.next()), all[2]) << "next() goes on from there";
 }
 
 TEST(SubRecording, IsTheSelectedPart) {
   WanderingBoxes source(6, 8, 2);
-  WanderingBoxes same(6, 8, 2);
-  FrameSeeker whole(source);
-  FrameSeeker check(same);
+  FrameList whole(source);
+  FrameList check(source);
   const Selection selection{{1, 4, 5}, {2, 3, 7}};
   SubRecording part(whole, selection, "Part");
   EXPECT_EQ(part.scene().name, "Part");
@@ -71,8 +70,7 @@ TEST(SubRecording, IsTheSelectedPart) {
 TEST(SubRecording, OfEverythingIsTheWhole) {
   WanderingBoxes source(7, 4, 3);
   const auto recording = recorded(source);
-  FrameSeeker whole(*recording);
-  SubRecording part(whole, wholeSelection(recording->scene(), 4), recording->scene().name);
+  SubRecording part(*recording, wholeSelection(recording->scene(), 4), recording->scene().name);
   EXPECT_EQ(part.scene(), recording->scene());
   EXPECT_EQ(recorded(part)->hash(), recording->hash());
 }

@@ -67,8 +67,8 @@ class BroadPhase : public Parametrised {
 };
 
 // Three helper layers. Those who keep their pairs from frame to frame (KD, Tracy) or get them from
-// elsewhere as a whole (compute devices) stand directly on BroadPhase: pair buffers that are emptied
-// for every frame would be in their way. All others use a layer.
+// elsewhere as a whole (compute devices) stand directly on BroadPhase: pair buffers that are
+// emptied for every frame would be in their way. All others use a layer.
 
 /// Layer 1: keeps the execution and one pair buffer per worker, and answers with them. Phases 2 and
 /// 4 are its own: an algorithm adds pairs in findPairs(), to buffers that are empty, and they are

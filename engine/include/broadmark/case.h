@@ -1,6 +1,7 @@
 // A case: an algorithm with all that can vary about it.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "broadmark/algorithm.h"

@@ -18,9 +18,8 @@ namespace broadmark {
 /// for a conservative algorithm, and where the hashes differ), or not at all.
 enum class CheckMode { full, hash, off };
 
-inline constexpr NameTable kCheckModes{{NamedValue{CheckMode::full, "full"},
-                                        {CheckMode::hash, "hash"},
-                                        {CheckMode::off, "off"}}};
+inline constexpr NameTable kCheckModes{
+    {NamedValue{CheckMode::full, "full"}, {CheckMode::hash, "hash"}, {CheckMode::off, "off"}}};
 
 /// What a run may take, and how its answers are judged.
 struct RunPolicy {
@@ -53,6 +52,10 @@ class CaseRun {
   [[nodiscard]] const Case& description() const { return case_; }
   /// As BroadPhase::margin().
   [[nodiscard]] float margin() const { return margin_; }
+  /// Whether check() judges answers.
+  [[nodiscard]] bool checks() const {
+    return policy_.check != CheckMode::off && case_.algorithm.traits.finds_pairs;
+  }
 
   /// Begins a pass: a fresh instance at the initial pose. Returns whether it is running: what the
   /// processor, the number of bodies or the time limit forbids is a status. Throws InputError (a
@@ -61,8 +64,8 @@ class CaseRun {
   /// Runs the four phases on the next frame and times them. Returns whether it is still running: a
   /// time beyond the limit ends the pass, but the frame counts. Only while running().
   bool step(const Frame& frame);
-  /// Judges the answer for this frame, the last one run; nothing when the policy or the algorithm's
-  /// nature has it that answers are not checked. Only while answered().
+  /// Judges the answer for this frame, the last one run; nothing unless checks(). Only while
+  /// answered().
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
   /// Ends the pass and frees the instance.
   void stop();
@@ -70,9 +73,11 @@ class CaseRun {
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
   /// Whether step() may be called.
-  [[nodiscard]] bool running() const { return instance_ != nullptr && !ended_; }
+  [[nodiscard]] bool running() const { return hasInstance() && !ended_; }
   /// Whether there is an answer: a frame has been run, and its instance is still there.
-  [[nodiscard]] bool answered() const { return instance_ != nullptr && frames_ > 0; }
+  [[nodiscard]] bool answered() const { return hasInstance() && frames_ > 0; }
+  /// False before start(), after stop(), and after a failure inside the algorithm.
+  [[nodiscard]] bool hasInstance() const { return instance_ != nullptr; }
 
   // Of the present pass, or the last one.
   [[nodiscard]] std::int64_t initializeNanoseconds() const { return initialize_ns_; }
@@ -84,15 +89,17 @@ class CaseRun {
   BroadPhase& algorithm() { return *instance_; }
 
  private:
-  /// Calls into the algorithm; what that throws becomes the status. Whether all went well.
+  /// Calls into the algorithm for this frame; what that throws becomes the status. Whether all went
+  /// well.
   template <class Call>
-  bool attempt(Call&& call);
+  bool attempt(std::uint32_t frame, Call&& call);
   void fail(Status status, std::string reason);
 
   Case case_;
   RunPolicy policy_;
-  std::optional<Execution> execution_;  ///< from the first start() on
-  std::unique_ptr<BroadPhase> instance_;
+  std::optional<Execution> execution_;    ///< from the first start() on
+  std::unique_ptr<BroadPhase> next_;      ///< made to check the parameters; the first pass uses it
+  std::unique_ptr<BroadPhase> instance_;  ///< of the present pass
   float margin_ = 0;
   bool ended_ = false;  ///< by the time limit: the instance is still there to be looked at
   Status status_ = Status::ok;

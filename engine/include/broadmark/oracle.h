@@ -32,7 +32,8 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb>);
 std::vector<Pair> sweptPairs(std::span<const Aabb>);
 
 /// The right answer for any boxes, computed once and kept while it fits in a budget. An answer is
-/// found again by the boxes' hash: two scenes may share an oracle, and equal frames share an answer.
+/// found again by the boxes' hash: two scenes may share an oracle, and equal frames share an
+/// answer.
 class Oracle {
  public:
   explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30) : budget_bytes_(budget_bytes) {}
@@ -56,8 +57,8 @@ class Oracle {
 
 /// How an answer differs from the right one in one frame.
 ///
-/// An extra pair was reported though the two boxes do not overlap: it is *allowed* when they do once
-/// enlarged by the algorithm's margin, else it is *false*. An invalid pair is a duplicate, has
+/// An extra pair was reported though the two boxes do not overlap: it is *allowed* when they do
+/// once enlarged by the algorithm's margin, else it is *false*. An invalid pair is a duplicate, has
 /// a >= b, or names a body that does not exist.
 struct FrameDifference {
   /// At most this many pairs of each kind are listed; the counts are always complete.

@@ -1,0 +1,277 @@
+// One case, frame by frame: clock, limits, verdict, exclusivity.
+
+#include "broadmark/case_run.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "broadmark/exclusive_use.h"
+#include "engine/spoilt_cases.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Bodies two apart in the chain have a gap of 1.
+TEST(CaseRun, AConservativeAnswerIsCheckedAgainstItsMargin) {
+  for (const CheckMode check : {CheckMode::full, CheckMode::hash}) {
+    const auto spoil = [](std::uint32_t, std::vector<Pair>& answer) { answer.push_back({0, 2}); };
+    const CaseResult within =
+        runOnChain(caseOf({.on_answer = spoil, .margin = 0.5F}), {.check = check});
+    EXPECT_EQ(within.status, Status::ok);
+    EXPECT_EQ(within.allowed_extra_count, kFrames) << "allowed, but counted";
+    EXPECT_TRUE(within.differences.empty());
+
+    const CaseResult beyond =
+        runOnChain(caseOf({.on_answer = spoil, .margin = 0.4F}), {.check = check});
+    EXPECT_EQ(beyond.status, Status::mismatch);
+    EXPECT_EQ(beyond.differences.size(), kFrames);
+  }
+}
+
+TEST(CaseRun, AConservativeAnswerMayMissNothing) {
+  const Case run =
+      caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.pop_back(); }, .margin = 1000});
+  EXPECT_EQ(runOnChain(run, {.check = CheckMode::hash}).status, Status::mismatch);
+}
+
+TEST(CaseRun, WhatItThrowsBecomesTheStatus) {
+  const Case unsupported =
+      caseOf({.on_initialize = [] { throw UnsupportedError("no such device"); }});
+  EXPECT_EQ(runOnChain(unsupported).status, Status::unsupported);
+  EXPECT_EQ(runOnChain(unsupported).reason, "no such device");
+
+  const Case failing = caseOf({.on_update = [](std::uint32_t frame) {
+    if (frame == kFaultyFrame) throw std::runtime_error("out of cells");
+  }});
+  const CaseResult result = runOnChain(failing, {}, 3);
+  EXPECT_EQ(result.status, Status::error);
+  EXPECT_THAT(result.reason, AllOf(HasSubstr("frame 3"), HasSubstr("out of cells")));
+  EXPECT_TRUE(result.repetitions.empty());
+}
+
+TEST(CaseRun, WhatCannotRunHereIsUnsupported) {
+  const CaseResult too_many = runOnChain(caseOf({.traits = {.max_objects = 3}}));
+  EXPECT_EQ(too_many.status, Status::unsupported);
+  EXPECT_THAT(too_many.reason, AllOf(HasSubstr("at most 3"), HasSubstr("has 4")));
+}
+
+TEST(CaseRun, AnInstructionSetThatIsMissingIsUnsupported) {
+  if (isaSupported(Isa::avx512)) GTEST_SKIP() << "this processor has all instruction sets";
+  Case vectorised = caseOf();
+  vectorised.isa = Isa::avx512;
+  EXPECT_EQ(runOnChain(vectorised).status, Status::ok) << "heeds no instruction set";
+  vectorised.algorithm.traits.vectorised = true;
+  EXPECT_EQ(runOnChain(vectorised).status, Status::unsupported);
+}
+
+TEST(CaseRun, BadInputIsNoResult) {
+  Case run = caseOf();
+  run.parameters = {{"cells", "10"}};
+  EXPECT_THAT(inputErrorOf([&] { runOnChain(run); }), HasSubstr("cells"));
+  run.parameters = {{"cell", "1"}};
+  EXPECT_THAT(inputErrorOf([&] { runOnChain(run); }), HasSubstr("did you mean 'cells'"));
+}
+
+TEST(CaseRun, TheTimeLimitIsJudgedAfterThreeFramesAndKeepsThem) {
+  const Case slow = caseOf({.on_update = [](std::uint32_t) { wait(0.01); }});
+  const CaseResult result = runOnChain(slow, {.frame_limit_seconds = 0.005}, 2);
+  EXPECT_EQ(result.status, Status::timeout);
+  EXPECT_THAT(result.reason, AllOf(HasSubstr("after frame 3"), HasSubstr("limit of 0.005 s")));
+  ASSERT_EQ(result.repetitions.size(), 1U);
+  EXPECT_EQ(result.repetitions[0].frames.size(), 3U);
+  EXPECT_GE(result.summary().seconds_per_frame, 0.01);
+  EXPECT_EQ(result.pairs_mean, 3);
+}
+
+// A slow first frame alone is forgiven when the mean is within the limit.
+TEST(CaseRun, TheTimeLimitIsOnTheRunningMean) {
+  const Case slow_start = caseOf({.on_update = [](std::uint32_t frame) {
+    if (frame == 1) wait(0.02);
+  }});
+  EXPECT_EQ(runOnChain(slow_start, {.frame_limit_seconds = 0.5}).status, Status::ok);
+  EXPECT_EQ(runOnChain(slow_start, {.frame_limit_seconds = 0.003}).status, Status::timeout);
+}
+
+TEST(CaseRun, InitialisationHasItsOwnLimit) {
+  const Case slow = caseOf({.on_initialize = [] { wait(0.02); }});
+  const CaseResult result = runOnChain(slow, {.initialize_limit_seconds = 0.005});
+  EXPECT_EQ(result.status, Status::timeout);
+  EXPECT_THAT(result.reason, HasSubstr("initialisation"));
+
+  const CaseResult patient = runOnChain(slow, {.frame_limit_seconds = 0.015});
+  EXPECT_EQ(patient.status, Status::ok) << "initialising counts for no frame";
+  EXPECT_GE(patient.repetitions.at(0).initialize_ns, 20'000'000);
+}
+
+TEST(CaseRun, PhasesAreWithinTheTotal) {
+  const Case run = caseOf({.on_update = [](std::uint32_t) { wait(0.001); },
+                           .on_answer = [](std::uint32_t, auto&) { wait(0.002); }});
+  const CaseResult result = runOnChain(run);
+  for (const FrameTimes& times : result.repetitions.at(0).frames) {
+    std::int64_t sum = 0;
+    for (const auto& [phase, name] : kPhases.entries) {
+      EXPECT_GE(times[phase], 0) << name;
+      if (phase != Phase::total) sum += times[phase];
+    }
+    EXPECT_LE(sum, times[Phase::total]);
+    EXPECT_GE(times[Phase::update_objects], 1'000'000);
+    EXPECT_GE(times[Phase::search_overlaps], 2'000'000);
+  }
+}
+
+TEST(CaseRun, GoesOnAfterAMismatchAndKeepsTheFirstReason) {
+  ChainSource source;
+  Oracle oracle;
+  CaseRun run(caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
+  ASSERT_TRUE(run.start(source.scene(), source.rewind()));
+  EXPECT_FALSE(run.answered());
+  for (std::uint32_t index = 1; index <= 2; ++index) {
+    const Frame frame = source.at(index);
+    EXPECT_TRUE(run.step(frame));
+    EXPECT_TRUE(run.answered());
+    EXPECT_TRUE(run.check(frame, oracle)->isMismatch());
+  }
+  EXPECT_EQ(run.status(), Status::mismatch);
+  EXPECT_THAT(run.reason(), HasSubstr("frame 1"));
+}
+
+TEST(CaseRun, APassBeyondTheLimitStillHasItsLastAnswer) {
+  ChainSource source;
+  Oracle oracle;
+  CaseRun run(caseOf(), {.frame_limit_seconds = 0});
+  run.start(source.scene(), source.rewind());
+  EXPECT_TRUE(run.step(source.at(1)));
+  EXPECT_TRUE(run.step(source.at(2)));
+  EXPECT_FALSE(run.step(source.at(3)));
+  EXPECT_EQ(run.status(), Status::timeout);
+  EXPECT_FALSE(run.running());
+  ASSERT_TRUE(run.answered());
+  EXPECT_FALSE(run.check(source.at(3), oracle)->isMismatch());
+  run.stop();
+  EXPECT_FALSE(run.answered());
+}
+
+TEST(CaseRun, APassThatFailedHasNoInstance) {
+  ChainSource source;
+  CaseRun run(caseOf({.on_update = [](std::uint32_t) { throw std::runtime_error("no"); }}));
+  ASSERT_TRUE(run.start(source.scene(), source.rewind()));
+  EXPECT_FALSE(run.step(source.at(1)));
+  EXPECT_FALSE(run.hasInstance());
+  EXPECT_EQ(run.status(), Status::error);
+}
+
+/// Says which execution each of its instances was given.
+class ExecutionTeller final : public BoxBroadPhase {
+ public:
+  explicit ExecutionTeller(std::vector<const Execution*>& told) : told_(told) {}
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    told_.push_back(&execution);
+  }
+
+ private:
+  void findPairs() override {}
+  std::vector<const Execution*>& told_;
+};
+
+TEST(CaseRun, AllPassesShareOneExecution) {
+  std::vector<const Execution*> told;
+  Case run;
+  run.algorithm.create = [&] { return std::make_unique<ExecutionTeller>(told); };
+  CaseRun case_run(run);
+  ChainSource source;
+  ChainSource other(2, 3);
+  case_run.start(source.scene(), source.rewind());
+  case_run.start(source.scene(), source.rewind());
+  case_run.start(other.scene(), other.rewind());
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_EQ(told[0], told[1]);
+  EXPECT_EQ(told[0], told[2]);
+}
+
+TEST(CaseRun, CallsIntoAnExclusiveAlgorithmNeverMeet) {
+  std::atomic<int> inside = 0;
+  std::atomic<int> most = 0;
+  const auto call = [&] {
+    most = std::max(most.load(), ++inside);
+    wait(0.0005);
+    --inside;
+  };
+  Behaviour behaviour;
+  behaviour.traits.exclusive = "a library with one global margin";
+  behaviour.on_initialize = call;
+  behaviour.on_update = [&](std::uint32_t) { call(); };
+  behaviour.on_destroy = call;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back(
+        [&] { EXPECT_EQ(runOnChain(caseOf(behaviour), {}, 3).status, Status::ok); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(most, 1);
+}
+
+TEST(CaseRun, ExclusiveAlgorithmsTakeTurnsOnOneThread) {
+  Behaviour behaviour;
+  behaviour.traits.exclusive = "a library with one global margin";
+  CaseRun a(caseOf(behaviour));
+  CaseRun b(caseOf(behaviour));
+  ChainSource source;
+  a.start(source.scene(), source.rewind());
+  b.start(source.scene(), source.rewind());
+  for (std::uint32_t index = 1; index <= kFrames; ++index) {
+    EXPECT_TRUE(a.step(source.at(index)));
+    EXPECT_TRUE(b.step(source.at(index)));
+  }
+}
+
+TEST(CaseRun, WaitingForAnExclusiveUseIsNotTimed) {
+  Behaviour behaviour;
+  behaviour.traits.exclusive = "a library that somebody else uses";
+  CaseRun run(caseOf(behaviour));
+  ChainSource source;
+  run.start(source.scene(), source.rewind());
+  std::atomic<bool> held = false;
+  std::thread other([&] {
+    const ExclusiveUse alone(behaviour.traits.exclusive);
+    held = true;
+    wait(0.1);
+  });
+  while (!held) std::this_thread::yield();
+  run.step(source.at(1));
+  other.join();
+  EXPECT_LT(run.times()[Phase::total], 80'000'000);
+}
+
+TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
+  constexpr std::string_view kState = "a state of this test";
+  int value = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 2; ++i) {
+    threads.emplace_back([&] {
+      for (int turn = 0; turn < 500; ++turn) {
+        const ExclusiveUse alone(kState);
+        ++value;
+        ++value;
+      }
+    });
+    threads.emplace_back([&] {
+      for (int turn = 0; turn < 500; ++turn) {
+        const SharedUse reading(kState);
+        EXPECT_EQ(value % 2, 0);
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(value, 2000);
+  const SharedUse first(kState);
+  const SharedUse second(kState);  // would wait for ever if readers did not share
+}
+
+}  // namespace
+}  // namespace broadmark::tests

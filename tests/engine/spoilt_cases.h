@@ -1,0 +1,116 @@
+// Cases that are wrong, slow or failing on purpose, and a scene for them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "broadmark/runner.h"
+#include "engine/helpers.h"
+
+namespace broadmark::tests {
+
+inline constexpr std::uint32_t kFrames = 6;
+inline constexpr std::uint32_t kFaultyFrame = 3;
+
+inline void wait(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+/// A chain of bodies that moves as a whole.
+class ChainSource final : public IndexedFrames {
+ public:
+  explicit ChainSource(std::uint32_t objects = 4, std::uint32_t frames = kFrames)
+      : scene_{"Chain", "Cubes", objects, frames, {{0, 0, 0, 0}, {100, 100, 100, 0}}} {}
+
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+
+ private:
+  std::span<const Aabb> readBoxes(std::uint32_t index) override {
+    boxes_ = chain(scene_.objects);
+    for (Aabb& box : boxes_) {
+      box.min[1] += static_cast<float>(index);
+      box.max[1] += static_cast<float>(index);
+    }
+    return boxes_;
+  }
+
+  SceneInfo scene_;
+  std::vector<Aabb> boxes_;
+};
+
+/// Everything that a run may go through, to be replaced one by one.
+struct Behaviour {
+  std::function<void()> on_initialize = [] {};
+  std::function<void(std::uint32_t frame)> on_update = [](std::uint32_t) {};
+  std::function<void(std::uint32_t frame, std::vector<Pair>&)> on_answer =
+      [](std::uint32_t, std::vector<Pair>&) {};
+  float margin = 0;
+  AlgorithmTraits traits = {};
+  std::function<void()> on_destroy = [] {};  // of an instance that was initialised
+};
+
+/// Brute force, spoilt by a behaviour.
+class Spoilt final : public BoxBroadPhase {
+ public:
+  explicit Spoilt(Behaviour behaviour) : behaviour_(std::move(behaviour)) {}
+  ~Spoilt() override {
+    if (initialised_) behaviour_.on_destroy();
+  }
+
+  [[nodiscard]] float margin() const override { return behaviour_.margin; }
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({.name = "cells", .doc = "does nothing", .value = &cells_, .min = 1, .max = 9});
+  }
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    initialised_ = true;
+    behaviour_.on_initialize();
+  }
+  void updateObjects(const Frame& frame) override {
+    BoxBroadPhase::updateObjects(frame);
+    frame_ = frame.index;
+    behaviour_.on_update(frame_);
+  }
+  void visitSetup(const CounterVisitor& visit) const override { visit("tables", 5); }
+
+ private:
+  void findPairs() override {
+    std::vector<Pair> answer = bruteForcePairs(boxes());
+    behaviour_.on_answer(frame_, answer);
+    std::ranges::copy(answer, pairs().room(answer.size()));
+    pairs().advance(answer.size());
+  }
+
+  Behaviour behaviour_;
+  bool initialised_ = false;
+  std::uint32_t frame_ = 0;
+  std::int64_t cells_ = 2;
+};
+
+inline Case caseOf(const Behaviour& behaviour = {}) {
+  Case run;
+  run.algorithm.id = "spoilt";
+  run.algorithm.family = "Tests";
+  run.algorithm.traits = behaviour.traits;
+  run.algorithm.create = [behaviour] { return std::make_unique<Spoilt>(behaviour); };
+  return run;
+}
+
+/// Spoils the answer of one frame.
+inline Case spoilingAnswer(std::function<void(std::vector<Pair>&)> spoil) {
+  return caseOf({.on_answer = [spoil](std::uint32_t frame, std::vector<Pair>& answer) {
+    if (frame == kFaultyFrame) spoil(answer);
+  }});
+}
+
+inline CaseResult runOnChain(const Case& run, const RunPolicy& policy = {}, int repetitions = 1) {
+  ChainSource source;
+  return runCase(run, source, policy, repetitions);
+}
+
+}  // namespace broadmark::tests
