@@ -3,12 +3,13 @@
 // may begin or end an overlap, kept in a hash table. O(n + s + k) a frame, s the number of swaps:
 // little when bodies move little, O(n²) when all move far. O(n + k) space.
 //
-// Two things are done in Bullet's stead. Its positions are 31-bit integers, spread evenly over a
-// world given beforehand, beyond which all bodies fall together; ours are the floats' own bits,
-// less the last one, which sort as the floats do: there is no world to leave. The pairs that this
-// one bit, and the integers' strict order, add are taken out by a test of the boxes, so that the
-// answer is exact. And bodies are not inserted one by one, O(n²) swaps, but all at once: sorted,
-// and swept once along the best axis.
+// Two things are done differently here:
+// - Positions. Bullet's are 31-bit integers spread evenly over a world given beforehand; beyond it
+//   all bodies have the same position. Ours are the floats' own bits without the last one, which
+//   sort as the floats do, so there is no world to leave. The missing bit and the integers' strict
+//   order add pairs; a test of the boxes takes them out, so the answer is exact.
+// - The beginning. Bullet inserts bodies one by one, O(n²) swaps; here all are sorted at once and
+//   swept once along the best axis.
 //
 // Papers: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", PhD thesis, Cornell,
 // 1992; P. Terdiman, "Sweep-and-prune", 2007. Library: Bullet 3, btAxisSweep3.
@@ -24,12 +25,15 @@
 #include <utility>
 #include <vector>
 
+#include "broadmark/algorithm.h"
 #include "bullet_broad_phase.h"
 #include "radix_sort.h"
-#include "broadmark/algorithm.h"
 
 namespace broadmark::axis_sweep {
 namespace {
+
+/// Handles are 31-bit integers, one is Bullet's own, and their number must be below the largest.
+constexpr std::uint64_t kMaxObjects = 0x7FFF'FFFD;
 
 /// Where an interval ends. The lowest bit tells upper ends from lower ones (as in Bullet), so that
 /// touching intervals overlap. -0 becomes +0: they are the same place.
@@ -38,7 +42,7 @@ unsigned position(float value, bool is_max) {
 }
 
 /// Bullet's sweep with our positions and our beginning. The handle of a body is its number + 1;
-/// handle 0 stands at both ends of each axis.
+/// handle 0 is Bullet's sentinel at both ends of each axis.
 class Sweep final : public bt32BitAxisSweep3 {
  public:
   explicit Sweep(std::span<const Aabb> boxes)
@@ -77,9 +81,9 @@ class Sweep final : public bt32BitAxisSweep3 {
     }
   }
 
-  /// Pairs tested when it was made.
+  /// Pairs tested by the constructor.
   [[nodiscard]] std::uint64_t tests() const { return tests_; }
-  /// Swaps since it was made.
+  /// Swaps in all moves so far.
   [[nodiscard]] std::uint64_t swaps() const { return swaps_; }
 
   /// The axis along which the fewest intervals meet.
@@ -159,11 +163,8 @@ class Sweep final : public bt32BitAxisSweep3 {
 
 class AxisSweep final : public BulletBroadPhase {
  public:
-  /// Handles are 31-bit integers, one is Bullet's own, and it wants them fewer than the last.
-  [[nodiscard]] Capabilities capabilities() const override { return {.max_objects = 0x7FFF'FFFD}; }
-
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BoxBroadPhase::initialize(scene, first, execution);
+    BulletBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
     sweep_ = std::make_unique<Sweep>(boxes());
   }
@@ -171,12 +172,6 @@ class AxisSweep final : public BulletBroadPhase {
   void updateStructures() override {
     swaps_before_ = sweep_->swaps();
     for (const std::uint32_t body : moved()) sweep_->move(body, boxes()[body]);
-  }
-
-  void searchOverlaps() override {
-    publish(*sweep_->getOverlappingPairCache(), [this](std::uint32_t a, std::uint32_t b) {
-      return broadmark::overlaps(boxes()[a], boxes()[b]);
-    });
   }
 
   /// Each axis of the world, the one along which the fewest bodies meet in another colour.
@@ -200,6 +195,12 @@ class AxisSweep final : public BulletBroadPhase {
   [[nodiscard]] std::string validate() const override { return sweep_->validate(boxes()); }
 
  private:
+  void findPairs() override {
+    addPairs(*sweep_->getOverlappingPairCache(), [this](std::uint32_t a, std::uint32_t b) {
+      return broadmark::overlaps(boxes()[a], boxes()[b]);
+    });
+  }
+
   Aabb world_;
   std::unique_ptr<Sweep> sweep_;
   std::uint64_t swaps_before_ = 0;  ///< this frame's
@@ -211,14 +212,13 @@ std::vector<Algorithm> variants() {
   return {{.id = "axis-sweep",
            .family = "AxisSweep",
            .summary = "Bullet's incremental sweep and prune on three axes",
-           .original_ids = {{"AxisSweep", {}}},
-           .create = [] { return std::make_unique<AxisSweep>(); },
-           .principle = "sorting",
-           .optimisations = "incremental, pairs in a hash table",
-           .incremental = true,
-           .time = "O(n + s + k), s swaps of interval ends",
-           .space = "O(n + k)",
-           .source = "Bullet, bt32BitAxisSweep3; Baraff 1992; Terdiman 2007"}};
+           .traits = {.incremental = true, .max_objects = kMaxObjects},
+           .description = {.principle = "sorting",
+                           .optimisations = "incremental, pairs in a hash table",
+                           .time = "O(n + s + k), s swaps of interval ends",
+                           .space = "O(n + k)",
+                           .source = "Bullet, bt32BitAxisSweep3; Baraff 1992; Terdiman 2007"},
+           .create = [] { return std::make_unique<AxisSweep>(); }}};
 }
 
 }  // namespace broadmark::axis_sweep

@@ -7,8 +7,8 @@
 
 namespace broadmark {
 
-/// The first position in [first, last) at which `inside`, true up to somewhere, is false; else
-/// last. Found from `hint` outwards: O(log distance).
+/// The first position in [first, last) at which `inside` is false, else last; it is true before and
+/// false from there on. Searches from `hint` outwards: O(log distance).
 template <class Inside>
 std::size_t boundaryNear(std::size_t hint, std::size_t first, std::size_t last, Inside inside) {
   std::size_t step = 1;

@@ -15,7 +15,7 @@
 
 #include "axis_overlap.h"
 #include "simd/overlap_kernels.h"
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::brute_force {
 namespace {
@@ -45,15 +45,14 @@ void forEachTile(int worker, int workers, std::size_t count, Test test) {
 
 class Plain final : public BoxBroadPhase {
  public:
-  void searchOverlaps() override {
+ private:
+  void findPairs() override {
     team().run([this](int worker) {
       forEachTile(worker, team().size(), boxes().size(),
                   [&](Range rows, Range columns) { testTile(rows, columns, pairs(worker)); });
     });
-    publishPairs();
   }
 
- private:
   void testTile(Range rows, Range columns, PairBuffer& found) const {
     const Aabb* const first = boxes().data();
     const Aabb* const end = first + columns.end;
@@ -78,46 +77,36 @@ class Simd final : public SimdBroadPhase {
     kernels_ = &overlapKernels(execution.isa());
   }
 
-  void searchOverlaps() override {
+ private:
+  void findPairs() override {
     team().run([this](int worker) {
       forEachTile(worker, team().size(), arrays().size(), [&](Range rows, Range columns) {
         kernels_->test_tile(arrays(), rows, columns, pairs(worker));
       });
     });
-    publishPairs();
   }
 
- private:
   const OverlapKernels* kernels_ = nullptr;
 };
-
-template <class T>
-Algorithm variant(std::string id, std::string summary, std::string optimisations,
-                  std::vector<OriginalId> original_ids) {
-  return {.id = id,
-          .family = "BF",
-          .summary = std::move(summary),
-          .parallel = id.ends_with("-mt"),
-          .vectorised = std::is_same_v<T, Simd>,
-          .original_ids = std::move(original_ids),
-          .create = [] { return std::make_unique<T>(); },
-          .principle = "brute force",
-          .optimisations = std::move(optimisations),
-          .time = "O(n²)",
-          .space = "O(n + k)",
-          .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"};
-}
 
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {
-      variant<Plain>("bf", "tests every box against every other", "none", {{"BF", {}}}),
-      variant<Simd>("bf-simd", "brute force, one box against a vector of boxes", "SIMD",
-                    {{"BF_SSE", Isa::sse2}, {"BF_AVX", Isa::avx2}}),
-      variant<Plain>("bf-mt", "brute force, on several threads", "threads", {{"BF_Parallel", {}}}),
-      variant<Simd>("bf-simd-mt", "brute force, vectorised and on several threads", "SIMD, threads",
-                    {{"BF_SSE_Parallel", Isa::sse2}, {"BF_AVX_Parallel", Isa::avx2}})};
+  const Algorithm family = {
+      .family = "BF",
+      .description = {
+          .principle = "brute force",
+          .time = "O(n²)",
+          .space = "O(n + k)",
+          .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"}};
+  const auto plain = [] { return std::make_unique<Plain>(); };
+  const auto simd = [] { return std::make_unique<Simd>(); };
+  return {variantOf(family, plain, "bf", "tests every box against every other"),
+          variantOf(family, simd, "bf-simd", "brute force, one box against a vector of boxes",
+                    {.vectorised = true}),
+          variantOf(family, plain, "bf-mt", "brute force, on several threads", {.parallel = true}),
+          variantOf(family, simd, "bf-simd-mt", "brute force, vectorised and on several threads",
+                    {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::brute_force

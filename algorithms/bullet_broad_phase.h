@@ -4,39 +4,44 @@
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "broadmark/broad_phase.h"
 
 namespace broadmark {
 
-/// Keeps the boxes, and tells Bullet only of those that changed, as a game does for bodies awake.
-/// Body i is the proxy with Bullet's unique id i + 1.
+/// Keeps the boxes, and hands on to Bullet only those that changed, as a game does for bodies
+/// awake. Body i is the proxy with Bullet's unique id i + 1.
 class BulletBroadPhase : public BoxBroadPhase {
  public:
-  void updateObjects(const Frame& frame) override {
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    moved_.resize(boxes().size());
+    std::iota(moved_.begin(), moved_.end(), 0U);
+  }
+
+  void updateObjects(const Frame& frame) final {
     moved_.clear();
     for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
-      const bool is_new = body >= boxes().size();
-      if (is_new || frame.boxes[body] != boxes()[body]) moved_.push_back(body);
+      if (frame.boxes[body] != boxes()[body]) moved_.push_back(body);
     }
     BoxBroadPhase::updateObjects(frame);
   }
 
  protected:
-  /// The bodies whose boxes differ from the last frame's; all, at the beginning.
+  /// The bodies whose boxes differ from those of the frame before; after initialize() all.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
 
-  /// Answers with those of the library's pairs for which keep(a, b).
+  /// Adds those of the library's pairs for which keep(a, b).
   template <class Keep>
-  void publish(btOverlappingPairCache& cache, Keep keep) {
+  void addPairs(btOverlappingPairCache& cache, Keep keep) {
     const btBroadphasePairArray& found = cache.getOverlappingPairArray();
     for (int i = 0; i < found.size(); ++i) {
       const std::uint32_t a = bodyOf(*found[i].m_pProxy0);
       const std::uint32_t b = bodyOf(*found[i].m_pProxy1);
       if (keep(a, b)) pairs().add(a, b);
     }
-    publishPairs();
   }
 
  private:

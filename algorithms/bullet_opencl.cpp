@@ -10,66 +10,42 @@
 //   nothing, fill up;
 // - a full pair buffer cuts the answer silently: it is doubled and the search done again;
 // - the sweep's sort overflows from 2^19 bodies on: refused;
-// - the radix sort counts on groups of 64 running in lockstep, which a GPU need not do: on anything
+// - the radix sort relies on groups of 64 running in lockstep, which a GPU need not do: on anything
 //   but a CPU the right answer on a known scene is asked for first.
+//
+// The grid's kernels are global variables of the library. Each grid keeps its own and puts them in
+// place before every search and before it is destroyed (opencl/bullet_library.h); CaseRun lets no
+// other call in meanwhile (traits.exclusive). So any number of grids may live at the same time.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark", Computer Graphics Forum, 2019; T. Karras,
 // "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees", HPG 2012 (the BVH);
 // F. Liu, T. Harada, Y. Lee, Y. J. Kim, "Real-Time Collision Culling of a Million Bodies on
 // Graphics Processing Units", SIGGRAPH Asia 2010 (the sweep).
 
-#include <Bullet3Common/b3Logging.h>
-#include <Bullet3OpenCL/BroadphaseCollision/b3GpuGridBroadphase.h>
 #include <Bullet3OpenCL/BroadphaseCollision/b3GpuParallelLinearBvhBroadphase.h>
 #include <Bullet3OpenCL/BroadphaseCollision/b3GpuSapBroadphase.h>
-#include <Bullet3OpenCL/Initialize/b3OpenCLUtils.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
-#include "opencl/device_context.h"
-#include "opencl/timer.h"
-#include "broadmark/algorithm.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"
-
-// Exported by the library, declared in none of its headers.
-int b3OpenCLUtils_clewInit();
-extern bool gDebugSkipLoadingBinary;
+#include "opencl/bullet_library.h"
+#include "opencl/device_algorithm.h"
+#include "opencl/device_context.h"
+#include "opencl/timer.h"
 
 namespace broadmark::bullet_opencl {
 namespace {
 
 constexpr float kLargest = std::numeric_limits<float>::max();
-
-/// Bullet tells of errors by this callback only.
-thread_local std::string library_error;
-
-/// Loads the library's OpenCL and keeps it quiet, once for the process. Throws UnsupportedError.
-void initializeLibrary() {
-  static const int status = [] {
-    gDebugSkipLoadingBinary = true;  // or it writes a cache of its own beside the program
-    b3OpenCLUtils_setCachePath("/dev/null");
-    const auto ignore = [](const char*) {};
-    b3SetCustomPrintfFunc(ignore);
-    b3SetCustomWarningMessageFunc(ignore);
-    b3SetCustomErrorMessageFunc([](const char* message) { library_error = message; });
-    return b3OpenCLUtils_clewInit();
-  }();
-  if (status != 0) throw UnsupportedError("libOpenCL cannot be loaded");
-}
-
-/// Turns what the callback has heard into an exception.
-void requireNoError() {
-  if (library_error.empty()) return;
-  std::string message = std::exchange(library_error, {});
-  std::ranges::replace(message, '\n', ' ');
-  throw std::runtime_error("Bullet: " + message);
-}
 
 b3SapAabb toBullet(const Aabb& box, int id) {
   b3SapAabb result;
@@ -87,34 +63,20 @@ struct Sizes {
   float cell = 0;  ///< edge of a cell that is larger than any small body
 };
 
-/// The library's grid with the two settings that it keeps to itself.
-class Grid final : public b3GpuGridBroadphase {
- public:
-  using b3GpuGridBroadphase::b3GpuGridBroadphase;
-
-  void setCellSize(float size) {
-    constexpr int kUnlimited = 1 << 20;
-    for (int axis = 0; axis < 3; ++axis) m_paramsCPU.m_invCellSize[axis] = 1 / size;
-    m_paramsCPU.setMaxBodiesPerCell(kUnlimited);
-    m_paramsGPU.resize(1);
-    m_paramsGPU.copyFromHostPointer(&m_paramsCPU, 1);
-  }
-};
-
 // What differs between the three. Each: the library's class, its limits, and how it wants bodies.
 
 struct GridTraits {
-  using BroadPhase = Grid;
+  using BroadPhase = opencl::BulletGrid;
   static constexpr std::uint64_t kMaxObjects = 1 << 26;
-  /// The grid's kernels are global variables of the library.
+  /// The grid's kernels are global variables.
   static constexpr std::string_view kExclusive = "Bullet 3's OpenCL grid";
   static constexpr bool kHasLarge = true;
 
-  static std::unique_ptr<Grid> create(const opencl::DeviceContext& context) {
-    return std::make_unique<Grid>(context.context()(), context.device()(), context.queue()());
+  static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
+    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()());
   }
   static int padded(int count) { return count; }
-  static void prepare(Grid& grid, const Sizes& sizes) { grid.setCellSize(sizes.cell); }
+  static void prepare(BroadPhase& grid, const Sizes& sizes) { grid.setCellSize(sizes.cell); }
 };
 
 struct BvhTraits {
@@ -146,17 +108,17 @@ struct SapTraits {
   }
 };
 
-/// The library's object. It is made once for an Execution, as it leaks megabytes and takes a fifth
-/// of a second for its kernels each time. Nothing in it lasts from one answer to the next.
+/// The library's object. It is made once for an Execution: each leaks megabytes and takes a fifth
+/// of a second for its kernels. Nothing in it lasts from one answer to the next.
 template <class Traits>
 class SharedLibrary final : public SharedResource {
  public:
   explicit SharedLibrary(Execution& execution) {
     const auto& context = execution.shared<opencl::DeviceContext>();
-    initializeLibrary();
+    opencl::loadBulletLibrary();
     const opencl::ScopedTimer timer(build_ns_);
     broad_phase_ = Traits::create(context);
-    requireNoError();
+    opencl::requireNoBulletError();
   }
   typename Traits::BroadPhase& broadPhase() { return *broad_phase_; }
   [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
@@ -166,42 +128,55 @@ class SharedLibrary final : public SharedResource {
   std::int64_t build_ns_ = 0;
 };
 
+/// Directly on BroadPhase: pairs come from the library as a whole.
 template <class Traits>
 class BulletOpenCl final : public BroadPhase {
  public:
-  [[nodiscard]] Capabilities capabilities() const override {
-    return {.max_objects = Traits::kMaxObjects, .exclusive = Traits::kExclusive};
-  }
-
   void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
     auto& library = execution.shared<SharedLibrary<Traits>>();
     broad_phase_ = &library.broadPhase();
     build_ns_ = library.buildNanoseconds();
     if (!execution.shared<opencl::DeviceContext>().onCpu()) requireSelfCheck();
-    run(first);
+    answer(first.boxes);
   }
 
-  void updateObjects(const Frame& frame) override {
+  void updateObjects(const Frame& frame) override { upload(frame.boxes); }
+  void cleanCache() override { pairs_.clear(); }
+  void searchOverlaps() override { findPairs(); }
+
+  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
+  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
+
+  void visitCounters(const CounterVisitor& visit) const override {
+    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
+  }
+  void visitSetup(const CounterVisitor& visit) const override {
+    visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));
+  }
+
+ private:
+  /// Farther from the origin the cell of a float is too inaccurate.
+  static constexpr float kMostCellsAway = 1 << 20;
+
+  void upload(std::span<const Aabb> boxes) {
     transfers_ = {};
-    count_ = static_cast<int>(frame.boxes.size());
+    count_ = static_cast<int>(boxes.size());
     host_boxes_.resize(Traits::padded(count_));
-    for (int i = 0; i < count_; ++i) host_boxes_[i] = toBullet(frame.boxes[i], i);
+    for (int i = 0; i < count_; ++i) host_boxes_[i] = toBullet(boxes[i], i);
     const Aabb inverted = {{kLargest, kLargest, kLargest, 0}, {-kLargest, -kLargest, -kLargest, 0}};
     for (int i = count_; i < host_boxes_.size(); ++i) host_boxes_[i] = toBullet(inverted, i);
-    divideBySize(frame.boxes);
+    divideBySize(boxes);
 
     const opencl::ScopedTimer timer(transfers_.upload_ns);
     broad_phase_->getAllAabbsGPU().copyFromHost(host_boxes_);
     broad_phase_->getSmallAabbIndicesGPU().copyFromHost(sizes_.small);
     broad_phase_->getLargeAabbIndicesGPU().copyFromHost(sizes_.large);
     Traits::prepare(*broad_phase_, sizes_);
-    requireNoError();
+    opencl::requireNoBulletError();
   }
 
-  void cleanCache() override { pairs_.clear(); }
-
-  void searchOverlaps() override {
-    if (sizes_.small.size() > 0) {  // a grid without bodies answers with anything
+  void findPairs() {
+    if (sizes_.small.size() > 0) {  // without bodies a grid's answer is undefined
       searchOnDevice();
       download();
     }
@@ -209,17 +184,11 @@ class BulletOpenCl final : public BroadPhase {
     run_ = pairs_.run();
   }
 
-  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
-  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
-
-  void visitCounters(const CounterVisitor& visit) const override {
-    visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));
-    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
+  void answer(std::span<const Aabb> boxes) {
+    upload(boxes);
+    pairs_.clear();
+    findPairs();
   }
-
- private:
-  /// Beyond, a float hardly tells in which cell it lies.
-  static constexpr float kMostCellsAway = 1 << 20;
 
   static float longestEdge(const Aabb& box) {
     float edge = 0;
@@ -275,13 +244,13 @@ class BulletOpenCl final : public BroadPhase {
     for (;;) {
       broad_phase_->calculateOverlappingPairs(max_pairs_);
       if (broad_phase_->getNumOverlap() < max_pairs_) break;
-      library_error.clear();  // it may have complained of the full buffer
+      opencl::dropBulletError();  // it may have complained of the full buffer
       if (max_pairs_ > std::numeric_limits<int>::max() / 2) {
         throw UnsupportedError("more pairs than the library can count");
       }
       max_pairs_ *= 2;
     }
-    requireNoError();
+    opencl::requireNoBulletError();
   }
 
   void download() {
@@ -313,13 +282,7 @@ class BulletOpenCl final : public BroadPhase {
     }
   }
 
-  void run(const Frame& frame) {
-    updateObjects(frame);
-    cleanCache();
-    searchOverlaps();
-  }
-
-  /// Unit cubes on a lattice that is a little too narrow for them: each meets its neighbours.
+  /// On unit cubes 0.9 apart, each of which overlaps its neighbours.
   void requireSelfCheck() {
     std::vector<Aabb> boxes;
     constexpr int kSide = 12;
@@ -331,10 +294,10 @@ class BulletOpenCl final : public BroadPhase {
         box.max[axis] = box.min[axis] + 1;
       }
     }
-    run({0, boxes});
+    answer(boxes);
     const std::vector<Pair> right = bruteForcePairs(boxes);
     const PairRun right_run = right;
-    if (digest(overlaps()) != digest({&right_run, 1})) {
+    if (digest({&run_, 1}) != digest({&right_run, 1})) {
       throw UnsupportedError(
           fmt::format("wrong pairs on this device in a start-up check ({} instead of {})",
                       pairs_.size(), right.size()));
@@ -355,32 +318,29 @@ class BulletOpenCl final : public BroadPhase {
 };
 
 template <class Traits>
-Algorithm variant(std::string id, std::string original_id, std::string summary,
-                  std::string principle, std::string time) {
-  return {.id = std::move(id),
-          .family = "GPU",
-          .summary = std::move(summary),
-          .parallel = true,
-          .on_device = true,
-          .original_ids = {{std::move(original_id), {}}},
-          .create = [] { return std::make_unique<BulletOpenCl<Traits>>(); },
-          .library_allocates = true,
-          .principle = std::move(principle),
-          .optimisations = "OpenCL (Bullet 3)",
-          .time = std::move(time),
-          .space = "O(n + k)",
-          .source = "Bullet 3.24; Serpa and Rodrigues 2019; Karras 2012; Liu et al. 2010"};
+Algorithm variant(std::string id, std::string summary, AlgorithmDescription description) {
+  return opencl::deviceAlgorithm(
+      std::move(id), std::move(summary), std::move(description),
+      {.max_objects = Traits::kMaxObjects,
+       .exclusive = std::string(Traits::kExclusive),
+       .create = [] { return std::make_unique<BulletOpenCl<Traits>>(); }});
 }
 
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {variant<GridTraits>("b3-grid", "GPU_Grid", "Bullet 3's uniform grid on an OpenCL device",
-                              "grid", "O(n) for bodies of about one size"),
-          variant<BvhTraits>("b3-lbvh", "GPU_LBVH", "Bullet 3's linear BVH on an OpenCL device",
-                             "tree", "O(n log n + k)"),
-          variant<SapTraits>("b3-sap", "GPU_SAP", "Bullet 3's sweep on an OpenCL device", "sorting",
-                             "O(n + w), w pairs that overlap on the sort axis")};
+  return {
+      variant<GridTraits>("b3-grid", "Bullet 3's uniform grid on an OpenCL device",
+                          {.principle = "grid",
+                           .time = "O(n) for bodies of about one size",
+                           .source = "Bullet 3.24; Serpa and Rodrigues 2019"}),
+      variant<BvhTraits>(
+          "b3-lbvh", "Bullet 3's linear BVH on an OpenCL device",
+          {.principle = "tree", .time = "O(n log n + k)", .source = "Bullet 3.24; Karras 2012"}),
+      variant<SapTraits>("b3-sap", "Bullet 3's sweep on an OpenCL device",
+                         {.principle = "sorting",
+                          .time = "O(n + w), w pairs that overlap on the sort axis",
+                          .source = "Bullet 3.24; Liu et al. 2010"})};
 }
 
 }  // namespace broadmark::bullet_opencl

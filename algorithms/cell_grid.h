@@ -9,8 +9,8 @@
 #include <cstdint>
 #include <span>
 
-#include "marked_body.h"
 #include "broadmark/aabb.h"
+#include "marked_body.h"
 
 namespace broadmark {
 
@@ -31,8 +31,8 @@ struct CellRange {
 };
 
 /// Cells of equal size, aligned to the axes. The outermost ones reach to infinity, so every box
-/// touches at least one cell. Which cell a coordinate falls into is monotone in the coordinate, and
-/// that alone is what correctness rests on: boxes that overlap have a cell in common.
+/// touches at least one cell. A higher coordinate never falls into a lower cell. Correctness rests
+/// on that alone: boxes that overlap have a cell in common.
 class CellGrid {
  public:
   /// Lays about `cells` cells (at least one; at most two and a half times as many, by rounding)

@@ -31,7 +31,7 @@ class Cgal final : public BoxBroadPhase {
   void updateStructures() override {
     boxes_.clear();
     for (const Aabb& box : boxes()) {
-      // What the library takes for the end of each axis belongs to none of its segments.
+      // The library takes this for the end of each axis, which lies in none of its segments.
       if (*std::max_element(box.min.begin(), box.min.begin() + 3) == kEnd) {
         throw UnsupportedError("CGAL loses boxes whose lower bound is the largest float");
       }
@@ -41,18 +41,17 @@ class Cgal final : public BoxBroadPhase {
     }
   }
 
-  void searchOverlaps() override {
-    const auto report = [this](const Box& a, const Box& b) { pairs().add(body(a), body(b)); };
-    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
-                                  static_cast<std::ptrdiff_t>(cutoff_),
-                                  CGAL::Box_intersection_d::CLOSED);
-    publishPairs();
-  }
-
  private:
   /// The library tells boxes apart by the address of what they stand for.
   using Box = CGAL::Box_intersection_d::Box_with_handle_d<float, 3, const Aabb*>;
   static constexpr float kEnd = std::numeric_limits<float>::max();
+
+  void findPairs() override {
+    const auto report = [this](const Box& a, const Box& b) { pairs().add(body(a), body(b)); };
+    CGAL::box_self_intersection_d(boxes_.begin(), boxes_.end(), report,
+                                  static_cast<std::ptrdiff_t>(cutoff_),
+                                  CGAL::Box_intersection_d::CLOSED);
+  }
 
   [[nodiscard]] std::uint32_t body(const Box& box) const {
     return static_cast<std::uint32_t>(box.handle() - boxes().data());
@@ -68,14 +67,13 @@ std::vector<Algorithm> variants() {
   return {{.id = "cgal",
            .family = "CGAL",
            .summary = "CGAL's box_self_intersection_d, from scratch every frame",
-           .original_ids = {{"CGAL", {}}},
-           .create = [] { return std::make_unique<Cgal>(); },
-           .library_allocates = true,
-           .principle = "tree",
-           .optimisations = "streamed in place, small subproblems scanned",
-           .time = "O(n log³ n + k)",
-           .space = "O(n + k)",
-           .source = "CGAL, Box_intersection_d; Zomorodian and Edelsbrunner 2000"}};
+           .traits = {.library_allocates = true},
+           .description = {.principle = "tree",
+                           .optimisations = "streamed in place, small subproblems scanned",
+                           .time = "O(n log³ n + k)",
+                           .space = "O(n + k)",
+                           .source = "CGAL, Box_intersection_d; Zomorodian and Edelsbrunner 2000"},
+           .create = [] { return std::make_unique<Cgal>(); }}};
 }
 
 }  // namespace broadmark::cgal

@@ -1,4 +1,4 @@
-// Choosing among compute devices; asking for them is opencl/device_context.cpp's.
+// Choosing among compute devices; opencl/device_context.cpp finds them.
 
 #include "broadmark/compute_devices.h"
 

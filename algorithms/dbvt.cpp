@@ -5,10 +5,14 @@
 // frame for m bodies that move, if the tree is balanced. O(n + k) space.
 //
 // The answer is what Bullet's user gets: the pairs of leaves that overlap. A leaf reaches beyond
-// its box by up to twice the margin, once its body has gone from one end of it to the other; more
-// when the box shrinks, and then it is put in anew (setAabbForceUpdate, which Bullet has for that).
-// Left alone, Bullet would look through only a tenth of its pairs a frame for stale ones: here all
-// of them are looked through, lest they pile up.
+// its box by up to twice the margin, when its body has gone from one end of it to the other. When
+// the box shrinks it would reach further: the body is then put in anew (setAabbForceUpdate, which
+// Bullet has for that). By itself Bullet looks through only a tenth of its pairs a frame for stale
+// ones: here all of them are looked through, or they would pile up.
+//
+// Bullet's margin is a global variable. An instance sets it for the length of a call and puts the
+// former value back, and CaseRun lets nobody else use it meanwhile (traits.exclusive): so instances
+// with different margins may live at the same time.
 //
 // Paper: the trees follow N. Presson's in Bullet; for the idea see G. van den Bergen, "Efficient
 // Collision Detection of Complex Deformable Models using AABB Trees", 1997. Library: Bullet 3.
@@ -20,8 +24,9 @@
 #include <utility>
 #include <vector>
 
+#include "broadmark/exclusive_use.h"
 #include "bullet_broad_phase.h"
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::dbvt {
 namespace {
@@ -43,7 +48,8 @@ bool contains(const Aabb& outer, const Aabb& inner) {
   return true;
 }
 
-/// Bullet's margin is one for the whole process: lent while this lives.
+/// Bullet has one margin for the whole process: it is this one while the object lives. Of all that
+/// is called here only setAabb reads it.
 class MarginInForce {
  public:
   explicit MarginInForce(float margin) : before_(std::exchange(gDbvtMargin, margin)) {}
@@ -70,19 +76,18 @@ class Dbvt final : public BulletBroadPhase {
            &margin_, 0, 1e6});
   }
 
-  [[nodiscard]] Capabilities capabilities() const override {
-    return {.margin = reach(), .max_objects = 0x7FFF'FFFE, .exclusive = "Bullet's tree margin"};
-  }
+  /// How far a leaf may reach beyond its box.
+  [[nodiscard]] float margin() const override { return 2 * static_cast<float>(margin_); }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BoxBroadPhase::initialize(scene, first, execution);
+    BulletBroadPhase::initialize(scene, first, execution);
     proxies_.reserve(boxes().size());
     for (const Aabb& box : boxes()) {
       proxies_.push_back(static_cast<btDbvtProxy*>(tree_.createProxy(
           vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
           btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr)));
     }
-    findPairs();
+    updatePairs();
   }
 
   void updateStructures() override {
@@ -94,11 +99,6 @@ class Dbvt final : public BulletBroadPhase {
       move(body);
     }
     reinsertions_ += tree_.m_updates_done - updates_before;
-  }
-
-  void searchOverlaps() override {
-    findPairs();
-    publish(*tree_.m_paircache, [](std::uint32_t, std::uint32_t) { return true; });
   }
 
   void drawStructure(DebugDraw& draw) const override {
@@ -122,13 +122,16 @@ class Dbvt final : public BulletBroadPhase {
   }
 
  private:
-  /// How far a leaf may reach beyond its box.
-  [[nodiscard]] float reach() const { return 2 * static_cast<float>(margin_); }
+  void findPairs() override {
+    updatePairs();
+    addPairs(*tree_.m_paircache, [](std::uint32_t, std::uint32_t) { return true; });
+  }
+
   [[nodiscard]] Aabb leafOf(std::uint32_t body) const {
     return boxOf(proxies_[body]->leaf->volume);
   }
   [[nodiscard]] bool reachesTooFar(std::uint32_t body) const {
-    return !contains(enlarged(boxes()[body], reach()), leafOf(body));
+    return !contains(enlarged(boxes()[body], margin()), leafOf(body));
   }
 
   void move(std::uint32_t body) {
@@ -139,8 +142,9 @@ class Dbvt final : public BulletBroadPhase {
     if (reachesTooFar(body)) tree_.setAabbForceUpdate(proxies_[body], min, max, nullptr);
   }
 
-  void findPairs() {
-    // From the first on, as many as there are and will be: Bullet then drops every stale one.
+  /// Brings Bullet's pairs up to date.
+  void updatePairs() {
+    // Bullet checks for stale pairs from the m_cid-th on, at least as many as are new: so all.
     tree_.m_cid = 0;
     tree_.m_newpairs += tree_.m_paircache->getNumOverlappingPairs();
     tree_.calculateOverlappingPairs(nullptr);
@@ -164,29 +168,26 @@ class Dbvt final : public BulletBroadPhase {
   std::uint64_t reinsertions_ = 0;     ///< this frame's
 };
 
-Algorithm variant(std::string id, std::string original, std::string summary, bool deferred) {
-  return {.id = std::move(id),
-          .family = "DBVT",
-          .summary = std::move(summary),
-          .original_ids = {{std::move(original), {}}},
-          .create = [deferred] { return std::make_unique<Dbvt>(deferred); },
-          .library_allocates = true,
-          .principle = "tree",
-          .optimisations = "incremental, enlarged leaves, a tree for bodies at rest",
-          .incremental = true,
-          .exactness = "twice its margin",
-          .time = "O(m log n + k), m bodies that move",
-          .space = "O(n + k)",
-          .source = "Bullet, btDbvtBroadphase; van den Bergen 1997"};
-}
-
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {variant("dbvt-f", "DBVT F",
-                  "Bullet's dynamic AABB trees, each body looked up as it moves (forward)", false),
-          variant("dbvt-d", "DBVT D",
-                  "Bullet's dynamic AABB trees, descended once a frame (deferred)", true)};
+  const Algorithm family = {
+      .family = "DBVT",
+      .traits = {.incremental = true,
+                 .library_allocates = true,
+                 .max_objects = 0x7FFF'FFFE,
+                 .exclusive = std::string(kBulletTreeMargin)},
+      .description = {.principle = "tree",
+                      .optimisations = "incremental, enlarged leaves, a tree for bodies at rest",
+                      .time = "O(m log n + k), m bodies that move",
+                      .space = "O(n + k)",
+                      .source = "Bullet, btDbvtBroadphase; van den Bergen 1997"}};
+  const auto forward = [] { return std::make_unique<Dbvt>(/*deferred=*/false); };
+  const auto deferred = [] { return std::make_unique<Dbvt>(/*deferred=*/true); };
+  return {variantOf(family, forward, "dbvt-f",
+                    "Bullet's dynamic AABB trees, each body looked up as it moves (forward)"),
+          variantOf(family, deferred, "dbvt-d",
+                    "Bullet's dynamic AABB trees, descended once a frame (deferred)")};
 }
 
 }  // namespace broadmark::dbvt

@@ -13,7 +13,6 @@
 #include <cmath>
 
 #include "opencl/device_broad_phase.h"
-#include "broadmark/algorithm.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::gpu_grid {
@@ -33,7 +32,7 @@ struct Grid {
 
 class GpuGrid final : public opencl::DeviceBroadPhase {
  public:
-  /// Reads the boxes back and draws the cells that bodies live in.
+  /// Reads the boxes back and draws the cells that hold bodies.
   void drawStructure(DebugDraw& draw) const override {
     constexpr Rgb kCellColour = 0x40FF80;
     constexpr std::size_t kMostCells = 20'000;
@@ -107,7 +106,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       grid_.scale.s[axis] = static_cast<float>(1 / unit);
       grid_.origin.s[axis] = summary.bounds.min[axis] * grid_.scale.s[axis];
       grid_.edge.s[axis] = static_cast<cl_uint>(edge[axis]);
-      // One more than there are, should a device round otherwise.
+      // One more than there are, as a device may round otherwise.
       const std::uint32_t units = unitOf(summary.bounds.max[axis], axis) + 1;
       bits[axis] = static_cast<int>(std::bit_width(units >> edge[axis]));
     }
@@ -167,18 +166,12 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {{.id = "gpu-grid",
-           .family = "GPU",
-           .summary = "hierarchical grid on an OpenCL device",
-           .parallel = true,
-           .on_device = true,
-           .create = [] { return std::make_unique<GpuGrid>(); },
-           .library_allocates = true,
-           .principle = "grid",
-           .optimisations = "OpenCL, radix sort, levels by size",
-           .time = "O(n + k) with few bodies per cell",
-           .space = "O(n + k)",
-           .source = "Le Grand 2007; Teschner et al. 2003; Ericson 2005, 7.2"}};
+  return {opencl::ownDeviceAlgorithm<GpuGrid>(
+      "gpu-grid", "hierarchical grid on an OpenCL device",
+      {.principle = "grid",
+       .optimisations = "radix sort, levels by size",
+       .time = "O(n + k) with few bodies per cell",
+       .source = "Le Grand 2007; Teschner et al. 2003; Ericson 2005, 7.2"})};
 }
 
 }  // namespace broadmark::gpu_grid

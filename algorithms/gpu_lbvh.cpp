@@ -10,7 +10,6 @@
 #include <bit>
 
 #include "opencl/device_broad_phase.h"
-#include "broadmark/algorithm.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::gpu_lbvh {
@@ -99,18 +98,12 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {{.id = "gpu-lbvh",
-           .family = "GPU",
-           .summary = "linear bounding volume hierarchy on an OpenCL device",
-           .parallel = true,
-           .on_device = true,
-           .create = [] { return std::make_unique<GpuLbvh>(); },
-           .library_allocates = true,
-           .principle = "tree",
-           .optimisations = "OpenCL, Morton order, radix sort",
-           .time = "O(n log n + k)",
-           .space = "O(n + k)",
-           .source = "Lauterbach et al. 2009; Karras 2012"}};
+  return {opencl::ownDeviceAlgorithm<GpuLbvh>(
+      "gpu-lbvh", "linear bounding volume hierarchy on an OpenCL device",
+      {.principle = "tree",
+       .optimisations = "Morton order, radix sort",
+       .time = "O(n log n + k)",
+       .source = "Lauterbach et al. 2009; Karras 2012"})};
 }
 
 }  // namespace broadmark::gpu_lbvh

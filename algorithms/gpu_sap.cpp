@@ -10,7 +10,6 @@
 #include <algorithm>
 
 #include "opencl/device_broad_phase.h"
-#include "broadmark/algorithm.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::gpu_sap {
@@ -58,9 +57,6 @@ class GpuSap final : public opencl::DeviceBroadPhase {
   }
 
  private:
-  static constexpr std::size_t kPadding = 16;  ///< as sap.cl has it
-  [[nodiscard]] cl_uint stride() const { return static_cast<cl_uint>(count() + opencl::kPadding); }
-
   cl::Kernel make_keys_;
   cl::Kernel gather_;
   cl::Kernel search_;
@@ -72,18 +68,12 @@ class GpuSap final : public opencl::DeviceBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {{.id = "gpu-sap",
-           .family = "GPU",
-           .summary = "sweep and prune on an OpenCL device",
-           .parallel = true,
-           .on_device = true,
-           .create = [] { return std::make_unique<GpuSap>(); },
-           .library_allocates = true,
-           .principle = "sorting",
-           .optimisations = "OpenCL, axis by variance, radix sort, vectors",
-           .time = "O(n + w), w pairs that overlap on the sort axis",
-           .space = "O(n + k)",
-           .source = "Liu et al. 2010; Merrill and Grimshaw 2010"}};
+  return {
+      opencl::ownDeviceAlgorithm<GpuSap>("gpu-sap", "sweep and prune on an OpenCL device",
+                                         {.principle = "sorting",
+                                          .optimisations = "axis by variance, radix sort, vectors",
+                                          .time = "O(n + w), w pairs that overlap on the sort axis",
+                                          .source = "Liu et al. 2010; Merrill and Grimshaw 2010"})};
 }
 
 }  // namespace broadmark::gpu_sap

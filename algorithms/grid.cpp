@@ -18,12 +18,9 @@
 // M. A. F. Rodrigues, "Broadmark: A Testing Framework for Broad-Phase Collision Detection
 // Algorithms", Computer Graphics Forum, 2019 (these variants).
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -31,10 +28,11 @@
 #include <utility>
 #include <vector>
 
+#include "broadmark/algorithm.h"
+#include "cell_buckets.h"
 #include "cell_grid.h"
 #include "row_shares.h"
 #include "simd/overlap_kernels.h"
-#include "broadmark/algorithm.h"
 
 namespace broadmark::grid {
 namespace {
@@ -51,61 +49,6 @@ struct Copy {
   MarkedBody body;
 };
 
-/// The axis of a cell's sweep, and the buckets on it. Monotone.
-class Buckets {
- public:
-  /// A single bucket.
-  Buckets() = default;
-  /// As many buckets as boxes, on the axis on which the range of lower bounds is the longest
-  /// compared with the boxes.
-  explicit Buckets(std::span<const Aabb> boxes) {
-    const auto load = [](const std::array<float, 4>& corner) { return _mm_load_ps(corner.data()); };
-    __m128 least = load(boxes.front().min);
-    __m128 most = least;
-    __m128 sum = _mm_setzero_ps();
-    for (const Aabb& box : boxes) {
-      const __m128 min = load(box.min);
-      least = _mm_min_ps(least, min);
-      most = _mm_max_ps(most, min);
-      sum = _mm_add_ps(sum, _mm_sub_ps(load(box.max), min));
-    }
-    alignas(16) std::array<float, 4> low;
-    alignas(16) std::array<float, 4> high;
-    alignas(16) std::array<float, 4> edges;
-    _mm_store_ps(low.data(), least);
-    _mm_store_ps(high.data(), most);
-    _mm_store_ps(edges.data(), sum);
-    float widest = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const float range = high[axis] - low[axis];
-      const float width = range / edges[axis];
-      if (!(width > widest)) continue;  // nor when it is 0/0
-      widest = width;
-      axis_ = axis;
-      low_ = low[axis];
-      last_ = static_cast<float>(std::min<std::size_t>(boxes.size() - 1, kMostBuckets));
-      scale_ = std::min(last_ / range, std::numeric_limits<float>::max());
-    }
-  }
-
-  [[nodiscard]] int axis() const { return axis_; }
-  [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(last_) + 1; }
-  [[nodiscard]] std::uint32_t of(float bound) const {
-    const float bucket = (bound - low_) * scale_;
-    const float at_least = bucket > 0 ? bucket : 0;
-    return static_cast<std::uint32_t>(
-        static_cast<std::int32_t>(at_least < last_ ? at_least : last_));
-  }
-
- private:
-  static constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
-
-  int axis_ = 0;
-  float low_ = 0;
-  float scale_ = 0;
-  float last_ = 0;  ///< number of buckets - 1
-};
-
 class Grid final : public PairBroadPhase {
  public:
   Grid(Cut cut, Search search, std::int64_t objects_per_cell)
@@ -114,10 +57,6 @@ class Grid final : public PairBroadPhase {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"objects_per_cell", "number of bodies for which there is a cell", &objects_per_cell_, 1,
            1'000'000'000});
-  }
-
-  [[nodiscard]] Capabilities capabilities() const override {
-    return {.max_objects = kMaxMarkedBodies - 1};
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
@@ -154,17 +93,6 @@ class Grid final : public PairBroadPhase {
     shares_.measure(ends_, team());
   }
 
-  void searchOverlaps() override {
-    const Range large = contents(kLarge);
-    team().run([&](int worker) {
-      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
-                            pairs(worker));
-      const auto [begin, end] = share(large.end, team().size(), worker);
-      for (std::size_t i = begin; i < end; ++i) testLarge(i, pairs(worker));
-    });
-    publishPairs();
-  }
-
   void drawStructure(DebugDraw& draw) const override;
   void visitCounters(const CounterVisitor& visit) const override;
   [[nodiscard]] std::string validate() const override;
@@ -183,6 +111,16 @@ class Grid final : public PairBroadPhase {
   static constexpr std::size_t kLarge = 0;
 
   Worker& workerData(int worker) { return workers_[static_cast<std::size_t>(worker)]; }
+
+  void findPairs() override {
+    const Range large = contents(kLarge);
+    team().run([&](int worker) {
+      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
+                            pairs(worker));
+      const auto [begin, end] = share(large.end, team().size(), worker);
+      for (std::size_t i = begin; i < end; ++i) testLarge(i, pairs(worker));
+    });
+  }
 
   template <class Work>
   void forShares(std::size_t count, Work work) {
@@ -226,7 +164,7 @@ class Grid final : public PairBroadPhase {
   }
 
   /// Turns counts into places, cell by cell and within it worker by worker: the order of the copies
-  /// is that of the bodies, whatever the team.
+  /// is that of the bodies, for any team.
   void placeCopies() {
     starts_.resize(cellCount() + 1);
     std::uint32_t place = 0;
@@ -253,7 +191,7 @@ class Grid final : public PairBroadPhase {
   void orderCells() {
     team().run([&](int worker) {
       const auto first_cell = [&](int k) {
-        const std::size_t place = share(copies_.size(), team().size(), k).first;
+        const std::size_t place = share(copies_.size(), team().size(), k).begin;
         return std::ranges::lower_bound(starts_, place) - starts_.begin();
       };
       for (auto cell = first_cell(worker); cell < first_cell(worker + 1); ++cell) {
@@ -271,7 +209,7 @@ class Grid final : public PairBroadPhase {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       boxes[i] = boxes_[bodyNumber(copies_[range.begin + i])];
     }
-    const Buckets buckets = search_ == Search::sweep ? Buckets(boxes) : Buckets();
+    const CellBuckets buckets = search_ == Search::sweep ? CellBuckets(boxes) : CellBuckets();
     const int axis = buckets.axis();
     std::vector<std::uint32_t>& places = worker.buckets;
     places.assign(buckets.count(), 0);
@@ -332,7 +270,7 @@ class Grid final : public PairBroadPhase {
 };
 
 void Grid::drawStructure(DebugDraw& draw) const {
-  // More would hide one another; the fullest cells tell the most.
+  // More would hide one another. The fullest cells are drawn.
   constexpr std::size_t kMostDrawn = 10'000;
   constexpr Rgb kCellColour = 0x4FA3D1;
   std::vector<std::size_t> cells;
@@ -382,53 +320,52 @@ std::string Grid::validate() const {
   return {};
 }
 
+/// What tells the variants apart.
 struct Kind {
-  Cut cut;
-  Search search;
-  std::int64_t objects_per_cell;
+  std::string id;
+  Cut cut = Cut::cells;
+  Search search = Search::brute_force;
+  std::int64_t objects_per_cell = 200;  ///< the original's default
+  bool parallel = false;
 };
 
-Algorithm variant(std::string id, std::string original_id, Kind kind) {
+Algorithm variant(const Kind& kind) {
   const bool sweeps = kind.search == Search::sweep;
-  const bool parallel = id.ends_with("-mt");
-  return {
-      .id = std::move(id),
-      .family = sweeps ? "Grid SAP" : "Grid BF",
-      .summary = std::string("uniform grid of ") +
-                 (kind.cut == Cut::columns ? "columns (cut in x and z), " : "cells, ") +
-                 (sweeps ? "a sweep" : "brute force") + " in each" +
-                 (parallel ? ", on several threads" : ""),
-      .parallel = parallel,
-      .vectorised = true,
-      .original_ids = {{std::move(original_id), {}}},
-      .create =
-          [kind] { return std::make_unique<Grid>(kind.cut, kind.search, kind.objects_per_cell); },
-      .principle = sweeps ? "grid, sorting" : "grid",
-      .optimisations = std::string(sweeps ? "axis per cell, bucket sort, SIMD" : "SIMD") +
-                       (parallel ? ", threads" : ""),
-      .time = sweeps ? "O(n + w), w pairs that share a cell and overlap on its sweep axis"
-                     : "O(n + w), w pairs that share a cell",
-      .space = "O(n + k)",
-      .source = "Serpa and Rodrigues 2019; Ericson 2005, 7.1"};
+  const std::string cells = kind.cut == Cut::columns ? "columns (cut in x and z), " : "cells, ";
+  return {.id = kind.id,
+          .family = sweeps ? "Grid SAP" : "Grid BF",
+          .summary = "uniform grid of " + cells + (sweeps ? "a sweep" : "brute force") +
+                     " in each" + (kind.parallel ? ", on several threads" : ""),
+          .traits = {.parallel = kind.parallel,
+                     .vectorised = true,
+                     .max_objects = kMaxMarkedBodies - 1},
+          .description = {.principle = sweeps ? "grid, sorting" : "grid",
+                          .optimisations = sweeps ? "axis per cell, bucket sort" : "",
+                          .time = sweeps ? "O(n + w), w pairs that share a cell and overlap on its "
+                                           "sweep axis"
+                                         : "O(n + w), w pairs that share a cell",
+                          .space = "O(n + k)",
+                          .source = "Serpa and Rodrigues 2019; Ericson 2005, 7.1"},
+          .create = [kind] {
+            return std::make_unique<Grid>(kind.cut, kind.search, kind.objects_per_cell);
+          }};
 }
 
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  // 200 is the original's default. Swept columns are better off wider, their sweeps being long: 16
-  // to 29 % faster on 32,000 to a million bodies, slightly slower on 2,000.
-  constexpr Kind kCellsBf = {Cut::cells, Search::brute_force, 200};
-  constexpr Kind kColumnsBf = {Cut::columns, Search::brute_force, 200};
-  constexpr Kind kCellsSap = {Cut::cells, Search::sweep, 200};
-  constexpr Kind kColumnsSap = {Cut::columns, Search::sweep, 1000};
-  return {variant("grid-bf", "Grid_3D", kCellsBf),
-          variant("grid-bf-mt", "Grid_3D_Parallel", kCellsBf),
-          variant("grid2d-bf", "Grid_2D", kColumnsBf),
-          variant("grid2d-bf-mt", "Grid_2D_Parallel", kColumnsBf),
-          variant("grid-sap", "Grid_3D_SAP", kCellsSap),
-          variant("grid-sap-mt", "Grid_3D_SAP_Parallel", kCellsSap),
-          variant("grid2d-sap", "Grid_2D_SAP", kColumnsSap),
-          variant("grid2d-sap-mt", "Grid_2D_SAP_Parallel", kColumnsSap)};
+  constexpr Search kSweep = Search::sweep;
+  // Swept columns are better off wider, as their sweeps are long: 16 to 29 % faster on 32,000 to a
+  // million bodies, slightly slower on 2,000.
+  constexpr std::int64_t kSweptColumn = 1000;
+  return {variant({.id = "grid-bf"}),
+          variant({.id = "grid-bf-mt", .parallel = true}),
+          variant({.id = "grid2d-bf", .cut = Cut::columns}),
+          variant({.id = "grid2d-bf-mt", .cut = Cut::columns, .parallel = true}),
+          variant({.id = "grid-sap", .search = kSweep}),
+          variant({.id = "grid-sap-mt", .search = kSweep, .parallel = true}),
+          variant({"grid2d-sap", Cut::columns, kSweep, kSweptColumn}),
+          variant({"grid2d-sap-mt", Cut::columns, kSweep, kSweptColumn, /*parallel=*/true})};
 }
 
 }  // namespace broadmark::grid

@@ -5,8 +5,8 @@
 // A body keeps still while it stays in its stored box, which is its box when it last moved, grown
 // by a margin on every side. The tree and the pairs kept are those of the stored boxes. While more
 // than half of the bodies keep still (and the pairs kept are complete), pairs of two still bodies
-// are kept from the last frame and only those with a moving body are sought; else all are. With a
-// margin, the answer is what of the kept pairs overlaps in this frame: it is exact in any case.
+// are kept from the last frame and only those with a moving body are searched for; else all are.
+// With a margin, those of the kept pairs that overlap in this frame are the answer, so it is exact.
 //
 // kd/tree: the tree and its update. kd/search: the search. Both are shared out over the team, which
 // goes beyond the paper.
@@ -25,7 +25,7 @@
 
 #include "kd/search.h"
 #include "kd/tree.h"
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::kd {
 namespace {
@@ -44,6 +44,7 @@ bool isStill(const Aabb& box, const Aabb& stored, float margin) {
   return still != 0;
 }
 
+/// Directly on BroadPhase: pairs are kept from frame to frame, which a layer's buffers are not.
 class Kd final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
@@ -86,11 +87,11 @@ class Kd final : public BroadPhase {
     });
     moved_ = 0;
     for (const Worker& worker : workers_) moved_ += worker.moved;
-    // Before the first search there is nothing to keep, whatever kept still.
+    // Before the first search there are no pairs to keep.
     incremental_ = searched_ && 2 * moved_ < stored_.size();
   }
 
-  /// Drops the pairs that are sought again.
+  /// Drops the pairs that are searched for again.
   void cleanCache() override {
     forWorkers([this](Worker& worker, Range part) {
       if (incremental_) {
@@ -190,7 +191,7 @@ class Kd final : public BroadPhase {
   Aabb world_;
   std::vector<Aabb> boxes_;           ///< of this frame, if there is a margin
   std::vector<Aabb> stored_;          ///< of when each body last moved, enlarged
-  std::vector<std::uint8_t> moving_;  ///< 1: the pairs of this body are sought
+  std::vector<std::uint8_t> moving_;  ///< 1: the pairs of this body are searched for
   std::size_t moved_ = 0;
   bool searched_ = false;
   bool incremental_ = false;  ///< pairs of two bodies that keep still are kept
@@ -199,31 +200,24 @@ class Kd final : public BroadPhase {
   std::vector<PairRun> runs_;
 };
 
-Algorithm variant(std::string id, std::string summary, std::string optimisations,
-                  std::vector<OriginalId> original_ids) {
-  return {.id = id,
-          .family = "KD",
-          .summary = std::move(summary),
-          .parallel = id.ends_with("-mt"),
-          .vectorised = true,
-          .original_ids = std::move(original_ids),
-          .create = [] { return std::make_unique<Kd>(); },
-          .principle = "tree",
-          .optimisations = std::move(optimisations),
-          .incremental = true,
-          .time = "O(m log n + w), m bodies moved, w pairs tested",
-          .space = "O(n + k)",
-          .source = "Serpa and Rodrigues 2019, Flexible Use of Temporal and Spatial Reasoning"};
-}
-
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {
-      variant("kd", "keeps bodies in an adaptive KD tree, and the pairs of those that keep still",
-              "incremental tree and pairs, SIMD", {{"KD", {}}}),
-      variant("kd-mt", "the adaptive KD tree, on several threads",
-              "incremental tree and pairs, SIMD, threads", {})};
+  const Algorithm family = {
+      .family = "KD",
+      .traits = {.incremental = true},
+      .description = {
+          .principle = "tree",
+          .optimisations = "incremental tree and pairs",
+          .time = "O(m log n + w), m bodies moved, w pairs tested",
+          .space = "O(n + k)",
+          .source = "Serpa and Rodrigues 2019, Flexible Use of Temporal and Spatial Reasoning"}};
+  const auto create = [] { return std::make_unique<Kd>(); };
+  return {variantOf(family, create, "kd",
+                    "keeps bodies in an adaptive KD tree, and the pairs of those that keep still",
+                    {.vectorised = true}),
+          variantOf(family, create, "kd-mt", "adaptive KD tree, on several threads",
+                    {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::kd

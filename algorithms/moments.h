@@ -11,8 +11,8 @@ namespace broadmark {
 /// The three axes, in some order of preference.
 using AxisOrder = std::array<int, 3>;
 
-/// Sums over box centres, in double: the square of any float is finite there. Taken relative to
-/// some box's centre, lest far from the origin the variance drown in rounding.
+/// Sums over box centres, in double: the square of any float is finite there. They are relative to
+/// some box's centre: far from the origin rounding would otherwise exceed the variance.
 struct Moments {
   std::array<double, 3> sum{};
   std::array<double, 3> squares{};

@@ -1,4 +1,4 @@
-// What stands for opencl/device_context.cpp in a build without OpenCL.
+// Replaces opencl/device_context.cpp in a build without OpenCL.
 
 #include "broadmark/compute_devices.h"
 

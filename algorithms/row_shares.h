@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
-#include "simd/overlap_kernels.h"
 #include "broadmark/execution.h"
+#include "simd/overlap_kernels.h"
 
 namespace broadmark {
 
 /// Row i is tested against the columns (i, ends[i]). Shares are contiguous and fixed by `ends` and
-/// the size of the team alone. Workers get whole chunks of rows, however crowded a part may be.
+/// the size of the team alone. Workers get whole chunks of rows, also in crowded parts.
 class RowShares {
  public:
   void measure(std::span<const std::uint32_t> ends, ThreadTeam& team) {

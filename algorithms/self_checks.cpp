@@ -1,17 +1,17 @@
 // Self-checks: broad phases that find nothing, to measure the harness itself.
 //
-// `none` returns at once: what it "costs" is the overhead of the harness. `time-validator`
-// busy-waits a known time in each phase: what is reported must be that. (The original's None,
-// TimeValidator.)
+// `none` returns at once: its times are the overhead of the harness. `time-validator` busy-waits a
+// known time in each phase, which is what must be reported.
 
 #include <chrono>
 #include <vector>
 
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::self_checks {
 namespace {
 
+/// Directly on BroadPhase: a layer's copies and buffers would be in the time that is measured.
 class None : public BroadPhase {
  public:
   void initialize(const SceneInfo&, const Frame&, Execution&) override {}
@@ -41,27 +41,20 @@ class TimeValidator final : public None {
   std::int64_t phase_us_ = 1000;
 };
 
-template <class T>
-Algorithm selfCheck(std::string id, std::string original, std::string summary) {
-  return {.id = std::move(id),
-          .family = "self-check",
-          .summary = std::move(summary),
-          .finds_pairs = false,
-          .original_ids = {{std::move(original), {}}},
-          .create = [] { return std::make_unique<T>(); },
-          .principle = "none",
-          .exactness = "finds nothing",
-          .time = "O(1)",
-          .space = "O(1)",
-          .source = "the original Broadmark"};
-}
-
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {selfCheck<None>("none", "None", "does nothing: shows the overhead of the harness"),
-          selfCheck<TimeValidator>("time-validator", "TimeValidator",
-                                   "waits a known time in each phase: checks the clock")};
+  const Algorithm family = {.family = "self-check",
+                            .traits = {.finds_pairs = false},
+                            .description = {.principle = "none",
+                                            .time = "O(1)",
+                                            .space = "O(1)",
+                                            .source = "the original Broadmark"}};
+  const auto none = [] { return std::make_unique<None>(); };
+  const auto validator = [] { return std::make_unique<TimeValidator>(); };
+  return {variantOf(family, none, "none", "does nothing: shows the overhead of the harness"),
+          variantOf(family, validator, "time-validator",
+                    "waits a known time in each phase: checks the clock")};
 }
 
 }  // namespace broadmark::self_checks

@@ -24,7 +24,7 @@
 #include "radix_sort.h"
 #include "row_shares.h"
 #include "simd/overlap_kernels.h"
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::sweep_and_prune {
 namespace {
@@ -114,13 +114,6 @@ class SweepAndPrune final : public PairBroadPhase {
     findWindows();
   }
 
-  void searchOverlaps() override {
-    team().run([this](int worker) {
-      sweeper_.sweep(ends_.data(), bodies_.data(), shares_.rowsOf(worker), pairs(worker));
-    });
-    publishPairs();
-  }
-
   void drawStructure(DebugDraw& draw) const override {
     constexpr Rgb kAxisColour = 0xFFA500;
     std::array<float, 3> from{};
@@ -144,6 +137,12 @@ class SweepAndPrune final : public PairBroadPhase {
   }
 
  private:
+  void findPairs() override {
+    team().run([this](int worker) {
+      sweeper_.sweep(ends_.data(), bodies_.data(), shares_.rowsOf(worker), pairs(worker));
+    });
+  }
+
   template <class Work>
   void forShares(std::size_t count, Work work) {
     team().run([&](int worker) {
@@ -215,39 +214,26 @@ class SweepAndPrune final : public PairBroadPhase {
   RowShares shares_;
 };
 
-using Plain = SweepAndPrune<PlainSweeper>;
-using Simd = SweepAndPrune<SimdSweeper>;
-
-template <class T>
-Algorithm variant(std::string id, std::string summary, std::string optimisations,
-                  std::vector<OriginalId> original_ids) {
-  return {.id = id,
-          .family = "SAP",
-          .summary = std::move(summary),
-          .parallel = id.ends_with("-mt"),
-          .vectorised = std::is_same_v<T, Simd>,
-          .original_ids = std::move(original_ids),
-          .create = [] { return std::make_unique<T>(); },
-          .principle = "sorting",
-          .optimisations = std::move(optimisations),
-          .time = "O(n + w), w pairs that overlap on the sort axis",
-          .space = "O(n + k)",
-          .source = "Serpa and Rodrigues 2019; Baraff 1992; Cohen et al. 1995; Ericson 2005, 7.5"};
-}
-
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {variant<Plain>("sap", "sorts along the axis of largest variance and sweeps",
-                         "axis by variance, radix sort", {{"SAP", {}}}),
-          variant<Simd>("sap-simd", "sweep and prune, one box against a vector of boxes",
-                        "axis by variance, radix sort, SIMD",
-                        {{"SAP_SSE", Isa::sse2}, {"SAP_AVX", Isa::avx2}}),
-          variant<Plain>("sap-mt", "sweep and prune, on several threads",
-                         "axis by variance, radix sort, threads", {{"SAP_Parallel", {}}}),
-          variant<Simd>("sap-simd-mt", "sweep and prune, vectorised and on several threads",
-                        "axis by variance, radix sort, SIMD, threads",
-                        {{"SAP_SSE_Parallel", Isa::sse2}, {"SAP_AVX_Parallel", Isa::avx2}})};
+  const Algorithm family = {
+      .family = "SAP",
+      .description = {
+          .principle = "sorting",
+          .optimisations = "axis by variance, radix sort",
+          .time = "O(n + w), w pairs that overlap on the sort axis",
+          .space = "O(n + k)",
+          .source = "Serpa and Rodrigues 2019; Baraff 1992; Cohen et al. 1995; Ericson 2005, 7.5"}};
+  const auto plain = [] { return std::make_unique<SweepAndPrune<PlainSweeper>>(); };
+  const auto simd = [] { return std::make_unique<SweepAndPrune<SimdSweeper>>(); };
+  return {
+      variantOf(family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
+      variantOf(family, simd, "sap-simd", "sweep and prune, one box against a vector of boxes",
+                {.vectorised = true}),
+      variantOf(family, plain, "sap-mt", "sweep and prune, on several threads", {.parallel = true}),
+      variantOf(family, simd, "sap-simd-mt", "sweep and prune, vectorised and on several threads",
+                {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::sweep_and_prune

@@ -3,17 +3,17 @@
 // each swap of a start and an end is an event at which a pair may begin or end. Pairs are kept from
 // frame to frame. O(n + s), s the swaps: for each moved body about the distance times the endpoints
 // per unit of length in a cell. The grid does what no incremental sweep can: keep apart bodies that
-// share but a coordinate or two.
+// overlap on one or two axes only.
 //
-// A frame: find out which bodies have moved and which cells they touch now; tell the cells; let
-// each cell find the pairs that began and ended in it (tracy/cell.h, with the proof that each
-// change is told once, so that no witnesses have to be counted); apply these to the pair set. All
-// of it is shared out: first bodies, then cells, then pairs by their lower body. No two workers
+// A frame: find the bodies that have moved and the cells that they touch now; notify these cells;
+// let each of them find the pairs that began and ended in it (tracy/cell.h, with the proof that
+// each change is reported once, so that nothing has to be counted); apply these to the pair set.
+// All of it is shared out: first bodies, then cells, then pairs by their lower body. No two workers
 // touch the same cell or the same part of the set.
 //
-// Many bodies that each touch very many cells would make the cells' lists as long as the product of
+// If many bodies each touched very many cells, the cells' lists would be as long as the product of
 // both. When the average body touches more than kMostCellsPerBody cells, the grid is rebuilt with
-// half the cells per axis, or fewer; once they fit again, with more.
+// half the cells per axis, or fewer; later, when they would fit, with more.
 //
 // Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
 // AABB Insertion and Removal", IEEE VR 2009.
@@ -21,7 +21,6 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numeric>
 #include <string>
@@ -29,9 +28,11 @@
 #include <vector>
 
 #include "tracy/cell.h"
+#include "tracy/cell_shares.h"
 #include "tracy/grid.h"
+#include "tracy/mailbox.h"
 #include "tracy/pair_set.h"
-#include "broadmark/algorithm.h"
+#include "variants.h"
 
 namespace broadmark::tracy {
 namespace {
@@ -39,58 +40,13 @@ namespace {
 /// On average; evenly spread small bodies touch 1 to 3.
 constexpr std::uint64_t kMostCellsPerBody = 8;
 
-/// Letters to cells, from the worker who found out to those who have to know.
-class Mailbox {
- public:
-  void resize(std::size_t cells) {
-    concerned_.assign(cells, 0);
-    latest_.assign(cells, kNone);
-    arrivals_.clear();
-  }
-  /// Before the first letter of a frame, once all have been read.
-  void clear() { arrivals_.clear(); }
-
-  /// A body of this cell has moved.
-  void notify(std::size_t cell) { concerned_[cell] = 1; }
-  /// A body enters this cell.
-  void announce(std::size_t cell, std::uint32_t body) {
-    notify(cell);
-    const auto letter = static_cast<std::uint32_t>(arrivals_.size());
-    arrivals_.push_back({body, std::exchange(latest_[cell], letter)});
-  }
-
-  [[nodiscard]] bool concerns(std::size_t cell) const { return concerned_[cell] != 0; }
-  /// Calls visit(body) for those that enter the cell.
-  template <class Visit>
-  void read(std::size_t cell, Visit visit) const {
-    for (std::uint32_t i = latest_[cell]; i != kNone; i = arrivals_[i].next) {
-      visit(arrivals_[i].body);
-    }
-  }
-  /// Forgets the letters to this cell. Workers may do so for different cells at once.
-  void empty(std::size_t cell) {
-    concerned_[cell] = 0;
-    latest_[cell] = kNone;
-  }
-
- private:
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  struct Arrival {
-    std::uint32_t body;
-    std::uint32_t next;  ///< of those to the same cell
-  };
-
-  std::vector<std::uint8_t> concerned_;  ///< by cell; bytes, since workers empty neighbours at once
-  std::vector<std::uint32_t> latest_;    ///< by cell
-  std::vector<Arrival> arrivals_;
-};
-
 struct alignas(64) Worker {
   CellWork work;
   Mailbox mailbox;
   std::uint64_t cells_touched = 0;  ///< by the worker's share of the bodies
 };
 
+/// Directly on BroadPhase: the pairs are a set that is kept from frame to frame.
 class Tracy final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
@@ -110,7 +66,7 @@ class Tracy final : public BroadPhase {
     }
     pairs_.resize(team_size);
     runs_.reserve(team_size);
-    first_cells_.resize(team_size + 1);
+    shares_.resize(team_size);
 
     bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
     bodies_.boxes[kNow] = bodies_.boxes[kBefore];
@@ -237,20 +193,13 @@ class Tracy final : public BroadPhase {
   }
 
   void updateCells(int worker) {
-    forEachCellOf(worker, [&](std::size_t cell) {
+    shares_.forEachCell(worker, [&](std::size_t cell) {
       if (!isConcerned(cell)) return;
       cells_[cell].update(bodies_, workerOf(worker).work, [&](auto enter) {
         for (const Worker& from : workers_) from.mailbox.read(cell, enter);
       });
-      for (Worker& from : workers_) from.mailbox.empty(cell);
+      for (Worker& from : workers_) from.mailbox.forget(cell);
     });
-  }
-
-  /// Calls visit(cell) for the cells of a worker's share.
-  template <class Visit>
-  void forEachCellOf(int worker, Visit visit) const {
-    const auto share = first_cells_.begin() + worker;
-    for (std::size_t cell = share[0]; cell < share[1]; ++cell) visit(cell);
   }
 
   [[nodiscard]] bool isConcerned(std::size_t cell) const {
@@ -258,8 +207,6 @@ class Tracy final : public BroadPhase {
                                [&](const Worker& worker) { return worker.mailbox.concerns(cell); });
   }
 
-  /// Contiguous shares of the cells, all with about the same work. Fixed shares rather than a
-  /// common queue: who does what, and so the memory that each needs, is the same in every run.
   void shareOutCells() {
     // A body that moves passes a fixed part of those in its cell.
     const auto cost = [&](std::size_t cell) {
@@ -268,19 +215,7 @@ class Tracy final : public BroadPhase {
     };
     std::uint64_t total = 0;
     for (std::size_t cell = 0; cell < cells_.size(); ++cell) total += cost(cell);
-    shareOut(cost, total);
-  }
-
-  template <class Cost>
-  void shareOut(Cost cost, std::uint64_t total) {
-    const std::uint64_t each = total / workers_.size() + 1;
-    std::size_t cell = 0;
-    std::uint64_t done = 0;
-    for (std::size_t worker = 0; worker < workers_.size(); ++worker) {
-      first_cells_[worker] = cell;
-      for (; cell < cells_.size() && done < each * (worker + 1); ++cell) done += cost(cell);
-    }
-    first_cells_.back() = cells_.size();
+    shares_.shareOut(cells_.size(), cost, total);
   }
 
   /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
@@ -320,7 +255,7 @@ class Tracy final : public BroadPhase {
     return 2 * cellsTouchedIn(Grid(world_, more)) <= mostCellsTouched() ? more : present;
   }
 
-  /// Starts over with another grid, all pairs told anew.
+  /// Starts over with another grid; all pairs are found anew.
   void rebuild(std::uint32_t cells_per_axis) {
     ++rebuilds_;
     grid_ = Grid(world_, cells_per_axis);
@@ -351,10 +286,11 @@ class Tracy final : public BroadPhase {
     const auto bodiesIn = [&](std::size_t cell) {
       return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);
     };
-    shareOut([&](std::size_t cell) { return 1 + bodiesIn(cell).size(); },
-             cells_.size() + bodies.size());
+    shares_.shareOut(
+        cells_.size(), [&](std::size_t cell) { return 1 + bodiesIn(cell).size(); },
+        cells_.size() + bodies.size());
     team_->run([&](int worker) {
-      forEachCellOf(worker, [&](std::size_t cell) {
+      shares_.forEachCell(worker, [&](std::size_t cell) {
         cells_[cell].build(grid_.position(cell), bodiesIn(cell), bodies_, workerOf(worker).work);
       });
     });
@@ -367,7 +303,7 @@ class Tracy final : public BroadPhase {
   Grid grid_;
   Bodies bodies_;
   std::vector<Cell> cells_;
-  std::vector<std::size_t> first_cells_;  ///< of each worker's share, and the end of the last
+  CellShares shares_;
   std::vector<Worker> workers_;
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
   std::vector<PairRun> runs_;
@@ -426,7 +362,7 @@ std::string Tracy::validate() const {
       ++cells_of_body[body];
     });
     if (twice) return "body twice in a cell";
-    if (isConcerned(cell)) return "letters left unread";
+    if (isConcerned(cell)) return "messages left unread";
   }
   std::uint64_t touched = 0;
   for (const Worker& worker : workers_) touched += worker.cells_touched;
@@ -440,29 +376,21 @@ std::string Tracy::validate() const {
   return {};
 }
 
-Algorithm variant(std::string id, std::string summary, std::string optimisations,
-                  std::string original_id) {
-  return {.id = id,
-          .family = "Tracy",
-          .summary = std::move(summary),
-          .parallel = id.ends_with("-mt"),
-          .original_ids = {{std::move(original_id), {}}},
-          .create = [] { return std::make_unique<Tracy>(); },
-          .principle = "grid, sorting",
-          .optimisations = std::move(optimisations),
-          .incremental = true,
-          .time = "O(n + s), s swaps of endpoints",
-          .space = "O(n + k)",
-          .source = "Tracy, Buss and Woods 2009"};
-}
-
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {variant("tracy", "incremental sweep and prune in the cells of a grid",
-                  "segmented interval lists", "Tracy"),
-          variant("tracy-mt", "incremental sweep and prune in a grid, on several threads",
-                  "segmented interval lists, threads", "Tracy_Parallel")};
+  const Algorithm family = {.family = "Tracy",
+                            .traits = {.incremental = true},
+                            .description = {.principle = "grid, sorting",
+                                            .optimisations = "segmented interval lists",
+                                            .time = "O(n + s), s swaps of endpoints",
+                                            .space = "O(n + k)",
+                                            .source = "Tracy, Buss and Woods 2009"}};
+  const auto create = [] { return std::make_unique<Tracy>(); };
+  return {
+      variantOf(family, create, "tracy", "incremental sweep and prune in the cells of a grid"),
+      variantOf(family, create, "tracy-mt",
+                "incremental sweep and prune in a grid, on several threads", {.parallel = true})};
 }
 
 }  // namespace broadmark::tracy

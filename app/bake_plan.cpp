@@ -1,59 +1,62 @@
-// Planning is cheap but for recordings that are there: each is read through once, by its hash.
+// Planning is cheap except for existing recordings: each is read through once, for its hash.
 
 #include "bake_plan.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <set>
 
+#include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "cases.h"
 #include "recordings.h"
-#include "broadmark/files.h"
-#include "broadmark/error.h"
-#include "broadmark/names.h"
+#include "sources/make_source.h"
 
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A --param that no scene has is an error.
-void requireKnownParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
+/// Throws InputError for a --param that no scene has.
+void requireUsedParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
   std::vector<std::string> known;
   for (const BakeJob& job : jobs) {
     std::ranges::move(parameterNames(*job.simulation), std::back_inserter(known));
   }
-  for (const auto& [name, value] : options.parameters) {
-    if (std::ranges::find(known, name) == known.end()) {
-      throw InputError("--param: " + unknownName("parameter", name, known));
-    }
-  }
+  requireKnownParameters(options.parameters, std::move(known));
 }
 
-/// The whole matrix, each combination once.
-std::vector<BakeJob> makeJobs(const BakeOptions& options) {
+/// The scenes that are named, or all built-in ones.
+std::vector<std::string> scenesOf(const BakeOptions& options) {
   std::vector<std::string> scenes = options.scenes;
-  scenes.insert(scenes.end(), options.parameter_files.begin(), options.parameter_files.end());
-  if (scenes.empty()) {
-    for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
-  }
+  if (!scenes.empty()) return scenes;
+  for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
+  return scenes;
+}
+
+/// Every combination, each once.
+std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<BakeJob> jobs;
   std::set<std::vector<fs::path>> taken;
-  for (auto& simulation : makeSimulations(scenes, options.scene, options.parameters)) {
-    BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
-    job.simulation = std::move(simulation);
-    job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
-    requireApart(*job.simulation, job.paths);
-    if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
+  for (const std::string& name : scenesOf(options)) {
+    NamedSource scene(name);
+    for (auto& simulation : makeSimulations(scene, options.scene, options.parameters)) {
+      BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
+      job.simulation = std::move(simulation);
+      job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
+      requireApart(*job.simulation, job.paths);
+      if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
+    }
   }
-  requireKnownParameters(options, jobs);
+  requireUsedParameters(options, jobs);
   return jobs;
 }
 
-/// Fails now rather than after hours: when what is missing would not fit on the disc.
+/// Throws InputError when the recordings would not fit on the disc.
 void requireRoom(const BakePlan& plan, const fs::path& output) {
-  // Beside each recording its sidecar, in whole blocks.
+  // A sidecar beside each recording takes whole blocks.
   constexpr std::uint64_t kSidecarBytes = 1 << 13;
   fs::path there = fs::absolute(output);
   while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
@@ -66,7 +69,7 @@ void requireRoom(const BakePlan& plan, const fs::path& output) {
                   output.string(), plan.recordings(), needed, free));
 }
 
-/// Fails now rather than after hours: when a file cannot be written.
+/// Throws InputError when a recording cannot be written.
 void requireWritable(const BakePlan& plan) {
   for (const BakeJob& job : plan.pending) {
     for (const fs::path& path : job.paths) {

@@ -1,11 +1,12 @@
-// What a batch of recordings comes to, found out before anything is simulated. Prints nothing:
-// command line and windows alike plan with planBake(), then hand the jobs to a BakeBatch.
+// Which recordings a batch is to bake, found out before anything is simulated. Prints nothing:
+// command line and inspector alike plan with planBake(), then hand the jobs to a BakeBatch.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "batch.h"
@@ -15,9 +16,9 @@ namespace broadmark {
 
 /// What is to be baked.
 struct BakeOptions {
-  std::vector<std::string> scenes;           ///< built-in ones, and files that describe one
+  std::vector<std::string> scenes;  ///< built-in ones, and files that describe a scene; empty: all
   SceneOptions scene;
-  ParameterValues parameters;                ///< --param
+  ParameterValues parameters;  ///< --param
   std::filesystem::path output;
   int threads = 1;
   bool force = false;  ///< also what is already there
@@ -28,24 +29,23 @@ struct BakePlan {
   std::vector<BakeJob> pending;  ///< only with the recordings that are to be written
   std::vector<std::filesystem::path> kept;
 
-  /// Recordings to be written.
+  /// How many recordings are to be written.
   [[nodiscard]] std::size_t recordings() const;
-  /// What they take on the disc, without the .json beside each.
+  /// Their size on the disc, without the sidecars.
   [[nodiscard]] std::uint64_t bytes() const;
 };
 
-/// Told which recording that is there is checked next, the `number`-th of `total`; returning false
-/// stops.
+/// Told before an existing recording is checked, the `number`-th of `total`; returning false stops.
 using PlanProgress =
     std::function<bool(const std::filesystem::path&, std::uint64_t number, std::uint64_t total)>;
 
-/// Every combination of the options' scenes, object types and object counts once, without what is
-/// already there. Reads those recordings through, unless the options say to bake them anew. Nothing
-/// when stopped. Throws InputError.
+/// Every combination of the options' scenes, object types and object counts once. What is already
+/// there is kept; to know that, those recordings are read through, unless `force`. Nothing when
+/// stopped. Throws InputError.
 std::optional<BakePlan> planBake(const BakeOptions&, const PlanProgress& = {});
 
-/// Makes the directories. Fails now rather than after hours: throws InputError when the recordings
-/// would not fit on the disc or one of them cannot be written.
+/// Makes the directories. Throws InputError when the recordings would not fit on the disc or one of
+/// them cannot be written: to fail now rather than after hours.
 void prepare(const BakePlan&, const std::filesystem::path& output);
 
 }  // namespace broadmark

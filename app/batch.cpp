@@ -1,5 +1,5 @@
-// A pool of threads that take the largest job not yet begun: longest processing time first, which
-// ends at most a third later than the best schedule (Graham 1969).
+// A pool of threads that take the largest waiting job: longest processing time first, which ends at
+// most a third later than the best schedule (Graham 1969).
 
 #include "batch.h"
 
@@ -10,15 +10,15 @@
 #include <new>
 #include <utility>
 
-#include "interrupt.h"
 #include "broadmark/environment.h"
 #include "broadmark/error.h"
+#include "interrupt.h"
 
 namespace broadmark {
 namespace {
 
-/// Memory that a simulation takes for each body, its pairs and contacts included. Measured with
-/// Bullet: 9 kB in FreeFall, 29 kB in Gravity at density 0.5.
+/// Memory of a simulation per body, pairs and contacts included. Measured with Bullet: 9 kB in
+/// FreeFall, 29 kB in Gravity at density 0.5.
 constexpr std::uint64_t kBytesPerBody = 32'000;
 
 double seconds(std::chrono::steady_clock::duration d) {
@@ -27,7 +27,7 @@ double seconds(std::chrono::steady_clock::duration d) {
 
 }  // namespace
 
-/// A job and how far it is.
+/// A job with its progress.
 struct BakeBatch::Run {
   enum class Phase { waiting, running, ended };
 
@@ -55,7 +55,7 @@ BakeBatch::BakeBatch(std::vector<BakeJob> jobs, int threads)
   threads_.reserve(active_threads_);
   try {
     for (std::size_t i = active_threads_; i > 0; --i) threads_.emplace_back([this] { work(); });
-  } catch (...) {  // the system grants no more threads
+  } catch (...) {  // no more threads available
     stopping_ = true;
     for (std::thread& thread : threads_) thread.join();
     throw;
@@ -107,7 +107,7 @@ BatchState BakeBatch::state() {
         fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
                     scene.object_type, scene.objects, run.frame.load(), scene.frames);
   }
-  // At the pace of a thread so far: all threads share what is left, but none shares a recording.
+  // At the pace so far: all threads share what is left, but a recording has one thread.
   const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy;
   const double shared = static_cast<double>(state.total - state.done) /
                         static_cast<double>(std::max<std::size_t>(active_threads_, 1));
@@ -167,7 +167,7 @@ void BakeBatch::perform(Run& run) {
   changed_.notify_all();
 }
 
-/// Whether there is room for one more simulation; for a single one there always is.
+/// Whether there is memory for one more simulation. A single one may always run.
 bool BakeBatch::fits(const Run& candidate) const {
   std::uint64_t taken = 0;
   for (const auto& run : runs_) {

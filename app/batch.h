@@ -24,39 +24,39 @@ struct BakeJob {
   std::vector<std::filesystem::path> paths;  ///< a recording each
 };
 
-/// What has become of a job.
+/// A job that has ended.
 struct BakedJob {
   std::vector<std::filesystem::path> paths;
-  std::string failure;  ///< "": they are baked
+  std::string failure;  ///< "": baked
 };
 
-/// How far a batch is.
+/// The progress of a batch.
 struct BatchState {
   std::uint64_t done = 0;   ///< body-frames
   std::uint64_t total = 0;  ///< likewise
   double seconds_left = 0;
-  std::string running;  ///< what is being baked now, in words
+  std::string running;  ///< the recordings being baked now, as text
 };
 
-/// Bakes simulations on threads of its own, each on one of them, so that a recording does
-/// not depend on their number. The largest come first, lest one of them is left over when all else
-/// is done; and only as many at a time as fit into memory. One that fails stops no other. After an
-/// interruption (InterruptGuard) those that are not whole leave nothing behind.
+/// Bakes simulations on its own threads. Each runs on one thread, so that a recording does not
+/// depend on their number. The largest begin first, so that none of them is left for the end, and
+/// only as many run at a time as fit into memory. One that fails does not stop the others. After an
+/// interruption (InterruptGuard) unfinished ones leave nothing behind.
 class BakeBatch {
  public:
   BakeBatch(std::vector<BakeJob> jobs, int threads);
-  /// Stops what still runs.
+  /// Stops what is running.
   ~BakeBatch();
   BakeBatch(const BakeBatch&) = delete;
   BakeBatch& operator=(const BakeBatch&) = delete;
 
-  /// Waits up to `patience` for a recording to end, and for nothing once all have. Returns those
-  /// that have ended since the last call; interrupted ones are never among them.
+  /// Waits up to `patience` for a job to end; returns at once when all have. Returns those that
+  /// have ended since the last call, without interrupted ones.
   std::vector<BakedJob> await(std::chrono::milliseconds patience);
-  /// Begins no more recordings and stops those that run, which leave nothing behind. Does not wait:
-  /// ended() tells when all is still.
+  /// Begins no more jobs and stops those that run, which leave nothing behind. Does not wait:
+  /// see ended().
   void cancel();
-  /// Whether every thread has come to its end.
+  /// Whether all threads have ended.
   [[nodiscard]] bool ended();
   [[nodiscard]] BatchState state();
 
@@ -78,7 +78,7 @@ class BakeBatch {
   std::condition_variable changed_;
   std::vector<BakedJob> ended_;
   std::size_t active_threads_;
-  std::exception_ptr broken_;  ///< an error that is no matter of one recording
+  std::exception_ptr broken_;  ///< an error that concerns the whole batch
   std::vector<std::thread> threads_;
 };
 

@@ -1,16 +1,21 @@
-// Which cases a run consists of.
+// Which algorithms and cases are meant.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
-#include "options.h"
 #include "broadmark/algorithm.h"
-#include "original/settings.h"
-#include "broadmark/runner.h"
+#include "broadmark/case.h"
 
 namespace broadmark {
+
+/// Which cases to make.
+struct CaseOptions {
+  std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all
+  std::vector<int> threads;             ///< empty: as many as there are cores
+  std::vector<Isa> isas;                ///< empty: the widest
+  std::string device;                   ///< compute device: "" for the first
+};
 
 /// The algorithms that the selectors (ids, families, globs, "all") name, each once, in the order of
 /// `known`. What is both an id and a family means the id. Throws InputError for a selector that
@@ -18,15 +23,18 @@ namespace broadmark {
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
                                         const std::vector<Algorithm>& known);
 
-/// Every selected algorithm with every instruction set and thread count that it heeds.
-std::vector<Case> selectCases(const HeadlessOptions&, const std::vector<Algorithm>& known);
+/// Every selected algorithm with every instruction set and thread count that it heeds, each once;
+/// first those that are selected by an id of the original Broadmark. Of the parameters each takes
+/// those that it has; their values are not checked. Throws InputError as above.
+std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
+                              const std::vector<Algorithm>& known);
 
-/// The case that a settings file of the original asks for.
-Case originalCase(const OriginalSettings&, const std::vector<Algorithm>& known);
+/// The algorithm of this id, or null.
+const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
+/// All ids, for messages.
+std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known);
 
-/// Names of all parameters of an object.
-std::vector<std::string> parameterNames(Parametrised&);
-/// Those of `values` that the object has.
-ParameterValues applicable(Parametrised&, const ParameterValues& values);
+/// Throws InputError for a --param that is in none of the parameters' `known` names.
+void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known);
 
 }  // namespace broadmark

@@ -1,48 +1,95 @@
-// broadmark --headless results.json --case ID --export-case FILE: the smallest recording on which
-// the case still fails, and the command that shows it.
+// Exporting a failing case.
+
+#include "export_case.h"
 
 #include <fmt/format.h>
 
-#include "case_reference.h"
-#include "interrupt.h"
-#include "options.h"
-#include "plugins.h"
-#include "progress.h"
-#include "words.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/shrink.h"
+#include "interrupt.h"
+#include "plan.h"
+#include "progress.h"
+#include "recordings.h"
+#include "session_options.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {
 
+namespace fs = std::filesystem;
+
+/// A word as the shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// A path that is not taken for an option.
+std::string pathWord(const fs::path& path) {
+  const std::string text = path.string();
+  return quoted(text.starts_with('-') ? "./" + text : text);
+}
+
 /// What is left, in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
-  const FrameDifference& difference = shrunk.difference;
-  return fmt::format("{}: {} of {} ({} runs): {} missed, {} false, {} invalid", partName(whole),
+  return fmt::format("{}: {} of {} ({} runs): {}", partName(whole),
                      extentText(shrunk.selection.bodies.size(), shrunk.selection.frames.size() - 1),
                      extentText(whole.objects, whole.frames), shrunk.trials,
-                     difference.missed_count, difference.forbidden_count, difference.invalid_count);
+                     mismatchText(shrunk.difference));
 }
 
 }  // namespace
 
-int runExportCase(const HeadlessOptions& options) {
-  CaseReference reference =
-      openCase(options.sources.front(), options.case_id, availableAlgorithms(options.plugins));
-  if (!reference.difference) {
-    throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
-                                 options.case_id, statusName(reference.result.status)));
+void requireExportable(const fs::path& file, const fs::path& original) {
+  if (file.extension() != kAabbsExtension) {
+    throw InputError(fmt::format("cannot export to {}: its name must end in {}", file.string(),
+                                 kAabbsExtension));
   }
-  requireExportable(options.export_case, reference.source.reference.path);
+  if (!original.empty() && fs::weakly_canonical(file) == fs::weakly_canonical(original)) {
+    throw InputError(fmt::format("cannot export to {}: it is the recording itself", file.string()));
+  }
+  AtomicFile probe(file);
+}
+
+std::string reproducingCommand(const Case& run, const fs::path& recording) {
+  std::string command = "broadmark --headless " + pathWord(recording);
+  const auto add = [&](std::string_view option, const std::string& word) {
+    command += fmt::format(" {} {}", option, word);
+  };
+  const Algorithm& algorithm = run.algorithm;
+  if (!algorithm.plugin.empty()) add("--plugin", pathWord(algorithm.plugin));
+  add("--algorithm", quoted(algorithm.id));
+  if (algorithm.traits.vectorised) add("--isa", std::string(isaName(run.isa)));
+  if (algorithm.traits.parallel) add("--threads", fmt::format("{}", run.threads));
+  if (!run.device.empty()) add("--device", quoted(run.device));
+  for (const auto& [key, value] : run.parameters) add("--param", quoted(key + "=" + value));
+  add("--check", "full");
+  return command;
+}
+
+int runExportCase(Plan plan, const SessionOptions& options) {
+  PlanEntry& entry = plan.entries.front();
+  const auto difference = entry.knownDifference();
+  if (!difference) {
+    throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
+                                 options.case_id, statusName(entry.known->status)));
+  }
+  requireExportable(options.export_case, entry.source.reference.path);
   const InterruptGuard guard;
-  const auto recording = openRecording(reference.source, {}, {}, options.quiet);
+  const auto recording = openRecording(entry.source, {}, {}, options.quiet);
   if (!recording) throw InputError("interrupted");
 
+  const Case& run = entry.cases.front();
   const SceneInfo& whole = recording->scene();
-  const std::uint64_t size = std::uint64_t{whole.objects} * reference.difference->frame;
+  const std::uint64_t size = std::uint64_t{whole.objects} * difference->frame;
   Progress progress("shrinking " + whole.name, size, options.quiet);
   const ShrunkCase shrunk = shrinkCase(
-      reference.run, *recording, *reference.difference,
+      run, *recording, *difference,
       {.progress =
            [&](const ShrinkProgress& now) {
              progress.detail(extentText(now.bodies, now.frames));
@@ -55,7 +102,7 @@ int runExportCase(const HeadlessOptions& options) {
   writePart(options.export_case, *recording, shrunk.selection);
   progress.print(summaryOf(shrunk, whole));
   progress.print("written: " + options.export_case.string());
-  progress.print(reproducingCommand(reference.run, options.export_case));
+  progress.print(reproducingCommand(run, options.export_case));
   if (!shrunk.minimal) throw InputError("interrupted: the smallest part so far is written");
   return 0;
 }

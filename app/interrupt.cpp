@@ -1,4 +1,4 @@
-// A signal handler can reach nothing but a global flag: the one place where there is one.
+// A signal handler can only set a global flag.
 
 #include "interrupt.h"
 
@@ -8,7 +8,7 @@
 namespace broadmark {
 namespace {
 
-// Several threads ask, and any of them may be the one that the signal interrupts.
+// Several threads read it, and any of them may be interrupted by the signal.
 std::atomic<bool> interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait");
 

@@ -1,4 +1,4 @@
-// Ctrl-C and termination: the first asks for a clean end, the second ends at once.
+// Ctrl-C and termination: the first signal asks for a clean end, the second ends at once.
 #pragma once
 
 namespace broadmark {
@@ -11,7 +11,7 @@ class InterruptGuard {
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-  /// Whether a clean end has been asked for. May be called from any thread.
+  /// Whether a clean end has been asked for. Any thread may call it.
   [[nodiscard]] static bool requested();
 };
 

@@ -7,12 +7,12 @@
 #include <iostream>
 #include <system_error>
 
-#include "options.h"
 #include "broadmark/error.h"
+#include "command_line.h"
 
 namespace {
 
-/// What was printed has arrived, or it is an error: a table on a full disc is no success.
+/// Throws unless everything printed has been written: a table on a full disc is an error.
 void requirePrinted() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     throw broadmark::InputError("standard output: cannot write");
@@ -23,13 +23,13 @@ void requirePrinted() {
 
 int main(int argc, char** argv) {
   try {
-    const int status = broadmark::runCommandLine(argc, argv);
+    const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();
     return status;
   } catch (const broadmark::InputError& error) {
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::system_error& error) {
-    // The system's refusal (of a write to standard output, of a thread), not our mistake.
+    // The system refused something, such as a write or a thread: no internal error.
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::bad_alloc&) {
     std::cerr << "broadmark: out of memory\n";

@@ -4,12 +4,11 @@
 
 #include <fmt/format.h>
 
-#include "recordings.h"
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/names.h"
 #include "broadmark/oracle.h"
-#include "broadmark/recording.h"
+#include "recordings.h"
 
 namespace broadmark {
 namespace {
@@ -18,7 +17,7 @@ namespace fs = std::filesystem;
 
 std::unique_ptr<OffscreenContext> contextFor(const MovieOptions& options) {
   try {
-    return makeOffscreenContext(options.gl);
+    return makeOffscreenContext(options.picture.gl);
   } catch (const RenderError& error) {
     throw InputError(fmt::format("--movie: {}", error.what()));
   }
@@ -29,12 +28,12 @@ fs::path picturePath(const fs::path& folder, std::uint32_t number) {
   return folder / fmt::format("frame_{:05}.png", number);
 }
 
-/// Says of a finished movie what it shows and how.
+/// What the movie.json of a finished movie says.
 std::string label(Recording& recording, const MovieOptions& options) {
   return fmt::format(
       R"({{"schema": "broadmark-movie/1", "recording": "{}", "every": {}, "size": "{}x{}"}})"
       "\n",
-      recording.hash(), options.every, options.width, options.height);
+      recording.hash(), options.every, options.picture.width, options.picture.height);
 }
 
 bool isMade(const fs::path& folder, const fs::path& label_path, const std::string& label,
@@ -46,7 +45,7 @@ bool isMade(const fs::path& folder, const fs::path& label_path, const std::strin
   return true;
 }
 
-/// An older movie may have been longer, and its label would soon be wrong.
+/// Removes an older movie: it may have been longer, and its label is about to be wrong.
 void removeOlder(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
@@ -78,11 +77,12 @@ fs::path MovieMaker::make(const fs::path& path, const PictureProgress& progress)
   if (isMade(folder, label_path, text, pictures(scene))) return folder;
   removeOlder(folder);
   for (std::uint32_t number = 0; number < pictures(scene); ++number) {
-    const Frame frame = recording.read(number * options_.every);
+    const Frame frame = recording.at(number * options_.every);
     const std::vector<Pair> pairs = sweptPairs(frame.boxes);
     const PairRun run = pairs;
     writePng(picturePath(folder, number),
-             drawFrame(*context_, scene, frame, {&run, 1}, options_.width, options_.height));
+             drawFrame(*context_, scene, frame, {&run, 1}, options_.picture.width,
+                       options_.picture.height));
     if (!progress(number)) return {};
   }
   writeTextFile(label_path, text);

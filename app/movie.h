@@ -1,4 +1,4 @@
-// Recordings as pictures, one after the other, for a video.
+// Recordings as numbered pictures, for a video.
 #pragma once
 
 #include <cstdint>
@@ -6,34 +6,35 @@
 #include <functional>
 #include <memory>
 
-#include "broadmark/render/picture.h"
+#include "broadmark/frame.h"
+#include "picture_options.h"
 
 namespace broadmark {
 
 struct MovieOptions {
   std::filesystem::path directory;  ///< "": no movies
   std::uint32_t every = 1;          ///< frames from one picture to the next
-  int width = 1280;
-  int height = 720;
-  GlSource gl = GlSource::automatic;
+  PictureOptions picture;
 };
 
-/// Draws movies off-screen with the camera of the paper's figures, boxes that overlap another in
-/// another colour. To be used by one thread. A movie is a folder called as its recording, with
-/// frame_00000.png (the initial pose), frame_00001.png (`every` frames later), …
+/// Draws movies off-screen with the camera of the paper's figures and overlapping boxes in another
+/// colour. For one thread. A movie is a folder of its recording's name with frame_00000.png (the
+/// initial pose), frame_00001.png (`every` frames later), …
 class MovieMaker {
  public:
-  /// Throws InputError: no OpenGL to draw with, or no such directory to be had.
+  /// Throws InputError when there is no OpenGL or the directory cannot be made.
   explicit MovieMaker(MovieOptions options);
   ~MovieMaker();
 
   /// Told after each picture; returning false stops.
   using PictureProgress = std::function<bool(std::uint32_t picture)>;
 
+  /// How many pictures a movie has.
   [[nodiscard]] std::uint32_t pictures(const SceneInfo&) const;
 
-  /// Draws a recording, unless its movie is there already (a movie.json in the folder says of which
-  /// recording, by hash, and how). Returns the folder, or "" when stopped. Throws InputError.
+  /// Draws a recording, unless its movie is already there: a movie.json in the folder states the
+  /// recording's hash and how it was drawn. Returns the folder, or "" when stopped. Throws
+  /// InputError.
   std::filesystem::path make(const std::filesystem::path& recording,
                              const PictureProgress& progress);
 

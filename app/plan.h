@@ -1,8 +1,8 @@
-// What a command line comes to, resolved once before anything is run: a plain value, which is
-// listed, run headless, divided into shards or opened in the inspector.
+// A command line, resolved once before anything is run: a plain value that is listed, run headless,
+// divided into shards or opened in the inspector.
 #pragma once
 
-#include <optional>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,14 +14,20 @@ namespace broadmark {
 struct SessionOptions;
 
 struct Plan {
-  std::vector<Algorithm> algorithms;  ///< that there are, plug-ins included
-  /// In the order of the command line; all cases with checked parameters.
+  std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
+  /// In the order of the command line. The parameters of all cases have been checked.
   std::vector<PlanEntry> entries;
-  /// A results file one of whose cases is to be chosen in the inspector: then there are no entries.
+  /// A results file without a chosen case, for the inspector: then there are no entries.
   std::filesystem::path results;
+  /// Cases for the inspector that was given no source: then there are no entries.
+  std::vector<Case> cases;
 };
 
-/// Opens the sources and makes the cases. Throws InputError.
+/// Opens the sources and makes the cases. Entries that --filter and --shard leave without cases are
+/// kept for the inspector only. Throws InputError.
 Plan makePlan(const SessionOptions&);
+
+/// The ids of all cases, as --list prints them.
+std::vector<std::string> caseIds(const Plan&);
 
 }  // namespace broadmark

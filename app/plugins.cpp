@@ -5,20 +5,20 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <string_view>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/plugin.h"
+#include "cases.h"
 
 namespace broadmark {
 namespace {
 
-/// The system's reason for its last refusal, without the path in front.
+/// Why the last call of the dynamic loader failed, without the path in front.
 std::string reason(const std::string& path) {
   const char* text = ::dlerror();
   std::string_view message = text == nullptr ? "unknown" : text;
@@ -28,8 +28,8 @@ std::string reason(const std::string& path) {
 
 /// What the library in `file` exports.
 const Plugin& load(const std::string& file) {
-  openForReading(file);  // it is there, and a regular file
-  // With a slash in it the path is that of a file, and searched for nowhere else.
+  openForReading(file);  // throws unless it is a regular file
+  // A path with a slash is not searched for in the loader's directories.
   const std::string path = std::filesystem::absolute(file).string();
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
@@ -42,40 +42,31 @@ const Plugin& load(const std::string& file) {
                     file, kPluginSymbol));
   }
   if (std::string_view(plugin->interface) != kPluginInterface) {
-    throw InputError(fmt::format("--plugin: {}: built for Broadmark {}, this is {}: build it anew",
+    throw InputError(fmt::format("--plugin: {}: built for Broadmark {}, this is {}: build it again",
                                  file, plugin->interface, kPluginInterface));
   }
   return *plugin;
 }
 
-/// An id that can be typed in a list of ids, and means nothing else there.
+/// Whether an id can be typed in a list of ids without meaning something else.
 bool isId(std::string_view id) {
   constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789-_.";
   return !id.empty() && id != "all" && id.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
-/// All names by which an algorithm is called.
-std::vector<std::string> namesOf(const Algorithm& algorithm) {
-  std::vector<std::string> names = {algorithm.id};
-  for (const OriginalId& original : algorithm.original_ids) names.push_back(original.name);
-  return names;
-}
-
+/// Throws InputError for an algorithm that cannot be chosen or made.
 void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& known,
                   const std::string& file) {
   const auto refuse = [&](std::string_view what) {
     throw InputError(fmt::format("--plugin: {}: algorithm '{}': {}", file, algorithm.id, what));
   };
   if (!isId(algorithm.id)) {
-    refuse("an id of lower-case letters, digits and -_. other than 'all' is expected");
+    refuse("its id must be made of lower-case letters, digits and -_., and must not be 'all'");
   }
   if (!algorithm.create || !algorithm.create()) refuse("creates no instance");
-  for (const Algorithm& other : known) {
-    for (const std::string& name : namesOf(other)) {
-      if (std::ranges::count(namesOf(algorithm), name) == 0) continue;
-      refuse(fmt::format("the name '{}' is already taken by one {}", name,
-                         other.plugin.empty() ? "built in" : "of " + other.plugin));
-    }
+  if (const Algorithm* other = findAlgorithm(algorithm.id, known)) {
+    refuse(fmt::format("its id is already taken by one {}",
+                       other->plugin.empty() ? "built in" : "of " + other->plugin));
   }
 }
 

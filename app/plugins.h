@@ -1,5 +1,4 @@
-// Which algorithms there are: the built-in ones, and those of shared libraries loaded with
-// --plugin.
+// The available algorithms: the built-in ones, and those of shared libraries loaded with --plugin.
 #pragma once
 
 #include <string>
@@ -10,8 +9,8 @@
 namespace broadmark {
 
 /// The built-in algorithms, then those of the libraries in these files (see broadmark/plugin.h),
-/// which stay loaded until the program ends. Throws InputError for a file that is no such library,
-/// that was built with other headers, or that brings an algorithm without a proper name of its own.
+/// which stay loaded until the program ends. Throws InputError for a file that is not such a
+/// library, was built with other headers, or has an algorithm whose id is unfit or already taken.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
 
 }  // namespace broadmark

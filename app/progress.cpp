@@ -20,18 +20,18 @@ double seconds(std::chrono::steady_clock::duration d) {
 
 constexpr const char* kEraseLine = "\r\033[K";
 
-/// Columns of the terminal that standard error is.
+/// Columns of the terminal on standard error.
 std::size_t terminalWidth() {
   winsize size{};
   constexpr std::size_t kUsual = 80;
   return ::ioctl(2, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : kUsual;
 }
 
-/// At most `bytes` of a text, dots in place of the rest.
+/// A text cut to at most `bytes`, with dots at its end if it was longer.
 std::string shortened(const std::string& text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   std::size_t end = bytes > 3 ? bytes - 3 : 0;
-  // Not within a character of UTF-8.
+  // Never cut within a character of UTF-8.
   while (end > 0 && (text[end] & 0xC0) == 0x80) --end;
   return text.substr(0, end) + std::string(std::min<std::size_t>(bytes, 3), '.');
 }
@@ -74,7 +74,7 @@ void Progress::print(std::FILE* stream, std::string_view line) {
 }
 
 bool Progress::isDue() const {
-  // Often enough to look alive on a terminal; in a log, a sign of life now and then.
+  // A terminal should look alive; a log should not fill up.
   const auto interval = terminal_ ? std::chrono::milliseconds(100) : std::chrono::seconds(15);
   return !quiet_ && Clock::now() - drawn_ >= interval;
 }
@@ -83,13 +83,13 @@ void Progress::draw(double seconds_left) {
   drawn_ = Clock::now();
   const double share =
       static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>(steps_, 1));
-  // Before the first step nobody knows.
+  // No estimate before the first step.
   const std::string left =
       done_ == 0 ? "" : fmt::format(", about {} left", waitingTime(seconds_left));
   const std::string state = fmt::format(": {:.0f} %{}", 100 * share, left);
   std::string what = task_ + (detail_.empty() ? "" : " " + detail_);
   if (terminal_) {
-    // A line that wraps could not be erased.
+    // A line that wraps could not be erased again.
     const std::size_t room = terminalWidth() - 1;
     what = shortened(what, room > state.size() ? room - state.size() : 0);
     fmt::print(stderr, "{}{}{}", kEraseLine, what, state);

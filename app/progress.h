@@ -9,9 +9,9 @@
 
 namespace broadmark {
 
-/// Shows on standard error how far a task is. On a terminal one line is rewritten, never longer
-/// than the terminal is wide; elsewhere there is a plain line now and then, and one when the task
-/// ends. Shows nothing when `quiet`.
+/// Shows on standard error how far a task is. On a terminal it rewrites one line, cut to the
+/// terminal's width; elsewhere it prints a line now and then, and one when the task ends. Shows
+/// nothing when `quiet`.
 class Progress {
  public:
   Progress(std::string task, std::uint64_t steps, bool quiet);
@@ -19,14 +19,14 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Names what is being done now.
+  /// Names the present step.
   void detail(std::string text) { detail_ = std::move(text); }
-  /// `done` of the steps are done. The time left is judged by the pace so far.
+  /// `done` of the steps are done. The time left is estimated from the pace so far.
   void update(std::uint64_t done);
-  /// The same for one who knows better how long it will take.
+  /// The same with a better estimate of the time left.
   void update(std::uint64_t done, double seconds_left);
 
-  /// Prints a line on standard output or error, beside whatever is shown.
+  /// Prints a line on standard output or error without disturbing the progress line.
   void print(std::string_view line) { print(stdout, line); }
   void complain(std::string_view line) { print(stderr, line); }
 

@@ -1,4 +1,4 @@
-// What is simulated when a source is a scene, or a batch is baked.
+// What is simulated when a source is a scene or a batch is baked.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 namespace broadmark {
 
 struct SceneOptions {
-  std::vector<std::uint32_t> objects;     ///< ascending; empty: the scene's default
-  std::vector<std::string> object_types;  ///< likewise
+  std::vector<std::uint32_t> objects;  ///< numbers of bodies, ascending; empty: the scene's default
+  std::vector<std::string> object_types;  ///< empty: the scene's default
   /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
   ParameterValues parameters;
   std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on

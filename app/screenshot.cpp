@@ -6,18 +6,15 @@
 
 #include <algorithm>
 
-#include "broadmark/render/picture.h"
-
 namespace broadmark {
 
-void takeScreenshot(const HeadlessOptions& options, Recording& recording, Oracle& oracle,
-                    const std::filesystem::path& path) {
-  const SceneInfo& scene = recording.scene();
-  const Frame frame = recording.read(options.screenshot_frame.value_or(scene.frames));
-  const PairRun pairs = oracle.pairs(frame);
+void takeScreenshot(IndexedFrames& recording, std::uint32_t index, Oracle& oracle,
+                    const PictureOptions& options, const std::filesystem::path& path) {
+  const Frame frame = recording.at(index);
+  const PairRun pairs = oracle.pairs(frame.boxes);
   const auto context = makeOffscreenContext(options.gl);
-  writePng(path, drawFrame(*context, scene, frame, {&pairs, 1}, options.screenshot_width,
-                           options.screenshot_height));
+  writePng(path, drawFrame(*context, recording.scene(), frame, {&pairs, 1}, options.width,
+                           options.height));
 }
 
 std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& asked,
@@ -29,7 +26,7 @@ std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& 
                                          scene->object_type, scene->objects);
     std::filesystem::path path = asked;
     path.replace_filename(name + asked.extension().string());
-    // Recordings may differ in nothing but their contents.
+    // Two recordings may differ in nothing but their boxes.
     for (int k = 2; std::ranges::find(paths, path) != paths.end(); ++k) {
       path.replace_filename(fmt::format("{} ({}){}", name, k, asked.extension().string()));
     }

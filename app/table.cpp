@@ -32,7 +32,7 @@ std::string duration(double seconds) {
   return fmt::format("{:.0f} ns", seconds * 1e9);
 }
 
-/// A result with its summary, worked out once.
+/// A result with its summary, computed once.
 struct Row {
   const CaseResult* result;
   Summary summary;
@@ -47,7 +47,7 @@ struct Row {
 std::vector<Row> sortedRows(std::span<const CaseResult> results) {
   std::vector<Row> rows;
   for (const CaseResult& result : results) rows.push_back({&result, result.summary()});
-  // Right ones first; among them the fastest first; self-checks, which answer nothing, last.
+  // The right ones first, by time; self-checks, which find no pairs, last.
   std::ranges::stable_sort(rows, {}, [](const Row& row) {
     const bool self_check = row.timed() && !row.result->checked;
     const double untimed = std::numeric_limits<double>::infinity();
@@ -70,8 +70,10 @@ std::vector<std::string> cells(const Row& row, bool fastest) {
           time(row.summary.seconds_per_frame),
           time(row.summary.p95),
           row.timed() ? fmt::format("{:.0f}", result.pairs_mean) : "–",
-          count(result.missed),
-          count(result.extra),
+          count(result.missed_count),
+          count(result.false_count),
+          count(result.allowed_extra_count),
+          count(result.invalid_count),
           std::string(statusName(result.status))};
 }
 
@@ -103,14 +105,16 @@ std::string formatTable(std::span<const CaseResult> results) {
       fmt::format("{} {}, {} bodies, {} frames\n", recording.scene.name,
                   recording.scene.object_type, recording.scene.objects, recording.scene.frames);
   std::vector<std::vector<std::string>> table = {{"", "algorithm", "threads", "ISA", "time/frame",
-                                                  "p95", "pairs", "missed", "extra", "status"}};
+                                                  "p95", "pairs", "missed", "false",
+                                                  "allowed extra", "invalid", "status"}};
   const std::vector<Row> rows = sortedRows(results);
   const auto competes = [](const Row& row) { return row.right() && row.result->checked; };
   const auto fastest = std::ranges::find_if(rows, competes);
   for (auto row = rows.begin(); row != rows.end(); ++row) {
     table.push_back(cells(*row, row == fastest));
   }
-  text += alignColumns(table, {false, false, true, false, true, true, true, true, true, false});
+  text += alignColumns(
+      table, {false, false, true, false, true, true, true, true, true, true, true, false});
   for (const Row& row : rows) {
     if (row.result->reason.empty()) continue;
     text += fmt::format("  {}: {}: {}\n", row.result->algorithm, statusName(row.result->status),

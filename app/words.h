@@ -13,7 +13,7 @@ std::string bytesText(std::uint64_t bytes);
 /// "3 bodies, 1 frame"
 std::string extentText(std::size_t bodies, std::size_t frames);
 
-/// A time that a person waits: "2 min 05 s".
+/// A waiting time: "2 min 05 s".
 std::string waitingTime(double seconds);
 
 }  // namespace broadmark

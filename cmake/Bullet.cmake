@@ -1,5 +1,5 @@
 # Finds Bullet: the targets broadmark::bullet_collision and broadmark::bullet_dynamics. Installed
-# too, as whoever links the algorithms links Bullet's collision library.
+# too, as programs that link the algorithms link Bullet's collision library.
 #
 # CMake's FindBullet gives variables only. Debian's main libraries are single precision and need no
 # definitions.

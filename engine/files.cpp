@@ -21,7 +21,7 @@ InputError failure(const std::filesystem::path& path, std::string_view what) {
   return InputError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
-/// Where a symbolic link leads, so that its target is written and the link stays.
+/// The target of a symbolic link: that is written, and the link stays.
 std::filesystem::path throughLinks(std::filesystem::path path) {
   std::error_code failed;
   if (!std::filesystem::is_symlink(path, failed)) return path;

@@ -25,7 +25,7 @@
 
 namespace broadmark {
 
-/// Bytes that a body takes in a set, be it a box or a pose.
+/// Bytes that a box or a pose takes in a set.
 inline constexpr std::size_t kRecordBytes = 32;
 
 /// The header as it lies in the file.
@@ -48,8 +48,7 @@ std::uint64_t setOffset(const SceneInfo&, std::uint64_t set);
 std::string fault(const Aabb&);
 std::string fault(const Pose&);
 
-// The same question, without branches: what nearly all records need. Comparisons with NaN are
-// false.
+// The same check without branches, enough for nearly all records. Comparisons with NaN are false.
 inline bool isSound(const Aabb& box) {
   constexpr float kHuge = std::numeric_limits<float>::max();
   // All axes at once: a corner is a SIMD register. Both compilers have this extension.
@@ -72,8 +71,8 @@ inline bool isSound(const Pose& pose) {
   return sound;
 }
 
-/// Throws InputError naming the first broken record among some of a set, of which `first` is the
-/// first: one of which isSound() is false.
+/// Throws InputError naming the first record for which isSound() is false. `first` is the number of
+/// the first of these records in the set.
 template <class Record>
 void requireSound(std::span<const Record> records, std::uint64_t set, const SceneInfo& scene,
                   const std::string& name, std::string_view what, std::size_t first = 0) {
@@ -87,8 +86,8 @@ void requireSound(std::span<const Record> records, std::uint64_t set, const Scen
                                setOffset(scene, set) + body * kRecordBytes, what, fault(*broken)));
 }
 
-/// A recording being written, of whatever kind: hashed as it grows, whole only in the end. A large
-/// set is hashed and written while its successor is made.
+/// A recording of any kind while it is written: hashed as it grows, whole only after finish(). A
+/// large set is hashed and written while the caller makes the next one.
 class RecordingFile {
  public:
   /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.

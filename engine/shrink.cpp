@@ -2,11 +2,11 @@
 // what is left still fails, until no single body and no single frame can go.
 // Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002.
 //
-// That alone would begin with the whole recording. A broad phase mostly errs for reasons nearby,
-// though: so the wrong pair is tried first with few neighbours, then with more and more of them
-// (frames: with a short history, then a longer one), all of it in memory. Where the pair and k
-// neighbours fail that takes O(log k) runs on up to 2 k bodies, and O(k log k) small ones to shrink
-// these; where only the whole fails, O(n log n) runs on nearly n bodies.
+// That alone would begin with the whole recording. But wrong answers mostly have causes nearby. So
+// the wrong pair is tried first with few neighbours, then with more and more (and with a short
+// history of frames, then a longer one), all in memory. If the pair and k neighbours fail, that takes
+// O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only the whole
+// recording fails, O(n log n) passes on nearly n bodies.
 
 #include "broadmark/shrink.h"
 
@@ -101,7 +101,7 @@ std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
   return bodies;
 }
 
-/// The user has had enough.
+/// Thrown when the user cancels.
 struct Cancelled {};
 
 class Shrinker {

@@ -1,9 +1,9 @@
-#include "broadmark/render/box_renderer.h"
+#include "box_renderer.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "broadmark/render/box_look.h"
+#include "box_look.h"
 #include "render_assets.h"
 
 namespace broadmark {
@@ -60,7 +60,7 @@ std::vector<Primitive> floorGrid(const Aabb& box, Rgb colour, float width, const
   for (const auto& [along, across] : {std::pair<std::size_t, std::size_t>{0, 2}, {2, 0}}) {
     const int count = static_cast<int>(std::floor((high[across] - low[across]) / step + 0.001F));
     for (int i = 1; i <= count; ++i) {
-      // A square's border on the far wall is the world's own edge.
+      // The line on the far wall is an edge of the world.
       const float at = low[across] + static_cast<float>(i) * step;
       if (at > high[across] - 0.001F * step) break;
       std::array<float, 3> from = low;

@@ -1,23 +1,23 @@
-// Boxes and lines, from world coordinates to primitives on the screen.
+// Boxes and lines: from world coordinates to primitives, and by OpenGL to the screen.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "broadmark/render/box_look.h"
-#include "broadmark/render/primitive_renderer.h"
+#include "box_look.h"
+#include "primitive_renderer.h"
 
 namespace broadmark {
 
-/// Solid boxes with dark edges. Shading, edges and the choice of the three faces that look at the
-/// camera happen in the shaders.
+/// Solid boxes with dark edges. The shaders do the shading and the edges, and choose the three
+/// faces that look at the camera.
 class BoxRenderer : public PrimitiveRenderer {
  public:
   explicit BoxRenderer(const Gl& gl,
                        std::size_t max_batch = std::numeric_limits<std::size_t>::max());
 };
 
-/// Straight lines of even width in pixels, with smooth borders: draw them with blending.
+/// Straight lines of even width in pixels, with smooth borders. Draw them with blending.
 class LineRenderer : public PrimitiveRenderer {
  public:
   explicit LineRenderer(const Gl& gl);

@@ -1,20 +1,20 @@
-// Splatting: each box is projected to a rectangle of pixels, and the rays through these are tested
-// against the box's slabs, eight at a time, keeping the nearest hit. Only then is each pixel
-// coloured, once. The picture is cut into bands of rows, which the workers take one after another;
-// O(boxes + pixels tested).
-#include "broadmark/render/box_splatter.h"
+// Splatting: each box is projected to a rectangle of pixels. The rays through these pixels are
+// tested against the box's slabs, eight at a time; the nearest hit is kept. In the end each pixel
+// is coloured once. The picture is cut into bands of rows, which the workers take one after
+// another. O(boxes + pixels tested).
+#include "box_splatter.h"
 
 #include <algorithm>
 
-#include "broadmark/render/box_look.h"
+#include "box_look.h"
 #include "broadmark/render/camera.h"
 #include "colour.h"
 
 namespace broadmark {
 namespace {
 
-/// Small enough that a band's depths stay in a core's cache, large enough for few boxes to be in
-/// two bands.
+/// Small enough that the depths of a band stay in a core's cache, large enough that few boxes lie
+/// in two bands.
 constexpr int kBandRows = 32;
 
 static_assert(sizeof(SplatBox) == sizeof(Primitive));
@@ -81,7 +81,7 @@ void BoxSplatter::project(const SplatView& view, std::span<const SplatBox> boxes
   auto& boxes_by_band = workers_[static_cast<std::size_t>(worker)].boxes_by_band;
   for (std::vector<std::uint32_t>& list : boxes_by_band) list.clear();
   const auto [begin, end] = share(boxes.size(), team_->size(), worker);
-  // In pieces, so that the rectangles are still in the cache when they are sorted into bands.
+  // In pieces: the rectangles are still in the cache when they are sorted into bands.
   constexpr std::size_t kPiece = 1024;
   for (std::size_t first = begin; first < end; first += kPiece) {
     const std::size_t last = std::min(first + kPiece, end);
@@ -107,7 +107,7 @@ void BoxSplatter::drawBand(const SplatView& view, std::span<const SplatBox> boxe
   worker.foremost.assign(room, kNoBox);
   band.depths = worker.depths.data();
   band.boxes = worker.foremost.data();
-  // The workers' shares follow one another, so boxes come in their order however many share them.
+  // The shares follow one another: the boxes come in the same order for every number of workers.
   for (const Worker& from : workers_) {
     const std::vector<std::uint32_t>& which = from.boxes_by_band[static_cast<std::size_t>(number)];
     kernels_->splat(view, boxes.data(), rectangles_.data(), which.data(), which.size(), band);

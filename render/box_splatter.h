@@ -1,5 +1,5 @@
-// The software renderer: on a processor without a GPU it draws many small boxes several times as
-// fast as OpenGL's own emulation does.
+// The software renderer. Without a GPU it draws many small boxes several times as fast as an
+// OpenGL that runs on the processor.
 #pragma once
 
 #include <atomic>
@@ -8,31 +8,31 @@
 #include <vector>
 
 #include "broadmark/execution.h"
-#include "broadmark/render/primitive_renderer.h"
-#include "broadmark/render/splat_kernels.h"
+#include "primitive_renderer.h"
+#include "splat_kernels.h"
 
 namespace broadmark {
 
-/// Draws solid boxes that look as those of BoxRenderer do, on the processor. The picture stays
-/// until the next draw(); it is the same for every number of threads and every instruction set.
+/// Draws solid boxes on the processor; they look like those of BoxRenderer. The picture stays until
+/// the next draw(). It is the same for every number of threads and every instruction set.
 class BoxSplatter {
  public:
-  /// `team` draws, and outlives this.
+  /// `team` does the drawing and must outlive this.
   explicit BoxSplatter(ThreadTeam& team, Isa isa = bestIsa());
 
-  /// Boxes in view space (see boxPrimitive()), before a background of the viewpoint's haze. Sides
-  /// of the picture: 1 to kLargestSplat pixels.
+  /// Boxes in view space (see boxPrimitive()) on a background of the viewpoint's haze. Each side of
+  /// the picture: 1 to kLargestSplat pixels.
   void draw(std::span<const Primitive> boxes, const Viewpoint& viewpoint);
 
-  /// RGBA8 in memory order, rows from bottom to top as OpenGL has them.
+  /// RGBA8 in memory order, rows from bottom to top as in OpenGL.
   [[nodiscard]] std::span<const std::uint32_t> colours() const { return colours_; }
-  /// What OpenGL would have in its depth buffer, 0 to 1; 1 where there is no box.
+  /// As in OpenGL's depth buffer, 0 to 1; 1 where there is no box.
   [[nodiscard]] std::span<const float> depths() const { return depths_; }
 
   static constexpr int kLargestSplat = 16384;
 
  private:
-  /// What one worker has at hand. Boxes are listed by the bands that they touch.
+  /// Buffers of one worker. Boxes are listed by the bands that they touch.
   struct Worker {
     std::vector<std::vector<std::uint32_t>> boxes_by_band;
     std::vector<float> depths;

@@ -106,7 +106,7 @@ Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes) {
 }
 
 Camera figureCamera(const Aabb& box, double aspect) {
-  constexpr float kMargin = 0.04F;  // of the picture's smaller free side, on each side
+  constexpr float kMargin = 0.04F;  // on each side, of the extent of the box
   Camera camera;
   camera.eye = {0.57F * 3, 0.20F * 3, 0.60F * 3};
   camera.target = {0, -0.15F, 0};
@@ -122,7 +122,7 @@ Camera figureCamera(const Aabb& box, double aspect) {
   }
 
   const Vector2f centre = (low + high) / 2;
-  // A point has no extent: it gets about the window that a unit box has.
+  // A point has no extent: it gets about the window of a unit box.
   const bool is_point = (high - low).norm() < 1e-3F;
   const Vector2f extent =
       is_point ? Vector2f::Constant(0.5F) : Vector2f((high - low) * (1 + 2 * kMargin));
@@ -136,7 +136,7 @@ Camera figureCamera(const Aabb& box, double aspect) {
 
 CameraAxes axesOf(const Camera& camera) {
   const Vector3f back = (Vector3f(camera.eye.data()) - Vector3f(camera.target.data())).normalized();
-  // Looking straight up or down leaves the horizontal undecided: x then points to the right.
+  // Straight up or down the horizontal is undefined: x then points to the right.
   Vector3f right = Vector3f::UnitY().cross(back);
   right = right.norm() > 1e-6F ? right.normalized() : Vector3f::UnitX();
   CameraAxes axes;
@@ -144,6 +144,11 @@ CameraAxes axesOf(const Camera& camera) {
   Map<Vector3f>(axes.up.data()) = back.cross(right);
   Map<Vector3f>(axes.back.data()) = back;
   return axes;
+}
+
+float focus(const Camera& camera) {
+  return std::hypot(camera.eye[0] - camera.target[0], camera.eye[1] - camera.target[1],
+                    camera.eye[2] - camera.target[2]);
 }
 
 float pixelSize(const Camera& camera, int height) {

@@ -1,3 +1,4 @@
+// Glyphs come from stb_truetype and the embedded font.
 #include "caption.h"
 
 #include <stb/stb_truetype.h>
@@ -13,9 +14,9 @@ namespace {
 
 using Row = std::vector<CaptionItem>;
 
-constexpr float kSmallestLetters = 9;  // pixels; below that nothing can be read
+constexpr float kSmallestLetters = 9;  // pixels; smaller ones are illegible
 constexpr int kOpaque = 255;
-constexpr int kPanelAlpha = 210;  // what lies behind the caption just shows through
+constexpr int kPanelAlpha = 210;  // the picture just shows through the panel
 
 void blend(Picture& picture, int x, int y, Rgb colour, int alpha) {
   if (x < 0 || y < 0 || x >= picture.width || y >= picture.height) return;
@@ -106,7 +107,7 @@ class Typeface {
   float scale_ = 0;
 };
 
-// Lengths that go with the size of the letters.
+// Lengths in proportion to the size of the letters.
 float gap(const Typeface& face) { return std::round(1.2F * face.size()); }
 int swatchSide(const Typeface& face) { return static_cast<int>(std::round(0.72F * face.size())); }
 float swatchRoom(const Typeface& face) {
@@ -114,7 +115,7 @@ float swatchRoom(const Typeface& face) {
 }
 
 float itemWidth(const Typeface& face, const CaptionItem& item) {
-  return (item.has_swatch ? swatchRoom(face) : 0) + face.width(item.text);
+  return (item.swatch ? swatchRoom(face) : 0) + face.width(item.text);
 }
 
 float rowWidth(const Typeface& face, const Row& row) {
@@ -126,9 +127,9 @@ float rowWidth(const Typeface& face, const Row& row) {
 void drawRow(Picture& picture, const Typeface& face, const Row& row, float left, int baseline) {
   for (const CaptionItem& item : row) {
     float text_left = left;
-    if (item.has_swatch) {
+    if (item.swatch) {
       const int side = swatchSide(face);
-      fill(picture, {static_cast<int>(std::round(left)), baseline - side, side, side}, item.swatch,
+      fill(picture, {static_cast<int>(std::round(left)), baseline - side, side, side}, *item.swatch,
            kOpaque);
       text_left += swatchRoom(face);
     }

@@ -1,6 +1,7 @@
-// Text and swatches drawn straight into a finished picture: the same on every driver.
+// Text and swatches, drawn into a finished picture by the processor: the same on every driver.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,17 +10,16 @@
 
 namespace broadmark {
 
-/// A piece of a caption: a text (printable ASCII) in one colour, perhaps behind a colour swatch.
+/// A piece of a caption: printable ASCII in one colour, after a colour swatch if there is one.
 struct CaptionItem {
   std::string text;
   Rgb colour = 0;
-  bool has_swatch = false;
-  Rgb swatch = 0;
+  std::optional<Rgb> swatch = std::nullopt;
 };
 
-/// Rows of items on a panel of `background` in the picture's lower left corner. The letters' size
-/// follows the picture's; rows that are too long for it become smaller, down to the legible; if
-/// that does not do, the whole caption is left out.
+/// Rows of items on a panel of `background` in the picture's lower left corner. The size of the
+/// letters follows the picture's. Rows that are too long are drawn smaller; if they would become
+/// illegible, the whole caption is left out.
 void drawCaption(Picture& picture, const std::vector<std::vector<CaptionItem>>& rows,
                  Rgb background);
 

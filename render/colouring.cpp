@@ -1,6 +1,6 @@
-// Every mode sorts the bodies into a few classes, each with a colour and a line of the legend.
+// Every mode sorts the bodies into a few classes, each with a colour and an entry of the legend.
 // Scales grow darker on a light background and brighter on a dark one, so that lightness alone
-// tells their steps apart; single colours are after Okabe and Ito.
+// tells their steps apart. Single colours follow Okabe and Ito.
 #include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
@@ -15,38 +15,38 @@
 namespace broadmark {
 namespace {
 
-/// The colours of one background.
+using Scale = std::array<Rgb, 6>;
+
+/// The colours for one background.
 struct Palette {
-  Rgb quiet;  ///< what nothing is to be said of
+  Rgb quiet;  ///< bodies of no interest
   Rgb overlapping;
   Rgb right;
   Rgb missed;
-  Rgb extra;
+  Rgb false_pair;
   Rgb moving;
-  std::array<Rgb, 6> heat;
-  std::array<Rgb, 6> size;
+  Scale heat;
+  Scale size;
 };
-constexpr Palette kLight = {kFreeBox,
-                            kOverlappingBox,
-                            0x8CBFB4,
-                            0xD1003F,
-                            0x2563C9,
-                            0x0072B2,
-                            {0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
-                            {0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75}};
-constexpr Palette kDark = {0x707C89,
-                           0xFF8A3D,
-                           0x4E8F84,
-                           0xFF4F79,
-                           0x62A5FF,
-                           0x56B4E9,
-                           {0x6A3B78, 0x973A72, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B},
-                           {0x2F5288, 0x2F7393, 0x2E938B, 0x4CB37B, 0x8CCF5C, 0xE6E34E}};
 
-const Palette& paletteOf(const ColouringInput& input) { return input.dark ? kDark : kLight; }
+Palette paletteOf(const ColouringInput& input) {
+  const auto choose = [&](auto light, auto dark) { return input.dark ? dark : light; };
+  return {
+      .quiet = choose(kFreeBox, Rgb{0x707C89}),
+      .overlapping = choose(kOverlappingBox, Rgb{0xFF8A3D}),
+      .right = choose(Rgb{0x8CBFB4}, Rgb{0x4E8F84}),
+      .missed = choose(Rgb{0xD1003F}, Rgb{0xFF4F79}),
+      .false_pair = choose(Rgb{0x2563C9}, Rgb{0x62A5FF}),
+      .moving = choose(Rgb{0x0072B2}, Rgb{0x56B4E9}),
+      .heat = choose(Scale{0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
+                     Scale{0x6A3B78, 0x973A72, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B}),
+      .size = choose(Scale{0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75},
+                     Scale{0x2F5288, 0x2F7393, 0x2E938B, 0x4CB37B, 0x8CCF5C, 0xE6E34E}),
+  };
+}
 
-/// Gives each body the colour of its class: the entry of the legend with the number classOf(body).
-/// Counts them.
+/// Gives each body the colour of its class, the legend's entry number classOf(body), and counts the
+/// bodies of each class.
 template <class ClassOf>
 void colourByClass(std::size_t bodies, std::vector<LegendEntry> legend, Colouring& colouring,
                    const ClassOf& classOf) {
@@ -73,13 +73,13 @@ void mark(std::vector<std::uint8_t>& marks, std::span<const Pair> pairs, std::ui
 }
 
 void colourOverlapping(const ColouringInput& input, Colouring& colouring) {
-  const Palette& palette = paletteOf(input);
+  const Palette palette = paletteOf(input);
   colourByClass(input.boxes.size(), {{"overlapping", palette.overlapping}, {"free", palette.quiet}},
                 colouring, [&](std::size_t body) { return overlapsOf(input, body) > 0 ? 0U : 1U; });
 }
 
 void colourByCount(const ColouringInput& input, Colouring& colouring) {
-  const Palette& palette = paletteOf(input);
+  const Palette palette = paletteOf(input);
   std::vector<LegendEntry> legend = {{"0", palette.quiet}, {"1", palette.heat[0]}};
   const std::size_t last = palette.heat.size() - 1;
   for (std::size_t step = 1; step < last; ++step) {
@@ -95,25 +95,25 @@ void colourByCount(const ColouringInput& input, Colouring& colouring) {
 }
 
 void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
-  const Palette& palette = paletteOf(input);
+  const Palette palette = paletteOf(input);
   std::vector<std::uint8_t> classes(input.boxes.size());
   for (std::size_t body = 0; body < classes.size(); ++body) {
     classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
   }
-  mark(classes, input.extra, 1);
-  mark(classes, input.missed, 0);  // the worse fault is shown
+  mark(classes, input.false_pairs, 1);
+  mark(classes, input.missed, 0);  // last: a missed pair is the worse fault
   colourByClass(classes.size(),
                 {{"missed", palette.missed},
-                 {"extra", palette.extra},
+                 {"false", palette.false_pair},
                  {"right", palette.right},
                  {"free", palette.quiet}},
                 colouring, [&](std::size_t body) { return classes[body]; });
 }
 
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {
-  const Palette& palette = paletteOf(input);
+  const Palette palette = paletteOf(input);
   if (input.previous.size() != input.boxes.size()) {
-    colourByClass(input.boxes.size(), {{"no frame before", palette.quiet}}, colouring,
+    colourByClass(input.boxes.size(), {{"no previous frame", palette.quiet}}, colouring,
                   [](std::size_t) { return 0U; });
     return;
   }
@@ -128,7 +128,7 @@ float sizeOf(const Aabb& box) {
 }
 
 void colourBySize(const ColouringInput& input, Colouring& colouring) {
-  const Palette& palette = paletteOf(input);
+  const Palette palette = paletteOf(input);
   constexpr float kMost = std::numeric_limits<float>::max();
   float smallest = kMost;
   float largest = 0;
@@ -142,9 +142,9 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
                   colouring, [](std::size_t) { return 0U; });
     return;
   }
-  // Steps by the same factor. Points are in the first, like the smallest bodies.
+  // Steps of equal ratio. Points belong to the first step, like the smallest bodies.
   const std::size_t steps = palette.size.size();
-  std::array<float, std::tuple_size_v<decltype(palette.size)>> begins{};
+  std::array<float, std::tuple_size_v<Scale>> begins{};
   std::vector<LegendEntry> legend;
   const auto border = [&](std::size_t step) {
     const double part = static_cast<double>(step) / static_cast<double>(steps);
@@ -164,13 +164,13 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
 }
 
 constexpr ColourMode kModes[] = {
-    {"overlapping", "Overlapping", "bodies that are in a pair", colourOverlapping},
-    {"overlaps", "Number of overlaps", "in how many pairs each body is", colourByCount},
-    {"correctness", "Missed and extra", "bodies of pairs that the answer misses or has too many",
+    {"overlapping", "Overlapping", "bodies that overlap another", colourOverlapping},
+    {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount},
+    {"correctness", "Missed and false", "bodies of missed pairs and of false pairs",
      colourByCorrectness},
-    {"motion", "Moving and static", "bodies whose box is not that of the frame before",
+    {"motion", "Moving and static", "bodies whose box has changed since the previous frame",
      colourByMotion},
-    {"size", "Size", "each body's longest edge, in steps by the same factor", colourBySize},
+    {"size", "Size", "longest edge of each body, in steps of equal ratio", colourBySize},
 };
 
 }  // namespace

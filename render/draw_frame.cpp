@@ -6,8 +6,9 @@
 #include <algorithm>
 
 #include "broadmark/render/camera.h"
-#include "caption.h"
+#include "broadmark/render/framebuffer.h"
 #include "broadmark/render/scene_view.h"
+#include "caption.h"
 
 namespace broadmark {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 constexpr Rgb kTitle = 0x1F2933;
 constexpr Rgb kText = 0x52606D;
 
-/// For each body whether it is in a pair. A pair of a wrong answer may name bodies that are not.
+/// For each body whether it is in a pair. An invalid pair may name bodies that do not exist.
 std::vector<bool> overlappingBodies(std::size_t bodies, PairRuns overlaps) {
   std::vector<bool> overlapping(bodies, false);
   for (const PairRun run : overlaps) {
@@ -32,7 +33,7 @@ std::string counted(std::uint64_t count, std::string_view singular, std::string_
   return fmt::format("{} {}", count, count == 1 ? singular : plural);
 }
 
-/// A recording from elsewhere may have names as long as 127 letters.
+/// Names in a recording may have up to kLongestName characters.
 std::string abbreviated(const std::string& text) {
   constexpr std::size_t kLongest = 32;
   return text.size() <= kLongest ? text : text.substr(0, kLongest - 3) + "...";
@@ -48,8 +49,8 @@ void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
         {fmt::format("frame {}", frame.index), kText}},
        {{counted(frame.boxes.size(), "body", "bodies"), kText},
         {counted(pairs, "pair", "pairs"), kText}},
-       {{fmt::format("{} overlapping", in_pairs), kText, true, kOverlappingBox}},
-       {{fmt::format("{} free", frame.boxes.size() - in_pairs), kText, true, kFreeBox}}},
+       {{fmt::format("{} overlapping", in_pairs), kText, kOverlappingBox}},
+       {{fmt::format("{} free", frame.boxes.size() - in_pairs), kText, kFreeBox}}},
       kLightScene.background);
 }
 
@@ -77,7 +78,7 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   content.boxes = frame.boxes;
   content.colours = colours;
   content.scale = std::max(1.0F, static_cast<float>(height) / 600);
-  // By OpenGL whatever the driver: a picture is worth the time that smooth borders take.
+  // Always by OpenGL, also where it is slow: only OpenGL draws smooth borders.
   SceneViewOptions options;
   options.technique = Technique::gl;
   options.samples = Framebuffer::kSamples;

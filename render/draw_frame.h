@@ -1,4 +1,4 @@
-// drawFrame() with what tests vary.
+// drawFrame() with the arguments that tests vary.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ inline constexpr int kLargestPicture = 16384;  ///< pixels, either side
 inline constexpr Rgb kFreeBox = 0xC3D0DE;
 inline constexpr Rgb kOverlappingBox = 0xFA6E1E;
 
-/// As the public drawFrame(), with at most `max_batch` boxes per draw call.
+/// Like the public drawFrame(), with at most `max_batch` boxes per draw call.
 Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame& frame,
                   PairRuns overlaps, int width, int height, std::size_t max_batch);
 

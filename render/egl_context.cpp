@@ -57,14 +57,14 @@ struct EglFunctions {
   }
 };
 
-/// A place where a display may come from.
+/// Where a display may come from.
 struct DisplaySource {
   std::string name;
   EGLenum platform = EGL_NONE;  ///< none: the default display
   void* native = EGL_DEFAULT_DISPLAY;
 };
 
-/// Whether a space-separated list of extensions (null: none) has this one.
+/// Whether a space-separated list (null: empty) holds this extension.
 bool hasExtension(const char* list, std::string_view extension) {
   return list != nullptr &&
          fmt::format(" {} ", list).find(fmt::format(" {} ", extension)) != std::string::npos;
@@ -100,8 +100,8 @@ std::vector<DisplaySource> displaySources(const EglFunctions& egl, bool software
   return sources;
 }
 
-/// One context on one display. The display itself is never terminated: it is shared by everything
-/// in the process that asks for the same device.
+/// One context on one display. The display is never terminated: all contexts of the process on the
+/// same device share it.
 class Egl final : public OffscreenContext {
  public:
   Egl(const EglFunctions& egl, const DisplaySource& source) : egl_(egl), name_(source.name) {
@@ -128,10 +128,10 @@ class Egl final : public OffscreenContext {
       display_ = egl_.getDisplay(EGL_DEFAULT_DISPLAY);
     } else {
       const auto get = egl_.extension<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
-      if (get == nullptr) throw RenderError("eglGetPlatformDisplayEXT missing");
+      if (get == nullptr) throw RenderError("no eglGetPlatformDisplayEXT");
       display_ = get(source.platform, source.native, nullptr);
     }
-    if (display_ == EGL_NO_DISPLAY) egl_.fail("getting the display");
+    if (display_ == EGL_NO_DISPLAY) egl_.fail("eglGetDisplay");
     if (!egl_.initialize(display_, nullptr, nullptr)) egl_.fail("eglInitialize");
   }
 

@@ -35,8 +35,8 @@ GlObject makeShader(const Gl& gl, GLenum type, std::string_view source) {
 }  // namespace
 
 Gl::Gl(const GlLoader& load) {
-#define BROADMARK_GL_LOAD(TYPE, name)                           \
-  name = reinterpret_cast<PFNGL##TYPE##PROC>(load("gl" #name)); \
+#define BROADMARK_GL_LOAD(name)                              \
+  name = reinterpret_cast<decltype(name)>(load("gl" #name)); \
   if (name == nullptr) throw RenderError("OpenGL lacks gl" #name);
   BROADMARK_GL_FUNCTIONS(BROADMARK_GL_LOAD)
 #undef BROADMARK_GL_LOAD
@@ -54,7 +54,7 @@ GLint Gl::integer(GLenum what) const {
 void Gl::check(std::string_view doing) const {
   const GLenum error = GetError();
   if (error == GL_NO_ERROR) return;
-  // Several may be pending; a lost context reports one for ever.
+  // Several errors may be pending; a lost context reports one on every call.
   for (int i = 0; i < 16 && GetError() != GL_NO_ERROR; ++i) {
   }
   const char* name = error == GL_OUT_OF_MEMORY                   ? "out of memory"

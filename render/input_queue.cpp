@@ -73,7 +73,7 @@ constexpr std::pair<ImGuiKey_, Key> kImGuiKeys[] = {
 
 bool isModifier(Key key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_RIGHT_SUPER; }
 
-/// What the events taken for one picture have touched so far.
+/// What the events of one picture have changed so far.
 struct Touched {
   std::bitset<kKeys> keys;
   std::bitset<kButtons> buttons;
@@ -87,7 +87,7 @@ bool inRange(int code, std::size_t count) {
   return code >= 0 && static_cast<std::size_t>(code) < count;
 }
 
-/// Whether the picture can still tell `event` from the `touched` ones.
+/// Whether the picture can tell `event` from those that came before.
 bool separable(const InputEvent& event, const Touched& touched) {
   const auto code = static_cast<std::size_t>(event.code);
   switch (event.kind) {

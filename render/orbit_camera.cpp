@@ -40,7 +40,7 @@ Vector3f centreOf(const Aabb& box) {
   return (Vector3f(box.min.data()) + Vector3f(box.max.data())) / 2;
 }
 
-/// In (-pi, pi], so that the camera turns the short way round.
+/// In (-pi, pi]: the camera turns the short way round.
 float shortestTurn(float angle) { return std::remainder(angle, kFullTurn); }
 
 float smooth(float t) {
@@ -60,56 +60,31 @@ std::pair<float, float> distancesTo(const Aabb& box, const Vector3f& point) {
 
 OrbitCamera lookedFrom(OrbitCamera camera, Direction direction) {
   constexpr float kQuarter = kFullTurn / 4;
+  camera.yaw = camera.pitch = 0;
   switch (direction) {
-    case Direction::figure:  // that of figureCamera()
+    case Direction::figure:  // as figureCamera()
       camera.yaw = std::atan2(0.57F, 0.60F);
       camera.pitch = std::atan2(0.20F + 0.05F, std::hypot(0.57F, 0.60F));
       break;
     case Direction::front:
-      camera.yaw = camera.pitch = 0;
       break;
     case Direction::back:
       camera.yaw = 2 * kQuarter;
-      camera.pitch = 0;
       break;
     case Direction::left:
       camera.yaw = -kQuarter;
-      camera.pitch = 0;
       break;
     case Direction::right:
       camera.yaw = kQuarter;
-      camera.pitch = 0;
       break;
     case Direction::top:
-      camera.yaw = 0;
       camera.pitch = OrbitCamera::kSteepest;
       break;
     case Direction::bottom:
-      camera.yaw = 0;
       camera.pitch = -OrbitCamera::kSteepest;
       break;
   }
   return camera;
-}
-
-std::string_view directionName(Direction direction) {
-  switch (direction) {
-    case Direction::figure:
-      return "figure";
-    case Direction::front:
-      return "front";
-    case Direction::back:
-      return "back";
-    case Direction::left:
-      return "left";
-    case Direction::right:
-      return "right";
-    case Direction::top:
-      return "top";
-    case Direction::bottom:
-      return "bottom";
-  }
-  return "?";
 }
 
 OrbitCamera orbited(OrbitCamera camera, float yaw, float pitch) {
@@ -127,7 +102,7 @@ OrbitCamera panned(OrbitCamera camera, float right, float up) {
 OrbitCamera zoomed(OrbitCamera camera, float factor, const std::array<float, 3>& point) {
   const float distance =
       std::clamp(camera.distance * factor, OrbitCamera::kNearest, OrbitCamera::kFarthest);
-  // Eye and pivot shrink towards the point together, so it stays where it is seen.
+  // Eye and pivot move towards the point by the same factor, so it stays where it is seen.
   const Vector3f fixed(point.data());
   camera = withPivot(camera, fixed + (pivotOf(camera) - fixed) * (distance / camera.distance));
   camera.distance = distance;
@@ -178,8 +153,8 @@ OrbitCamera between(const OrbitCamera& from, const OrbitCamera& to, float t) {
   camera.cut = std::lerp(from.cut, to.cut, s);
   camera.field_of_view = std::lerp(from.field_of_view, to.field_of_view, s);
   camera.distance = from.distance * std::pow(to.distance / from.distance, s);
-  // The pivot's remaining way shrinks as the distance's does: in a long zoom the aim would
-  // otherwise leave the picture on the way.
+  // The way of the pivot shrinks like that of the distance. Otherwise the new pivot would leave the
+  // picture during a long zoom.
   const float change = from.distance - to.distance;
   const float remaining =
       std::abs(change) > 1e-3F * from.distance ? (camera.distance - to.distance) / change : 1 - s;
@@ -204,8 +179,8 @@ Camera toCamera(const OrbitCamera& orbit, double aspect, const Aabb& contents) {
   const float half_width = half_height * static_cast<float>(aspect);
   camera.window_min = {-half_width, -half_height};
   camera.window_max = {half_width, half_height};
-  // Near things count as near relative to what is looked at; outside the contents there is nothing
-  // to cut off, which gives depth more precision.
+  // The near plane follows the distance of the pivot. Planes close to the contents give the depth
+  // more precision.
   const auto [nearest, farthest] = distancesTo(contents, eye);
   camera.near = std::max(orbit.cut * orbit.distance, 0.5F * nearest);
   camera.far = std::max(1.02F * farthest, 2 * camera.near);

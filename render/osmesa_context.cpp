@@ -1,4 +1,4 @@
-// Mesa's software rasteriser as a plain library: works where EGL has no driver at all.
+// OSMesa: Mesa's software rasteriser as a plain library. Works where EGL has no driver.
 #include <fmt/format.h>
 
 #include <array>
@@ -10,16 +10,18 @@
 namespace broadmark {
 namespace {
 
-// From GL/osmesa.h, which is all we would need of libosmesa6-dev.
+// From GL/osmesa.h: not worth a dependency on libosmesa6-dev.
 using OSMesaContext = struct osmesa_context*;
 using Proc = void (*)();
 using MakeCurrent = unsigned char (*)(OSMesaContext, void*, GLenum, GLsizei, GLsizei);
-constexpr int kOsmesaFormat = 0x22;
-constexpr int kOsmesaDepthBits = 0x30;
-constexpr int kOsmesaProfile = 0x33;
-constexpr int kOsmesaCoreProfile = 0x34;
-constexpr int kOsmesaMajorVersion = 0x36;
-constexpr int kOsmesaMinorVersion = 0x37;
+enum Attribute : int {
+  kFormat = 0x22,
+  kDepthBits = 0x30,
+  kProfile = 0x33,
+  kCoreProfile = 0x34,
+  kMajorVersion = 0x36,
+  kMinorVersion = 0x37,
+};
 
 class Osmesa final : public OffscreenContext {
  public:
@@ -30,18 +32,9 @@ class Osmesa final : public OffscreenContext {
         address_(library_.get<Proc (*)(const char*)>("OSMesaGetProcAddress")) {
     const auto create =
         library_.get<OSMesaContext (*)(const int*, OSMesaContext)>("OSMesaCreateContextAttribs");
-    const std::array attributes = {kOsmesaFormat,
-                                   GL_RGBA,
-                                   kOsmesaDepthBits,
-                                   24,
-                                   kOsmesaProfile,
-                                   kOsmesaCoreProfile,
-                                   kOsmesaMajorVersion,
-                                   3,
-                                   kOsmesaMinorVersion,
-                                   3,
-                                   0};
-    context_ = create(attributes.data(), nullptr);
+    const int attributes[] = {kFormat,       GL_RGBA, kDepthBits,    24, kProfile, kCoreProfile,
+                              kMajorVersion, 3,       kMinorVersion, 3,  0};
+    context_ = create(attributes, nullptr);
     if (context_ == nullptr) throw RenderError("OSMesaCreateContextAttribs gave no 3.3 context");
     if (make_current_(context_, buffer_.data(), GL_UNSIGNED_BYTE, kSide, kSide) == 0) {
       destroy_(context_);
@@ -68,7 +61,7 @@ class Osmesa final : public OffscreenContext {
   void (*destroy_)(OSMesaContext);
   Proc (*address_)(const char*);
   OSMesaContext context_ = nullptr;
-  // OSMesa insists on a buffer; pictures are drawn into a framebuffer object.
+  // OSMesa wants a buffer of its own; we draw into a framebuffer object.
   std::array<std::uint8_t, std::size_t{4} * kSide * kSide> buffer_{};
 };
 

@@ -10,7 +10,7 @@ constexpr float kStructureWidth = 1;
 
 std::array<float, 3> middleOf(const Aabb& box) {
   std::array<float, 3> middle;
-  // Halved first: the sum of two large coordinates may not be a number.
+  // Halved first: the sum of two large coordinates may overflow.
   for (std::size_t axis = 0; axis < 3; ++axis) {
     middle[axis] = box.min[axis] / 2 + box.max[axis] / 2;
   }

@@ -1,5 +1,5 @@
-// Picking: rays against boxes by slabs, and selection by the planes of a frustum. O(n), in double
-// precision in world coordinates: neither far-off nor tiny bodies are lost.
+// Picking tests a ray against the slabs of each box; selecting tests each box against the planes of
+// a frustum. O(n). Double precision: neither far-off nor tiny bodies are lost.
 #include "broadmark/render/picking.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ std::array<float, 2> onWindow(const Viewpoint& viewpoint, float x, float y) {
 
 bool counts(BodyMask mask, std::size_t body) { return mask.empty() || mask[body] != 0; }
 
-/// A box as the eye has it: corners relative to it, in view units.
+/// The corners of a box relative to the eye, in view units.
 struct SeenBox {
   Vector low;
   Vector high;
@@ -47,7 +47,7 @@ SeenBox seenBox(const Aabb& box, const Vector& eye, double scale) {
   return seen;
 }
 
-/// As the box shader: no side shorter than so many pixels where the box's middle is.
+/// Like the box shader: makes every side at least a given number of pixels long.
 void enlarge(SeenBox& box, const Vector& forward, double half_side_at_1) {
   Vector centre;
   for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = (box.low[axis] + box.high[axis]) / 2;
@@ -64,7 +64,7 @@ struct Plane {
   double offset = 0;
 };
 
-/// The part of view space, relative to the eye, that is seen in a rectangle of the picture.
+/// The part of view space, relative to the eye, behind a rectangle of the picture.
 std::array<Plane, 5> frustum(const Viewpoint& viewpoint, const ScreenRectangle& rectangle) {
   const auto [left, right] = std::minmax(rectangle.from[0], rectangle.to[0]);
   const auto [top, bottom] = std::minmax(rectangle.from[1], rectangle.to[1]);
@@ -130,9 +130,9 @@ std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace&
     enlarge(box, forward, half_side);
     double enter = camera.near;
     double leave = nearest;
-    bool is_before = false;  // the eye, and not around it
+    bool is_before = false;  // the box is in front of the eye, not around it
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      // A ray within a face's plane may make one of these NaN: of two boxes that share that face
+      // A ray in the plane of a face may make one of these NaN. Of two boxes that share the face
       // one is then hit.
       const double a = box.low[axis] * inverse[axis];
       const double b = box.high[axis] * inverse[axis];

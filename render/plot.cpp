@@ -152,7 +152,7 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const Palette& palette, const 
   }
 }
 
-/// Legend entries in the upper right corner; returns which one the mouse is over.
+/// Draws the legend in the upper right corner. Returns the entry under the mouse.
 std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
                                       const Axes& axes, const Palette& palette) {
   const float line = ImGui::GetTextLineHeightWithSpacing();

@@ -1,9 +1,8 @@
-#include "broadmark/render/primitive_renderer.h"
+#include "primitive_renderer.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "broadmark/render/box_look.h"
+#include "box_look.h"
 #include "colour.h"
 
 namespace broadmark {
@@ -21,11 +20,6 @@ std::size_t batchSize(const Gl& gl, int vertices_per_primitive, std::size_t want
 }
 
 }  // namespace
-
-float focus(const Camera& camera) {
-  return std::hypot(camera.eye[0] - camera.target[0], camera.eye[1] - camera.target[1],
-                    camera.eye[2] - camera.target[2]);
-}
 
 PrimitiveRenderer::PrimitiveRenderer(const Gl& gl, std::string_view vertex_source,
                                      std::string_view fragment_source, int vertices_per_primitive,
@@ -65,7 +59,7 @@ GLint PrimitiveRenderer::uniform(const char* name) const {
 
 void PrimitiveRenderer::draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint,
                              float opacity) const {
-  // Setting a uniform that a shader does not use (location -1) is allowed and does nothing.
+  // A uniform that the shader does not use has location -1: setting it does nothing.
   const Camera& camera = viewpoint.camera;
   const std::array haze = components(viewpoint.haze);
   use();

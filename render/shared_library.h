@@ -9,8 +9,8 @@
 
 namespace broadmark {
 
-/// Stays loaded for the rest of the process: GL drivers start threads and register exit handlers,
-/// and crash when they are unloaded.
+/// Stays loaded until the process ends: GL drivers start threads and register exit handlers, and
+/// crash when unloaded.
 class SharedLibrary {
  public:
   /// Throws RenderError.

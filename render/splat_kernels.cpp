@@ -1,17 +1,17 @@
-#include "broadmark/render/splat_kernels.h"
+#include "splat_kernels.h"
 
-#include "broadmark/render/box_look.h"
+#include "box_look.h"
 
 namespace broadmark {
 namespace {
 
-// Without a target: the compiler splits the vectors for whatever the processor has at least.
+// Without a target the compiler splits the vectors for the instruction set of the build.
 namespace baseline {
 #include "splat_kernels.inl"
 }  // namespace baseline
 
-// Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
-// copies of shared inline functions behind, of which the linker might keep one for everybody.
+// The target is set around these functions only. A whole file compiled with -mavx2 would contain
+// AVX2 copies of shared inline functions, and the linker might keep one of them for the program.
 #if defined(__x86_64__)
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)

@@ -1,5 +1,5 @@
-// The inner loops of the software renderer, one table of them per instruction set. All give the
-// same picture, bit for bit.
+// The inner loops of the software renderer, as one table of functions per instruction set. All give
+// the same picture, bit for bit.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,24 @@
 
 namespace broadmark {
 
-/// A box in view space, laid out as a Primitive: plain arrays, for which no function of a standard
-/// header is called.
+/// A box in view space, laid out like a Primitive. Plain arrays: the kernels must not call
+/// functions of standard headers.
 struct SplatBox {
   float low[3]{};
   float colour = 0;  ///< 0xRRGGBB as a number
   float high[3]{};
-  float width = 0;  ///< what it is at least drawn wide, in pixels
+  float width = 0;  ///< the least width it is drawn with, in pixels
 };
 
-/// What the kernels need to know of a viewpoint. Points are relative to the eye; pixel columns run
-/// from left to right, rows from bottom to top, as OpenGL has them.
+/// A viewpoint as the kernels need it. Points are relative to the eye; pixel columns run from left
+/// to right, rows from bottom to top as in OpenGL.
 struct SplatView {
   int width = 0;
   int height = 0;
   float eye[3]{};
   float forward[3]{};  ///< dot(forward, p) is the depth of p
-  float column[3]{};   ///< dot(column, p) / depth is its place in pixels from the left border
-  float row[3]{};      ///< dot(row, p) / depth likewise from the lower border
+  float column[3]{};   ///< dot(column, p) / depth: pixels from the left border
+  float row[3]{};      ///< dot(row, p) / depth: pixels from the lower border
   /// The direction through (x, y) in pixels, of depth 1: corner + x step_x + y step_y.
   float corner[3]{};
   float step_x[3]{};
@@ -41,7 +41,7 @@ struct SplatView {
   std::uint32_t background = 0;  ///< RGBA8, in memory order
 };
 
-/// The pixels that a box may cover, borders included; none when left > right.
+/// The pixels that a box may cover, borders included; none if left > right.
 struct PixelRectangle {
   std::int16_t left = 0;
   std::int16_t right = -1;
@@ -49,12 +49,12 @@ struct PixelRectangle {
   std::int16_t top = -1;
 };
 
-/// Pixels that kernels may write behind a row's end.
+/// Kernels may write this many pixels behind the end of a row.
 inline constexpr int kSplatPadding = 8;
-/// What covers a pixel that no box does.
+/// Stands for the box in a pixel that no box covers.
 inline constexpr std::uint32_t kNoBox = 0xFFFFFFFF;
 
-/// Some rows of the picture while boxes are drawn into them.
+/// Some rows of the picture, while boxes are drawn into them.
 struct SplatBand {
   int begin = 0;  ///< rows [begin, end)
   int end = 0;
@@ -67,10 +67,10 @@ struct SplatKernels {
   /// Fills rectangles[i] for the boxes [begin, end).
   void (*project)(const SplatView& view, const SplatBox* boxes, std::size_t begin, std::size_t end,
                   PixelRectangle* rectangles);
-  /// Draws some boxes, named by their positions, into a band; of equally near ones the first wins.
+  /// Draws boxes, given by their positions, into a band. Of equally near boxes the first wins.
   void (*splat)(const SplatView& view, const SplatBox* boxes, const PixelRectangle* rectangles,
                 const std::uint32_t* which, std::size_t count, const SplatBand& band);
-  /// Colours (RGBA8) and window depths (0 to 1) of a band's pixels; rows of `view.width`.
+  /// Writes colours (RGBA8) and window depths (0 to 1) of a band's pixels; rows of `view.width`.
   void (*shade)(const SplatView& view, const SplatBox* boxes, const SplatBand& band,
                 std::uint32_t* colours, float* depths);
 };

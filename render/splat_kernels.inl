@@ -1,6 +1,6 @@
 // The kernels of the software renderer, written once; compiled for each instruction set by
-// splat_kernels.cpp. Vectors of eight lanes in the compilers' own notation. Nothing of a standard
-// header may be called here.
+// splat_kernels.cpp. Vectors have eight lanes and are written in the compiler's own notation. No
+// function of a standard header may be called here.
 
 constexpr int kLanes = 8;
 using Floats = float __attribute__((vector_size(4 * kLanes)));
@@ -23,13 +23,13 @@ inline bool any(Ints mask) {
   return ((halves[0] | halves[1]) | (halves[2] | halves[3])) != 0;
 }
 
-/// As GLSL's.
+/// As in GLSL.
 inline Floats smoothstep(Floats low, Floats high, Floats value) {
   const Floats t = clamped((value - low) / (high - low), 0, 1);
   return t * t * (3.0F - 2.0F * t);
 }
 
-/// An array of eight from or to anywhere.
+/// Eight values from or to any address.
 template <class Vector>
 inline Vector load(const void* from) {
   Vector vector;
@@ -41,13 +41,13 @@ inline void store(void* to, Vector vector) {
   __builtin_memcpy(to, &vector, sizeof vector);
 }
 
-/// What get(lane) gives for each lane.
+/// get(lane) of each lane.
 template <class Get>
 inline Floats gather(const Get& get) {
   return Floats{get(0), get(1), get(2), get(3), get(4), get(5), get(6), get(7)};
 }
 
-/// A box's corners relative to the eye, in one number or one of each lane.
+/// Corners of a box relative to the eye; Number is float, or Floats for a box per lane.
 template <class Number>
 struct Corners {
   Number low[3];
@@ -57,7 +57,7 @@ struct Corners {
 inline float smaller(float a, float b) { return a < b ? a : b; }
 inline float larger(float a, float b) { return a > b ? a : b; }
 
-/// No side is shorter than so many pixels.
+/// Makes every side at least that many pixels long.
 template <class Number>
 inline void enlarge(Corners<Number>& box, Number pixels, const SplatView& view) {
   Number centre[3];
@@ -81,7 +81,7 @@ inline Corners<float> cornersOf(const SplatView& view, const SplatBox& box) {
   return corners;
 }
 
-/// The boxes box(lane), which returns a reference.
+/// Of the boxes box(lane), which returns a reference.
 template <class BoxOf>
 inline Corners<Floats> cornersOf(const SplatView& view, const BoxOf& box) {
   Corners<Floats> corners;
@@ -95,8 +95,8 @@ inline Corners<Floats> cornersOf(const SplatView& view, const BoxOf& box) {
   return corners;
 }
 
-/// Where a box begins and ends along pixels of which there are `count`: the pixels whose middles
-/// are between, with a little slack for rounding.
+/// The first and the last of `count` pixels that a box covers: those whose middles lie between low
+/// and high, with a little slack for rounding.
 struct Extent {
   Ints first;
   Ints last;
@@ -119,7 +119,7 @@ void project(const SplatView& view, const SplatBox* boxes, std::size_t begin, st
       return boxes[first + (offset < count ? offset : 0)];
     });
 
-    // Each corner is a sum of one part per axis.
+    // Each corner is a sum of three parts, one per axis.
     Floats x[3][2];
     Floats y[3][2];
     Floats depth[3][2];
@@ -153,7 +153,7 @@ void project(const SplatView& view, const SplatBox* boxes, std::size_t begin, st
       nearest = smaller(nearest, corner_depth);
       farthest = larger(farthest, corner_depth);
     }
-    // Whatever crosses the near plane may be anywhere; what is wholly nearer is nowhere.
+    // A box across the near plane may cover any pixel; a box wholly nearer covers none.
     const Ints crosses = nearest < view.near;
     const Ints is_seen = (farthest >= view.near) & (nearest <= view.far);
     const Extent columns =
@@ -208,11 +208,11 @@ void splat(const SplatView& view, const SplatBox* boxes, const PixelRectangle* r
     const int top = rectangle.top < band.end ? rectangle.top + 1 : band.end;
     for (int y = bottom; y < top; ++y) {
       const int row = (y - band.begin) * band.stride;
-      // Rays beside the rectangle miss the box, so the last eight pixels may reach beyond it.
+      // Rays beside the rectangle miss the box: the last eight pixels may go beyond its border.
       for (int x = rectangle.left; x <= rectangle.right; x += kLanes) {
         float* depths = band.depths + row + x;
         const Floats before = load<Floats>(depths);
-        // In a crowd most boxes are hidden by those drawn before them.
+        // In a dense scene most boxes are hidden by those drawn before them.
         if (!any(before > nearest)) continue;
         const Rays rays = raysFrom(view, x, y);
         Floats enter;
@@ -235,18 +235,18 @@ void splat(const SplatView& view, const SplatBox* boxes, const PixelRectangle* r
   }
 }
 
-/// Of three numbers the one that belongs to each lane's axis.
+/// x, y or z by the axis of each lane.
 inline Floats chosen(Ints is_x, Ints is_y, Floats x, Floats y, Floats z) {
   return is_x ? x : (is_y ? y : z);
 }
 
-/// The colours of eight pixels, which are covered by the boxes box(lane) at those depths.
+/// The colours of eight pixels, covered by the boxes box(lane) at the given depths.
 template <class BoxOf>
 inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays, Floats depth) {
   const Corners<Floats> box = cornersOf(view, box_of);
   const Floats* ray = rays.direction;
 
-  // The ray enters through the face of the axis that it reaches last.
+  // The ray enters the box through the slab that it reaches last.
   Floats enter[3];
   for (int axis = 0; axis < 3; ++axis) {
     const Floats inverse = 1.0F / ray[axis];
@@ -255,7 +255,7 @@ inline Ints shaded(const SplatView& view, const BoxOf& box_of, const Rays& rays,
   const Ints is_x = (enter[0] >= enter[1]) & (enter[0] >= enter[2]);
   const Ints is_y = ~is_x & (enter[1] >= enter[2]);
 
-  // Of a function of the point hit, say u: its value, and how much it changes within a pixel.
+  // Of the point hit, by axis: its place between the two faces, and the change within a pixel.
   Floats part[3];
   Floats change[3];
   const Floats along = chosen(is_x, is_y, ray[0], ray[1], ray[2]);
@@ -311,7 +311,7 @@ void shade(const SplatView& view, const SplatBox* boxes, const SplatBand& band,
     for (int x = 0; x < view.width; x += kLanes) {
       const Floats depth = load<Floats>(band.depths + row + x);
       const std::uint32_t* which = band.boxes + row + x;
-      // Boxes change from lane to lane, but where there is one there are mostly more.
+      // Any box among the lanes stands in for the lanes without one.
       std::uint32_t some = kNoBox;
       for (int lane = 0; lane < kLanes; ++lane) some = which[lane] != kNoBox ? which[lane] : some;
       Ints colour = static_cast<int>(view.background) - Ints{};

@@ -1,5 +1,5 @@
-// The stb libraries for pictures, compiled once, with no more than we use. (The one for letters is
-// Debian's, which Dear ImGui uses, too.)
+// The stb libraries that read and write PNG, with nothing that we do not use. (stb_truetype comes
+// with Dear ImGui.)
 #define STBI_ONLY_PNG
 #define STBI_MAX_DIMENSIONS 32768
 #define STBI_NO_STDIO

@@ -41,7 +41,7 @@ constexpr CursorShape kCursors[] = {
 
 Window::Window(const std::string& title, int width, int height) {
   if (glfwInit() != GLFW_TRUE) {
-    throw RenderError(fmt::format("no window can be opened: {}", lastError()));
+    throw RenderError(fmt::format("cannot open a window: {}", lastError()));
   }
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -58,7 +58,7 @@ Window::Window(const std::string& title, int width, int height) {
   if (window_ == nullptr) {
     const std::string reason = lastError();
     glfwTerminate();
-    throw RenderError(fmt::format("no window with OpenGL 3.3 can be opened: {}", reason));
+    throw RenderError(fmt::format("cannot open a window with OpenGL 3.3: {}", reason));
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -87,7 +87,7 @@ void Window::installCallbacks() {
         {.kind = InputEvent::Kind::wheel, .x = static_cast<float>(x), .y = static_cast<float>(y)});
   });
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int) {
-    if (action == GLFW_REPEAT) return;  // Dear ImGui repeats by itself
+    if (action == GLFW_REPEAT) return;  // Dear ImGui repeats keys itself
     windowOf(window).input().push(
         {.kind = InputEvent::Kind::key, .code = key, .down = action == GLFW_PRESS});
   });
@@ -102,7 +102,7 @@ void Window::installCallbacks() {
 }
 
 void Window::pushMove(double x, double y) {
-  // The mouse is told in screen units, which need not be pixels.
+  // GLFW gives screen units, which need not be pixels.
   int units = 1;
   glfwGetWindowSize(window_, &units, nullptr);
   const double pixels_per_unit = static_cast<double>(width()) / std::max(units, 1);

@@ -1,4 +1,4 @@
-#include "broadmark/scenes/physics_simulation.h"
+#include "physics_simulation.h"
 
 #include "broadmark/scenes/authored_simulation.h"
 
@@ -14,23 +14,8 @@ bool contains(const Aabb& box, const Vec3& point) {
 
 }  // namespace
 
-Parametrised& ChosenEngine::parameters(const Choice& choice, const PhysicsSettings& settings) {
-  if (!engine_ || id_ != choice.value) {
-    engine_ = entryOf(engineEntries(), choice, "physics engine").create(settings);
-    id_ = choice.value;
-  }
-  return *engine_;
-}
-
-std::unique_ptr<PhysicsEngine> ChosenEngine::create(const Choice& choice,
-                                                    const PhysicsSettings& settings) {
-  auto engine = entryOf(engineEntries(), choice, "physics engine").create(settings);
-  setParameters(*engine, parameterValues(parameters(choice, settings)));
-  return engine;
-}
-
 const SceneInfo& PhysicsSimulation::scene() const {
-  // Until the first frame the parameters may still change behind our back.
+  // Until the first frame the parameters may still change.
   if (!engine_) info_ = describe();
   return info_;
 }

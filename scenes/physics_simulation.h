@@ -1,34 +1,20 @@
-// What all simulations by a physics engine share, whoever says which bodies there are.
+// What all simulations by a physics engine share: built-in and authored scenes.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "broadmark/scenes/authored_scene.h"
-#include "broadmark/scenes/registry.h"
+#include "broadmark/scenes/physics_engine.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {
 
-/// The parameters of the engine that is chosen. Those of another one are forgotten.
-class ChosenEngine {
- public:
-  /// What has them, and no bodies.
-  Parametrised& parameters(const Choice& choice, const PhysicsSettings& settings);
-  /// A new engine with these parameters.
-  std::unique_ptr<PhysicsEngine> create(const Choice& choice, const PhysicsSettings& settings);
-
- private:
-  std::string id_;
-  std::unique_ptr<PhysicsEngine> engine_;
-};
-
-/// Drives a physics engine, frame by frame, inside of six walls. A body whose centre gets out of
-/// the world is held where it is.
+/// Drives a physics engine, frame by frame, within six walls. A body whose centre leaves the world
+/// is frozen.
 class PhysicsSimulation : public Simulation, public SceneSource {
  public:
   using Simulation::Simulation;
@@ -41,10 +27,10 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   [[nodiscard]] AuthoredScene authoredScene() override;
 
  protected:
-  /// What the parameters describe at present.
+  /// The scene that the present parameters describe.
   [[nodiscard]] virtual SceneInfo describe() const = 0;
   [[nodiscard]] virtual std::unique_ptr<PhysicsEngine> createEngine() = 0;
-  /// Adds all bodies to an engine that has walls only, and says which forces act.
+  /// Adds all bodies to the engine, which has only walls yet, and sets the forces.
   virtual void start() = 0;
   /// Called after frame `frame` has been recorded.
   virtual void act(std::uint32_t /*frame*/) {}

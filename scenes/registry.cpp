@@ -1,90 +1,46 @@
-// Collects what is listed in CMakeLists.txt.
+// Collects the lists of CMakeLists.txt.
 
 #include "broadmark/scenes/registry.h"
 
 #include <algorithm>
 #include <iterator>
 
-#include "recorders/recorder.h"
+#include "broadmark/scenes/brush.h"
+#include "broadmark/scenes/scene.h"
 #include "engines/replay.h"
-#include "scenes/scene.h"
+#include "recorders/recorder.h"
 
 namespace broadmark::scenes {
 
-#define SCENE(name)   \
-  namespace name {    \
-  SceneEntry entry(); \
-  }
-#include "scene_list.inc"
-#undef SCENE
+#define LIST "scene_list.inc"
+#define ENTRY_TYPE SceneEntry
+#define ENTRIES sceneEntries
+#include "entries.inl"
 
-#define ENGINE(name)   \
-  namespace name {     \
-  EngineEntry entry(); \
-  }
-#include "engine_list.inc"
-#undef ENGINE
+#define LIST "engine_list.inc"
+#define ENTRY_TYPE EngineEntry
+#define ENTRIES engineEntries
+#include "entries.inl"
 
-#define OBJECT_TYPE(name) \
-  namespace name {        \
-  ObjectType entry();     \
-  }
-#include "object_type_list.inc"
-#undef OBJECT_TYPE
+#define LIST "replay_list.inc"
+#define ENTRY_TYPE ReplayEntry
+#define ENTRIES replayEntries
+#include "entries.inl"
 
-#define REPLAY(name)   \
-  namespace name {     \
-  ReplayEntry entry(); \
-  }
-#include "replay_list.inc"
-#undef REPLAY
+#define LIST "recorder_list.inc"
+#define ENTRY_TYPE RecorderEntry
+#define ENTRIES recorderEntries
+#include "entries.inl"
 
-#define RECORDER(name)   \
-  namespace name {       \
-  RecorderEntry entry(); \
-  }
-#include "recorder_list.inc"
-#undef RECORDER
+#define LIST "object_type_list.inc"
+#define ENTRY_TYPE ObjectType
+#define ENTRIES objectTypes
+#include "entries.inl"
 
-std::vector<SceneEntry> sceneEntries() {
-  return {
-#define SCENE(name) name::entry(),
-#include "scene_list.inc"
-#undef SCENE
-  };
-}
-
-std::vector<EngineEntry> engineEntries() {
-  return {
-#define ENGINE(name) name::entry(),
-#include "engine_list.inc"
-#undef ENGINE
-  };
-}
-
-std::vector<ObjectType> objectTypes() {
-  return {
-#define OBJECT_TYPE(name) name::entry(),
-#include "object_type_list.inc"
-#undef OBJECT_TYPE
-  };
-}
-
-std::vector<ReplayEntry> replayEntries() {
-  return {
-#define REPLAY(name) name::entry(),
-#include "replay_list.inc"
-#undef REPLAY
-  };
-}
-
-std::vector<RecorderEntry> recorderEntries() {
-  return {
-#define RECORDER(name) name::entry(),
-#include "recorder_list.inc"
-#undef RECORDER
-  };
-}
+#define LIST "brush_list.inc"
+#define ENTRY_TYPE BrushEntry
+#define ENTRIES brushEntries
+#include "entries.inl"
 
 }  // namespace broadmark::scenes
 
@@ -102,11 +58,13 @@ auto listingsOf(const std::vector<Entry>& entries) {
 }  // namespace
 
 std::vector<SceneListing> builtinScenes() { return listingsOf(scenes::sceneEntries()); }
+
 std::vector<EngineListing> builtinEngines() {
   auto listings = listingsOf(scenes::engineEntries());
   std::ranges::move(listingsOf(scenes::replayEntries()), std::back_inserter(listings));
   return listings;
 }
+
 std::vector<RecorderListing> builtinRecorders() { return listingsOf(scenes::recorderEntries()); }
 
 }  // namespace broadmark

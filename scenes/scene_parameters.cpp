@@ -1,5 +1,4 @@
-// Scene parameters as JSON and back. Values have the types of the parameters; what is not stated
-// keeps its default.
+// Scene parameters as JSON and back. Values have the types of the parameters.
 
 #include "scene_parameters.h"
 
@@ -10,14 +9,12 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "original/settings.h"
-#include "broadmark/json_fields.h"
 #include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
 namespace {
 
-/// A value as text for messages and numbers; a list or an object is only hinted at.
+/// A number as text; any value as a short text for messages.
 std::string textOf(const Json& value) {
   if (value.is_array()) return "[…]";
   return value.is_object() ? "{…}" : value.dump();
@@ -26,8 +23,8 @@ std::string textOf(const Json& value) {
 void setFromJson(const Parameter& parameter, const Json& value) {
   if (std::holds_alternative<bool*>(parameter.value)) {
     if (!value.is_boolean()) {
-      throw InputError(fmt::format("parameter {}: '{}' is neither true nor false", parameter.name,
-                                   textOf(value)));
+      throw InputError(
+          fmt::format("parameter {}: '{}' is not true or false", parameter.name, textOf(value)));
     }
     *std::get<bool*>(parameter.value) = value.get<bool>();
   } else if (std::holds_alternative<std::string*>(parameter.value)) {
@@ -39,11 +36,12 @@ void setFromJson(const Parameter& parameter, const Json& value) {
   } else if (std::holds_alternative<Choice*>(parameter.value) && value.is_string()) {
     setParameter(parameter, onOneLine(value.get<std::string>()));
   } else {
-    setParameter(parameter, textOf(value));  // of a JSON text the quotes, which no number has
+    // A JSON text keeps its quotes here, so that it is not taken for a number.
+    setParameter(parameter, textOf(value));
   }
 }
 
-/// Which keys a file of this kind has.
+/// The keys of a file with this schema.
 std::vector<std::string> knownKeys(const std::string& schema) {
   std::vector<std::string> keys = {"schema", "scene", "parameters"};
   if (schema == kBakeSchema) keys.insert(keys.end(), {"hash", "input_hash"});
@@ -57,8 +55,8 @@ void requireKnown(const std::string& kind, const std::string& name,
   }
 }
 
+/// Messages do not name the file: the caller adds it.
 std::unique_ptr<Simulation> simulationFrom(const Json& json) {
-  // Problems are named without the file here: the caller puts its name before them.
   const auto text = [&](const char* key) {
     const auto field = json.find(key);
     if (field == json.end()) throw InputError(fmt::format("'{}' is missing", key));
@@ -77,17 +75,17 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
   if (parameters != json.end() && !parameters->is_object()) {
     throw InputError("parameters: an object is expected");
   }
-  std::string engine;  // comes first: it decides which parameters there are
+  std::string engine;  // read first: it decides which parameters there are
   if (parameters != json.end() && parameters->contains("engine")) {
     const Json& value = parameters->at("engine");
     engine = onOneLine(value.is_string() ? value.get<std::string>() : textOf(value));
   }
   const std::string scene = text("scene");
   if (scene == kAuthoredSceneId) {
-    throw InputError(fmt::format(
-        "stands beside the recording of an authored scene: name that scene's own file (\"schema\": "
-        "\"{}\")",
-        scenes::kAuthoredSceneSchema));
+    throw InputError(
+        fmt::format("belongs to a recording of an authored scene: use the scene's own file instead "
+                    "(\"schema\": \"{}\")",
+                    scenes::kAuthoredSceneSchema));
   }
   auto simulation = makeSimulation(onOneLine(scene), engine);
   if (parameters != json.end()) setParametersFromJson(*simulation, *parameters);
@@ -96,7 +94,7 @@ std::unique_ptr<Simulation> simulationFrom(const Json& json) {
 
 }  // namespace
 
-nlohmann::ordered_json parametersJson(Parametrised& object) {
+Json parametersJson(Parametrised& object) {
   Json parameters = Json::object();
   object.visitParameters([&](const Parameter& parameter) {
     parameters[std::string(parameter.name)] = std::visit(
@@ -112,7 +110,7 @@ nlohmann::ordered_json parametersJson(Parametrised& object) {
   return parameters;
 }
 
-void setParametersFromJson(Parametrised& object, const nlohmann::ordered_json& values) {
+void setParametersFromJson(Parametrised& object, const Json& values) {
   std::vector<std::string> known;
   object.visitParameters([&](const Parameter& parameter) {
     known.emplace_back(parameter.name);
@@ -122,24 +120,19 @@ void setParametersFromJson(Parametrised& object, const nlohmann::ordered_json& v
   for (const auto& [key, value] : values.items()) requireKnown("parameter", key, known);
 }
 
-std::string onOneLine(const std::string& text) {
-  const std::string quoted = Json(text).dump();
-  return quoted.substr(1, quoted.size() - 2);
-}
-
-nlohmann::ordered_json sceneParametersJson(Simulation& simulation, std::string_view schema) {
+Json sceneParametersJson(Simulation& simulation, std::string_view schema) {
   return {{"schema", schema},
           {"scene", simulation.listing().id},
           {"parameters", parametersJson(simulation)}};
 }
 
-bool describesScene(std::string_view json_kind) {
-  return json_kind == kSceneParametersSchema || json_kind == kBakeSchema ||
-         json_kind == scenes::kAuthoredSceneSchema;
+bool describesScene(std::string_view schema) {
+  return schema == kSceneParametersSchema || schema == kBakeSchema ||
+         schema == scenes::kAuthoredSceneSchema;
 }
 
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name) {
-  if (jsonKind(json, name) == scenes::kAuthoredSceneSchema) {
+  if (jsonSchema(json, name) == scenes::kAuthoredSceneSchema) {
     return scenes::makeAuthoredSimulation(scenes::parseAuthoredScene(json, name), name);
   }
   const Json parsed = parseJson(json, name);
@@ -155,7 +148,7 @@ std::string formatSceneParameters(Simulation& simulation) {
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(&simulation)) {
     return scenes::formatAuthoredScene(authored->document());
   }
-  return sceneParametersJson(simulation, kSceneParametersSchema).dump(2) + "\n";
+  return formatJson(sceneParametersJson(simulation, kSceneParametersSchema), 2);
 }
 
 }  // namespace broadmark

@@ -1,16 +1,17 @@
-// The simulations of built-in scenes, and where they are found by name.
+// The simulations of built-in scenes, found by name.
 
 #include "broadmark/scenes/simulation.h"
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "broadmark/scenes/physics_simulation.h"
+#include "broadmark/scenes/scene.h"
+#include "engines/chosen_engine.h"
 #include "engines/replay.h"
-#include "scenes/scene.h"
+#include "entries.h"
+#include "physics_simulation.h"
 
 namespace broadmark {
 namespace scenes {
@@ -32,12 +33,12 @@ class BuiltinSimulation final : public PhysicsSimulation {
   void visitParameters(const ParameterVisitor& visit) override {
     settings_.visit(visit);
     scene_->visitParameters(visit);
-    engine_parameters_.parameters(settings_.engine, settings_.physics).visitParameters(visit);
+    engine_parameters_.parameters(settings_.engine.value, settings_.physics).visitParameters(visit);
   }
 
  private:
   [[nodiscard]] ObjectType objectType() const {
-    return entryOf(objectTypes(), settings_.object_type, "object type");
+    return entryOf(objectTypes(), settings_.object_type.value, "object type");
   }
 
   [[nodiscard]] SceneInfo describe() const override {
@@ -49,7 +50,7 @@ class BuiltinSimulation final : public PhysicsSimulation {
   }
 
   [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() override {
-    return engine_parameters_.create(settings_.engine, settings_.physics);
+    return engine_parameters_.create(settings_.engine.value, settings_.physics);
   }
 
   void start() override {
@@ -76,13 +77,16 @@ class BuiltinSimulation final : public PhysicsSimulation {
   Random random_{0};
 };
 
-std::vector<std::string> engineIds() {
-  std::vector<std::string> ids;
-  for (const EngineListing& listing : builtinEngines()) ids.push_back(listing.id);
-  return ids;
+/// Throws InputError unless there is an engine of this id, which may replay recordings.
+void requireEngine(const std::string& id) {
+  std::vector<std::string> known;
+  for (const EngineListing& listing : builtinEngines()) known.push_back(listing.id);
+  if (std::ranges::find(known, id) == known.end()) {
+    throw InputError(unknownName("engine", id, known));
+  }
 }
 
-/// A replay by the engine of this id; null if that one simulates.
+/// A replay by the engine of this id; null if it is not one that replays recordings.
 std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneListing& scene) {
   for (const ReplayEntry& entry : replayEntries()) {
     if (entry.listing.id == engine) return makeReplay(scene, entry);
@@ -94,10 +98,7 @@ std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::str
   if (auto replay = replayBy(engine, scene.listing)) return replay;
   auto simulation = std::make_unique<BuiltinSimulation>(scene);
   if (engine.empty()) return simulation;
-  const std::vector<std::string> known = engineIds();
-  if (std::ranges::find(known, engine) == known.end()) {
-    throw InputError(unknownName("engine", engine, known));
-  }
+  requireEngine(engine);
   setParameters(*simulation, {{"engine", engine}});
   return simulation;
 }
@@ -113,7 +114,8 @@ std::string lowerCase(std::string text) {
 
 std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
   if (auto replay = scenes::replayBy(id, {})) return replay;
-  return scenes::entryOf(scenes::engineEntries(), {id, scenes::engineIds()}, "engine").create({});
+  scenes::requireEngine(id);
+  return scenes::entryOf(scenes::engineEntries(), id, "engine").create({});
 }
 
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene, const std::string& engine) {

@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "kd/tree.h"
-#include "radix_sort.h"
-#include "simd/overlap_kernels.h"
 #include "broadmark/box_arrays.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
+#include "kd/tree.h"
+#include "radix_sort.h"
+#include "simd/overlap_kernels.h"
 
 namespace broadmark::kd {
 

@@ -15,8 +15,6 @@
 
 #include "kd/tree.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <functional>
@@ -30,9 +28,6 @@ namespace {
 
 /// Subtrees that the tree is cut into, for each worker.
 constexpr std::size_t kTasksPerWorker = 8;
-
-/// Pairs of nodes in stock at least.
-constexpr std::size_t kSpareNodes = 16;
 
 /// Makes the subtree's marks right, given own_touched of each of its nodes.
 void summarise(Node& node) {
@@ -55,30 +50,12 @@ void markAll(Node& node, bool touched) {
 
 }  // namespace
 
-void UpdateCounts::add(const UpdateCounts& other) {
-  moves += other.moves;
-  trims += other.trims;
-  translations += other.translations;
-  erasures += other.erasures;
-  partitions += other.partitions;
-  skipped_subtrees += other.skipped_subtrees;
-}
-
-void UpdateCounts::visit(const CounterVisitor& visitor) const {
-  visitor("moves between nodes", moves);
-  visitor("trims", trims);
-  visitor("translations", translations);
-  visitor("erasures", erasures);
-  visitor("partitions", partitions);
-  visitor("subtrees skipped in updates", skipped_subtrees);
-}
-
 void Tree::build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, ThreadTeam& team) {
   boxes_ = boxes;
   objects_per_leaf_ = objects_per_leaf;
   team_ = &team;
   workers_.resize(static_cast<std::size_t>(team.size()));
-  if (!root_.isLeaf()) releaseChildren(root_);
+  if (!root_.isLeaf()) nodes_.releaseChildren(root_);
   root_ = {};
   root_.own = root_.size = static_cast<std::uint32_t>(boxes.size());
   bodies_.resize(boxes.size());
@@ -101,7 +78,7 @@ void Tree::touch(std::uint32_t body) {
 
 void Tree::update() {
   summarise(root_);
-  reserveNodes();
+  nodes_.reserve();
   const std::size_t parts = team_->size() == 1 ? 1 : workers_.size() * kTasksPerWorker;
   grain_ = boxes_.size() / parts;
   refitAll();
@@ -295,7 +272,7 @@ void Tree::waterfall(Node& node, const Place& place, Worker& worker) {
 
 void Tree::trim(Node& node, const Place& place, Worker& worker) {
   ++worker.counts.trims;
-  releaseChildren(node);
+  nodes_.releaseChildren(node);
   node.own = node.size;
   node.own_touched = node.touched = true;
   makeHome(node, place);
@@ -331,10 +308,10 @@ void Tree::erase(Node& node, const Place& place, Worker& worker) {
   const bool keep_left = left.size >= right.size;
   const std::size_t end = place.begin + node.size;
   if (keep_left) {
-    releaseChildren(right);
+    nodes_.releaseChildren(right);
     giveToLeft(left, place.begin, node.own + right.size, worker);
   } else {
-    releaseChildren(left);
+    nodes_.releaseChildren(left);
     giveToRight(right, end - right.size, left.size + node.own, worker);
   }
   const Node& kept = keep_left ? left : right;
@@ -343,7 +320,7 @@ void Tree::erase(Node& node, const Place& place, Worker& worker) {
   node.axis = kept.axis;
   node.own = kept.own;
   node.own_touched = true;
-  release(pair);
+  nodes_.release(pair);
   makeHome(node, place);
 }
 
@@ -352,7 +329,7 @@ bool Tree::partition(Node& node, const Place& place, Worker& worker) {
   if (node.own <= objects_per_leaf_) return false;
   if (!findSplit(node, {at(place.begin), node.own}, worker)) return false;
   ++worker.counts.partitions;
-  node.children = newChildren();
+  node.children = nodes_.take();
   node.own_touched = true;
   return true;
 }
@@ -431,92 +408,6 @@ void Tree::rotate(std::size_t begin, std::size_t middle, std::size_t end, Worker
     std::copy_backward(at(begin), at(middle), at(end));
     std::ranges::copy(aside, at(begin));
   }
-}
-
-Node* Tree::newChildren() {
-  const std::lock_guard lock(pool_mutex_);
-  if (free_.empty()) growPool();
-  Node* const pair = free_.back();
-  free_.pop_back();
-  pair[0] = pair[1] = {};
-  return pair;
-}
-
-void Tree::release(Node* pair) {
-  const std::lock_guard lock(pool_mutex_);
-  free_.push_back(pair);
-}
-
-void Tree::releaseChildren(Node& node) {
-  if (node.isLeaf()) return;
-  releaseChildren(node.left());
-  releaseChildren(node.right());
-  release(std::exchange(node.children, nullptr));
-}
-
-void Tree::growPool() {
-  free_.push_back(pool_.emplace_back().data());
-  // So that releasing never allocates.
-  if (free_.capacity() < pool_.size()) free_.reserve(2 * pool_.size());
-}
-
-/// Keeps a stock of nodes, so that workers need not allocate when they take and release nodes in
-/// another order than before.
-void Tree::reserveNodes() {
-  if (free_.size() >= kSpareNodes + pool_.size() / 8) return;
-  while (free_.size() < 2 * kSpareNodes + pool_.size() / 4) growPool();
-}
-
-void Tree::draw(DebugDraw& draw, const Aabb& world) const { drawNode(draw, root_, world, 0); }
-
-void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const {
-  constexpr Rgb kCellColour = 0x4FA3D1;
-  constexpr Rgb kPlaneColour = 0xFFA500;
-  draw.box(region, kCellColour, level);
-  if (node.isLeaf()) return;
-  Aabb left = region;
-  Aabb right = region;
-  // Bodies, and so planes, may lie outside of the world.
-  const float plane = std::clamp(node.plane, region.min[node.axis], region.max[node.axis]);
-  left.max[node.axis] = right.min[node.axis] = plane;
-  Aabb plane_box = left;
-  plane_box.min[node.axis] = plane;
-  draw.box(plane_box, kPlaneColour, level);
-  drawNode(draw, node.left(), left, level + 1);
-  drawNode(draw, node.right(), right, level + 1);
-}
-
-std::string Tree::validate() const {
-  if (root_.size != bodies_.size()) return "the root does not hold all bodies";
-  std::vector<char> seen(bodies_.size(), 0);
-  for (const std::uint32_t body : bodies_) {
-    if (body >= seen.size() || seen[body] != 0)
-      return fmt::format("body {} is lost or twice", body);
-    seen[body] = 1;
-  }
-  return validateNode(root_, {});
-}
-
-std::string Tree::validateNode(const Node& node, const Place& place) const {
-  const std::size_t left_size = node.isLeaf() ? 0 : node.left().size;
-  const std::size_t right_size = node.isLeaf() ? 0 : node.right().size;
-  if (left_size + node.own + right_size != node.size) return "a node's populations do not add up";
-  if (node.escaped != 0 || node.refitted) return "a refit was not completed";
-  if (!node.isLeaf() && (left_size == 0 || right_size == 0)) return "a child is empty";
-  if (!node.isLeaf() && node.size < objects_per_leaf_) return "a node should have been trimmed";
-  for (const std::uint32_t body : bodies().subspan(place.begin + left_size, node.own)) {
-    const Aabb& box = boxes_[body];
-    if (homes_[body] != &node) return fmt::format("body {} is taken to be elsewhere", body);
-    if (!place.cell.holds(box)) return fmt::format("body {} is outside of its cell", body);
-    if (!node.isLeaf() &&
-        (isLeft(box, node.axis, node.plane) || isRight(box, node.axis, node.plane))) {
-      return fmt::format("body {} does not straddle its node's plane", body);
-    }
-  }
-  if (node.isLeaf()) return {};
-  std::string fault = validateNode(node.left(), leftPlace(node, place));
-  if (fault.empty()) fault = validateNode(node.right(), rightPlace(node, place));
-  return fault;
 }
 
 }  // namespace broadmark::kd

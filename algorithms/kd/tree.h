@@ -4,9 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <limits>
-#include <mutex>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +13,7 @@
 #include "broadmark/broad_phase.h"
 #include "broadmark/debug_draw.h"
 #include "broadmark/execution.h"
+#include "kd/node.h"
 
 namespace broadmark::kd {
 
@@ -38,28 +37,6 @@ struct Cell {
 /// Which side of a plane a box is on. A box that touches the plane from the right is on the right.
 inline bool isLeft(const Aabb& box, int axis, float plane) { return box.max[axis] < plane; }
 inline bool isRight(const Aabb& box, int axis, float plane) { return box.min[axis] >= plane; }
-
-/// A node owns a contiguous slice of the tree's array of bodies: left child's | own | right
-/// child's. Only populations are kept; where slices begin follows on the way down. So to shift the
-/// slice of a whole subtree is one block move that touches no node.
-struct Node {
-  Node* children = nullptr;  ///< left and right; null: a leaf
-  float plane = 0;
-  int axis = 0;
-  std::uint32_t own = 0;   ///< bodies kept here: in a leaf all, else those that straddle the plane
-  std::uint32_t size = 0;  ///< bodies of the subtree
-  /// During a refit: bodies that no longer fit in the cell, just outside of the slice, on the side
-  /// towards the parent's own.
-  std::uint32_t escaped = 0;
-  std::uint32_t work = 0;   ///< own bodies of the touched nodes of the subtree
-  bool own_touched = true;  ///< in this frame own bodies moved, came or went
-  bool touched = true;      ///< here or anywhere below
-  bool refitted = false;    ///< in parallel, before its parent
-
-  [[nodiscard]] bool isLeaf() const { return children == nullptr; }
-  [[nodiscard]] Node& left() const { return children[0]; }
-  [[nodiscard]] Node& right() const { return children[1]; }
-};
 
 /// What one frame's update did.
 struct UpdateCounts {
@@ -118,7 +95,7 @@ class Tree {
   struct alignas(64) Worker {
     UpdateCounts counts;
     std::vector<std::uint32_t> aside;  ///< the smaller block of a rotation
-    std::vector<float> centres;        ///< of which the median is sought
+    std::vector<float> centres;        ///< room for finding their median
   };
   /// Whether refit looks at touched nodes only, or at all, because the cell has become smaller.
   enum class Scope { touched, all };
@@ -156,11 +133,6 @@ class Tree {
 
   template <class Work>
   void runTasks(Work work);
-  Node* newChildren();
-  void release(Node* pair);
-  void releaseChildren(Node& node);
-  void growPool();
-  void reserveNodes();
 
   void drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const;
   [[nodiscard]] std::string validateNode(const Node& node, const Place& place) const;
@@ -175,10 +147,7 @@ class Tree {
   std::vector<Task> tasks_;  ///< subtrees for one worker each, in the order of their slices
   std::size_t grain_ = 0;    ///< a subtree with no more bodies than this is one task
 
-  // Pairs of nodes. A deque, because nodes must stay where they are.
-  std::deque<std::array<Node, 2>> pool_;
-  std::vector<Node*> free_;
-  std::mutex pool_mutex_;
+  NodePool nodes_;  ///< all but the root
 };
 
 }  // namespace broadmark::kd

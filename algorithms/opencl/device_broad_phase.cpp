@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "opencl/timer.h"
 #include "broadmark/error.h"
+#include "opencl/timer.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {
@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::size_t kStrips = 256;  ///< parts in which boxes are summarised
 constexpr std::size_t kSumsPerStrip = 5;
-/// Kernels count sixteen floats for each body with 32 bits.
-constexpr std::size_t kMostObjects = std::size_t{1} << 28;
 /// As common.cl has it: kernels stop counting about here.
 constexpr cl_uint kMostPairs = 0x80000000;
 
@@ -27,14 +25,19 @@ void DeviceBroadPhase::visitParameters(const ParameterVisitor& visit) {
   visit({"way", "how work is divided: for a CPU's few threads or a GPU's many", &way_});
 }
 
-Capabilities DeviceBroadPhase::capabilities() const { return {.max_objects = kMostObjects}; }
-
 bool DeviceBroadPhase::likeGpu() const {
   return way_.value == "auto" ? !context_->onCpu() : way_.value == "gpu";
 }
 
 void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Execution& execution) {
   context_ = &execution.shared<DeviceContext>();
+  makeProgram();
+  upload(first.boxes);
+  updateOnDevice();
+  findPairs();
+}
+
+void DeviceBroadPhase::makeProgram() {
   bodies_per_item_ = likeGpu() ? 1 : 256;
   group_ = likeGpu() ? 64 : 1;
   const std::string source = fmt::format("{}{}", opencl_kernels::common_cl(), kernelSource());
@@ -46,15 +49,11 @@ void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Executio
   sorter_.emplace(*context_, likeGpu());
   sink_.count = context_->buffer(sizeof(cl_uint));
   makeKernels(program);
-
-  updateObjects(first);
-  updateStructures();
-  searchOverlaps();
 }
 
-void DeviceBroadPhase::updateObjects(const Frame& frame) {
+void DeviceBroadPhase::upload(std::span<const Aabb> boxes) {
   transfers_ = {};
-  count_ = frame.boxes.size();
+  count_ = boxes.size();
   if (count_ < 2) return;
   if (count_ > capacity_) {
     capacity_ = count_;
@@ -64,28 +63,27 @@ void DeviceBroadPhase::updateObjects(const Frame& frame) {
   }
   sorter_->resize(count_);
   const ScopedTimer timer(transfers_.upload_ns);
-  context_->queue().enqueueWriteBuffer(boxes_, CL_TRUE, 0, frame.boxes.size_bytes(),
-                                       frame.boxes.data());
+  context_->queue().enqueueWriteBuffer(boxes_, CL_TRUE, 0, boxes.size_bytes(), boxes.data());
 }
 
-void DeviceBroadPhase::cleanCache() {
+void DeviceBroadPhase::dropAnswer() {
   pairs_.clear();
   run_ = {};
 }
 
-void DeviceBroadPhase::updateStructures() {
+void DeviceBroadPhase::updateOnDevice() {
   if (count_ < 2) return;
   build();
   context_->queue().finish();
 }
 
-void DeviceBroadPhase::searchOverlaps() {
-  cleanCache();
+void DeviceBroadPhase::findPairs() {
+  dropAnswer();
   if (count_ < 2) return;
   cl_uint found = searchOnce();
   while (found > sink_.capacity) {
     if (found >= kMostPairs) throw UnsupportedError("more than 2^31 overlapping pairs");
-    // A little more, lest every frame of a growing heap needs a second search.
+    // A little more, or every frame of a growing heap would need a second search.
     sink_.capacity = found + found / 4 + 1024;
     sink_.pairs = context_->buffer(std::size_t{sink_.capacity} * sizeof(Pair));
     found = searchOnce();
@@ -135,7 +133,7 @@ FrameSummary DeviceBroadPhase::summarise() {
   return summary;
 }
 
-void DeviceBroadPhase::visitCounters(const CounterVisitor& visit) const {
+void DeviceBroadPhase::visitSetup(const CounterVisitor& visit) const {
   visit("kernel_build_ns", static_cast<std::uint64_t>(context_->buildNanoseconds()));
 }
 

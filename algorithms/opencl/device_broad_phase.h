@@ -4,12 +4,14 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
 
+#include "opencl/device_algorithm.h"
 #include "opencl/device_context.h"
 #include "opencl/device_sorter.h"
 #include "opencl/launch.h"
-#include "broadmark/broad_phase.h"
 
 namespace broadmark::opencl {
 
@@ -27,27 +29,31 @@ struct PairSink {
   cl_uint capacity = 0;
 };
 
+/// Kernels count sixteen floats for each body with 32 bits.
+constexpr std::size_t kMostObjects = std::size_t{1} << 28;
+
 /// As common.cl has it: bodies behind the last one that meet nothing.
 constexpr std::size_t kPadding = 16;
 
-/// The frame's work is done when each phase returns: the times are honest.
+/// The frame's work is done when each phase returns, so that times are honest. Directly on
+/// BroadPhase: the answer comes from the device as a whole, and workers have no pair buffers to
+/// fill.
 class DeviceBroadPhase : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor&) override;
-  [[nodiscard]] Capabilities capabilities() const override;
 
-  void initialize(const SceneInfo&, const Frame& first, Execution&) override;
-  void updateObjects(const Frame&) override;
-  void cleanCache() override;
-  void updateStructures() override;
-  void searchOverlaps() override;
+  void initialize(const SceneInfo&, const Frame& first, Execution&) final;
+  void updateObjects(const Frame& frame) final { upload(frame.boxes); }
+  void cleanCache() final { dropAnswer(); }
+  void updateStructures() final { updateOnDevice(); }
+  void searchOverlaps() final { findPairs(); }
 
-  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
-  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
-  void visitCounters(const CounterVisitor&) const override;
+  [[nodiscard]] PairRuns overlaps() const final { return {&run_, 1}; }
+  [[nodiscard]] TransferTimes transfers() const final { return transfers_; }
+  void visitSetup(const CounterVisitor&) const final;
 
  protected:
-  // What an algorithm adds. All are called with at least two bodies.
+  // What an algorithm adds. reserve(), build() and search() are called with at least two bodies.
 
   /// The kernels, with common.cl put before them.
   [[nodiscard]] virtual std::string_view kernelSource() const = 0;
@@ -77,7 +83,8 @@ class DeviceBroadPhase : public BroadPhase {
   /// Whether a work item takes one body: for a GPU's many. Else hundreds, sixteen at a time.
   [[nodiscard]] bool likeGpu() const;
 
-  /// Elements of each of the six arrays of sorted boxes, and room for all of them (see common.cl).
+  /// Length of each of the six arrays of sorted boxes, and a buffer for all of them (see
+  /// common.cl).
   [[nodiscard]] cl_uint stride() const { return static_cast<cl_uint>(count_ + kPadding); }
   [[nodiscard]] cl::Buffer sortedBoxes(std::size_t count) const {
     return context_->buffer(6 * (count + kPadding) * sizeof(float));
@@ -97,6 +104,11 @@ class DeviceBroadPhase : public BroadPhase {
   }
 
  private:
+  void makeProgram();
+  void upload(std::span<const Aabb> boxes);
+  void dropAnswer();
+  void updateOnDevice();
+  void findPairs();
   cl_uint searchOnce();
 
   Choice way_{"auto", {"auto", "cpu", "gpu"}};
@@ -114,5 +126,14 @@ class DeviceBroadPhase : public BroadPhase {
   PairRun run_;
   TransferTimes transfers_;
 };
+
+/// Lists one of our algorithms on a device.
+template <class Phase>
+Algorithm ownDeviceAlgorithm(std::string id, std::string summary,
+                             AlgorithmDescription description) {
+  return deviceAlgorithm(
+      std::move(id), std::move(summary), std::move(description),
+      {.max_objects = kMostObjects, .create = [] { return std::make_unique<Phase>(); }});
+}
 
 }  // namespace broadmark::opencl

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <thread>
 
-#include "opencl/timer.h"
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
+#include "opencl/timer.h"
 
 namespace broadmark {
 namespace opencl {

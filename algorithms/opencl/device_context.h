@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "opencl/opencl.h"
 #include "broadmark/execution.h"
+#include "opencl/opencl.h"
 
 namespace broadmark::opencl {
 

@@ -9,7 +9,7 @@
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 
-#define BROADMARK_KERNELS "algorithms/simd/overlap_kernels.inl"
+#define BROADMARK_KERNELS "simd/overlap_kernels.inl"
 #include "simd/for_each_isa.inl"
 
 namespace broadmark {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint32_t kFewestSlots = 64;
 
-void tell(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
+void report(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
   shares[std::min(a, b) % shares.size()].add(a, b);
 }
 
@@ -43,12 +43,12 @@ void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bo
     }
     std::ranges::sort(sorted);
     lists_[axis].build(sorted, capacity_);
-    if (axis == 0) tellFirstPairs(sorted, work);
+    if (axis == 0) reportFirstPairs(sorted, work);
   }
 }
 
-/// The sweep that everything else avoids: each body against those that begin before it ends.
-void Cell::tellFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const {
+/// A sweep: each body against those that begin before it ends.
+void Cell::reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const {
   for (std::size_t i = 0; i < endpoints.size(); ++i) {
     if (endpoints[i].isEnd()) continue;
     const std::uint32_t slot = endpoints[i].slot();
@@ -56,7 +56,7 @@ void Cell::tellFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) c
       if (endpoints[j].isEnd()) continue;
       const std::uint32_t other = endpoints[j].slot();
       if (overlaps(box(slot, kNow), box(other, kNow)) && isOurs(slot, other, kNow)) {
-        tellBegun(slot, other, work);
+        reportBegun(slot, other, work);
       }
     }
   }
@@ -76,7 +76,7 @@ Cell::Ends Cell::ends(std::uint32_t slot, Moment moment) const {
   return all;
 }
 
-/// Takes over the new boxes of those that have moved, and tells where they are going.
+/// Takes over the new boxes of those that have moved, and sorts them by where they go.
 void Cell::sortOutMoved(const Bodies& all, CellWork& work) {
   work.leaving.clear();
   work.jumping.clear();
@@ -98,7 +98,7 @@ void Cell::sortOutMoved(const Bodies& all, CellWork& work) {
 
 /// Whether it is cheaper to remove a body and insert it anew than to sort it from here to there.
 bool Cell::jumps(std::uint32_t slot) const {
-  // The usual case, quickly told: it has not gone further than it is long.
+  // The usual case, and a quick test: it has not gone further than it is long.
   if (overlaps(box(slot, kBefore), box(slot, kNow))) return false;
   const Ends from = ends(slot, kBefore);
   const Ends to = ends(slot, kNow);
@@ -150,7 +150,7 @@ void Cell::grow() {
 }
 
 void Cell::depart(std::uint32_t slot, CellWork& work) {
-  tellMeeting(slot, kNow, kBefore, [&](std::uint32_t other) { tellEnded(slot, other, work); });
+  reportMeeting(slot, kNow, kBefore, [&](std::uint32_t other) { reportEnded(slot, other, work); });
   const Ends from = ends(slot, kBefore);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].remove(from[axis][0], from[axis][1]);
 }
@@ -158,16 +158,16 @@ void Cell::depart(std::uint32_t slot, CellWork& work) {
 void Cell::arrive(std::uint32_t slot, CellWork& work) {
   const Ends to = ends(slot, kNow);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].insert(to[axis][0], to[axis][1]);
-  tellMeeting(slot, kBefore, kNow, [&](std::uint32_t other) { tellBegun(slot, other, work); });
+  reportMeeting(slot, kBefore, kNow, [&](std::uint32_t other) { reportBegun(slot, other, work); });
 }
 
-/// Tells of all that the body overlaps at one moment and not at the other.
-template <class Tell>
-void Cell::tellMeeting(std::uint32_t slot, Moment without, Moment with, Tell tell_of) const {
+/// Reports all that the body overlaps at one moment and not at the other.
+template <class Report>
+void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const {
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) {
     if (overlaps(box(slot, with), box(other, with)) && isOurs(slot, other, with) &&
         !overlaps(box(slot, without), box(other, without))) {
-      tell_of(other);
+      report(other);
     }
   });
 }
@@ -193,18 +193,18 @@ void Cell::movePoint(int axis, Endpoint from, Endpoint to, CellWork& work) {
     const std::uint32_t starts = from.isEnd() ? passed.slot() : from.slot();
     const std::uint32_t ends = from.isEnd() ? from.slot() : passed.slot();
     if (may_begin) {
-      if (tells(starts, ends, axis, kBefore, kNow)) tellBegun(starts, ends, work);
+      if (reports(starts, ends, axis, kBefore, kNow)) reportBegun(starts, ends, work);
     } else {
-      if (tells(starts, ends, axis, kNow, kBefore)) tellEnded(starts, ends, work);
+      if (reports(starts, ends, axis, kNow, kBefore)) reportEnded(starts, ends, work);
     }
   });
   work.counts.swaps += swaps;
 }
 
 /// Of a swap of one body's start and another's end: whether the two overlap at the moment `with`
-/// and not at the moment `without`, and this is the occasion to tell.
-bool Cell::tells(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
-                 Moment with) const {
+/// and not at the moment `without`, and this swap reports it.
+bool Cell::reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
+                   Moment with) const {
   // Most are apart on another axis.
   if (!overlapsOnAxis(box(starts, with), box(ends, with), axis == 0 ? 1 : 0)) return false;
   if (!overlaps(box(starts, with), box(ends, with)) || !isOurs(starts, ends, with)) return false;
@@ -214,15 +214,15 @@ bool Cell::tells(std::uint32_t starts, std::uint32_t ends, int axis, Moment with
   return box(starts, without).min[axis] > box(ends, without).max[axis];
 }
 
-void Cell::tellBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  tell(work.begun, bodies_[p], bodies_[q]);
+void Cell::reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
+  report(work.begun, bodies_[p], bodies_[q]);
 }
 
-void Cell::tellEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  tell(work.ended, bodies_[p], bodies_[q]);
+void Cell::reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
+  report(work.ended, bodies_[p], bodies_[q]);
 }
 
-/// What is now has been, by the next frame.
+/// For the next frame, now is before.
 void Cell::settle(const CellWork& work) {
   for (const auto* slots : {&work.staying, &work.jumping, &work.entered}) {
     for (const std::uint32_t slot : *slots) {

@@ -1,26 +1,26 @@
 // One cell of the grid: an incremental sweep and prune on three axes over the bodies that touch it.
 //
-// What a cell tells. A cell is told of all its bodies' old and new boxes, then moves one body after
-// the other. Each swap of one body's start with another's end is an event: the two may have begun
-// or ceased to overlap. Halfway through a frame some bodies are at their old place and some at the
-// new one, and an event may be undone by a later one. So a swap is only the occasion to ask; what
-// is told rests on old and new boxes alone, and each change is told exactly once:
+// What a cell reports. A cell gets all its bodies' old and new boxes, then moves one body after the
+// other. Each swap of one body's start with another's end is an event: the two may have begun or
+// ceased to overlap. In the middle of a frame some bodies are at their old place and some at the
+// new one, and an event may be undone by a later one. So a swap is only the occasion to test; what
+// is reported depends on old and new boxes alone, and each change is reported exactly once:
 //
-// - On axis after axis, two boxes overlap if the start of each comes before the end of the other:
-//   six conditions. A start and an end change places once when the one is moved and once when the
-//   other is, at most. So where a condition fails on the old boxes and holds on the new ones, its
-//   two endpoints are swapped the one way once and never back.
-// - A pair that begins to overlap has such a condition, and is told at the swap of the first one.
-//   (On one axis only one of the two conditions can fail.) Likewise for a pair that ceases to.
+// - On each axis, two boxes overlap if the start of each comes before the end of the other: six
+//   conditions in all. A start and an end change places at most once when the one is moved and at
+//   most once when the other is. So where a condition fails on the old boxes and holds on the new
+//   ones, its two endpoints are swapped once in that direction and never back.
+// - A pair that begins to overlap has such a condition, and is reported at the swap of the first
+//   one. (On one axis only one of the two conditions can fail.) Likewise for a pair that ceases to.
 // - Bodies that leave the cell go before the others move, bodies that enter it come after. Their
-//   pairs are found by asking the list of the first axis for what they meet.
-// - Of several cells that both bodies touch, that one tells which holds the lowest corner of their
-//   intersection: the only one in which on no axis both begin below it. The beginning of an overlap
-//   is told by the cell of the new boxes, its end by that of the old ones; both bodies were in it.
+//   pairs are found by asking the list of the first axis which intervals they meet.
+// - Of several cells that both bodies touch, the one with the lowest corner of their intersection
+//   reports: the only one in which on no axis both begin below it. The beginning of an overlap is
+//   reported by the cell of the new boxes, its end by that of the old ones; both bodies were in it.
 //
-// Beyond the cell nothing is sorted: what begins below it begins at -infinity, what ends above it
-// ends at +infinity. Two bodies that touch the cell overlap on an axis exactly if their intervals
-// so clipped do. So a large body that moves costs nothing in the cells that it merely spans.
+// Intervals are clipped to the cell: what begins below it begins at -infinity, what ends above it
+// ends at +infinity. Two bodies that touch the cell overlap on an axis exactly if their clipped
+// intervals do. So a large body that moves costs nothing in the cells that it spans.
 #pragma once
 
 #include <array>
@@ -31,9 +31,9 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/pair.h"
 #include "tracy/grid.h"
 #include "tracy/segmented_list.h"
-#include "broadmark/pair.h"
 
 namespace broadmark::tracy {
 
@@ -79,8 +79,8 @@ class Cell {
   /// Bodies in the cell.
   [[nodiscard]] std::uint32_t size() const { return size_; }
 
-  /// Becomes the cell at `position` with these bodies, in their boxes of now, and tells all their
-  /// pairs. O(m log m + w), w the pairs that overlap on the first axis.
+  /// Becomes the cell at `position` with these bodies, in their boxes of now, and reports all
+  /// their pairs. O(m log m + w), w the pairs that overlap on the first axis.
   void build(const CellPosition& position, std::span<const std::uint32_t> bodies, const Bodies& all,
              CellWork& work);
 
@@ -129,7 +129,7 @@ class Cell {
   [[nodiscard]] const Aabb& box(std::uint32_t slot, Moment moment) const {
     return slots_[slot].boxes[moment];
   }
-  /// Whether it is for this cell to tell of the pair.
+  /// Whether this cell reports the pair.
   [[nodiscard]] bool isOurs(std::uint32_t p, std::uint32_t q, Moment moment) const {
     return (crossings_[p][moment] & crossings_[q][moment] & kCrossesBelow) == 0;
   }
@@ -144,13 +144,13 @@ class Cell {
   void settle(const CellWork& work);
 
   void movePoint(int axis, Endpoint from, Endpoint to, CellWork& work);
-  [[nodiscard]] bool tells(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
-                           Moment with) const;
-  template <class Tell>
-  void tellMeeting(std::uint32_t slot, Moment without, Moment with, Tell tell) const;
-  void tellFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
-  void tellBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const;
-  void tellEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const;
+  [[nodiscard]] bool reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
+                             Moment with) const;
+  template <class Report>
+  void reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const;
+  void reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
+  void reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const;
+  void reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const;
 
   std::uint32_t takeSlot(std::uint32_t body);
   void grow();

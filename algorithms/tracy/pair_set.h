@@ -13,7 +13,7 @@
 namespace broadmark::tracy {
 
 /// The pairs themselves stand in an array without gaps; a hash table with linear probing (of at
-/// most half its places taken) tells where. Keeps its memory when cleared.
+/// most half its places taken) holds their positions. Keeps its memory when cleared.
 class PairSet {
  public:
   [[nodiscard]] PairRun run() const { return pairs_; }

@@ -1,8 +1,8 @@
 // A segmented interval list: the ends of many intervals on one axis, kept sorted in linked chunks.
 //
-// An endpoint that moves a little is put right by insertion sort, from neighbour to neighbour. One
-// that comes or goes shifts its own chunk only. So that a new interval need not be compared with
-// all that begin before it, every chunk may keep the set of intervals that are open at its start.
+// An endpoint that moves a little is put in order by insertion sort, from neighbour to neighbour.
+// One that comes or goes shifts its own chunk only. Every chunk may keep the set of intervals that
+// are open at its start: then a new interval is not compared with all that begin before it.
 //
 // Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
 // AABB Insertion and Removal", IEEE VR 2009, section 4.

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "inspector/run_thread.h"
 #include "broadmark/files.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "inspector/run_thread.h"
 
 namespace broadmark {
 namespace {
@@ -41,12 +41,12 @@ std::string AuthorDesk::title() const {
   return path_.empty() ? editor.scene().name : path_.filename().string();
 }
 
-std::function<std::unique_ptr<Footage>()> AuthorDesk::still() const {
+FootageOpener AuthorDesk::still() const {
   auto boxes = std::make_shared<const std::vector<Aabb>>(boxesOf(editor.scene()));
   return [info = infoOf(editor.scene()), boxes] { return std::make_unique<Footage>(info, *boxes); };
 }
 
-std::function<std::unique_ptr<Footage>()> AuthorDesk::live() const {
+FootageOpener AuthorDesk::live() const {
   return [scene = std::make_shared<const scenes::AuthoredScene>(editor.scene()), path = path_] {
     return std::make_unique<Footage>(scenes::makeAuthoredSimulation(*scene, path));
   };

@@ -1,51 +1,50 @@
-// Where a scene is put together: the document with its history, the file it lives in, the brush.
+// What a scene is put together on: the document with its history, its file, the brush.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 
-#include "inspector/footage.h"
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
+#include "inspector/footage.h"
 
 namespace broadmark {
 
 struct FootageRequest;
 
-/// One document at a time; at first it is empty.
+/// At first the document is empty.
 class AuthorDesk {
  public:
   AuthorDesk();
 
-  /// Takes another document, with no history. `unsaved`: it stands in no file as it is.
+  /// Takes another document, with no history. `unsaved`: no file holds it as it is.
   void start(scenes::AuthoredScene scene, std::filesystem::path path = {}, bool unsaved = false);
-  /// Writes the document, which lives in that file from then on; `path` gets its extension if it
-  /// has none. Throws InputError.
+  /// Writes the document to what becomes its file; `path` gets its extension if it has none. Throws
+  /// InputError.
   void save(std::filesystem::path path);
 
-  /// The file that the document lives in; "": none yet.
+  /// The document's file; "": none yet.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// What people call the document: the file's name, or the scene's.
+  /// The document's name for people: that of the file, or of the scene.
   [[nodiscard]] std::string title() const;
-  /// Whether something would be lost with the document.
+  /// Whether it has unsaved changes.
   [[nodiscard]] bool isModified() const { return unsaved_ || editor.isModified(); }
 
-  /// What opens the bodies where they start. Independent of later edits. O(bodies).
-  [[nodiscard]] std::function<std::unique_ptr<Footage>()> still() const;
-  /// What opens the simulation; likewise.
-  [[nodiscard]] std::function<std::unique_ptr<Footage>()> live() const;
+  // Both are independent of later edits. O(bodies).
+  /// Opens the bodies where they start.
+  [[nodiscard]] FootageOpener still() const;
+  /// Opens the simulation.
+  [[nodiscard]] FootageOpener live() const;
   /// The simulation itself, of a copy. Throws InputError.
   [[nodiscard]] std::unique_ptr<Simulation> simulation() const;
 
-  /// Takes another brush, by its place in `brushes`.
+  /// Takes another brush, by its index in `brushes`.
   void chooseBrush(std::size_t which);
   [[nodiscard]] std::size_t chosenBrush() const { return chosen_brush_; }
   [[nodiscard]] scenes::Brush& brush() { return *brush_; }
-  /// Paints once and selects what was added. Returns how many bodies found no room. Throws
-  /// InputError.
+  /// Paints once and selects the new bodies. Returns how many found no room. Throws InputError.
   std::size_t addStroke();
 
   scenes::SceneEditor editor;

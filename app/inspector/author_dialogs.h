@@ -1,4 +1,4 @@
-// What is asked about the document that is being authored.
+// Dialogs about the document.
 #pragma once
 
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace broadmark {
 
-/// Asks for a scene, and opens it.
+/// Asks for a scene file, and opens it.
 void askOpenScene(FileDialog& files, Session& session);
 /// Asks for a file and saves the document there, then goes on.
 void askSaveScene(FileDialog& files, Session& session, std::function<void()> then = {});
@@ -17,7 +17,7 @@ void askSaveScene(FileDialog& files, Session& session, std::function<void()> the
 void saveScene(FileDialog& files, Session& session, std::function<void()> then = {});
 /// Asks for a recording to bake the document into.
 void askBakeScene(FileDialog& files, Session& session);
-/// While `session.leaving` waits: whether to save or to discard the changes, or to stay.
+/// While `session.document.leaving` waits: whether to save or to discard the changes, or to stay.
 void drawLeaving(Ui& ui, FileDialog& files, Session& session);
 
 }  // namespace broadmark

@@ -43,12 +43,8 @@ void drawCaseChooser(Ui& ui, Session& session) {
   if (!session.case_choice) return;
   const auto scope = ui.scope("Cases");
   if (!ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::SetNextWindowSize(
-      {std::min(620 * ui.scale, screen.x - 20), std::min(420 * ui.scale, screen.y - 20)});
   bool keep = true;
-  if (!ImGui::BeginPopupModal(kTitle, &keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  if (!ui.beginDialog(kTitle, {620, 420}, &keep)) {
     session.case_choice.reset();
     return;
   }
@@ -59,7 +55,7 @@ void drawCaseChooser(Ui& ui, Session& session) {
   const std::string clicked = drawCases(ui, choice);
   ui.checkbox("all cases", choice.all, "Also those whose answers were right");
   ImGui::SameLine();
-  if (ui.button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) keep = false;
+  if (ui.cancel()) keep = false;
   if (!clicked.empty() || !keep) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
   if (clicked.empty() && keep) return;

@@ -1,27 +1,23 @@
-// Exporting a failing case while the window lives on: shrinks it to the smallest recording on a
-// thread of its own, and writes that.
+// Exporting a failing case in the background: shrinks it to the smallest recording, and writes
+// that.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
 
-#include "broadmark/runner.h"
-#include "broadmark/shrink.h"
+#include "broadmark/case.h"
+#include "broadmark/frame.h"
+#include "broadmark/oracle.h"
+#include "inspector/background_task.h"
 
 namespace broadmark {
 
 class CaseExport {
  public:
-  enum class State { idle, running, done, cancelled, failed };
-
-  /// How it stands. Sizes are those of the smallest part found so far.
-  struct Report {
-    State state = State::idle;
+  /// Sizes are those of the smallest part found so far.
+  struct Report : TaskReport {
     Case run;
     std::filesystem::path file;
     std::size_t whole_bodies = 0;
@@ -30,39 +26,24 @@ class CaseExport {
     std::size_t bodies = 0;
     std::size_t frames = 0;
     std::string command;  ///< once done: what shows the fault, for a shell
-    std::string failure;  ///< of a failed one
   };
 
-  CaseExport() = default;
-  /// Cancels what is running, and waits for it.
-  ~CaseExport();
-  CaseExport(const CaseExport&) = delete;
-  CaseExport& operator=(const CaseExport&) = delete;
-
   /// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
-  /// when one is running already.
-  void start(const Case& run, std::unique_ptr<FrameSource> source, FrameDifference known,
+  /// while another export is running.
+  void start(const Case& run, std::unique_ptr<IndexedFrames> source, FrameDifference known,
              std::filesystem::path file);
   /// Ends it soon; nothing is written then.
-  void cancel() { cancelled_ = true; }
-  [[nodiscard]] bool running() const { return report().state == State::running; }
-  [[nodiscard]] Report report() const;
+  void cancel() { task_.cancel(); }
+  [[nodiscard]] bool running() const { return task_.running(); }
+  [[nodiscard]] Report report() const { return task_.report(); }
   /// Whether it has ended since this was last asked.
-  bool takeEnd() { return ended_.exchange(false); }
+  bool takeEnd() { return task_.takeEnd(); }
 
  private:
-  void work(FrameSource& source, const FrameDifference& known);
-  /// Shrinks and writes; returns how it ended.
-  State shrinkAndWrite(FrameSource& source, const FrameDifference& known);
+  /// Returns whether it was written: not when cancelled.
+  bool shrinkAndWrite(IndexedFrames& source, const FrameDifference& known);
 
-  std::atomic<bool> cancelled_ = false;
-  std::atomic<bool> ended_ = false;
-  mutable std::mutex mutex_;
-  Report report_;  ///< guarded by mutex_
-  std::thread thread_;
+  BackgroundTask<Report> task_{"exporting a case"};
 };
-
-/// The state in a word: "running".
-const char* exportStateName(CaseExport::State state);
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// Drawing and timing take turns, lest one disturbs the other.
+// Drawing and timing take turns, so that neither disturbs the other.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@ namespace broadmark {
 
 /// While a frame is being timed nothing is drawn, and while something is drawn no frame begins to
 /// be timed; when both sides are eager they alternate. Only a frame that takes longer than
-/// kPatience lets the other side draw all the same, and is then called disturbed.
+/// kPatience does not keep the other side from drawing; it is then called disturbed.
 class DrawGate {
  public:
   static constexpr std::chrono::milliseconds kPatience{50};

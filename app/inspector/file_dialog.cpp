@@ -5,12 +5,17 @@
 #include <algorithm>
 #include <utility>
 
+#include "broadmark/names.h"
 #include "words.h"
 
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr NameTable kVerbs{{NamedValue{FileDialog::Purpose::open, "Open"},
+                            {FileDialog::Purpose::save, "Save"},
+                            {FileDialog::Purpose::directory, "Choose"}}};
 
 }  // namespace
 
@@ -58,7 +63,7 @@ void FileDialog::accept() {
   std::error_code none;
   if (request_.purpose != Purpose::directory) {
     if (name_.empty()) {
-      failure_ = "a file name is needed";
+      failure_ = "enter a file name";
       return;
     }
     if (fs::is_directory(path, none)) {
@@ -67,7 +72,7 @@ void FileDialog::accept() {
       return;
     }
     if (request_.purpose == Purpose::open && !fs::exists(path, none)) {
-      failure_ = fmt::format("{}: there is no such file", path.string());
+      failure_ = fmt::format("{}: no such file", path.string());
       return;
     }
     if (request_.purpose == Purpose::save && fs::exists(path, none) && !confirm_overwrite_) {
@@ -111,14 +116,8 @@ void FileDialog::draw(Ui& ui) {
   if (!open_) return;
   const auto scope = ui.scope("File");
   if (std::exchange(opening_, false)) ImGui::OpenPopup(request_.title.c_str());
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowSize(
-      {std::min(620 * ui.scale, screen.x - 20), std::min(460 * ui.scale, screen.y - 20)},
-      ImGuiCond_Always);
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
   bool keep = true;
-  if (!ImGui::BeginPopupModal(request_.title.c_str(), &keep,
-                              ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) {
+  if (!ui.beginDialog(request_.title.c_str(), {620, 460}, &keep)) {
     open_ = false;
     return;
   }
@@ -136,12 +135,9 @@ void FileDialog::draw(Ui& ui) {
   } else {
     ImGui::Dummy({0, ImGui::GetTextLineHeight()});
   }
-  const char* verb = request_.purpose == Purpose::open   ? "Open"
-                     : request_.purpose == Purpose::save ? "Save"
-                                                         : "Choose";
-  if (ui.button(verb)) accept();
+  if (ui.button(std::string(kVerbs.nameOf(request_.purpose)).c_str())) accept();
   ImGui::SameLine();
-  if (ui.button("Cancel") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) keep = false;
+  if (ui.cancel()) keep = false;
   if (!keep) open_ = false;
   if (!open_) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();

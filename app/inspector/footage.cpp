@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
 
@@ -11,107 +15,83 @@ namespace {
 
 constexpr const char* kKeptName = "the frames simulated so far";
 
-/// Reads frame `index` of a file of frames into `boxes`.
-void readKept(const FileDescriptor& kept, std::uint32_t index, std::span<Aabb> boxes) {
-  const auto bytes = std::as_writable_bytes(boxes);
-  const std::uint64_t start = std::uint64_t{index} * bytes.size();
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got = ::pread(kept.get(), bytes.data() + done, bytes.size() - done,
-                                static_cast<off_t>(start + done));
-    if (got <= 0) throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
-    done += static_cast<std::size_t>(got);
-  }
-}
-
-/// Frames 0…F, each to be had by its number through `read`.
-class NumberedFrames final : public FrameSource {
+/// A file of boxes, frame after frame and nothing else. Those that are not written yet cannot be
+/// read.
+class KeptFrames final : public IndexedFrames {
  public:
-  using Read = std::function<Frame(std::uint32_t)>;
-  NumberedFrames(SceneInfo scene, Read read) : scene_(std::move(scene)), read_(std::move(read)) {}
+  KeptFrames(SceneInfo scene, std::shared_ptr<const FileDescriptor> file)
+      : scene_(std::move(scene)), file_(std::move(file)), boxes_(scene_.objects) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-  Frame rewind() override {
-    index_ = 0;
-    return read_(0);
-  }
-  std::optional<Frame> next() override {
-    if (index_ == scene_.frames) return {};
-    return read_(++index_);
-  }
 
  private:
+  std::span<const Aabb> readBoxes(std::uint32_t index) override {
+    const auto bytes = std::as_writable_bytes(std::span(boxes_));
+    const std::uint64_t start = std::uint64_t{index} * bytes.size();
+    for (std::size_t done = 0; done < bytes.size();) {
+      const ssize_t got = ::pread(file_->get(), bytes.data() + done, bytes.size() - done,
+                                  static_cast<off_t>(start + done));
+      if (got <= 0) throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
+      done += static_cast<std::size_t>(got);
+    }
+    return boxes_;
+  }
+
   SceneInfo scene_;
-  Read read_;
-  std::uint32_t index_ = 0;
+  std::shared_ptr<const FileDescriptor> file_;
+  std::vector<Aabb> boxes_;
 };
+
+void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
+  writeAll(file.get(), std::as_bytes(boxes), kKeptName);
+}
 
 }  // namespace
 
 Footage::Footage(std::unique_ptr<Recording> recording)
-    : scene_(recording->scene()), known_(scene_.frames), recording_(std::move(recording)) {}
+    : known_(recording->scene().frames), frames_(std::move(recording)) {}
 
-Footage::Footage(std::unique_ptr<Simulation> simulation)
-    : simulation_(std::move(simulation)),
-      kept_(std::make_shared<const FileDescriptor>(unnamedFile())) {
+Footage::Footage(std::unique_ptr<Simulation> simulation) : simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
-  scene_ = simulation_->scene();
-  keep(first.boxes);
+  keep(simulation_->scene(), first.boxes);
 }
 
-Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes)
-    : scene_(std::move(scene)), kept_(std::make_shared<const FileDescriptor>(unnamedFile())) {
-  keep(boxes);
-}
+Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, boxes); }
 
-void Footage::keep(std::span<const Aabb> boxes) {
-  boxes_.assign(boxes.begin(), boxes.end());
-  writeAll(kept_->get(), std::as_bytes(boxes), kKeptName);
+void Footage::keep(const SceneInfo& scene, std::span<const Aabb> first) {
+  kept_ = std::make_shared<const FileDescriptor>(unnamedFile());
+  frames_ = std::make_unique<KeptFrames>(scene, kept_);
+  append(*kept_, first);
 }
 
 void Footage::extend() {
   const std::optional<Frame> frame = simulation_->next();
   if (!frame) throw std::logic_error("simulated beyond the last frame");
-  keep(frame->boxes);
+  append(*kept_, frame->boxes);
   ++known_;
 }
 
-Frame Footage::read(std::uint32_t index) {
-  if (recording_) return recording_->read(index);
-  boxes_.resize(scene_.objects);
-  readKept(*kept_, index, boxes_);
-  return {index, boxes_};
-}
-
 scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
-  if (recording_) return scenes::sceneFromFrame(*recording_, index);
   if (auto* whole = dynamic_cast<scenes::SceneSource*>(simulation_.get());
       whole && index == known_) {
     return whole->authoredScene();
   }
-  // Of all else, a replay among them, only the boxes are at hand.
-  return scenes::sceneFromFrame(*source(index), index);
+  // Of other simulations, such as replays, only the boxes are known.
+  return scenes::sceneFromFrame(*frames_, index);
 }
 
-std::unique_ptr<FrameSource> Footage::source(std::uint32_t last) const {
-  SceneInfo scene = scene_;
+std::unique_ptr<IndexedFrames> Footage::source(std::uint32_t last) const {
+  if (!kept_) return openRecordingFile(frames_->name());
+  SceneInfo scene = frames_->scene();
   scene.frames = last;
-  if (recording_) {
-    const std::shared_ptr<Recording> opened = openRecordingFile(recording_->name());
-    return std::make_unique<NumberedFrames>(
-        scene, [opened](std::uint32_t index) { return opened->read(index); });
-  }
-  auto boxes = std::make_shared<std::vector<Aabb>>(scene.objects);
-  return std::make_unique<NumberedFrames>(scene, [kept = kept_, boxes](std::uint32_t index) {
-    readKept(*kept, index, *boxes);
-    return Frame{index, *boxes};
-  });
+  return std::make_unique<KeptFrames>(std::move(scene), kept_);
 }
 
 void Footage::save(const std::filesystem::path& path) {
-  SceneInfo saved = scene_;
+  SceneInfo saved = scene();
   saved.frames = known_;
   RecordingWriter writer(path, saved);
-  for (std::uint32_t index = 0; index <= known_; ++index) writer.write(read(index).boxes);
+  for (std::uint32_t index = 0; index <= known_; ++index) writer.write(at(index).boxes);
   writer.finish();
 }
 

@@ -6,9 +6,9 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
+#include "broadmark/files.h"
+#include "broadmark/frame.h"
 #include "broadmark/recording.h"
 #include "broadmark/scenes/authored_scene.h"
 #include "broadmark/scenes/simulation.h"
@@ -26,7 +26,7 @@ class Footage {
   Footage(SceneInfo scene, std::span<const Aabb> boxes);
 
   /// Its `frames` counts all there may ever be.
-  [[nodiscard]] const SceneInfo& scene() const { return scene_; }
+  [[nodiscard]] const SceneInfo& scene() const { return frames_->scene(); }
   /// The last frame that exists already.
   [[nodiscard]] std::uint32_t known() const { return known_; }
   /// Whether frames beyond known() would have to be simulated first.
@@ -35,28 +35,29 @@ class Footage {
   /// Simulates the next frame. There must be one.
   void extend();
   /// A known frame; valid until the next call. Throws InputError (a broken recording).
-  Frame read(std::uint32_t index);
+  Frame at(std::uint32_t index) { return frames_->at(index); }
 
   /// A known frame as a scene of its own, with all that is known of its bodies. Of a live
   /// simulation it has to be the latest. Throws InputError when it holds what no body can be.
   [[nodiscard]] scenes::AuthoredScene authoredScene(std::uint32_t index);
 
-  /// The frames up to `last`, which are known, as a source of their own, for use from any thread,
-  /// also when this is gone. Throws InputError.
-  [[nodiscard]] std::unique_ptr<FrameSource> source(std::uint32_t last) const;
+  /// The frames up to `last`, which are known, and perhaps more, for use from any thread, also when
+  /// this is gone. Throws InputError.
+  [[nodiscard]] std::unique_ptr<IndexedFrames> source(std::uint32_t last) const;
 
   /// Writes all known frames as a recording, initial pose included. Throws InputError.
   void save(const std::filesystem::path& path);
 
  private:
-  void keep(std::span<const Aabb> boxes);
+  void keep(const SceneInfo& scene, std::span<const Aabb> first);
 
-  SceneInfo scene_;
   std::uint32_t known_ = 0;
-  std::unique_ptr<Recording> recording_;
+  std::unique_ptr<IndexedFrames> frames_;
   std::unique_ptr<Simulation> simulation_;
-  std::shared_ptr<const FileDescriptor> kept_;  ///< of a simulation: frames, nothing else
-  std::vector<Aabb> boxes_;
+  std::shared_ptr<const FileDescriptor> kept_;  ///< what frames_ reads; null for a recording
 };
+
+/// Opens some footage, each time anew. Throws InputError.
+using FootageOpener = std::function<std::unique_ptr<Footage>()>;
 
 }  // namespace broadmark

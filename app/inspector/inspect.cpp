@@ -6,23 +6,23 @@
 #include <chrono>
 #include <iostream>
 
-#include "inspector/inspector.h"
-#include "inspector/script.h"
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/render/framebuffer.h"
 #include "broadmark/render/window.h"
+#include "inspector/inspector.h"
+#include "inspector/script.h"
 
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Off-screen, time goes by as if pictures came at this rate: the same on every machine.
+/// Off-screen, this much time passes from picture to picture, the same on every machine.
 constexpr double kOffscreenSeconds = 1.0 / 60;
 /// Between two looks when nothing moves.
 constexpr double kIdleSeconds = 0.25;
-/// At least this much lies between two pictures.
+/// At least this much time between two pictures.
 constexpr double kPictureSeconds = 1.0 / 60;
 
 std::optional<ScriptPlayer> scriptOf(const fs::path& path) {
@@ -44,7 +44,7 @@ class Movie {
     last_ = frame;
     std::error_code none;
     fs::create_directories(directory, none);
-    inspector.session().attempt(
+    inspector.session().notices.attempt(
         [&] { writePng(directory / fmt::format("frame_{:05}.png", count_++), picture()); });
   }
 
@@ -53,10 +53,10 @@ class Movie {
   std::optional<std::string> last_;
 };
 
-/// What is asked of whoever owns the picture.
+/// Writes the pictures that the user has asked for.
 void takePictures(Inspector& inspector, Movie& movie, const std::function<Picture()>& picture) {
   if (const auto path = inspector.takeScreenshotRequest()) {
-    inspector.session().attempt([&] { writePng(*path, picture()); });
+    inspector.session().notices.attempt([&] { writePng(*path, picture()); });
   }
   movie.take(inspector, picture);
 }
@@ -96,7 +96,7 @@ void inspectInWindow(const InspectOptions& options) {
       window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
       for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
       if (window.closing()) {
-        window.stayOpen();  // until it is known what becomes of unsaved changes
+        window.stayOpen();  // until the user has decided about unsaved changes
         inspector.close();
       }
       if (script) {
@@ -153,8 +153,8 @@ void inspectOffscreen(const InspectOptions& options) {
     if (busy && input.empty()) inspector.session().runs.settle(std::chrono::milliseconds(2));
   }
   if (!options.screenshot.empty()) writePng(options.screenshot, target->read());
-  if (!inspector.session().errors.empty()) {
-    throw InputError(inspector.session().errors.front());
+  if (!inspector.session().notices.errors.empty()) {
+    throw InputError(inspector.session().notices.errors.front());
   }
 }
 

@@ -1,4 +1,4 @@
-// The inspector's two ways of life: in a window, and off-screen.
+// Running the inspector: in a window, or off-screen.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace broadmark {
 
 class Session;
 
-/// What the inspector is started with.
+/// What the inspector starts with.
 struct InspectOptions {
   std::vector<Algorithm> algorithms;    ///< that can be chosen
   std::function<void(Session&)> begin;  ///< opens the source, adds algorithms
@@ -25,10 +25,10 @@ struct InspectOptions {
   GlSource gl = GlSource::automatic;
 };
 
-/// Opens a window and returns when it is closed. Throws RenderError where there is none to be had.
+/// Opens a window and returns when it is closed. Throws RenderError where no window can be opened.
 void inspectInWindow(const InspectOptions& options);
-/// Draws into pictures only, until the script is done and all is computed. Nothing is remembered
-/// from other times or for them. Throws InputError when the script fails, RenderError.
+/// Draws into pictures only, until the script is done and all is computed. Preferences are neither
+/// read nor written. Throws InputError when the script fails, RenderError.
 void inspectOffscreen(const InspectOptions& options);
 
 }  // namespace broadmark

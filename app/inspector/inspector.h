@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/render/gl.h"
+#include "broadmark/render/input_queue.h"
+#include "broadmark/render/ui_renderer.h"
 #include "inspector/file_dialog.h"
 #include "inspector/panel.h"
 #include "inspector/preferences.h"
 #include "inspector/session.h"
 #include "inspector/ui.h"
 #include "inspector/view.h"
-#include "broadmark/render/gl.h"
-#include "broadmark/render/input_queue.h"
-#include "broadmark/render/ui_renderer.h"
 
 struct ImGuiContext;
 
@@ -53,18 +53,18 @@ class Inspector {
   [[nodiscard]] bool closing() const { return closing_; }
   /// Closes, once unsaved changes are saved or given up.
   void close() {
-    session_.leaveDocument([this] { closing_ = true; });
+    session_.document.leave([this] { closing_ = true; });
   }
-  /// Whether pictures would change though nothing happens at mouse and keyboard.
+  /// Whether pictures change without input.
   [[nodiscard]] bool lively();
   /// Brings a panel to the front.
-  void showPanel(const std::string& name) { session_.wanted_panels.push_back(name); }
-  /// A screenshot has been asked for: where to. Taken by whoever owns the target.
+  void showPanel(const std::string& name) { session_.notices.wanted_panels.push_back(name); }
+  /// Where to write the screenshot that the user has asked for; once.
   std::optional<std::filesystem::path> takeScreenshotRequest();
   /// Where the numbered pictures of a movie go; "": none is being made.
   [[nodiscard]] const std::filesystem::path& movieDirectory() const { return movie_directory_; }
-  /// What a name stands for, as text, for scripts and tests: "frame", "pairs", … Nothing for an
-  /// unknown name.
+  /// The session's state by name, as text, for scripts and tests: "frame", "pairs", … Nothing for
+  /// an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
   FileDialog& fileDialog() { return files_; }
   /// Panel by name, or null.

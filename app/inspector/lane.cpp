@@ -2,29 +2,44 @@
 
 #include <fmt/format.h>
 
-#include "broadmark/error.h"
-
 namespace broadmark {
+namespace {
 
-void Lane::fail(Status status, std::string reason) {
-  report_.status = status;
-  report_.reason = std::move(reason);
-  instance_.reset();
+constexpr RunPolicy kPolicy{.check = CheckMode::hash,
+                            .frame_limit_seconds = Lane::kFrameLimitSeconds};
+
+/// Collects what a visit shows.
+CounterVisitor into(std::map<std::string, std::uint64_t>& counters) {
+  counters.clear();
+  return [&counters](std::string_view name, std::uint64_t count) { counters.emplace(name, count); };
+}
+
+}  // namespace
+
+template <class Call>
+void Lane::attempt(Call&& call) {
+  try {
+    call();
+    report_.status = run_->status();
+    report_.reason = run_->reason();
+    report_.ended = !run_->running();
+  } catch (const std::exception& error) {
+    report_.status = Status::error;
+    report_.reason = error.what();
+    report_.ended = true;
+  }
 }
 
 void Lane::restart(const SceneInfo& scene, const Frame& first) {
-  instance_.reset();  // two may not live side by side
   report_.frame = 0;
-  seconds_ = 0;
-  try {
-    instance_ = std::make_unique<CaseInstance>(spec().run, scene);
-    report_.margin = instance_->capabilities().margin;
-    report_.initialize_ns = instance_->initialize(scene, first);
-  } catch (const UnsupportedError& unsupported) {
-    fail(Status::unsupported, unsupported.what());
-  } catch (const std::exception& error) {
-    fail(Status::error, error.what());
-  }
+  attempt([&] {
+    if (!run_) run_.emplace(spec().run, kPolicy);
+    run_->start(scene, first);
+  });
+  if (report_.ended) return;
+  report_.margin = run_->margin();
+  report_.initialize_ns = run_->initializeNanoseconds();
+  algorithm().visitSetup(into(report_.setup));
 }
 
 FrameRecord& Lane::recordOf(std::uint32_t index) {
@@ -35,41 +50,50 @@ FrameRecord& Lane::recordOf(std::uint32_t index) {
 void Lane::advance(const Frame& frame, DrawGate& gate) {
   FrameRecord record;
   gate.beginTiming();
-  try {
-    record.times = runFrame(instance_->algorithm(), frame);
-  } catch (const std::exception& error) {
-    fail(Status::error, fmt::format("frame {}: {}", frame.index, error.what()));
-  }
+  attempt([&] { run_->step(frame); });
   record.disturbed = gate.endTiming();
-  if (instance_ == nullptr) return;
+  if (!run_->answered()) return;
   record.run = true;
-  record.pairs = pairCount(instance_->algorithm().overlaps());
+  record.times = run_->times();
+  record.pairs = pairCount(algorithm().overlaps());
   recordOf(frame.index) = record;
   report_.frame = frame.index;
-  report_.counters.clear();
-  instance_->algorithm().visitCounters(
-      [&](std::string_view name, std::uint64_t count) { report_.counters.emplace(name, count); });
-  seconds_ += static_cast<double>(record.times[Phase::total]) * 1e-9;
-  if (seconds_ > kFrameLimitSeconds * frame.index) {
-    fail(Status::timeout, fmt::format("{:.3g} s/frame after frame {}: over the limit of {} s",
-                                      seconds_ / frame.index, frame.index, kFrameLimitSeconds));
-  }
+  algorithm().visitCounters(into(report_.counters));
 }
 
-FrameDifference Lane::check(const Frame& frame, Oracle& oracle) {
-  FrameDifference difference = instance_->check(frame, oracle, CheckMode::hash);
+std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
+  std::optional<FrameDifference> difference;
+  attempt([&] { difference = run_->check(frame, oracle); });
+  if (!difference) return difference;
   FrameRecord& record = recordOf(frame.index);
   record.checked = true;
-  record.missed = difference.missed_count;
-  record.extra = difference.extra_count;
-  record.mismatch = difference.isMismatch();
-  if (record.mismatch && report_.status == Status::ok) {
-    report_.status = Status::mismatch;
-    report_.reason =
-        fmt::format("frame {}: {} missed, {} false, {} invalid", frame.index,
-                    difference.missed_count, difference.forbidden_count, difference.invalid_count);
-  }
+  record.missed_count = difference->missed_count;
+  record.false_count = difference->false_count;
+  record.allowed_extra_count = difference->allowed_extra_count;
+  record.invalid_count = difference->invalid_count;
+  record.mismatch = difference->isMismatch();
   return difference;
+}
+
+std::string formatFrameTable(const std::vector<LaneReport>& lanes) {
+  std::string table = "algorithm,isa,threads,frame";
+  for (const auto& phase : kPhases.entries) table += fmt::format(",{}_ns", phase.name);
+  table += ",pairs,missed,false,allowed_extra,invalid,checked,disturbed\n";
+  for (const LaneReport& lane : lanes) {
+    const Case& run = lane.spec.run;
+    for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
+      const FrameRecord* record = lane.record(frame);
+      if (record == nullptr) continue;
+      table += fmt::format("{},{},{},{}", run.algorithm.id, isaName(run.isa), run.threads, frame);
+      for (const auto& phase : kPhases.entries) {
+        table += fmt::format(",{}", record->times[phase.value]);
+      }
+      table += fmt::format(",{},{},{},{},{},{:d},{:d}\n", record->pairs, record->missed_count,
+                           record->false_count, record->allowed_extra_count, record->invalid_count,
+                           record->checked, record->disturbed);
+    }
+  }
+  return table;
 }
 
 }  // namespace broadmark

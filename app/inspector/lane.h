@@ -1,15 +1,15 @@
-// An algorithm under observation: the case, its instance, and what it has done frame by frame.
+// An algorithm under observation: its case, and what it has done frame by frame.
 #pragma once
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "broadmark/case_run.h"
 #include "inspector/draw_gate.h"
-#include "broadmark/runner.h"
 
 namespace broadmark {
 
@@ -17,12 +17,15 @@ namespace broadmark {
 struct FrameRecord {
   FrameTimes times;
   std::uint64_t pairs = 0;
-  std::uint64_t missed = 0;
-  std::uint64_t extra = 0;
+  // Wrong pairs, as in FrameDifference; 0 unless checked.
+  std::uint64_t missed_count = 0;
+  std::uint64_t false_count = 0;
+  std::uint64_t allowed_extra_count = 0;
+  std::uint64_t invalid_count = 0;
   bool run = false;        ///< false: nothing is known of this frame
   bool disturbed = false;  ///< something was drawn while it was timed
   bool checked = false;
-  bool mismatch = false;  ///< wrong beyond the algorithm's margin
+  bool mismatch = false;
 };
 
 /// A case that is looked at. The number tells apart two that are otherwise alike.
@@ -40,15 +43,16 @@ struct LaneSpec {
 /// What is known of a lane; a copy of it can be looked at while the lane works on.
 struct LaneReport {
   LaneSpec spec;
-  Status status = Status::ok;  ///< timeout, unsupported and error: it is not run any more
-  std::string reason;
+  Status status = Status::ok;
+  std::string reason;       ///< for every status but ok
+  bool ended = false;       ///< it is not run any more: too slow, unsupported or broken
   std::uint32_t frame = 0;  ///< up to which it has come
   std::int64_t initialize_ns = 0;
   float margin = 0;
   std::vector<FrameRecord> frames;                ///< frame k at [k - 1]
+  std::map<std::string, std::uint64_t> setup;     ///< counted once, in the initialisation
   std::map<std::string, std::uint64_t> counters;  ///< of work, in the last frame
 
-  [[nodiscard]] bool runs() const { return status == Status::ok || status == Status::mismatch; }
   /// The record of a frame, or null when nothing is known of it.
   [[nodiscard]] const FrameRecord* record(std::uint32_t index) const {
     if (index == 0 || index > frames.size() || !frames[index - 1].run) return nullptr;
@@ -56,7 +60,7 @@ struct LaneReport {
   }
 };
 
-/// The running lane.
+/// The running lane: a CaseRun, which begins another pass when an earlier frame is wanted.
 class Lane {
  public:
   /// A frame that takes longer, on average, ends the lane.
@@ -66,31 +70,36 @@ class Lane {
 
   [[nodiscard]] const LaneReport& report() const { return report_; }
   [[nodiscard]] const LaneSpec& spec() const { return report_.spec; }
-  /// Whether it could run the frame after `index` next.
+  /// Whether its instance is at this frame: it can be asked for its answer, and can run the next
+  /// frame unless it has ended.
   [[nodiscard]] bool standsAt(std::uint32_t index) const {
-    return instance_ != nullptr && report_.frame == index;
+    return run_ && (run_->running() || run_->answered()) && report_.frame == index;
   }
 
+  // These throw nothing: what goes wrong becomes the status.
   /// A fresh instance, at the initial pose. What was recorded of later frames stays until they are
-  /// run again. Never throws: a failure becomes the status.
+  /// run again. Not once it has ended.
   void restart(const SceneInfo& scene, const Frame& first);
-  /// Frees the instance.
-  void stop() { instance_.reset(); }
-  void fail(Status status, std::string reason);
   /// Runs the frame after the present one.
   void advance(const Frame& frame, DrawGate& gate);
-  /// Compares the present answer with the right one.
-  FrameDifference check(const Frame& frame, Oracle& oracle);
+  /// Compares the present answer with the right one; nothing when the algorithm is not checked.
+  std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
 
-  /// Only while runs() and after restart().
-  [[nodiscard]] const BroadPhase& algorithm() const { return instance_->algorithm(); }
+  /// Only while standsAt() some frame.
+  [[nodiscard]] const BroadPhase& algorithm() const { return std::as_const(*run_).algorithm(); }
 
  private:
   [[nodiscard]] FrameRecord& recordOf(std::uint32_t index);
+  /// Calls into the run, and takes over its status.
+  template <class Call>
+  void attempt(Call&& call);
 
   LaneReport report_;
-  std::unique_ptr<CaseInstance> instance_;
-  double seconds_ = 0;  ///< in frames since the restart
+  std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
 };
+
+/// Of each lane every frame that has been run, as CSV: one line per lane and frame, times in
+/// nanoseconds.
+std::string formatFrameTable(const std::vector<LaneReport>& lanes);
 
 }  // namespace broadmark

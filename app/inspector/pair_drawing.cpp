@@ -70,7 +70,7 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
       if (axis == deciding) ui.tooltip("The axis that decides");
       cell(ui, textColour(ui), exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
       cell(ui, textColour(ui), exactly(pair.b.min[axis]), exactly(pair.b.max[axis]));
-      cell(ui, rgb, relationName(relation.kind),
+      cell(ui, rgb, std::string(kRelations.nameOf(relation.kind)),
            exactly(std::abs(static_cast<float>(relation.gap))));
     }
     ImGui::EndTable();
@@ -193,7 +193,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
   std::string text = fmt::format("frame {}", frame);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const AxisRelation relation = relationOn(axis, track.a.boxes[at], track.b.boxes[at]);
-    text += fmt::format("\n{}: {} {}", kAxes[axis], relationName(relation.kind),
+    text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.kind),
                         exactly(std::abs(static_cast<float>(relation.gap))));
   }
   ImGui::SetTooltip("%s", text.c_str());

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "inspector/mismatch.h"
 #include "inspector/ui.h"
+#include "inspector/wrong_pair.h"
 
 namespace broadmark {
 

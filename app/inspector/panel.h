@@ -1,9 +1,10 @@
 // A part of the window.
 #pragma once
 
-#include <string_view>
+#include <memory>
 #include <vector>
 
+#include "broadmark/names.h"
 #include "inspector/file_dialog.h"
 #include "inspector/session.h"
 #include "inspector/ui.h"
@@ -14,6 +15,8 @@ class View;
 
 /// Where a panel stands: as a tab beside the others of its place.
 enum class Place { left, right, bottom };
+inline constexpr NameTable kPlaces{
+    {NamedValue{Place::left, "left"}, {Place::right, "right"}, {Place::bottom, "bottom"}}};
 
 /// What a panel draws with and works on, lent for a call.
 struct PanelContext {

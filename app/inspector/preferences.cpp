@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 
 namespace broadmark {
 namespace {

@@ -31,7 +31,8 @@ struct Preferences {
 /// $XDG_CONFIG_HOME/broadmark/inspector.json, or below ~/.config.
 std::filesystem::path preferencesPath();
 
-/// What cannot be understood keeps its default: preferences never keep the program from starting.
+/// What cannot be understood keeps its default: bad preferences do not keep the program from
+/// starting.
 Preferences parsePreferences(std::string_view json);
 std::string formatPreferences(const Preferences& preferences);
 

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <exception>
-#include <set>
 
-#include "broadmark/render/colouring.h"
+#include "broadmark/pair.h"
 
 namespace broadmark {
 namespace {
@@ -21,13 +20,13 @@ std::vector<Pair> joined(PairRuns runs) {
   return pairs;
 }
 
-/// Whether the snapshot of one wish will do for the other.
+/// Whether one wish's snapshot also serves the other.
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
          a.tracked == b.tracked;
 }
 
-float share(std::uint32_t part, std::uint32_t whole) {
+float fractionOf(std::uint32_t part, std::uint32_t whole) {
   return whole == 0 ? 1.0F : static_cast<float>(part) / static_cast<float>(whole);
 }
 
@@ -190,15 +189,6 @@ bool RunThread::reconcileLanes() {
   kept.clear();
   shown_ = false;
   stop_.reset();
-  // Process-wide state serves one instance at a time.
-  std::set<std::string_view> taken;
-  for (const auto& lane : lanes_) {
-    const std::string_view exclusive =
-        lane->spec().run.algorithm.create()->capabilities().exclusive;
-    if (exclusive.empty() || taken.insert(exclusive).second) continue;
-    lane->fail(Status::unsupported,
-               fmt::format("another algorithm in the list uses the same {} already", exclusive));
-  }
   const std::lock_guard lock(mutex_);
   progress_.stop.reset();
   progress_.lanes.clear();
@@ -221,7 +211,7 @@ bool RunThread::advance() {
   }
   if (const std::uint32_t wanted = target(); footage_->known() < wanted) {
     tell(fmt::format("simulating frame {}", footage_->known() + 1),
-         share(footage_->known(), wanted));
+         fractionOf(footage_->known(), wanted));
     footage_->extend();
     const std::lock_guard lock(mutex_);
     progress_.known_frames = footage_->known();
@@ -230,12 +220,10 @@ bool RunThread::advance() {
   // The hindmost first: then all pass each frame before any goes on.
   Lane* hindmost = nullptr;
   for (const auto& lane : lanes_) {
-    if (!lane->report().runs()) continue;
-    const bool behind = !lane->standsAt(target());
-    if (!behind) continue;
+    if (lane->report().ended || lane->standsAt(target())) continue;
     const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
     if (restarts) {
-      lane->restart(footage_->scene(), footage_->read(0));
+      lane->restart(footage_->scene(), footage_->at(0));
       report(*lane);
       shown_ = false;
       return true;
@@ -253,17 +241,19 @@ bool RunThread::advance() {
     return false;
   }
   const std::uint32_t next = hindmost->report().frame + 1;
-  tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next), share(next, target()));
-  return advanceLane(*hindmost, footage_->read(next));
+  tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next),
+       fractionOf(next, target()));
+  return advanceLane(*hindmost, footage_->at(next));
 }
 
 bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
   shown_ = false;
   lane.advance(frame, gate_);
-  if (current_.check && lane.report().runs() && lane.spec().run.algorithm.finds_pairs) {
-    const bool mismatch = lane.check(frame, oracle_).isMismatch();
+  if (current_.check && lane.standsAt(frame.index)) {
+    const std::optional<FrameDifference> difference = lane.check(frame, oracle_);
     const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
-    if (mismatch && !known && current_.stop_at_mismatch && (!stop_ || frame.index < stop_->frame)) {
+    if (difference && difference->isMismatch() && !known && current_.stop_at_mismatch &&
+        (!stop_ || frame.index < stop_->frame)) {
       stop_ = RunProgress::Stop{.frame = frame.index, .lane = lane.spec().number};
       const std::lock_guard lock(mutex_);
       progress_.stop = stop_;
@@ -280,17 +270,19 @@ void RunThread::report(const Lane& lane) {
     return report.spec.number == now.spec.number;
   });
   if (shown == progress_.lanes.end()) return;
-  // Not all of its history: that only changes at the present frame.
+  // Its history changes at the present frame only, and is too long to be copied every time.
   std::vector<FrameRecord> frames = std::move(shown->frames);
   frames.resize(now.frames.size());
   if (now.frame > 0) frames[now.frame - 1] = now.frames[now.frame - 1];
   *shown = {.spec = now.spec,
             .status = now.status,
             .reason = now.reason,
+            .ended = now.ended,
             .frame = now.frame,
             .initialize_ns = now.initialize_ns,
             .margin = now.margin,
             .frames = std::move(frames),
+            .setup = now.setup,
             .counters = now.counters};
 }
 
@@ -311,7 +303,7 @@ std::vector<Track> RunThread::tracks(std::uint32_t frame) {
   }
   if (tracks.empty()) return tracks;
   for (std::uint32_t index = first; index <= frame; ++index) {
-    const Frame past = footage_->read(index);
+    const Frame past = footage_->at(index);
     for (Track& track : tracks) track.boxes.push_back(past.boxes[track.body]);
   }
   return tracks;
@@ -325,7 +317,7 @@ void RunThread::show() {
   snapshot->frame = index;
   snapshot->tracks = tracks(index);
   const auto copy = [&](std::uint32_t which) {
-    const Frame frame = footage_->read(which);
+    const Frame frame = footage_->at(which);
     return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
   };
   if (index > 0) snapshot->boxes_before = copy(index - 1);
@@ -334,9 +326,11 @@ void RunThread::show() {
   if (Lane* lane = shownLane()) {
     snapshot->lane = lane->spec().number;
     snapshot->pairs = joined(lane->algorithm().overlaps());
-    if (current_.check && lane->spec().run.algorithm.finds_pairs) {
-      snapshot->checked = true;
-      snapshot->difference = lane->check(frame, oracle_);
+    if (current_.check) {
+      if (std::optional<FrameDifference> difference = lane->check(frame, oracle_)) {
+        snapshot->checked = true;
+        snapshot->difference = std::move(*difference);
+      }
     }
     if (current_.structure) {
       auto structure = std::make_shared<RecordedDrawing>();
@@ -344,7 +338,7 @@ void RunThread::show() {
       snapshot->structure = std::move(structure);
     }
   } else {
-    const std::span<const Pair> pairs = oracle_.pairs(frame);
+    const std::span<const Pair> pairs = oracle_.pairs(frame.boxes);
     snapshot->pairs.assign(pairs.begin(), pairs.end());
   }
   const PairRun answer = snapshot->pairs;

@@ -1,14 +1,15 @@
 // The thread that runs algorithms while the user interface stays free.
 //
 // The interface states a wish: what to look at, which algorithms, up to which frame. The thread
-// brings about what is wished, one frame of one algorithm at a time, and takes up a changed wish in
-// between. Algorithms keep state from frame to frame, so each goes through all frames from the
-// first: who wants to see an earlier one gets a fresh instance that starts over.
+// works towards it, one frame of one algorithm at a time, and takes up a changed wish in between.
+// Algorithms keep state from frame to frame, so each goes through all frames from the first: for an
+// earlier frame a fresh instance starts over.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -17,22 +18,22 @@
 #include <thread>
 #include <vector>
 
+#include "broadmark/oracle.h"
+#include "broadmark/recorded_drawing.h"
 #include "inspector/draw_gate.h"
 #include "inspector/footage.h"
 #include "inspector/lane.h"
-#include "broadmark/oracle.h"
-#include "broadmark/recorded_drawing.h"
 
 namespace broadmark {
 
 /// What to look at. Compared by address: the same one is opened once.
 struct FootageRequest {
-  /// Called on the run thread. Throws InputError.
-  std::function<std::unique_ptr<Footage>()> open;
+  FootageOpener open;  ///< called on the run thread
   std::string title;
-  /// Requests of the same number, unless 0, show the same scene, perhaps changed: who looks at it
-  /// stays where he is.
+  /// Requests of the same number, unless 0, show the same scene, perhaps changed: the camera stays
+  /// where it is.
   std::uint64_t scene = 0;
+  std::filesystem::path recording = {};  ///< "": something else
 };
 
 /// What the interface wants.
@@ -41,9 +42,9 @@ struct Wish {
   std::vector<LaneSpec> lanes;
   std::uint32_t frame = 0;
   bool check = true;  ///< compare every answer with the oracle's
-  /// Stay at the first frame in which an algorithm is wrong…
+  /// Stop at the first frame in which an algorithm is wrong…
   bool stop_at_mismatch = true;
-  /// …except up to this frame, where it is known already.
+  /// …after this one, up to which mismatches are known.
   std::optional<std::uint32_t> known_mismatch;
   int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
   bool structure = false;              ///< whether its structure is looked at, too
@@ -73,7 +74,7 @@ struct Snapshot {
   std::vector<Track> tracks;
 };
 
-/// How far the wish has come true.
+/// How far the thread has got.
 struct RunProgress {
   std::shared_ptr<const FootageRequest> footage;  ///< what is open
   std::string failure;                            ///< why it could not be opened, or not be read on
@@ -82,13 +83,13 @@ struct RunProgress {
   bool live = false;               ///< more can be simulated
   std::vector<LaneReport> lanes;
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
-  /// The frame, and the lane's number, at which it stays for being wrong.
+  /// The frame at which all stay, as the lane of this number is wrong there.
   struct Stop {
     std::uint32_t frame = 0;
     int lane = 0;
   };
   std::optional<Stop> stop;
-  std::string doing;   ///< "" when all that is wished has come true
+  std::string doing;   ///< "" when all is done
   float fraction = 0;  ///< of what is being done
 };
 
@@ -101,14 +102,14 @@ class RunThread {
   RunThread& operator=(const RunThread&) = delete;
 
   void wish(Wish wish);
-  /// Looks at the progress, which stands still as long.
+  /// Calls `at` with the progress, which does not change meanwhile.
   void look(const std::function<void(const RunProgress&)>& at);
-  /// Whether all that has been wished has come true (or failed).
+  /// Whether everything wished for has been done (or has failed).
   [[nodiscard]] bool settled();
   /// Waits for that. Returns whether it came in time.
   bool settle(std::chrono::milliseconds patience);
-  /// Does something with the footage between two frames; nothing is open: null. Returns when done,
-  /// and throws what that throws.
+  /// Calls `act` on the thread, between two frames, with the footage (null: nothing is open).
+  /// Returns when that has returned, and throws what it throws.
   void withFootage(const std::function<void(Footage*)>& act);
 
   DrawGate& gate() { return gate_; }

@@ -9,14 +9,14 @@
 #include <chrono>
 #include <cmath>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/names.h"
 
 namespace broadmark {
 namespace {
 
-/// How long a widget, or a value that is expected, may keep one waiting, in seconds.
+/// Longest wait for an expected value while something goes on, in seconds.
 constexpr double kPatience = 60;
 
 std::vector<std::string> splitWords(std::string_view line) {
@@ -100,12 +100,13 @@ const std::vector<ScriptVerb>& scriptVerbs() {
       {"panel", "NAME", 1, 1, &P::panel, "brings a panel to the front"},
       {"open", "FILE", 1, 1, &P::open, "drops a file onto the window"},
       {"wait", "PICTURES or settled", 1, 1, &P::wait,
-       "until all that is wished for is computed, or for some pictures"},
+       "until everything is computed, or for some pictures"},
       {"expect", "VALUE RELATION TEXT", 3, 3, &P::expect,
-       "waits for a value of the session to be =, !=, <, >, <= or >= to the text, or to contain it "
-       "(~), and fails when that does not come"},
+       "waits until a value of the session is =, !=, <, >, <= or >= to the text, or contains it "
+       "(~), "
+       "and fails if that does not happen"},
       {"patience", "SECONDS", 1, 1, &P::patience,
-       "how long from here on an expectation may take although nothing goes on (at first 2)"},
+       "how long from here on an expectation may take while nothing goes on (at first 2)"},
       {"places", "FILE", 1, 1, &P::places,
        "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name"},
       {"write", "VALUE FILE", 2, 2, &P::write, "writes a value of the session to a file"},
@@ -135,7 +136,7 @@ std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name
     words.erase(words.begin());
     if (words.size() < verb.fewest || words.size() > verb.most) {
       throw InputError(
-          fmt::format("{}: line {}: '{} {}' is expected", name, number, verb.name, verb.arguments));
+          fmt::format("{}: line {}: expected: {} {}", name, number, verb.name, verb.arguments));
     }
     lines.push_back({.number = number, .verb = &verb, .words = std::move(words)});
   }
@@ -266,7 +267,7 @@ void ScriptPlayer::key(const Words& words, Inspector&) {
     const std::size_t end = std::min(combination.find('+', start), combination.size());
     const std::string name = combination.substr(start, end - start);
     keys.push_back(keyNamed(name));
-    if (keys.back() == 0) fail(fmt::format("there is no key '{}'", name));
+    if (keys.back() == 0) fail(fmt::format("unknown key '{}'", name));
     start = end + 1;
   }
   for (const Key key : keys) push(keyEvent(key, true));
@@ -303,7 +304,7 @@ void ScriptPlayer::wheel(const Words& words, Inspector&) {
 
 void ScriptPlayer::panel(const Words& words, Inspector& inspector) {
   if (inspector.panel(words[0]) == nullptr) {
-    fail(fmt::format("there is no panel '{}'", words[0]));
+    fail(fmt::format("unknown panel '{}'", words[0]));
   }
   inspector.showPanel(words[0]);
   pause();
@@ -322,7 +323,7 @@ void ScriptPlayer::wait(const Words& words, Inspector&) {
   const auto start = std::chrono::steady_clock::now();
   int pictures = 0;
   steps_.push_back([this, start, pictures](Inspector& inspector, InputQueue&) mutable {
-    if (secondsSince(start) > 10 * kPatience) fail("it does not come to rest");
+    if (secondsSince(start) > 10 * kPatience) fail("still computing");
     return ++pictures > 2 && inspector.session().runs.settled();
   });
 }
@@ -331,17 +332,17 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
   const std::string& relation = words[1];
   constexpr const char* kRelations[] = {"=", "!=", "<", ">", "<=", ">=", "~"};
   if (std::ranges::find(kRelations, relation) == std::end(kRelations)) {
-    fail(fmt::format("'{}' is none of = != < > <= >= ~", relation));
+    fail(fmt::format("unknown relation '{}' (one of: = != < > <= >= ~)", relation));
   }
   const auto start = std::chrono::steady_clock::now();
   steps_.push_back([this, words, start](Inspector& inspector, InputQueue&) {
     const std::optional<std::string> now = inspector.value(words[0]);
     if (now && holds(*now, words[1], words[2])) return true;
-    // It may yet become so, as long as something goes on.
+    // It may become so as long as something goes on.
     const bool idle = !inspector.session().busy();
     if (secondsSince(start) < (idle ? idle_patience_ : kPatience)) return false;
-    if (!now) fail(fmt::format("there is no value '{}'", words[0]));
-    fail(fmt::format("{} {} {} is expected, but it is '{}'", words[0], words[1], words[2], *now));
+    if (!now) fail(fmt::format("unknown value '{}'", words[0]));
+    fail(fmt::format("expected {} {} {}, but it is '{}'", words[0], words[1], words[2], *now));
   });
 }
 
@@ -360,7 +361,7 @@ void ScriptPlayer::places(const Words& words, Inspector& inspector) {
 void ScriptPlayer::write(const Words& words, Inspector&) {
   steps_.push_back([this, words](Inspector& inspector, InputQueue&) {
     const std::optional<std::string> now = inspector.value(words[0]);
-    if (!now) fail(fmt::format("there is no value '{}'", words[0]));
+    if (!now) fail(fmt::format("unknown value '{}'", words[0]));
     writeTextFile(words[1], *now + "\n");
     return true;
   });

@@ -1,4 +1,4 @@
-// Scripts: what a user would do, line by line, with assertions; for demonstrations and tests.
+// Scripts: what a user does, line by line, with assertions; for demonstrations and tests.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace broadmark {
 
 class ScriptPlayer;
 
-/// What a line of a script can begin with.
+/// The first word of a line.
 struct ScriptVerb {
   using Words = std::vector<std::string>;
 
@@ -48,18 +48,18 @@ class ScriptPlayer {
   void update(Inspector& inspector, InputQueue& input);
   [[nodiscard]] bool done() const { return next_ == lines_.size() && steps_.empty(); }
 
-  /// Asked to change the size of the picture; taken by whoever owns the target.
+  /// The size that the picture is to get; once.
   std::optional<std::pair<int, int>> takeResize() { return std::exchange(resize_, {}); }
-  /// Asked for a picture; likewise.
+  /// Where to write a picture; once.
   std::optional<std::filesystem::path> takeScreenshot() { return std::exchange(screenshot_, {}); }
 
  private:
   friend const std::vector<ScriptVerb>& scriptVerbs();
   using Words = ScriptVerb::Words;
-  /// Something that lasts until it returns true.
+  /// Called once a picture until it returns true.
   using Step = std::function<bool(Inspector&, InputQueue&)>;
 
-  // The verbs: each puts down the steps that it takes.
+  // The verbs: each adds its steps.
   void click(const Words& words, Inspector& inspector);
   void doubleClick(const Words& words, Inspector& inspector);
   void rightClick(const Words& words, Inspector& inspector);
@@ -95,7 +95,7 @@ class ScriptPlayer {
   std::size_t next_ = 0;
   int number_ = 0;            ///< of the line being played
   double idle_patience_ = 2;  ///< in seconds
-  std::vector<Step> steps_;   ///< still to be done for it
+  std::vector<Step> steps_;   ///< of that line, still to be done
   std::optional<std::pair<int, int>> resize_;
   std::optional<std::filesystem::path> screenshot_;
 };

@@ -1,10 +1,8 @@
-// What keys do, and the page that tells it.
+// What keys do, and the page that lists it.
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
-
-#include <algorithm>
 
 #include "inspector/author_dialogs.h"
 #include "inspector/inspector.h"
@@ -17,7 +15,7 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
     {"Left drag", "turn the camera about the middle"},
     {"Right or middle drag", "move the camera sideways"},
     {"Wheel", "towards the pointer, or away"},
-    {"Click", "select a body (with Ctrl: add it, or take it away)"},
+    {"Click", "select a body (with Ctrl: add or remove it)"},
     {"Shift + drag", "select all bodies in a rectangle"},
     {"Double click", "fly to a body"},
     {"W A S D Q E", "fly, while the mouse is over the view"},
@@ -29,26 +27,29 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
 void Inspector::makeShortcuts() {
   shortcuts_ = {
       {GLFW_KEY_SPACE, false, false, "Space", "play or pause",
-       [this] { session_.play(!session_.playback.playing); }},
-      {GLFW_KEY_LEFT, false, false, "Left", "one frame back", [this] { session_.step(-1); }},
-      {GLFW_KEY_RIGHT, false, false, "Right", "one frame on", [this] { session_.step(1); }},
+       [this] { session_.play(!session_.playback.playing()); }},
+      {GLFW_KEY_LEFT, false, false, "Left", "one frame back",
+       [this] { session_.playback.step(-1); }},
+      {GLFW_KEY_RIGHT, false, false, "Right", "one frame on",
+       [this] { session_.playback.step(1); }},
       {GLFW_KEY_HOME, false, false, "Home", "to the first frame",
-       [this] { session_.step(-static_cast<int>(session_.frame())); }},
+       [this] { session_.playback.goTo(0); }},
       {GLFW_KEY_END, false, false, "End", "to the last frame",
-       [this] { session_.step(static_cast<int>(session_.lastFrame())); }},
+       [this] { session_.playback.goTo(session_.playback.lastFrame()); }},
       {GLFW_KEY_F, false, false, "F", "fly to the selection, or to all",
-       [this] { session_.fly_to = session_.selection; }},
+       [this] { session_.selection.flyThere(); }},
       {GLFW_KEY_H, false, false, "H", "hide what overlaps nothing, or show it",
        [this] { session_.view.hide_free = !session_.view.hide_free; }},
       {GLFW_KEY_C, false, false, "C", "the next colouring", [this] { ++session_.view.colouring; }},
-      {GLFW_KEY_ESCAPE, false, false, "Escape", "select nothing", [this] { session_.select({}); }},
+      {GLFW_KEY_ESCAPE, false, false, "Escape", "select nothing",
+       [this] { session_.selection.select({}); }},
       {GLFW_KEY_O, true, false, "Ctrl+O", "open a file", [this] { askOpen(); }},
       {GLFW_KEY_S, true, false, "Ctrl+S",
-       "save the scene that is authored, or the frames known so far as a recording",
+       "save the authored scene, or the frames known so far as a recording",
        [this] {
-         if (session_.authoring()) {
+         if (session_.document.shown()) {
            saveScene(files_, session_);
-         } else if (session_.wish.footage) {
+         } else if (session_.playback.footage()) {
            askSaveRecording();
          }
        }},
@@ -56,7 +57,7 @@ void Inspector::makeShortcuts() {
        [this] { editAuthored(&scenes::SceneEditor::undo); }},
       {GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "redo it",
        [this] { editAuthored(&scenes::SceneEditor::redo); }},
-      {GLFW_KEY_A, true, false, "Ctrl+A", "select all bodies of the scene that is authored",
+      {GLFW_KEY_A, true, false, "Ctrl+A", "select all bodies of the authored scene",
        [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
       {GLFW_KEY_DELETE, false, false, "Delete", "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
@@ -68,7 +69,7 @@ void Inspector::makeShortcuts() {
 }
 
 void Inspector::editAuthored(void (scenes::SceneEditor::*change)()) {
-  if (session_.authoring()) session_.edit(change);
+  if (session_.document.shown()) session_.document.edit(change);
 }
 
 void Inspector::handleShortcuts() {
@@ -86,10 +87,7 @@ void Inspector::handleShortcuts() {
 void Inspector::drawHelp() {
   if (!help_) return;
   const auto scope = ui_.scope("Keys and mouse");
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
-  ImGui::SetNextWindowSize(
-      {std::min(560 * ui_.scale, screen.x - 16), std::min(640 * ui_.scale, screen.y - 16)});
+  ui_.placeInMiddle({560, 640});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::Begin("Keys and mouse", &help_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace broadmark {
 namespace {
@@ -15,15 +16,8 @@ constexpr float kInputShare = 0.52F;
 constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds
 
-ImVec4 vec(Rgb rgb, float alpha = 1) {
-  const auto component = [&](int shift) {
-    return static_cast<float>((rgb >> shift) & 0xFFU) / 255.0F;
-  };
-  return {component(16), component(8), component(0), alpha};
-}
-
-/// What of a label is its name: the part before "##", or, if that is empty, after it; what stays
-/// the same of a label that changes, "Pause###Play", in any case.
+/// The name in a label: of "Add##popup" it is "Add", of "##speed" "speed"; of a label that changes,
+/// "Pause###Play", what stays the same, "Play".
 std::string_view nameOf(std::string_view label) {
   if (const std::size_t lasting = label.find("###"); lasting != label.npos) {
     return label.substr(lasting + 3);
@@ -33,71 +27,7 @@ std::string_view nameOf(std::string_view label) {
   return label.substr(0, split);
 }
 
-/// The colours that differ between light and dark.
-struct Palette {
-  Rgb window, panel, input, hover, border, text, faint, accent, header;
-};
-constexpr Palette kDark = {0x17191D, 0x1E2126, 0x2A2E35, 0x383E48, 0x343941,
-                           0xE4E7EB, 0x8D96A3, 0x3D8BFD, 0x2C313A};
-constexpr Palette kLight = {0xE9ECF0, 0xF7F8FA, 0xFFFFFF, 0xDCE4EE, 0xCBD2DA,
-                            0x1C232B, 0x66707C, 0x1F6FEB, 0xDDE3EA};
-
-void setColours(const Palette& p) {
-  ImVec4* colours = ImGui::GetStyle().Colors;
-  const auto set = [&](ImGuiCol_ which, Rgb rgb, float alpha = 1) {
-    colours[which] = vec(rgb, alpha);
-  };
-  set(ImGuiCol_Text, p.text);
-  set(ImGuiCol_TextDisabled, p.faint);
-  set(ImGuiCol_WindowBg, p.panel);
-  set(ImGuiCol_ChildBg, p.panel, 0);
-  set(ImGuiCol_PopupBg, p.panel);
-  set(ImGuiCol_Border, p.border);
-  set(ImGuiCol_BorderShadow, p.border, 0);
-  set(ImGuiCol_FrameBg, p.input);
-  set(ImGuiCol_FrameBgHovered, p.hover);
-  set(ImGuiCol_FrameBgActive, p.hover);
-  set(ImGuiCol_TitleBg, p.window);
-  set(ImGuiCol_TitleBgActive, p.header);
-  set(ImGuiCol_TitleBgCollapsed, p.window);
-  set(ImGuiCol_MenuBarBg, p.window);
-  set(ImGuiCol_ScrollbarBg, p.panel, 0);
-  set(ImGuiCol_ScrollbarGrab, p.border);
-  set(ImGuiCol_ScrollbarGrabHovered, p.faint);
-  set(ImGuiCol_ScrollbarGrabActive, p.faint);
-  set(ImGuiCol_CheckMark, p.accent);
-  set(ImGuiCol_SliderGrab, p.accent);
-  set(ImGuiCol_SliderGrabActive, p.accent);
-  set(ImGuiCol_Button, p.input);
-  set(ImGuiCol_ButtonHovered, p.hover);
-  set(ImGuiCol_ButtonActive, p.accent);
-  set(ImGuiCol_Header, p.header);
-  set(ImGuiCol_HeaderHovered, p.hover);
-  set(ImGuiCol_HeaderActive, p.accent);
-  set(ImGuiCol_Separator, p.border);
-  set(ImGuiCol_SeparatorHovered, p.accent);
-  set(ImGuiCol_SeparatorActive, p.accent);
-  set(ImGuiCol_ResizeGrip, p.border);
-  set(ImGuiCol_ResizeGripHovered, p.accent);
-  set(ImGuiCol_ResizeGripActive, p.accent);
-  set(ImGuiCol_Tab, p.window);
-  set(ImGuiCol_TabHovered, p.hover);
-  set(ImGuiCol_TabActive, p.header);
-  set(ImGuiCol_TabUnfocused, p.window);
-  set(ImGuiCol_TabUnfocusedActive, p.header);
-  set(ImGuiCol_TableHeaderBg, p.header);
-  set(ImGuiCol_TableBorderStrong, p.border);
-  set(ImGuiCol_TableBorderLight, p.border, 0.6F);
-  set(ImGuiCol_TableRowBg, p.panel, 0);
-  set(ImGuiCol_TableRowBgAlt, p.text, 0.025F);
-  set(ImGuiCol_TextSelectedBg, p.accent, 0.4F);
-  set(ImGuiCol_NavHighlight, p.accent);
-  set(ImGuiCol_ModalWindowDimBg, 0x000000, 0.45F);
-}
-
 }  // namespace
-
-ImU32 colour(Rgb rgb, float alpha) { return ImGui::ColorConvertFloat4ToU32(vec(rgb, alpha)); }
 
 Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
   ui.scope_ += name;
@@ -159,9 +89,9 @@ bool Ui::button(const char* label, const char* tip, float width) {
 bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
   const bool was_on = on;
   if (was_on) {
-    ImGui::PushStyleColor(ImGuiCol_Button, vec(theme.accent));
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, vec(theme.accent, 0.85F));
-    ImGui::PushStyleColor(ImGuiCol_Text, vec(0xFFFFFF));
+    ImGui::PushStyleColor(ImGuiCol_Button, colourVector(theme.accent));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colourVector(theme.accent, 0.85F));
+    ImGui::PushStyleColor(ImGuiCol_Text, colourVector(0xFFFFFF));
   }
   const bool pressed = button(label, tip, width);
   if (was_on) ImGui::PopStyleColor(3);
@@ -218,21 +148,30 @@ bool Ui::text(const char* label, std::string& value, const char* hint) {
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
-                 const char* tip) {
-  labelledWidth();
-  std::int64_t entered = value;
-  ImGui::InputScalar(label, ImGuiDataType_S64, &entered, nullptr, nullptr, "%lld");
-  note(label);
+template <class Number>
+bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Number min,
+                     Number max, const char* tip) {
+  constexpr bool kWhole = std::is_integral_v<Number>;
+  Number entered = value;
+  ImGui::InputScalar(label, kWhole ? ImGuiDataType_S64 : ImGuiDataType_Double, &entered, nullptr,
+                     nullptr, kWhole ? "%lld" : "%.6g");
+  note(name);
   tooltip(tip);
   // While it is typed the number may be out of range.
   if (ImGui::IsItemActive()) {
     value = entered;
     return false;
   }
-  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || value < min || value > max;
-  if (changed) value = std::clamp(entered, min, max);
+  const bool in_range = value >= min && value <= max;  // false for NaN
+  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || !in_range;
+  if (changed) value = entered >= min ? std::min(entered, max) : min;
   return changed;
+}
+
+bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
+                 const char* tip) {
+  labelledWidth();
+  return enterNumber(label, label, value, min, max, tip);
 }
 
 bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
@@ -257,22 +196,6 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
   ImGui::PopID();
   ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
   ImGui::TextUnformatted(label);
-  return changed;
-}
-
-bool Ui::enterNumber(const char* label, std::string_view name, double& value, double min,
-                     double max, const char* tip) {
-  double entered = value;
-  ImGui::InputScalar(label, ImGuiDataType_Double, &entered, nullptr, nullptr, "%.6g");
-  note(name);
-  tooltip(tip);
-  if (ImGui::IsItemActive()) {
-    value = entered;
-    return false;
-  }
-  const bool wrong = !(value >= min && value <= max);
-  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || wrong;
-  if (changed) value = std::isnan(entered) ? min : std::clamp(entered, min, max);
   return changed;
 }
 
@@ -328,6 +251,24 @@ bool Ui::parameters(Parametrised& object) {
   return changed;
 }
 
+void Ui::placeInMiddle(ImVec2 size) const {
+  const float margin = 16;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize(
+      {std::min(size.x * scale, screen.x - margin), std::min(size.y * scale, screen.y - margin)});
+}
+
+bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
+  placeInMiddle(size);
+  return ImGui::BeginPopupModal(title, keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+}
+
+bool Ui::cancel(float width) {
+  const bool pressed = button("Cancel", nullptr, width);
+  return pressed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+}
+
 void Ui::fact(const char* name, std::string_view value) {
   faint(name);
   ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
@@ -337,7 +278,7 @@ void Ui::fact(const char* name, std::string_view value) {
 void Ui::faint(std::string_view words) { coloured(theme.faint, words); }
 
 void Ui::coloured(Rgb rgb, std::string_view words) {
-  ImGui::PushStyleColor(ImGuiCol_Text, vec(rgb));
+  ImGui::PushStyleColor(ImGuiCol_Text, colourVector(rgb));
   ImGui::TextUnformatted(words.data(), words.data() + words.size());
   ImGui::PopStyleColor();
 }
@@ -354,38 +295,10 @@ void Ui::paragraph(std::string_view words) {
   ImGui::PopTextWrapPos();
 }
 
-void applyTheme(Ui& ui, bool dark, float scale) {
-  const Palette& palette = dark ? kDark : kLight;
-  ImGuiStyle style;
-  style.WindowPadding = {10, 8};
-  style.FramePadding = {7, 3};
-  style.ItemSpacing = {7, 5};
-  style.ItemInnerSpacing = {6, 4};
-  style.CellPadding = {6, 3};
-  style.ScrollbarSize = 11;
-  style.GrabMinSize = 9;
-  style.WindowRounding = 0;
-  style.ChildRounding = 0;
-  style.FrameRounding = 4;
-  style.PopupRounding = 5;
-  style.ScrollbarRounding = 6;
-  style.GrabRounding = 4;
-  style.TabRounding = 4;
-  style.WindowBorderSize = 0;
-  style.PopupBorderSize = 1;
-  style.FrameBorderSize = dark ? 0 : 1;
-  style.WindowMenuButtonPosition = ImGuiDir_None;
-  style.ScaleAllSizes(scale);
-  ImGui::GetStyle() = style;
-  setColours(palette);
-  ui.scale = scale;
-  ui.theme = {.dark = dark,
-              .accent = palette.accent,
-              .good = dark ? 0x5BC77AU : 0x1A7F37U,
-              .bad = dark ? 0xFF6B6BU : 0xCF222EU,
-              .warning = dark ? 0xF2B84BU : 0x9A6700U,
-              .faint = palette.faint,
-              .background = dark ? 0x202329U : 0xF5F6F8U};
+void Ui::faintParagraph(std::string_view words) {
+  ImGui::PushTextWrapPos(0);
+  faint(words);
+  ImGui::PopTextWrapPos();
 }
 
 }  // namespace broadmark

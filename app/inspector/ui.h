@@ -36,13 +36,14 @@ struct Theme {
   Rgb background = 0;  ///< of the view
 };
 
+ImVec4 colourVector(Rgb rgb, float alpha = 1);
 ImU32 colour(Rgb rgb, float alpha = 1);
 
 /// The widgets of one picture. A widget's name is its label, after the names of the scopes around
 /// it: "Scene/objects". Every method that is called as a Dear ImGui widget behaves like it.
 class Ui {
  public:
-  /// Until destroyed, names stand in this scope. (It is none of Dear ImGui's.)
+  /// Until destroyed, names stand in this scope. (Dear ImGui does not know of it.)
   class Scope {
    public:
     Scope(Ui& ui, std::string_view name);
@@ -85,13 +86,23 @@ class Ui {
   /// All parameters of an object. Returns whether one changed.
   bool parameters(Parametrised& object);
 
+  /// Puts the next window in the middle of the screen, of this size (in units; 0: what its contents
+  /// need) or as large as the screen allows.
+  void placeInMiddle(ImVec2 size) const;
+  /// A dialog, placed likewise, whose popup has been opened. Its cross makes `keep` false.
+  /// Returns whether it is drawn: then ImGui::EndPopup() follows.
+  bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
+  /// A dialog's button "Cancel", which Escape presses, too.
+  bool cancel(float width = 0);
+
   /// A table row "name: value" in two columns.
   void fact(const char* name, std::string_view value);
   void faint(std::string_view text);
   void coloured(Rgb rgb, std::string_view text);
   void heading(const char* text);
-  /// Wrapped text.
+  // Wrapped text.
   void paragraph(std::string_view text);
+  void faintParagraph(std::string_view text);
   void tooltip(const char* text);
 
   /// Notes the item drawn last under a name of its own.
@@ -107,8 +118,9 @@ class Ui {
 
  private:
   [[nodiscard]] std::string fullName(std::string_view label) const;
-  /// What number() does, as wide as has been set.
-  bool enterNumber(const char* label, std::string_view name, double& value, double min, double max,
+  /// An input for a number, noted as `name`, as wide as has been set.
+  template <class Number>
+  bool enterNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
                    const char* tooltip);
   /// Width of an input whose label stands to its right.
   void labelledWidth() const;

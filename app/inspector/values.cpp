@@ -5,26 +5,37 @@
 #include <map>
 
 #include "inspector/inspector.h"
-#include "inspector/mismatch.h"
+#include "inspector/wrong_pair.h"
 
 namespace broadmark {
 namespace {
 
 using Values = std::map<std::string, std::string>;
 
+const char* yes(bool is) { return is ? "yes" : "no"; }
+
+/// The wrong pairs of a frame or of several, each kind by its name after `prefix`.
+template <class Counts>
+void addCounts(Values& values, const std::string& prefix, const Counts& counts) {
+  values[prefix + "missed"] = std::to_string(counts.missed_count);
+  values[prefix + "false"] = std::to_string(counts.false_count);
+  values[prefix + "allowed_extra"] = std::to_string(counts.allowed_extra_count);
+  values[prefix + "invalid"] = std::to_string(counts.invalid_count);
+}
+
 void addLanes(Values& values, const RunProgress& progress) {
   for (const LaneReport& lane : progress.lanes) {
     const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
     values[name + "status"] = statusName(lane.status);
     values[name + "frame"] = std::to_string(lane.frame);
-    std::uint64_t missed = 0;
-    std::uint64_t extra = 0;
+    FrameRecord sum;
     for (const FrameRecord& record : lane.frames) {
-      missed += record.missed;
-      extra += record.extra;
+      sum.missed_count += record.missed_count;
+      sum.false_count += record.false_count;
+      sum.allowed_extra_count += record.allowed_extra_count;
+      sum.invalid_count += record.invalid_count;
     }
-    values[name + "missed"] = std::to_string(missed);
-    values[name + "extra"] = std::to_string(extra);
+    addCounts(values, name, sum);
     const FrameRecord* record = lane.record(lane.frame);
     values[name + "pairs"] = record ? std::to_string(record->pairs) : "";
   }
@@ -34,12 +45,10 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
   values["shown_frame"] = snapshot ? std::to_string(snapshot->frame) : "";
   values["bodies"] = snapshot ? std::to_string(snapshot->boxes->size()) : "0";
   values["pairs"] = snapshot ? std::to_string(snapshot->pairs.size()) : "0";
-  values["missed"] = snapshot ? std::to_string(snapshot->difference.missed_count) : "0";
-  values["extra"] = snapshot ? std::to_string(snapshot->difference.extra_count) : "0";
-  values["mismatch_pairs"] = snapshot ? std::to_string(snapshot->difference.missed_count +
-                                                       snapshot->difference.forbidden_count +
-                                                       snapshot->difference.invalid_count)
-                                      : "0";
+  const FrameDifference difference = snapshot ? snapshot->difference : FrameDifference();
+  addCounts(values, "", difference);
+  values["mismatch_pairs"] =
+      std::to_string(difference.missed_count + difference.false_count + difference.invalid_count);
   values["structure"] = snapshot && snapshot->structure
                             ? std::to_string(snapshot->structure->boxes().size() +
                                              snapshot->structure->lines().size())
@@ -56,11 +65,10 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
 }
 
 void addAuthored(Values& values, Session& session) {
-  const AuthorDesk& desk = session.desk;
+  const AuthorDesk& desk = session.document.desk;
   const scenes::AuthoredScene& scene = desk.editor.scene();
-  const auto yes = [](bool is) { return is ? "yes" : "no"; };
-  values["author.shown"] = yes(session.authoring());
-  values["author.at_rest"] = yes(session.authoringAtRest());
+  values["author.shown"] = yes(session.document.shown());
+  values["author.at_rest"] = yes(session.document.atRest());
   values["author.name"] = scene.name;
   values["author.bodies"] = std::to_string(scene.bodies.size());
   values["author.selection"] = std::to_string(desk.editor.selection().size());
@@ -68,7 +76,7 @@ void addAuthored(Values& values, Session& session) {
   values["author.redo"] = desk.editor.redoName();
   values["author.modified"] = yes(desk.isModified());
   values["author.path"] = desk.path().string();
-  values["author.leaving"] = yes(session.leaving != nullptr);
+  values["author.leaving"] = yes(session.document.leaving != nullptr);
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
   if (desk.editor.selection().empty()) return;
   const scenes::AuthoredBody& body = scene.bodies[desk.editor.selection().front()];
@@ -90,7 +98,7 @@ void addAuthored(Values& values, Session& session) {
 void addBatch(Values& values, const BackgroundBake& bake) {
   using Outcome = BackgroundBake::Outcome;
   const BackgroundBake::Report report = bake.report();
-  values["batch.state"] = bakeStateName(report.state);
+  values["batch.state"] = kTaskStates.nameOf(report.state);
   values["batch.recordings"] = std::to_string(report.items.size());
   values["batch.done"] = std::to_string(report.count(Outcome::baked));
   values["batch.kept"] = std::to_string(report.count(Outcome::kept));
@@ -99,7 +107,7 @@ void addBatch(Values& values, const BackgroundBake& bake) {
 
 /// Of the two selected bodies, if there are two.
 void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
-  const auto& bodies = session.selection;
+  const auto& bodies = session.selection.bodies();
   const bool chosen = bodies.size() == 2;
   values["pair"] = chosen ? pairName({bodies[0], bodies[1]}) : "";
   if (!chosen || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
@@ -109,16 +117,16 @@ void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const AxisRelation relation = relationOn(axis, a, b);
     values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);
-    values[fmt::format("pair.relation.{}", kAxes[axis])] = relationName(relation.kind);
+    values[fmt::format("pair.relation.{}", kAxes[axis])] = kRelations.nameOf(relation.kind);
   }
   values["pair.axis"] = kAxes[decidingAxis(a, b)];
-  values["pair.overlaps"] = overlaps(a, b) ? "yes" : "no";
+  values["pair.overlaps"] = yes(overlaps(a, b));
   values["pair.history"] =
       snapshot->tracks.size() == 2 ? std::to_string(snapshot->tracks[0].boxes.size()) : "0";
 }
 
 void addExport(Values& values, const CaseExport::Report& report) {
-  values["export.state"] = exportStateName(report.state);
+  values["export.state"] = kTaskStates.nameOf(report.state);
   values["export.trials"] = std::to_string(report.trials);
   values["export.bodies"] = std::to_string(report.bodies);
   values["export.frames"] = std::to_string(report.frames);
@@ -128,33 +136,33 @@ void addExport(Values& values, const CaseExport::Report& report) {
 
 Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
-  values["frame"] = std::to_string(session.frame());
-  values["last_frame"] = std::to_string(session.lastFrame());
+  values["frame"] = std::to_string(session.playback.frame());
+  values["last_frame"] = std::to_string(session.playback.lastFrame());
   values["known_frames"] = std::to_string(progress.known_frames);
-  values["playing"] = session.playback.playing ? "yes" : "no";
-  values["loop"] = session.playback.loop ? "yes" : "no";
+  values["playing"] = yes(session.playback.playing());
+  values["loop"] = yes(session.playback.loop);
   values["speed"] = fmt::format("{:g}", session.playback.frames_per_second);
   values["title"] = progress.footage ? progress.footage->title : "";
   values["scene"] = progress.scene.name;
   values["object_type"] = progress.scene.object_type;
-  values["lanes"] = std::to_string(session.lanes.size());
-  values["selection"] = fmt::format("{}", session.selection.size());
+  values["lanes"] = std::to_string(session.lanes.list.size());
+  values["selection"] = fmt::format("{}", session.selection.bodies().size());
   values["colouring"] = std::to_string(session.view.colouring);
-  values["hide_free"] = session.view.hide_free ? "yes" : "no";
-  values["pair_lines"] = session.view.pair_lines ? "yes" : "no";
-  values["check"] = session.wish.check ? "yes" : "no";
+  values["hide_free"] = yes(session.view.hide_free);
+  values["pair_lines"] = yes(session.view.pair_lines);
+  values["check"] = yes(session.mismatches.check);
   values["stop_frame"] = progress.stop ? std::to_string(progress.stop->frame) : "";
-  values["error"] = session.errors.empty() ? "" : session.errors.front();
-  values["status"] = session.status.text;
+  values["error"] = session.notices.errors.empty() ? "" : session.notices.errors.front();
+  values["status"] = session.notices.status.text;
   for (const auto& [name, value] : parameterValues(*session.draft)) values["scene." + name] = value;
-  for (LaneEdit& lane : session.lanes) {
+  for (LaneEdit& lane : session.lanes.list) {
     for (const auto& [name, value] : parameterValues(*lane.parameters)) {
       values[fmt::format("lane.{}.{}", lane.algorithm.id, name)] = value;
     }
     values[fmt::format("lane.{}.threads", lane.algorithm.id)] = std::to_string(lane.threads);
     values[fmt::format("lane.{}.isa", lane.algorithm.id)] = isaName(lane.isa);
   }
-  const LaneEdit* shown = session.lane(session.wish.shown_lane);
+  const LaneEdit* shown = session.lanes.find(session.lanes.shown());
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addAuthored(values, session);
   addBatch(values, session.bake);
@@ -162,7 +170,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addSnapshot(values, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
-  values["searching"] = session.searching() ? "yes" : "no";
+  values["searching"] = yes(session.mismatches.searching());
   values["cases"] = session.case_choice ? std::to_string(session.case_choice->cases.size()) : "";
   return values;
 }
@@ -180,8 +188,8 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
   values["legend"] = legendText(view_.legend());
   values["theme"] = preferences_.dark ? "dark" : "light";
-  values["help"] = help_ ? "yes" : "no";
-  values["dialog"] = files_.isOpen() ? "yes" : "no";
+  values["help"] = yes(help_);
+  values["dialog"] = yes(files_.isOpen());
   const auto found = values.find(name);
   if (found == values.end()) return {};
   return found->second;

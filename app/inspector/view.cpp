@@ -65,8 +65,8 @@ Aabb View::boundsOf(std::span<const std::uint32_t> bodies) const {
 }
 
 void View::takeFlightRequest(Session& session) {
-  if (!session.fly_to) return;
-  std::vector<std::uint32_t> bodies = *std::exchange(session.fly_to, {});
+  if (!session.selection.fly_to) return;
+  std::vector<std::uint32_t> bodies = *std::exchange(session.selection.fly_to, {});
   std::erase_if(bodies, [&](std::uint32_t body) { return body >= shown_.snapshot->boxes->size(); });
   if (bodies.empty()) {
     lookAtAll();
@@ -82,7 +82,7 @@ void View::update(Session& session, const RunProgress& progress, bool dark) {
   if (!progress.snapshot) return;
   const ViewOptions& options = session.view;
   // What has just been added is selected already, but not to be seen yet.
-  std::vector<std::uint32_t> selection = session.selection;
+  std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= progress.snapshot->boxes->size(); });
   const bool same = progress.snapshot == shown_.snapshot && selection == shown_.selection &&
                     options == shown_.options && dark == shown_.dark;
@@ -115,8 +115,8 @@ void View::updateBodies(const Session& session) {
        .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
                                          : std::span<const Aabb>(),
        .overlaps = snapshot.overlaps,
-       .missed = snapshot.difference.missed,
-       .extra = snapshot.difference.extra,
+       .missed = snapshot.difference.missed_pairs,
+       .false_pairs = snapshot.difference.false_pairs,
        .dark = shown_.dark},
       colouring_);
   visible_.clear();
@@ -126,7 +126,8 @@ void View::updateBodies(const Session& session) {
       visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
     }
     // What is missing is what one looks for.
-    for (const Pair& pair : snapshot.difference.missed) visible_[pair.a] = visible_[pair.b] = 1;
+    for (const Pair& pair : snapshot.difference.missed_pairs)
+      visible_[pair.a] = visible_[pair.b] = 1;
     for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
   }
   content_.boxes = *snapshot.boxes;
@@ -156,7 +157,7 @@ void View::updateLines(const Session& session, bool dark) {
     const PairRun run = snapshot.pairs;
     add(pairLines(boxes, {&run, 1}, {.colour = kLine}, selected));
   }
-  if (const PairRun missed = snapshot.difference.missed; !missed.empty()) {
+  if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
     add(pairLines(boxes, {&missed, 1},
                   {.colour = kMissed, .width = 2.5F, .behind = Behind::shown}));
   }
@@ -297,20 +298,20 @@ void View::click(Session& session, ImVec2 at, bool fly_there) {
   const auto picked =
       pickBody(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(), at.x, at.y, visible_);
   if (!picked) {
-    if (!ImGui::GetIO().KeyCtrl) session.select({});
+    if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
   }
   if (ImGui::GetIO().KeyCtrl) {
-    session.toggleSelected(picked->body);
+    session.selection.toggle(picked->body);
   } else {
-    session.select({picked->body});
+    session.selection.select({picked->body});
   }
-  if (fly_there) session.fly_to = std::vector<std::uint32_t>{picked->body};
+  if (fly_there) session.selection.fly_to = std::vector<std::uint32_t>{picked->body};
 }
 
 void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
-  session.select(bodiesWithin(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(),
-                              {{from.x, from.y}, {to.x, to.y}}, visible_));
+  session.selection.select(bodiesWithin(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(),
+                                        {{from.x, from.y}, {to.x, to.y}}, visible_));
 }
 
 void View::drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const {

@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
-#include "inspector/session.h"
-#include "inspector/ui.h"
 #include "broadmark/render/colouring.h"
 #include "broadmark/render/gl.h"
 #include "broadmark/render/orbit_camera.h"
 #include "broadmark/render/overlays.h"
 #include "broadmark/render/scene_view.h"
+#include "inspector/session.h"
+#include "inspector/ui.h"
 
 namespace broadmark {
 

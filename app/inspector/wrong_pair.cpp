@@ -1,54 +1,21 @@
-#include "inspector/mismatch.h"
+#include "inspector/wrong_pair.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace broadmark {
-
-const char* wrongPairName(WrongPair::Kind kind) {
-  switch (kind) {
-    case WrongPair::Kind::missed:
-      return "missed";
-    case WrongPair::Kind::extra:
-      return "extra";
-    case WrongPair::Kind::invalid:
-      return "invalid";
-    case WrongPair::Kind::allowed:
-      return "allowed";
-  }
-  return "";
-}
 
 std::string pairName(Pair pair) { return fmt::format("{}-{}", pair.a, pair.b); }
 
-std::vector<WrongPair> wrongPairs(const FrameDifference& difference, const std::vector<Aabb>& boxes,
-                                  float margin) {
+std::vector<WrongPair> wrongPairs(const FrameDifference& difference) {
   std::vector<WrongPair> wrong;
-  const auto add = [&](const std::vector<Pair>& pairs, auto kind_of) {
-    for (const Pair pair : pairs) wrong.push_back({kind_of(pair), pair});
+  const auto add = [&](WrongPair::Kind kind, const std::vector<Pair>& pairs) {
+    for (const Pair pair : pairs) wrong.push_back({kind, pair});
   };
-  add(difference.missed, [](Pair) { return WrongPair::Kind::missed; });
-  add(difference.extra, [&](Pair pair) {
-    const bool excused = pair.a < boxes.size() && pair.b < boxes.size() &&
-                         overlaps(enlarged(boxes[pair.a], margin), enlarged(boxes[pair.b], margin));
-    return excused ? WrongPair::Kind::allowed : WrongPair::Kind::extra;
-  });
-  add(difference.invalid, [](Pair) { return WrongPair::Kind::invalid; });
-  std::ranges::stable_sort(wrong, {}, &WrongPair::kind);
+  add(WrongPair::Kind::missed, difference.missed_pairs);
+  add(WrongPair::Kind::false_pair, difference.false_pairs);
+  add(WrongPair::Kind::invalid, difference.invalid_pairs);
+  add(WrongPair::Kind::allowed_extra, difference.allowed_extra_pairs);
   return wrong;
-}
-
-const char* relationName(AxisRelation::Kind kind) {
-  switch (kind) {
-    case AxisRelation::Kind::overlap:
-      return "overlap";
-    case AxisRelation::Kind::touch:
-      return "touch";
-    case AxisRelation::Kind::gap:
-      return "gap";
-  }
-  return "";
 }
 
 AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b) {
@@ -74,19 +41,6 @@ std::optional<std::uint32_t> PairTrack::overlapBegan() const {
   while (first > 0 && overlapsAt(first - 1)) --first;
   if (first == size()) return {};
   return a.first + static_cast<std::uint32_t>(first);
-}
-
-std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<LaneReport>& lanes,
-                                                   std::uint32_t frame) {
-  std::optional<RunProgress::Stop> next;
-  for (const LaneReport& lane : lanes) {
-    for (std::uint32_t index = frame + 1; index <= lane.frames.size(); ++index) {
-      if (!lane.frames[index - 1].mismatch) continue;
-      if (!next || index < next->frame) next = {.frame = index, .lane = lane.spec.number};
-      break;
-    }
-  }
-  return next;
 }
 
 }  // namespace broadmark

@@ -1,41 +1,47 @@
-// What is to be known of a wrong pair: which pairs are wrong and how, how two boxes lie to each
-// other on every axis, and since when they overlap.
+// What is known of a wrong pair: how it is wrong, how its two boxes lie on every axis, and since
+// when they overlap.
 #pragma once
 
-#include <array>
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "broadmark/aabb.h"
+#include "broadmark/names.h"
+#include "broadmark/oracle.h"
 #include "inspector/run_thread.h"
 
 namespace broadmark {
 
 struct WrongPair {
-  /// `allowed`: reported though apart, within the algorithm's margin; no mismatch.
-  enum class Kind { missed, extra, invalid, allowed };
+  /// As in FrameDifference. An allowed extra pair is no mismatch.
+  enum class Kind { missed, false_pair, invalid, allowed_extra };
   Kind kind = Kind::missed;
   Pair pair;
 };
-/// "missed", "extra", "invalid", "allowed".
-const char* wrongPairName(WrongPair::Kind kind);
+inline constexpr NameTable kWrongPairs{{NamedValue{WrongPair::Kind::missed, "missed"},
+                                        {WrongPair::Kind::false_pair, "false"},
+                                        {WrongPair::Kind::invalid, "invalid"},
+                                        {WrongPair::Kind::allowed_extra, "allowed extra"}}};
 /// "3-17".
 std::string pairName(Pair pair);
 
 /// All that are listed, kind by kind in the order above.
-std::vector<WrongPair> wrongPairs(const FrameDifference& difference, const std::vector<Aabb>& boxes,
-                                  float margin);
+std::vector<WrongPair> wrongPairs(const FrameDifference& difference);
 
-/// How two boxes lie to each other on one axis.
+/// How two boxes lie on one axis.
 struct AxisRelation {
   enum class Kind { overlap, touch, gap };
   Kind kind = Kind::gap;
   /// The distance between the intervals; below 0: by how much they overlap.
   double gap = 0;
 };
-/// "overlap", "touch", "gap".
-const char* relationName(AxisRelation::Kind kind);
+inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Kind::overlap, "overlap"},
+                                       {AxisRelation::Kind::touch, "touch"},
+                                       {AxisRelation::Kind::gap, "gap"}}};
 AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b);
 /// The axis that decides whether they overlap: the one with the widest gap, or, if there is none,
 /// with the least overlap.
@@ -57,9 +63,5 @@ struct PairTrack {
 inline bool movedAt(const Track& track, std::size_t i) {
   return i > 0 && track.boxes[i] != track.boxes[i - 1];
 }
-
-/// The next frame after `frame` in which a lane is known to be wrong.
-std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<LaneReport>& lanes,
-                                                   std::uint32_t frame);
 
 }  // namespace broadmark

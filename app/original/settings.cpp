@@ -36,54 +36,10 @@ constexpr std::pair<const char*, Phase> kLogPhases[] = {
     {"UpdateStructures", Phase::update_structures},
     {"SearchOverlaps", Phase::search_overlaps}};
 
-/// Reads no further than to what tells the kind: a large file is not read twice.
-class KindReader final : public JsonEvents {
- public:
-  using JsonEvents::JsonEvents;
-
-  [[nodiscard]] const std::string& kind() const { return kind_; }
-
-  bool start_object(std::size_t) override {
-    in_object_ |= depth_ == 0;
-    return open();
-  }
-  bool end_object() override { return close(); }
-  bool start_array(std::size_t) override { return open(); }
-  bool end_array() override { return close(); }
-  bool key(string_t& key) override {
-    if (!atTop()) return true;
-    if (key == "m_inputScene") kind_ = "original-settings";
-    is_schema_ = key == "schema";
-    return kind_.empty();
-  }
-  bool string(string_t& text) override {
-    if (atTop() && is_schema_) kind_ = text;
-    return kind_.empty();
-  }
-
- private:
-  [[nodiscard]] bool atTop() const { return in_object_ && depth_ == 1; }
-  bool open() {
-    ++depth_;
-    return true;
-  }
-  bool close() {
-    --depth_;
-    return true;
-  }
-
-  std::string kind_;
-  std::size_t depth_ = 0;
-  bool in_object_ = false;
-  bool is_schema_ = false;
-};
-
 }  // namespace
 
-std::string jsonKind(std::string_view text, std::string_view name) {
-  KindReader reader(name);
-  Json::sax_parse(text, &reader);
-  return reader.kind();
+bool isOriginalSettings(std::string_view json, std::string_view name) {
+  return jsonHasKey(json, "m_inputScene", name);
 }
 
 OriginalSettings parseOriginalSettings(std::string_view text, std::string_view name) {
@@ -126,7 +82,7 @@ std::string formatOriginalLog(const OriginalSettings& settings, const CaseResult
     }
   }
   const Json log = {{"Settings", std::move(header)}, {"Frames", std::move(frames)}};
-  return log.dump(1, ' ', false, Json::error_handler_t::replace) + '\n';
+  return formatJson(log);
 }
 
 }  // namespace broadmark

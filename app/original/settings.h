@@ -24,9 +24,9 @@ struct OriginalSettings {
   std::int64_t gpu_sap_kernel_type = 5;
 };
 
-/// What kind of JSON a text is: "broadmark-results/1" and the like, "original-settings", or "",
-/// whatever tells so first: what follows that is not read. Throws InputError if it is not JSON.
-std::string jsonKind(std::string_view json, std::string_view name);
+/// Whether a JSON text is such a file. Throws InputError if it is not JSON; `name` stands for it in
+/// messages.
+bool isOriginalSettings(std::string_view json, std::string_view name);
 
 /// Throws InputError naming `name`, the key and what would be right.
 OriginalSettings parseOriginalSettings(std::string_view json, std::string_view name);

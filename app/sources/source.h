@@ -18,48 +18,48 @@
 
 namespace broadmark {
 
-/// One recording to be: everything known of it before a frame is read or simulated.
+/// A recording before it is opened: everything known without reading or simulating a frame.
 struct Source {
   RecordingReference reference;            ///< hash and path filled by openRecording()
   std::unique_ptr<Simulation> simulation;  ///< null for a given recording
-  std::string expected_hash = {};          ///< what the recording must be; "": whatever it is
+  std::string expected_hash = {};          ///< that the recording must have; "": any
 };
 
 /// A recording with the cases to be run on it.
 struct PlanEntry {
   Source source;
   std::vector<Case> cases;
-  /// When the original's settings file names both.
+  /// When a settings file of the original names source and case.
   std::optional<OriginalSettings> original = {};
-  /// When both are of a results file: the result that it holds.
+  /// When source and case are of a results file: the result it holds.
   std::optional<CaseResult> known = {};
   std::filesystem::path screenshot = {};  ///< "": none
 
-  /// What was wrong in the first frame that was, as far as it is known.
+  /// The first mismatch of the known result, if it has one.
   [[nodiscard]] std::optional<FrameDifference> knownDifference() const;
 };
 
 /// A source that has been opened.
 struct OpenedSource {
-  /// Those of a scene or a recording have no cases of their own.
+  /// Scenes and recordings have no cases of their own.
   std::vector<PlanEntry> entries;
-  /// A results file one of whose cases is still to be chosen: then there are no entries.
+  /// A results file without a chosen case: then there are no entries.
   std::optional<Results> results = {};
 };
 
-/// What was named, with its text read and its schema found out once at the most.
+/// What was named. Its text is read once and its schema found once, when first needed.
 class NamedSource {
  public:
   explicit NamedSource(std::string name) : name_(std::move(name)) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::filesystem::path path() const { return name_; }
-  /// Whether it can only mean a file: it has an extension or a '/', or there is one.
+  /// Whether it means a file: it has an extension or a '/', or there is such a file.
   [[nodiscard]] bool isFile() const;
   [[nodiscard]] bool isJson() const;
-  /// Of a file. Throws InputError.
+  /// The file's text. Throws InputError.
   const std::string& text();
-  /// Of a JSON file, as jsonSchema(). Throws InputError.
+  /// The JSON file's schema, as jsonSchema(). Throws InputError.
   const std::string& schema();
 
  private:
@@ -73,18 +73,20 @@ struct OpeningOptions {
   SceneOptions scene;                 ///< of scenes that are simulated
   ParameterValues parameters;         ///< --param: of scenes or algorithms, whoever has them
   std::string case_id;                ///< of a results file; "": none chosen
-  std::vector<Algorithm> algorithms;  ///< that there are, plug-ins included
+  std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
 };
 
-/// A kind of source, as CMake's list has it: `broadmark::sources::NAME::kind()`.
+/// A kind of source: `broadmark::sources::NAME::kind()` for a NAME in the list in CMakeLists.txt.
 struct SourceKind {
-  std::string what;  ///< for help and messages: "recordings (.aabbs, .posrot)"
+  std::string what;  ///< in help and messages: "recordings (.aabbs, .posrot)"
   bool (*recognises)(NamedSource&);
   OpenedSource (*open)(NamedSource&, const OpeningOptions&);
 };
 std::vector<SourceKind> sourceKinds();
+/// What all of them are, for help and messages: "built-in scenes (freefall, …), recordings …".
+std::string sourceKindsText();
 
-/// Whether it is a built-in scene's name, or may be a file.
+/// Whether it is a built-in scene's id, or means a file.
 bool isSource(const std::string& name);
 
 /// Opens what is named, by the first kind that recognises it. Throws InputError.

@@ -12,8 +12,8 @@
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
 
-/// On a CPU, asks for a box that is read in a while, PREFETCHED bodies on, at a place that nobody
-/// can guess. PoCL's prefetch() does nothing, but its compiler has one that does.
+/// On a CPU, fetches a box that will be read PREFETCHED bodies later, at a place that the processor
+/// cannot predict. PoCL's prefetch() does nothing; its compiler has a builtin that works.
 #define PREFETCHED 24u
 #if LANES == 1
 #define PREFETCH(box)
@@ -35,7 +35,7 @@ typedef struct {
   float4 high;
 } Box;
 
-/// Behind the last sorted body there is room for a vector of bodies that meet nothing.
+/// After the last sorted body there is room for a vector of bodies that meet nothing.
 #define PADDING 16u
 
 /// Sorted boxes are six arrays of `stride` floats: lower and upper bounds on the first axis, on the
@@ -95,7 +95,7 @@ static inline int meet(float4 a_low, float4 a_high, float4 b_low, float4 b_high)
 /// Counting stops about here: 32 bits must not wrap around.
 #define MOST_PAIRS 0x80000000u
 
-/// Where a work item puts the pairs that it finds. What does not fit is only counted.
+/// Where a work item puts the pairs that it finds. Those that do not fit are only counted.
 typedef struct {
   __global uint2* pairs;
   volatile __global uint* count;
@@ -105,7 +105,7 @@ typedef struct {
 } Sink;
 
 static inline void flush(Sink* sink) {
-  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;  // race: an older count does, too
+  if (sink->held == 0 || *sink->count > MOST_PAIRS) return;  // race: an older count is also right
   const uint at = atomic_add(sink->count, sink->held);
   for (uint k = 0; k < sink->held && at + k < sink->capacity; ++k) {
     sink->pairs[at + k] = sink->buffer[k];

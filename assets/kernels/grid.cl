@@ -6,8 +6,8 @@
 // Coordinates become integers by a monotone function, so rounding and clamping cost no pair: if
 // a.low <= b.high, then so are their units.
 //
-// Cells wrap around into a table of 2^bits buckets, neighbours along x beside each other. What is
-// in a bucket may thus be from another cell; a pair counts only in the cell it was looked for.
+// Cells wrap around into a table of 2^bits buckets, neighbours along x side by side. So a bucket may
+// also hold bodies of other cells; a pair counts only in the cell that it was looked for in.
 
 #define LEVELS 21u
 
@@ -53,7 +53,7 @@ __kernel void make_keys(__global const Box* boxes, const uint n, const Grid grid
     bodies[i] = i;
     used |= 1u << level;
   }
-  const uint known = *used_levels;  // race: bits are only ever added; an older set does, too
+  const uint known = *used_levels;  // race: bits are only added; an older set is also right
   if ((known & used) != used) atomic_or(used_levels, used);
 }
 

@@ -38,7 +38,7 @@ static inline int common_bits(__global const uint* keys, int n, int i, int j) {
   return difference != 0 ? (int)clz(difference) : 32 + (int)clz((uint)(i ^ j));
 }
 
-/// Finds the children of inner node i (Karras 2012), and tells each its parent:
+/// Finds the children of inner node i (Karras 2012), and notes the parent of each:
 /// 2 * node + which child. Inner nodes' parents stand before those of the leaves.
 static inline void link_node(__global const uint* keys, int n, int i, __global Node* nodes,
                              __global uint* parents) {

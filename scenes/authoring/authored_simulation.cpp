@@ -1,35 +1,27 @@
+// Authored scenes as simulations, and frames of any source as authored scenes.
+
 #include "broadmark/scenes/authored_simulation.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
-#include "broadmark/recording.h"
+#include "authoring/faults.h"
+#include "broadmark/error.h"
 #include "broadmark/hasher.h"
+#include "broadmark/scenes/registry.h"
+#include "engines/chosen_engine.h"
+#include "entries.h"
+#include "physics_simulation.h"
 
 namespace broadmark::scenes {
 namespace {
 
-/// Every part of a scene is right.
-void requireSound(const AuthoredScene& scene) {
-  const auto require = [&](const std::string& fault) {
-    if (!fault.empty()) throw InputError(fmt::format("authored scene: {}", fault));
-  };
-  require(faultOfName(scene.name));
-  require(faultOfWorld(scene.world));
-  if (scene.bodies.size() > kMostAuthoredBodies) {
-    require(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMostAuthoredBodies));
-  }
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const std::string fault = faultOfBody(scene.bodies[i]);
-    if (!fault.empty()) require(fmt::format("body {}: {}", i, fault));
-  }
-}
-
 SceneListing listingOf(const AuthoredScene& scene) {
   return {.id = std::string(kAuthoredSceneId),
           .name = scene.name,
-          .summary = "bodies that somebody has placed"};
+          .summary = "bodies placed in the scene editor"};
 }
 
 class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument {
@@ -54,6 +46,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
 
   [[nodiscard]] std::filesystem::path input() const override { return file_; }
 
+  /// Of the bodies and the parameters that the scene states, not of the file's layout.
   [[nodiscard]] std::string inputHash() override {
     if (hash_.empty()) {
       const std::string text = formatAuthoredScene(scene_);
@@ -95,14 +88,14 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
   std::string hash_;
 };
 
-/// A body that fills this box; a sphere where recordings say so.
+/// A body that fills this box; a sphere if the object type says so.
 AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
   AuthoredBody body;
   Vec3 half;
   for (int axis = 0; axis < 3; ++axis) {
     const float edge = box.max[axis] - box.min[axis];
     body.pose.position[axis] = box.min[axis] + edge / 2;
-    half[axis] = std::max(edge, kLeastEdge) / 2;  // flat ones have a little thickness here
+    half[axis] = std::max(edge, kLeastEdge) / 2;  // a body has some thickness
   }
   if (object_type == "Spheres") {
     body.shape = SphereShape{half[0]};
@@ -112,15 +105,15 @@ AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
   return body;
 }
 
-/// Moves a source on to a frame of it.
-Frame frameOf(FrameSource& source, std::uint32_t index, Frame frame) {
-  if (auto* recording = dynamic_cast<Recording*>(&source)) return recording->read(index);
+/// Moves a source from its initial pose to frame `index`.
+Frame advance(FrameSource& source, Frame initial, std::uint32_t index) {
+  if (auto* frames = dynamic_cast<IndexedFrames*>(&source)) return frames->at(index);
+  Frame frame = initial;
   while (frame.index < index) frame = *source.next();
   return frame;
 }
 
-/// The unturned bodies of a source that stands at its initial pose; empty when only boxes are
-/// known.
+/// The unturned boxes of a source that has just been rewound; empty when only boxes are known.
 std::vector<Aabb> unturnedBoxes(PoseSource* source) {
   if (source == nullptr) return {};
   try {
@@ -134,12 +127,13 @@ std::vector<Aabb> unturnedBoxes(PoseSource* source) {
 }  // namespace
 
 AuthoredParameters::AuthoredParameters(const ParameterValues& stated)
-    : engine_(choiceOf(engineEntries())) {
+    : engine_(choiceOf(engineEntries())), engine_parameters_(std::make_unique<ChosenEngine>()) {
   setParameters(*this, stated);
 }
 
 AuthoredParameters::AuthoredParameters(const ParameterValues& other, const Vec3& gravity)
-    : engine_(choiceOf(engineEntries())) {
+    : AuthoredParameters() {
+  // One by one: the chosen engine decides which parameters follow.
   visitParameters([&](const Parameter& parameter) {
     const auto value = other.find(std::string(parameter.name));
     if (value != other.end()) setParameter(parameter, value->second);
@@ -149,9 +143,13 @@ AuthoredParameters::AuthoredParameters(const ParameterValues& other, const Vec3&
   gravity_z_ = gravity[2];
 }
 
+AuthoredParameters::~AuthoredParameters() = default;
+AuthoredParameters::AuthoredParameters(AuthoredParameters&&) noexcept = default;
+AuthoredParameters& AuthoredParameters::operator=(AuthoredParameters&&) noexcept = default;
+
 void AuthoredParameters::visitParameters(const ParameterVisitor& visit) {
   constexpr double kMostGravity = 1e6;
-  visit({"frames", "number of frames after the initial pose", &frames_, 1, 1'000'000});
+  visit({"frames", "number of frames after the initial pose", &frames_, 1, kMostFrames});
   visit({"engine", "physics engine that moves the bodies", &engine_});
   visit({"gravity_x", "gravity along x, in world units per second squared", &gravity_x_,
          -kMostGravity, kMostGravity});
@@ -159,7 +157,7 @@ void AuthoredParameters::visitParameters(const ParameterVisitor& visit) {
       {"gravity_y", "gravity along y, which points up", &gravity_y_, -kMostGravity, kMostGravity});
   visit({"gravity_z", "gravity along z", &gravity_z_, -kMostGravity, kMostGravity});
   physics_.visit(visit);
-  engine_parameters_.parameters(engine_, physics_).visitParameters(visit);
+  engine_parameters_->parameters(engine_.value, physics_).visitParameters(visit);
 }
 
 Vec3 AuthoredParameters::gravity() const {
@@ -168,7 +166,7 @@ Vec3 AuthoredParameters::gravity() const {
 }
 
 std::unique_ptr<PhysicsEngine> AuthoredParameters::createEngine() {
-  return engine_parameters_.create(engine_, physics_);
+  return engine_parameters_->create(engine_.value, physics_);
 }
 
 std::unique_ptr<Simulation> makeAuthoredSimulation(AuthoredScene scene,
@@ -185,10 +183,10 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
   }
   auto* poses = dynamic_cast<PoseSource*>(&source);
   const std::vector<Aabb> unturned = unturnedBoxes(poses);
-  const Frame wanted = frameOf(source, frame, initial);
+  const Frame wanted = advance(source, initial, frame);
   if (auto* whole = dynamic_cast<SceneSource*>(&source)) return whole->authoredScene();
 
-  // Nothing is known of forces: as they are, the bodies float.
+  // Gravity is not known: the bodies stay where they are.
   AuthoredScene scene{
       .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
   if (frame > 0 && !unturned.empty()) {

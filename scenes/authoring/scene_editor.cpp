@@ -1,6 +1,4 @@
-// Every change is an exchange: it holds values that the scene does not have now, and applying it
-// swaps them with those that it has. So undo and redo are the same operation, nothing is ever
-// computed backwards, and what comes back is what was there, bit for bit.
+// Undo and redo are the same operation: every change is an exchange (scene_change.h).
 
 #include "broadmark/scenes/scene_editor.h"
 
@@ -8,132 +6,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
+#include "authoring/faults.h"
+#include "authoring/scene_change.h"
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark::scenes {
 
-class SceneEditor::Change {
- public:
-  virtual ~Change() = default;
-  /// Exchanges what the scene has for what this holds.
-  virtual void exchange(AuthoredScene&) = 0;
-  /// Most memory that it takes, done or undone.
-  [[nodiscard]] virtual std::size_t bytes() const = 0;
-  /// Whether undoing this one brings back all that `later` changes, with nothing but changes of
-  /// values done between the two.
-  [[nodiscard]] virtual bool covers(const Change& later) const = 0;
-  /// Whether the bodies' ids mean others afterwards.
-  [[nodiscard]] virtual bool renumbers() const { return false; }
-};
-
 namespace {
-
-using SharedIds = std::shared_ptr<const BodyIds>;
-using Change = SceneEditor::Change;
-
-/// New values of one property of some bodies.
-template <class Value>
-class BodyChange final : public Change {
- public:
-  BodyChange(Value AuthoredBody::*property, SharedIds bodies, std::unique_ptr<Value[]> values)
-      : property_(property), bodies_(std::move(bodies)), values_(std::move(values)) {}
-
-  void exchange(AuthoredScene& scene) override {
-    for (std::size_t i = 0; i < bodies_->size(); ++i) {
-      std::swap(scene.bodies[(*bodies_)[i]].*property_, values_[i]);
-    }
-  }
-  [[nodiscard]] std::size_t bytes() const override {
-    return bodies_->size() * (sizeof(Value) + sizeof(std::uint32_t));
-  }
-  [[nodiscard]] bool covers(const Change& later) const override {
-    const auto* other = dynamic_cast<const BodyChange*>(&later);
-    return other != nullptr && other->property_ == property_ &&
-           (other->bodies_ == bodies_ || *other->bodies_ == *bodies_);
-  }
-
- private:
-  Value AuthoredBody::*property_;
-  SharedIds bodies_;
-  std::unique_ptr<Value[]> values_;
-};
-
-/// Bodies that come or go. Their ids are those that they have while they are there.
-class Presence final : public Change {
- public:
-  /// `absent`: bodies to come, in the order of their ids; none: those that are there go.
-  Presence(SharedIds ids, std::vector<AuthoredBody> absent)
-      : ids_(std::move(ids)), absent_(std::move(absent)) {}
-
-  void exchange(AuthoredScene& scene) override {
-    if (absent_.empty()) {
-      takeOut(scene.bodies);
-    } else {
-      putIn(scene.bodies);
-    }
-  }
-  [[nodiscard]] std::size_t bytes() const override {
-    return ids_->size() * (sizeof(AuthoredBody) + sizeof(std::uint32_t));
-  }
-  [[nodiscard]] bool covers(const Change&) const override { return false; }
-  [[nodiscard]] bool renumbers() const override { return true; }
-
- private:
-  void takeOut(std::vector<AuthoredBody>& bodies) {
-    absent_.reserve(ids_->size());
-    std::size_t kept = ids_->empty() ? bodies.size() : ids_->front();
-    for (std::size_t i = kept; i < bodies.size(); ++i) {
-      if (absent_.size() < ids_->size() && (*ids_)[absent_.size()] == i) {
-        absent_.push_back(bodies[i]);
-      } else {
-        bodies[kept++] = bodies[i];
-      }
-    }
-    bodies.resize(kept);
-  }
-
-  /// From the last id down, so that each body moves once.
-  void putIn(std::vector<AuthoredBody>& bodies) {
-    std::size_t left = bodies.size();
-    bodies.resize(bodies.size() + absent_.size());
-    std::size_t coming = absent_.size();
-    for (std::size_t i = bodies.size(); coming > 0;) {
-      --i;
-      bodies[i] = (*ids_)[coming - 1] == i ? absent_[--coming] : bodies[--left];
-    }
-    absent_ = {};
-  }
-
-  SharedIds ids_;
-  std::vector<AuthoredBody> absent_;
-};
-
-/// A new value of one property of the scene.
-template <class Value>
-class SceneChange final : public Change {
- public:
-  SceneChange(Value AuthoredScene::*property, Value value)
-      : property_(property), value_(std::move(value)) {}
-
-  void exchange(AuthoredScene& scene) override { std::swap(scene.*property_, value_); }
-  [[nodiscard]] std::size_t bytes() const override {
-    constexpr std::size_t kUsualText = 4096;  // names and parameters have no bodies in them
-    return kUsualText;
-  }
-  [[nodiscard]] bool covers(const Change& later) const override {
-    const auto* other = dynamic_cast<const SceneChange*>(&later);
-    return other != nullptr && other->property_ == property_;
-  }
-
- private:
-  Value AuthoredScene::*property_;
-  Value value_;
-};
 
 Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
@@ -171,26 +56,21 @@ BodyIds idsFrom(std::size_t first, std::size_t end) {
 
 SharedIds shared(BodyIds ids) { return std::make_shared<const BodyIds>(std::move(ids)); }
 
-void require(const std::string& fault) {
-  if (!fault.empty()) throw InputError(fault);
-}
-
-void requireBody(const AuthoredBody& body, std::size_t id) {
-  const std::string fault = faultOfBody(body);
-  if (!fault.empty()) throw InputError(fmt::format("body {}: {}", id, fault));
+std::string stepName(std::string_view verb, std::size_t bodies) {
+  return fmt::format("{} {} {}", verb, bodies, bodies == 1 ? "body" : "bodies");
 }
 
 }  // namespace
 
-/// What is undone at once, in the order in which it was done.
+/// Changes that are undone together, in the order in which they were made.
 struct SceneEditor::Step {
   [[nodiscard]] std::size_t bytes() const {
     std::size_t sum = sizeof(Step) + (before->size() + after->size()) * sizeof(std::uint32_t);
     for (const auto& change : changes) sum += change->bytes();
     return sum;
   }
-  /// Whether a change that was just made need not be kept, since undoing an earlier one is enough.
-  [[nodiscard]] bool covers(const Change& change) const {
+  /// Whether undoing an earlier change of this step also undoes `change`, the latest one.
+  [[nodiscard]] bool covers(const SceneChange& change) const {
     for (auto earlier = changes.rbegin(); earlier != changes.rend(); ++earlier) {
       if ((*earlier)->covers(change)) return true;
       if ((*earlier)->renumbers()) return false;
@@ -199,10 +79,10 @@ struct SceneEditor::Step {
   }
 
   std::string name;
-  std::vector<std::unique_ptr<Change>> changes;
-  SharedIds before;  ///< the selection
-  SharedIds after;
-  std::uint64_t revision = 0;  ///< of the scene once it is done
+  std::vector<std::unique_ptr<SceneChange>> changes;
+  SharedIds before;            ///< the selection before the step
+  SharedIds after;             ///< the selection after it
+  std::uint64_t revision = 0;  ///< of the scene after it
 };
 
 SceneEditor::SceneEditor(AuthoredScene scene, std::size_t history_bytes)
@@ -220,9 +100,9 @@ void SceneEditor::select(BodyIds bodies) {
   bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   if (!bodies.empty() && bodies.back() >= scene_.bodies.size()) {
     throw InputError(
-        fmt::format("there is no body {}: there are {}", bodies.back(), scene_.bodies.size()));
+        fmt::format("there is no body {}: the scene has {}", bodies.back(), scene_.bodies.size()));
   }
-  // The same list stays the same object: steps share it, and gestures know it again.
+  // An equal list stays the same object, so that steps share it.
   if (bodies != *selection_) selection_ = shared(std::move(bodies));
 }
 
@@ -253,8 +133,8 @@ void SceneEditor::add(std::vector<AuthoredBody> bodies) { addCopies("add", std::
 
 void SceneEditor::erase() {
   if (selection_->empty()) return;
-  perform(nameOf("delete", selection_->size()),
-          std::make_unique<Presence>(selection_, std::vector<AuthoredBody>()), shared({}));
+  perform(stepName("delete", selection_->size()),
+          std::make_unique<BodyPresence>(selection_, std::vector<AuthoredBody>()), shared({}));
 }
 
 void SceneEditor::duplicate(const Vec3& offset) {
@@ -285,15 +165,15 @@ void SceneEditor::scale(float factor) {
   const auto place = [&](const AuthoredBody& body) {
     return Pose{scaledAbout(centre, body.pose.position, factor), body.pose.rotation};
   };
-  // Two properties change: if either went wrong, neither may.
+  // Two properties change: both must be valid before the first one changes.
   for (const std::uint32_t id : *selection_) {
     AuthoredBody body = scene_.bodies[id];
     body.pose = place(body);
     body.shape = scaled(body.shape, factor);
-    requireBody(body, id);
+    requireSound(body, id);
   }
   const bool alone = !in_gesture_;
-  if (alone) beginGesture(nameOf("scale", selection_->size()));
+  if (alone) beginGesture(stepName("scale", selection_->size()));
   changeBodies("scale", &AuthoredBody::pose, place);
   changeBodies("scale", &AuthoredBody::shape,
                [&](const AuthoredBody& body) { return scaled(body.shape, factor); });
@@ -362,7 +242,7 @@ void SceneEditor::setParameters(const ParameterValues& values) {
     std::erase_if(wanted, [&](const auto& value) { return !known.contains(value.first); });
   }
   for (const auto& [name, value] : values) wanted[name] = value;
-  // As the parameters themselves write them: the same value is the same text.
+  // Equal values become equal texts.
   const ParameterValues all = AuthoredParameters(wanted).values();
   for (auto& [name, value] : wanted) value = all.at(name);
   changeScene("change parameters", &AuthoredScene::parameters, std::move(wanted), {});
@@ -413,36 +293,36 @@ void SceneEditor::changeBodies(std::string_view verb, Value AuthoredBody::*prope
     values[i] = make(std::as_const(body));
     differs |= !(values[i] == body.*property);
     body.*property = values[i];
-    requireBody(body, ids[i]);
+    requireSound(body, ids[i]);
   }
   if (!differs) return;
-  perform(nameOf(verb, ids.size()),
-          std::make_unique<BodyChange<Value>>(property, selection_, std::move(values)), selection_);
+  perform(stepName(verb, ids.size()),
+          std::make_unique<BodyValues<Value>>(property, selection_, std::move(values)), selection_);
 }
 
 template <class Value>
 void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, Value value,
                               const std::string& fault) {
-  require(fault);
+  if (!fault.empty()) throw InputError(fault);
   if (value == scene_.*property) return;
-  perform(std::move(name), std::make_unique<SceneChange<Value>>(property, std::move(value)),
+  perform(std::move(name), std::make_unique<SceneValue<Value>>(property, std::move(value)),
           selection_);
 }
 
 void SceneEditor::addCopies(std::string_view verb, std::vector<AuthoredBody> bodies) {
   if (bodies.empty()) return;
   const std::size_t first = scene_.bodies.size();
-  if (bodies.size() > kMostAuthoredBodies - std::min(first, kMostAuthoredBodies)) {
-    throw InputError(fmt::format("{} more bodies: a scene holds at most {}", bodies.size(),
-                                 kMostAuthoredBodies));
+  if (first + bodies.size() > kMostBodies) {
+    throw InputError(
+        fmt::format("{} more bodies: a scene has at most {}", bodies.size(), kMostBodies));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) requireBody(bodies[i], first + i);
+  for (std::size_t i = 0; i < bodies.size(); ++i) requireSound(bodies[i], first + i);
   const SharedIds ids = shared(idsFrom(first, first + bodies.size()));
-  std::string name = nameOf(verb, bodies.size());
-  perform(std::move(name), std::make_unique<Presence>(ids, std::move(bodies)), ids);
+  std::string name = stepName(verb, bodies.size());
+  perform(std::move(name), std::make_unique<BodyPresence>(ids, std::move(bodies)), ids);
 }
 
-void SceneEditor::perform(std::string name, std::unique_ptr<Change> change,
+void SceneEditor::perform(std::string name, std::unique_ptr<SceneChange> change,
                           SharedIds selected_after) {
   change->exchange(scene_);
   if (!gesture_has_step_) {
@@ -470,10 +350,6 @@ void SceneEditor::forgetOldest() {
     history_.pop_front();
     --done_;
   }
-}
-
-std::string SceneEditor::nameOf(std::string_view verb, std::size_t bodies) const {
-  return fmt::format("{} {} {}", verb, bodies, bodies == 1 ? "body" : "bodies");
 }
 
 }  // namespace broadmark::scenes

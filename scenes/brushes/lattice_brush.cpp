@@ -3,6 +3,7 @@
 #include <array>
 
 #include "broadmark/scenes/brush.h"
+#include "entries.h"
 
 namespace broadmark::scenes::lattice_brush {
 namespace {
@@ -39,8 +40,8 @@ class LatticeBrush final : public Brush {
 }  // namespace
 
 BrushEntry entry() {
-  return {.listing = {"lattice", "bodies in rows, columns and layers around the point"},
-          .create = []() -> std::unique_ptr<Brush> { return std::make_unique<LatticeBrush>(); }};
+  return {{"lattice", "bodies in rows, columns and layers around the point"},
+          makeAs<Brush, LatticeBrush>};
 }
 
 }  // namespace broadmark::scenes::lattice_brush

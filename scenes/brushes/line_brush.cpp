@@ -2,15 +2,16 @@
 
 #include <array>
 
-#include "broadmark/scenes/brush.h"
+#include "brushes/counted_brush.h"
+#include "entries.h"
 
 namespace broadmark::scenes::line_brush {
 namespace {
 
-class LineBrush final : public Brush {
+class LineBrush final : public CountedBrush<10> {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"count", "number of bodies", &count_, 1, 10'000'000});
+    CountedBrush::visitParameters(visit);
     visit(
         {"step_x", "way from one body to the next along x, in world units", &step_[0], -1e6, 1e6});
     visit(
@@ -18,7 +19,6 @@ class LineBrush final : public Brush {
     visit(
         {"step_z", "way from one body to the next along z, in world units", &step_[2], -1e6, 1e6});
   }
-  [[nodiscard]] double count(double) const override { return static_cast<double>(count_); }
   [[nodiscard]] Vec3 place(std::size_t index, Random&) const override {
     Vec3 place;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -28,15 +28,13 @@ class LineBrush final : public Brush {
   }
 
  private:
-  std::int64_t count_ = 10;
   std::array<double, 3> step_ = {1, 0, 0};
 };
 
 }  // namespace
 
 BrushEntry entry() {
-  return {.listing = {"line", "bodies in a row, beginning at the point"},
-          .create = []() -> std::unique_ptr<Brush> { return std::make_unique<LineBrush>(); }};
+  return {{"line", "bodies in a row, beginning at the point"}, makeAs<Brush, LineBrush>};
 }
 
 }  // namespace broadmark::scenes::line_brush

@@ -1,8 +1,8 @@
-// Random: as many bodies as give a box this density.
-
-#include <array>
+// Random: bodies at random in a box, as many as give it a density.
 
 #include "broadmark/scenes/brush.h"
+#include "brushes/box_space.h"
+#include "entries.h"
 
 namespace broadmark::scenes::random_brush {
 namespace {
@@ -12,32 +12,27 @@ class RandomBrush final : public Brush {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"density", "share of the box that bodies of unit shape and this scale fill", &density_,
            1e-6, 1});
-    visit({"size_x", "size of the box along x, in world units", &size_[0], 1e-3, 1e6});
-    visit({"size_y", "size of the box along y, in world units", &size_[1], 1e-3, 1e6});
-    visit({"size_z", "size of the box along z, in world units", &size_[2], 1e-3, 1e6});
+    space_.visitParameters(visit);
   }
   [[nodiscard]] double count(double body_volume) const override {
-    return density_ * size_[0] * size_[1] * size_[2] / body_volume;
+    const auto& size = space_.size();
+    return density_ * size[0] * size[1] * size[2] / body_volume;
   }
   [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
-    Vec3 place;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      place[axis] = static_cast<float>(random.between(-size_[axis] / 2, size_[axis] / 2));
-    }
-    return place;
+    return space_.pointInside(random);
   }
   [[nodiscard]] bool scatters() const override { return true; }
 
  private:
   double density_ = 0.1;
-  std::array<double, 3> size_ = {10, 10, 10};
+  BoxSpace space_;
 };
 
 }  // namespace
 
 BrushEntry entry() {
-  return {.listing = {"random", "as many bodies, at random in a box, as fill it to a density"},
-          .create = []() -> std::unique_ptr<Brush> { return std::make_unique<RandomBrush>(); }};
+  return {{"random", "as many bodies, at random in a box, as fill it to a density"},
+          makeAs<Brush, RandomBrush>};
 }
 
 }  // namespace broadmark::scenes::random_brush

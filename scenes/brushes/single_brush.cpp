@@ -1,6 +1,7 @@
 // Single: one body.
 
 #include "broadmark/scenes/brush.h"
+#include "entries.h"
 
 namespace broadmark::scenes::single_brush {
 namespace {
@@ -13,9 +14,6 @@ class SingleBrush final : public Brush {
 
 }  // namespace
 
-BrushEntry entry() {
-  return {.listing = {"single", "one body"},
-          .create = []() -> std::unique_ptr<Brush> { return std::make_unique<SingleBrush>(); }};
-}
+BrushEntry entry() { return {{"single", "one body"}, makeAs<Brush, SingleBrush>}; }
 
 }  // namespace broadmark::scenes::single_brush

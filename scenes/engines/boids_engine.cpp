@@ -1,7 +1,7 @@
-// Boids: birds of a flock instead of bodies under forces. Each one keeps its distance from its
-// neighbours, flies the way they fly and draws near to where they are, at about the speed it was
-// launched with. Bodies do not collide; walls are avoided and never passed. O(n) per step:
-// neighbours are found through a uniform grid and a boid heeds at most kMostNeighbours.
+// Boids: birds of a flock instead of bodies under forces. Each boid keeps a distance from its
+// neighbours, takes on their direction and stays near them, at about its launch speed. Bodies do
+// not collide; they avoid walls and never pass them. O(n) per step: neighbours are found in a
+// uniform grid, and a boid follows at most kMostNeighbours.
 //
 // C. Reynolds: Flocks, Herds, and Schools: A Distributed Behavioral Model. SIGGRAPH 1987.
 // M. Teschner et al.: Optimized Spatial Hashing for Collision Detection of Deformable Objects.
@@ -17,25 +17,26 @@
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes::boids_engine {
 namespace {
 
 using Eigen::Vector3f;
 
-/// In a crowd so many stand for all: flocks of birds get by with far fewer.
+/// Enough in a crowd: birds follow far fewer.
 constexpr int kMostNeighbours = 64;
 
 Vector3f toEigen(const Vec3& v) { return Vector3f(v.data()); }
 Vec3 fromEigen(const Vector3f& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Half the edges of the box around a shape.
+/// Half the edges of the tight box.
 Vector3f halfExtents(const Shape& shape, const Pose& pose) {
   const Aabb box = tightBox(shape, pose);
   return (Vector3f(box.max.data()) - Vector3f(box.min.data())) / 2;
 }
 
-/// Turned so that x points along `velocity` and z stays level.
+/// The rotation that points x along `velocity` and keeps z level.
 std::array<float, 4> headingAlong(const Vector3f& velocity) {
   const Vector3f forward = velocity.normalized();
   const Vector3f level = forward.cross(Vector3f::UnitY());
@@ -70,18 +71,18 @@ class Boid final : public PhysicsBody {
 
   [[nodiscard]] Vector3f position() const { return toEigen(pose_.position); }
   [[nodiscard]] const Vector3f& velocity() const { return velocity_; }
-  /// The speed that it was launched with and keeps to.
+  /// The launch speed, which it tends to keep.
   [[nodiscard]] float cruisingSpeed() const { return cruising_speed_; }
 
-  /// Flies on with this velocity, looking ahead.
+  /// Flies with this velocity and turns into its direction.
   void fly(const Vector3f& velocity, float seconds) {
     velocity_ = velocity;
     pose_.position = fromEigen(position() + seconds * velocity);
     if (!velocity.isZero(0)) pose_.rotation = headingAlong(velocity);
   }
-  /// Moved without flying.
+  /// Moves without flying.
   void push(const Vector3f& way) { pose_.position = fromEigen(position() + way); }
-  /// Flies no longer against `normal`.
+  /// Removes the part of the velocity against `normal`.
   void slideAlong(const Vector3f& normal) {
     velocity_ -= std::min(0.0F, velocity_.dot(normal)) * normal;
   }
@@ -99,8 +100,8 @@ class Boid final : public PhysicsBody {
   bool frozen_ = false;
 };
 
-/// Points by the cell of a uniform grid that they lie in. The grid has no bounds: cells share as
-/// many buckets as there are points.
+/// Points by their cell in a uniform grid without bounds: cells share as many buckets as there are
+/// points.
 class CellTable {
  public:
   void rebuild(const std::vector<Vector3f>& points, float cell_edge) {
@@ -119,7 +120,7 @@ class CellTable {
     for (std::uint32_t i = 0; i < cells_.size(); ++i) points_[next_[bucketOf(cells_[i])]++] = i;
   }
 
-  /// Shows the indices of all points in the cells around `point` to `visit`, until that is false.
+  /// Calls visit(index) for the points in the cells around `point` until it returns false.
   template <class Visit>
   void eachNear(const Vector3f& point, Visit&& visit) const {
     const Cell centre = cellOf(point);
@@ -140,7 +141,7 @@ class CellTable {
   using Cell = std::array<int, 3>;
 
   [[nodiscard]] Cell cellOf(const Vector3f& point) const {
-    constexpr float kFarthest = 1e9F;  // still an int
+    constexpr float kFarthest = 1e9F;  // fits into an int
     Cell cell;
     for (int axis = 0; axis < 3; ++axis) {
       const float index = std::floor(point[axis] / cell_edge_);
@@ -161,9 +162,9 @@ class CellTable {
   float cell_edge_ = 1;
   std::uint32_t bucket_mask_ = 0;
   std::vector<Cell> cells_;            ///< by point
-  std::vector<std::uint32_t> starts_;  ///< by bucket, of its part of points_; one more at the end
-  std::vector<std::uint32_t> next_;    ///< by bucket, while the parts are filled
-  std::vector<std::uint32_t> points_;  ///< by bucket
+  std::vector<std::uint32_t> starts_;  ///< where each bucket's part of points_ starts, and the end
+  std::vector<std::uint32_t> next_;    ///< where the next point of each bucket goes
+  std::vector<std::uint32_t> points_;  ///< indices, bucket after bucket
 };
 
 class BoidsEngine final : public PhysicsEngine {
@@ -207,7 +208,7 @@ class BoidsEngine final : public PhysicsEngine {
   }
 
  private:
-  /// All decide by what they see before anybody moves.
+  /// Decides all new velocities before any boid moves.
   void steer(float seconds) {
     if (boids_.empty()) return;
     positions_.clear();
@@ -256,7 +257,7 @@ class BoidsEngine final : public PhysicsEngine {
     return steering;
   }
 
-  /// The nearer a wall, the harder the turn: an acceleration per cruising speed.
+  /// Turns harder the nearer a wall is: an acceleration per cruising speed.
   [[nodiscard]] Vector3f offTheWalls(const Boid& boid) const {
     const auto foresight = static_cast<float>(foresight_);
     const float heeded = foresight * boid.cruisingSpeed();
@@ -265,7 +266,7 @@ class BoidsEngine final : public PhysicsEngine {
     for (const HalfSpace& wall : walls_) {
       const Vector3f normal = toEigen(wall.normal);
       const float gap = depthInside(boid, wall) - normal.cwiseAbs().dot(half);
-      // Three times what stops a boid that heads straight for the wall.
+      // Three times what would stop a boid that flies straight at the wall.
       if (gap < heeded) steering += 3 / foresight * (1 - std::max(gap, 0.0F) / heeded) * normal;
     }
     return steering;
@@ -287,7 +288,7 @@ class BoidsEngine final : public PhysicsEngine {
     }
   }
 
-  /// No part of a boid is beyond a wall; of one that is larger than the world, not its centre.
+  /// Keeps the whole boid inside the walls; of one that is larger than the world, its centre.
   void keepInside(Boid& boid) const {
     const Vector3f half = halfExtents(boid.shape(), boid.pose());
     for (const float share : {1.0F, 0.0F}) {
@@ -301,7 +302,7 @@ class BoidsEngine final : public PhysicsEngine {
     }
   }
 
-  /// How far the centre is from a wall, on its free side.
+  /// The distance of the centre from a wall; negative: behind it.
   static float depthInside(const Boid& boid, const HalfSpace& wall) {
     return toEigen(wall.normal).dot(boid.position()) - wall.offset;
   }
@@ -316,23 +317,21 @@ class BoidsEngine final : public PhysicsEngine {
   double min_speed_ = 0.7;
   double max_speed_ = 1.4;
 
-  std::deque<Boid> boids_;  ///< never move in memory: scenes hold on to them
+  std::deque<Boid> boids_;  ///< a deque, because scenes keep references
   std::vector<HalfSpace> walls_;
   Vector3f gravity_ = Vector3f::Zero();
   double size_sum_ = 0;  ///< of mean edges of unturned bodies
   CellTable cells_;
-  std::vector<Vector3f> positions_;   ///< by boid, as all see them
-  std::vector<Vector3f> velocities_;  ///< by boid, as decided
+  std::vector<Vector3f> positions_;   ///< by boid, before any has moved
+  std::vector<Vector3f> velocities_;  ///< by boid, as decided by steer()
 };
 
 }  // namespace
 
 EngineEntry entry() {
-  return {.listing = {"boids", "a flock: bodies heed their neighbours and pass through each other",
-                      Dynamics::scripted},
-          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
-            return std::make_unique<BoidsEngine>(settings);
-          }};
+  return {{"boids", "a flock: bodies follow their neighbours and pass through each other",
+           Dynamics::scripted},
+          makeAs<PhysicsEngine, BoidsEngine>};
 }
 
 }  // namespace broadmark::scenes::boids_engine

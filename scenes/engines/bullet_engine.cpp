@@ -1,7 +1,8 @@
 // Rigid bodies by Bullet (single precision): dynamic AABB trees, sequential impulses.
 //
-// Bullet keeps some process-wide settings; this engine only ever reads them, so that several worlds
-// can live side by side.
+// Bullet has settings of the whole process, which this engine never changes, so that several worlds
+// can exist at the same time. One of them, the margin of its trees, is changed by algorithms of the
+// DBVT family. Bullet reads it whenever a body's box changes, so such calls hold a SharedUse.
 
 #include <btBulletDynamicsCommon.h>
 
@@ -11,7 +12,9 @@
 #include <map>
 #include <memory>
 
+#include "broadmark/exclusive_use.h"
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes::bullet_engine {
 namespace {
@@ -29,9 +32,8 @@ Pose fromBullet(const btTransform& transform) {
   return {fromBullet(transform.getOrigin()), {q.x(), q.y(), q.z(), q.w()}};
 }
 
-/// A half-space at the origin of the world, with finite sides. Bullet's own plane has an infinite
-/// box, which makes a pair with every body of the world; walls along the axes need only those that
-/// reach them.
+/// A half-space whose box ends at the plane if the plane lies across an axis. Bullet's own plane
+/// has an infinite box, which makes a pair with every body of the world.
 class HalfSpaceShape final : public btStaticPlaneShape {
  public:
   using btStaticPlaneShape::btStaticPlaneShape;
@@ -45,8 +47,8 @@ class HalfSpaceShape final : public btStaticPlaneShape {
   }
 };
 
-/// The points of a shape that can be the first to touch a wall, in the shape's own coordinates: the
-/// corners of a box, the deepest point of a sphere.
+/// The points of a shape that can touch a wall first, in the shape's own coordinates: the corners
+/// of a box, the deepest point of a sphere.
 int wallPoints(const btBoxShape& box) { return box.getNumVertices(); }
 btVector3 wallPoint(const btBoxShape& box, int corner, const btVector3& /*into_wall*/) {
   btVector3 at;
@@ -58,10 +60,9 @@ btVector3 wallPoint(const btSphereShape& sphere, int, const btVector3& into_wall
   return sphere.getRadius() * into_wall;
 }
 
-/// Contacts of a body with a wall: one for each point that the coming step could carry into the
-/// wall, given the body's present motion. The solver then stops it at the wall, where a fast body
-/// would else end up inside. (Bullet's own algorithm finds the nearest point only, once it
-/// touches.)
+/// Contacts of a body with a wall: one for each point that the next step could move into the wall.
+/// So the solver stops even a fast body at the wall. (Bullet's own algorithm finds only the nearest
+/// point, and only once it touches.)
 template <class BodyShape>
 class WallContact final : public btCollisionAlgorithm {
  public:
@@ -105,7 +106,7 @@ class WallContact final : public btCollisionAlgorithm {
           a->getCollisionObject(), b->getCollisionObject());
       point.m_index0 = i;
       warmStart(point, before);
-      manifold_->addManifoldPoint(point);  // keeps the four that carry best
+      manifold_->addManifoldPoint(point);  // keeps the best four
     }
   }
 
@@ -117,7 +118,7 @@ class WallContact final : public btCollisionAlgorithm {
     manifolds.push_back(manifold_);
   }
 
-  /// Tells Bullet how to make one.
+  /// Makes one for Bullet.
   struct CreateFunc final : btCollisionAlgorithmCreateFunc {
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
@@ -128,14 +129,14 @@ class WallContact final : public btCollisionAlgorithm {
   };
 
  private:
-  /// An upper bound on how fast any point of the body nears the wall.
+  /// An upper bound of the speed at which any point of the body approaches the wall.
   static btScalar approachSpeed(const btRigidBody& body, const btVector3& normal) {
     const btScalar spin =
         body.getAngularVelocity().length() * body.getCollisionShape()->getAngularMotionDisc();
     return std::max(btScalar(0), -body.getLinearVelocity().dot(normal)) + spin;
   }
 
-  /// The last step's impulses are the solver's first guess for the same point.
+  /// The solver starts from the impulses that the same point had in the last step.
   static void warmStart(btManifoldPoint& point, const btPersistentManifold& before) {
     for (int i = 0; i < before.getNumContacts(); ++i) {
       const btManifoldPoint& old = before.getContactPoint(i);
@@ -150,14 +151,14 @@ class WallContact final : public btCollisionAlgorithm {
   btScalar resting_threshold_;
 };
 
-/// Slow for this long, in seconds, a body that something carries is held.
+/// A supported body that has been slow for this long, in seconds, is held still.
 constexpr btScalar kHoldAfter = 0.5F;
-/// A body is carried when contacts take at least this share of its weight.
+/// A body is supported when contacts carry at least this share of its weight.
 constexpr btScalar kCarriedShare = 0.75F;
 
-/// Bullet's world with a limit on angular speeds, and piles that come to rest: few iterations leave
-/// each body in a large pile some motion, and Bullet lets none of a pile sleep before all are
-/// quiet.
+/// Bullet's world with a limit on angular speeds, and with piles that come to rest. Without help
+/// they do not: few iterations leave some motion in each body of a large pile, and in Bullet a pile
+/// sleeps only when all of its bodies are slow.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -187,7 +188,7 @@ class World final : public btDiscreteDynamicsWorld {
     }
   }
 
-  /// Whether the body has long been slow, and is not about to fall.
+  /// Whether the body has been slow for long, and is supported.
   [[nodiscard]] bool isHeld(const btRigidBody& body, btScalar time_step) const {
     if (body.getDeactivationTime() < kHoldAfter) return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
@@ -219,6 +220,7 @@ class BulletBody final : public PhysicsBody {
   void setPose(const Pose& pose) override {
     body_.setWorldTransform(toBullet(pose));
     body_.setInterpolationWorldTransform(body_.getWorldTransform());
+    const SharedUse margin(kBulletTreeMargin);
     world_.updateSingleAabb(&body_);
     wake();
   }
@@ -239,13 +241,13 @@ class BulletBody final : public PhysicsBody {
     body_.setInterpolationLinearVelocity(btVector3(0, 0, 0));
     body_.setInterpolationAngularVelocity(btVector3(0, 0, 0));
     body_.setInterpolationWorldTransform(body_.getWorldTransform());
-    // No mass is what makes a body static. Unlike a kinematic one it keeps no neighbour awake.
+    // A body without mass is static. Unlike a kinematic one it lets its neighbours sleep.
     body_.setMassProps(0, btVector3(0, 0, 0));
     body_.updateInertiaTensor();
     body_.forceActivationState(ISLAND_SLEEPING);
   }
 
-  /// Has lately moved too fast to fall asleep.
+  /// Whether it has recently moved too fast to fall asleep.
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// Does nothing to a frozen body.
   void wake() { body_.activate(); }
@@ -265,20 +267,20 @@ class BulletEngine final : public PhysicsEngine {
     world_.setGravity(btVector3(0, 0, 0));
     btContactSolverInfo& solver = world_.getSolverInfo();
     solver.m_numIterations = static_cast<int>(settings.solver_iterations);
-    // Friction in one direction only, Bullet's default, lets piles creep sideways.
+    // With friction in one direction only, Bullet's default, piles creep sideways.
     solver.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
-    // All pairs in one go over the tree, and the tree improved a little in each step: with tens of
-    // thousands of moving bodies twice as fast as one query for each.
+    // Find all pairs in one pass over the tree, and improve the tree a little in each step: with
+    // many moving bodies faster than one query for each (docs/generator.md).
     broad_phase_.m_deferedcollide = true;
     broad_phase_.m_dupdates = 1;
-    // Sleeping bodies keep their boxes in the broad phase; whoever places one anew updates its box.
+    // Leave the boxes of sleeping bodies alone; setPose() updates them.
     world_.setForceUpdateAllAabbs(false);
     useAgainstWalls(BOX_SHAPE_PROXYTYPE, box_wall_contact_);
     useAgainstWalls(SPHERE_SHAPE_PROXYTYPE, sphere_wall_contact_);
   }
 
   ~BulletEngine() override {
-    // Bullet's own clean-up goes through all pairs once for each body: O(n²). Drop the pairs first.
+    // Bullet would go through all pairs once for each body: remove the pairs first.
     btOverlappingPairCache& pairs = *broad_phase_.getOverlappingPairCache();
     while (pairs.getNumOverlappingPairs() > 0) {
       const btBroadphasePair& last =
@@ -318,7 +320,7 @@ class BulletEngine final : public PhysicsEngine {
 
   void setGravity(const Vec3& gravity) override {
     if (toBullet(gravity) == world_.getGravity()) return;
-    for (BulletBody& body : bodies_) body.wake();  // Bullet tells only those awake
+    for (BulletBody& body : bodies_) body.wake();  // Bullet changes only bodies that are awake
     world_.setGravity(toBullet(gravity));
   }
 
@@ -326,15 +328,16 @@ class BulletEngine final : public PhysicsEngine {
 
   void step() override {
     const double substep = settings_.time_step / static_cast<double>(settings_.substeps);
-    // Each substep by itself: Bullet's own division of a step depends on rounding.
+    // One by one: how Bullet itself divides a step depends on rounding.
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
+      const SharedUse margin(kBulletTreeMargin);
       world_.stepSimulation(static_cast<btScalar>(substep), 0);
     }
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    // When every body wants to sleep, the next step lets it; all but those that touch nothing,
-    // which Bullet keeps waiting.
+    // When all bodies are ready to sleep, Bullet lets them sleep in the next step, except those
+    // that touch nothing.
     return std::ranges::none_of(bodies_, &BulletBody::restless);
   }
 
@@ -352,8 +355,8 @@ class BulletEngine final : public PhysicsEngine {
     return sphere_shapes_.try_emplace(sphere.radius, sphere.radius).first->second;
   }
 
-  /// Bullet compares speeds, not energies: those of a body that has the threshold's energy in its
-  /// linear or in its angular motion alone.
+  /// Bullet compares speeds, not energies: here the speeds of a body that has the threshold's
+  /// energy in its linear or its angular motion alone.
   void setSleepingThresholds(btRigidBody::btRigidBodyConstructionInfo& info) const {
     const auto speed = static_cast<btScalar>(std::sqrt(2 * settings_.sleep_threshold));
     const btVector3& inertia = info.m_localInertia;
@@ -376,7 +379,7 @@ class BulletEngine final : public PhysicsEngine {
   std::deque<HalfSpaceShape> wall_shapes_;
   std::deque<btCollisionObject> walls_;
   std::deque<BulletBody> bodies_;
-  // Last: on its destruction the world still looks at everything that stands in it.
+  // Last member, destroyed first: its destructor still uses everything in the world.
   World world_{&dispatcher_, &broad_phase_, &solver_, &configuration_,
                static_cast<btScalar>(settings_.max_angular_speed)};
 };
@@ -384,10 +387,8 @@ class BulletEngine final : public PhysicsEngine {
 }  // namespace
 
 EngineEntry entry() {
-  return {.listing = {"bullet", "Bullet's rigid bodies (single precision)"},
-          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
-            return std::make_unique<BulletEngine>(settings);
-          }};
+  return {{"bullet", "Bullet's rigid bodies (single precision)"},
+          makeAs<PhysicsEngine, BulletEngine>};
 }
 
 }  // namespace broadmark::scenes::bullet_engine

@@ -1,5 +1,5 @@
-// Bodies that move and turn, bounce at the walls, and pass through each other: O(n) per step, for
-// scenes of millions of bodies. Each body goes its own way, so that they are moved one by one.
+// Bodies that move, turn and bounce at the walls, but pass through each other: O(n) per step, for
+// scenes of millions of bodies.
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes::kinematic_engine {
 namespace {
 
-/// How long a body must be slow before it falls asleep, in seconds. Longer than one at the top of
-/// its path is.
+/// Time for which a body must be slow before it falls asleep, in seconds. A body at the top of its
+/// path is slow for a shorter time.
 constexpr double kTimeToSleep = 1;
 
 float dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -24,8 +25,8 @@ Vec3 plus(const Vec3& a, float factor, const Vec3& b) {
 
 Vec3 times(const Vec3& v, float factor) { return plus({}, factor, v); }
 
-/// The rotation after turning at this angular velocity for a short time. To first order and brought
-/// back to unit length: no library function that might round differently elsewhere.
+/// The rotation after turning at this angular velocity for a short time: to first order, then
+/// normalised. Library functions might round differently elsewhere.
 std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float time) {
   const float h = time / 2;
   std::array<float, 4> to = {q[0] + h * (w[0] * q[3] + w[1] * q[2] - w[2] * q[1]),
@@ -37,12 +38,12 @@ std::array<float, 4> turned(const std::array<float, 4>& q, const Vec3& w, float 
   return to;
 }
 
-/// What is the same for all bodies.
+/// The same for all bodies.
 struct World {
   std::vector<HalfSpace> walls;
   Vec3 gravity{};
   float time = 0;           ///< of a substep
-  float linear_factor = 1;  ///< what damping leaves of a velocity after it
+  float linear_factor = 1;  ///< share of a velocity left by damping after a substep
   float angular_factor = 1;
   float friction = 0;
   float restitution = 0;
@@ -104,7 +105,7 @@ class KinematicBody final : public PhysicsBody {
   }
 
  private:
-  /// Half the size of the tight box.
+  /// Updates half_size_.
   void measure() {
     const Aabb box = tightBox(shape_, {.rotation = pose_.rotation});
     std::copy_n(box.max.begin(), 3, half_size_.begin());
@@ -118,8 +119,8 @@ class KinematicBody final : public PhysicsBody {
     measure();
   }
 
-  /// Puts the tight box back to the wall where it pokes through, and the velocity as it is after
-  /// the impact: reflected as far as the restitution goes, the sideways part slowed by friction.
+  /// Moves the tight box out of the wall and changes the velocity as the impact does: the part
+  /// along the normal is reflected by the restitution, the sideways part slowed by friction.
   void bounce(const HalfSpace& wall, const World& world) {
     const Vec3& normal = wall.normal;
     const float reach = std::abs(normal[0]) * half_size_[0] + std::abs(normal[1]) * half_size_[1] +
@@ -129,7 +130,8 @@ class KinematicBody final : public PhysicsBody {
     pose_.position = plus(pose_.position, depth, normal);
     const float approach = -dot(normal, linear_);
     if (approach <= 0) return;
-    // Without the speed that gravity gave it behind the wall, lest every impact adds energy.
+    // Without the speed gained from gravity behind the wall: otherwise every impact would add
+    // energy.
     const float gained = -2 * dot(normal, world.gravity) * depth;
     const float impact = std::sqrt(std::max(0.0F, approach * approach - gained));
     const Vec3 sideways = plus(linear_, approach, normal);
@@ -139,7 +141,7 @@ class KinematicBody final : public PhysicsBody {
     linear_ = plus(times(sideways, kept), world.restitution * impact, normal);
   }
 
-  /// Falls asleep after a while of little energy.
+  /// Falls asleep after a time of little energy.
   void rest(const World& world) {
     const float energy =
         dot(linear_, linear_) / 2 + dot(angular_, angular_) * dot(half_size_, half_size_) / 6;
@@ -156,7 +158,7 @@ class KinematicBody final : public PhysicsBody {
   Pose pose_;
   Vec3 linear_;
   Vec3 angular_;
-  Vec3 half_size_{};
+  Vec3 half_size_{};  ///< of the tight box
   bool frozen_ = false;
   bool asleep_ = false;
   std::int64_t slow_substeps_ = 0;
@@ -209,11 +211,9 @@ class KinematicEngine final : public PhysicsEngine {
 }  // namespace
 
 EngineEntry entry() {
-  return {.listing = {"kinematic", "bodies bounce at the walls and pass through each other: fast",
-                      Dynamics::passing},
-          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
-            return std::make_unique<KinematicEngine>(settings);
-          }};
+  return {{"kinematic", "bodies bounce at the walls and pass through each other: fast",
+           Dynamics::passing},
+          makeAs<PhysicsEngine, KinematicEngine>};
 }
 
 }  // namespace broadmark::scenes::kinematic_engine

@@ -1,9 +1,9 @@
 // Rigid bodies by the Open Dynamics Engine (double precision): hashed grid, box and sphere
 // colliders, projected Gauss-Seidel over the contacts of each island ("quick step").
 //
-// The quick step shuffles contacts by one random number generator of the whole process. Each world
-// here has a state of its own for it, put in place for the length of a step; steps of several
-// worlds exclude each other meanwhile.
+// The quick step shuffles contacts by a random number generator of the whole process. Here each
+// world has its own state of the generator, which is put in place during a step. Only one world
+// steps at a time.
 
 #include <ode/ode.h>
 
@@ -16,45 +16,45 @@
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes::ode_engine {
 namespace {
 
-/// Contacts of two bodies: what a face on a face needs.
+/// Contacts of two bodies: enough for a face on a face.
 constexpr int kContactsPerPair = 4;
-/// Sweeps over the contacts for each iteration that the settings ask for. The quick step knows
-/// nothing of the step before, and needs more of them than solvers that begin where that ended.
+/// Sweeps over the contacts for each iteration in the settings. The quick step does not start from
+/// the forces of the last step, so it needs more sweeps than solvers that do.
 constexpr int kSweepsPerIteration = 2;
-/// How deep bodies may sink into each other for good: contacts at rest last, and do not flicker.
+/// Depth that contacts keep at rest, so that they do not come and go.
 constexpr double kRestingDepth = 0.005;
-/// Bodies that overlap are pushed apart no faster than this, in units per second: where many start
-/// inside each other, they would else explode.
+/// The largest speed at which overlapping bodies are pushed apart, in units per second: otherwise
+/// bodies that start inside each other would explode.
 constexpr double kSeparationSpeed = 2;
-/// Impacts slower than this do not bounce, in units per second.
+/// The smallest speed of an impact that bounces, in units per second.
 constexpr double kBounceSpeed = 0.1;
-/// How long a body must be slow before it falls asleep, in seconds.
+/// Time for which a body must be slow before it falls asleep, in seconds.
 constexpr double kTimeToSleep = 0.5;
 
-struct WorldDeleter {
-  void operator()(dWorldID world) const { dWorldDestroy(world); }
+/// Calls the library's function that destroys an object.
+template <auto destroy>
+struct Destroy {
+  template <class Object>
+  void operator()(Object* object) const {
+    destroy(object);
+  }
 };
-struct SpaceDeleter {
-  void operator()(dSpaceID space) const { dSpaceDestroy(space); }
-};
-struct JointGroupDeleter {
-  void operator()(dJointGroupID group) const { dJointGroupDestroy(group); }
-};
-using World = std::unique_ptr<dxWorld, WorldDeleter>;
-using Space = std::unique_ptr<dxSpace, SpaceDeleter>;
-using JointGroup = std::unique_ptr<dxJointGroup, JointGroupDeleter>;
+using World = std::unique_ptr<dxWorld, Destroy<dWorldDestroy>>;
+using Space = std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>>;
+using JointGroup = std::unique_ptr<dxJointGroup, Destroy<dJointGroupDestroy>>;
 
-/// The library wants to be told once before its first use.
+/// The library must be initialised once, before its first use.
 void initialiseOde() {
   static const int initialised = dInitODE2(0);
   static_cast<void>(initialised);
 }
 
-/// Lends the process's random number generator to one world, which finds it as it left it.
+/// While this lives, the process's random number generator continues the sequence of one world.
 class RandomLoan {
  public:
   explicit RandomLoan(unsigned long& seed) : seed_(seed), lock_(mutex()) { dRandSetSeed(seed_); }
@@ -63,7 +63,7 @@ class RandomLoan {
   RandomLoan& operator=(const RandomLoan&) = delete;
 
  private:
-  /// Guards a state of the library, which is the process's.
+  /// Guards the library's generator, one for the whole process.
   static std::mutex& mutex() {
     static std::mutex mutex;
     return mutex;
@@ -77,7 +77,8 @@ Vec3 fromOde(const dReal* v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// The points of a shape that can be the first to touch a wall, in the body's own coordinates.
+/// The points of a shape that can touch a wall first, in the body's own coordinates. That of a
+/// sphere depends on the wall: its centre stands for it, with the radius as pointRadius().
 std::vector<Vec3> wallPoints(const BoxShape& box) {
   std::vector<Vec3> corners;
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -89,7 +90,6 @@ std::vector<Vec3> wallPoints(const BoxShape& box) {
   }
   return corners;
 }
-/// A sphere's lies where it looks at the wall: its centre, and the wall is nearer by the radius.
 std::vector<Vec3> wallPoints(const SphereShape&) { return {Vec3{}}; }
 
 double pointRadius(const BoxShape&) { return 0; }
@@ -158,7 +158,7 @@ class OdeBody final : public PhysicsBody {
     const Vec3& p = pose.position;
     const auto& q = pose.rotation;
     const dQuaternion quaternion = {q[3], q[0], q[1], q[2]};
-    // A body's geom follows it; a frozen one's stands alone.
+    // The geom moves its body along; that of a frozen body has none.
     dGeomSetPosition(geom_, p[0], p[1], p[2]);
     dGeomSetQuaternion(geom_, quaternion);
     frozen_pose_ = pose;
@@ -179,7 +179,7 @@ class OdeBody final : public PhysicsBody {
     if (frozen_) return;
     frozen_pose_ = pose();
     frozen_ = true;
-    // Without a body the geom is an immovable obstacle. It stays where it is.
+    // A geom without a body is an immovable obstacle. It stays where it is.
     dGeomSetBody(geom_, nullptr);
     stop();
   }
@@ -190,8 +190,8 @@ class OdeBody final : public PhysicsBody {
     slow_time_ = 0;
   }
 
-  /// Called after every substep: falls asleep after a while of little energy. The library's own way
-  /// leaves out bodies that touch nothing.
+  /// Called after every substep: falls asleep after a time of little energy. The library itself
+  /// ignores bodies that touch nothing.
   void rest(double sleep_threshold, double time) {
     if (asleep()) return;
     const dReal* v = dBodyGetLinearVel(body_);
@@ -201,11 +201,11 @@ class OdeBody final : public PhysicsBody {
     if (slow_time_ >= kTimeToSleep) stop();
   }
 
-  /// What contacts act on; null: immovable.
+  /// The body that contacts act on; null: immovable.
   [[nodiscard]] dBodyID dynamicBody() const { return frozen_ ? nullptr : body_; }
 
-  /// Calls add(point, distance) for the points that may come to the wall within `time`: their
-  /// positions on the body, and how far before the wall they are (negative: behind it).
+  /// Calls add(point, distance) for each point of the body that may reach the wall within `time`:
+  /// its position, and its distance to the wall (negative: behind it).
   template <class Add>
   void visitWallPoints(const HalfSpace& wall, double time, const Add& add) const {
     const dVector3 normal = {wall.normal[0], wall.normal[1], wall.normal[2]};
@@ -237,10 +237,10 @@ class OdeBody final : public PhysicsBody {
   dBodyID body_;            ///< owned by the world
   dGeomID geom_ = nullptr;  ///< owned by the space
   std::vector<Vec3> wall_points_;
-  double point_radius_ = 0;  ///< of the ball around each wall point that belongs to the body
+  double point_radius_ = 0;  ///< of a ball around each wall point
   double bounding_radius_ = 0;
   double mean_inertia_ = 0;  ///< per mass
-  double slow_time_ = 0;     ///< for how long it has been slow
+  double slow_time_ = 0;     ///< since it has become slow
   bool frozen_ = false;
   Pose frozen_pose_;
 };
@@ -282,8 +282,8 @@ class OdeEngine final : public PhysicsEngine {
 
   void step() override {
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
-      // Of sleeping bodies too: one that is awake wakes all that it touches, and these must find
-      // what carries them.
+      // Sleeping bodies, too: a body that is awake wakes those that it touches, and these need
+      // their support in the same step.
       for (const OdeBody& body : bodies_) {
         if (!body.frozen()) touchWalls(body);
       }
@@ -304,7 +304,7 @@ class OdeEngine final : public PhysicsEngine {
   }
 
  private:
-  /// What damping takes of a velocity in one substep.
+  /// The share of a velocity that damping takes in one substep.
   [[nodiscard]] double shareLost(double per_second) const {
     return 1 - std::pow(1 - per_second, time_);
   }
@@ -321,8 +321,8 @@ class OdeEngine final : public PhysicsEngine {
     }
   }
 
-  /// Contacts with every wall that the coming substep may carry a point of the body to. The solver
-  /// then stops it at the wall, where a fast body would else end up behind it.
+  /// Contacts with every wall that a point of the body may reach in the next substep. So the solver
+  /// stops even a fast body at the wall.
   void touchWalls(const OdeBody& body) {
     for (const HalfSpace& wall : walls_) {
       body.visitWallPoints(wall, time_, [&](const dReal* at, double distance) {
@@ -336,7 +336,7 @@ class OdeEngine final : public PhysicsEngine {
     }
   }
 
-  /// `approach`: the velocity along the normal at which the bodies may still near each other; 0 or
+  /// `approach`: the velocity along the normal at which the bodies may approach each other; 0 or
   /// negative.
   void addContact(const dContactGeom& point, double approach, dBodyID a, dBodyID b) {
     dContact contact{};
@@ -369,10 +369,8 @@ class OdeEngine final : public PhysicsEngine {
 }  // namespace
 
 EngineEntry entry() {
-  return {.listing = {"ode", "the Open Dynamics Engine's rigid bodies (double precision)"},
-          .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
-            return std::make_unique<OdeEngine>(settings);
-          }};
+  return {{"ode", "the Open Dynamics Engine's rigid bodies (double precision)"},
+          makeAs<PhysicsEngine, OdeEngine>};
 }
 
 }  // namespace broadmark::scenes::ode_engine

@@ -1,4 +1,4 @@
-// Finds the recording that is meant and replays it.
+// Finds the wanted recording and replays it.
 
 #include "engines/replay.h"
 
@@ -8,27 +8,29 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <tuple>
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// A recording in a directory, as its name describes it.
+/// A recording in a directory, as its file name describes it.
 struct Candidate {
   fs::path path;
-  std::size_t preference = 0;  ///< 0: the best kind
+  std::size_t preference = 0;  ///< index of its extension: the lower, the better
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;
 };
 
-/// What a file's name says, if it is that of a recording of this scene and object type.
-std::optional<Candidate> understand(const fs::path& path, const std::string& scene,
-                                    const std::string& object_type,
-                                    const std::vector<std::string_view>& extensions) {
+/// What a file name says, if it names a recording of this scene and object type.
+std::optional<Candidate> candidateOf(const fs::path& path, const std::string& scene,
+                                     const std::string& object_type,
+                                     const std::vector<std::string_view>& extensions) {
   const auto extension = std::ranges::find(extensions, path.extension().string());
   if (extension == extensions.end()) return {};
   Candidate candidate{.path = path,
@@ -48,18 +50,15 @@ std::optional<Candidate> understand(const fs::path& path, const std::string& sce
 class ReplaySimulation final : public Simulation {
  public:
   ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine)
-      : Simulation(scene), entry_(engine), engine_{engine.listing.id, {engine.listing.id}} {
-    for (const ObjectType& type : objectTypes()) {
-      object_type_.options.push_back(type.listing.id);
-      object_type_names_.push_back(type.listing.name);
-    }
-    object_type_.value = object_type_.options.front();
-  }
+      : Simulation(scene),
+        entry_(engine),
+        object_type_(choiceOf(objectTypes())),
+        engine_{engine.listing.id, {engine.listing.id}} {}
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"objects", "number of bodies", &objects_, 0, 10'000'000});
+    visit({"objects", "number of bodies", &objects_, 0, kMostBodies});
     visit({"frames", "number of frames after the initial pose; 0: all that are recorded", &frames_,
-           0, 1'000'000});
+           0, kMostFrames});
     visit({"object_type", "what the bodies are", &object_type_});
     visit({"engine", "what replays them", &engine_});
     visit({"input", "recording to replay, or the directory where it lies under its own name",
@@ -67,7 +66,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   [[nodiscard]] const SceneInfo& scene() const override {
-    // Until the first frame the parameters may still change behind our back.
+    // Until the first frame the parameters may still change.
     if (!replay_) info_ = describe(*open());
     return info_;
   }
@@ -94,11 +93,10 @@ class ReplaySimulation final : public Simulation {
 
  private:
   [[nodiscard]] std::string objectTypeName() const {
-    const auto chosen = std::ranges::find(object_type_.options, object_type_.value);
-    return object_type_names_[static_cast<std::size_t>(chosen - object_type_.options.begin())];
+    return entryOf(objectTypes(), object_type_.value, "object type").listing.name;
   }
 
-  /// Bodies that the recording must have.
+  /// The number of bodies that the recording must have.
   [[nodiscard]] std::int64_t recordedObjects() const {
     return objects_ / entry_.bodies_per_recorded;
   }
@@ -109,7 +107,7 @@ class ReplaySimulation final : public Simulation {
     return info;
   }
 
-  /// Opens the recording that is meant and checks that it is the one.
+  /// Opens the wanted recording and checks that it holds what its name says.
   [[nodiscard]] std::unique_ptr<Replay> open() const {
     const fs::path path = find().path;
     auto recording = openRecordingFile(path);
@@ -128,19 +126,19 @@ class ReplaySimulation final : public Simulation {
                        recordedObjects(), frames_, fmt::join(entry_.extensions, " or "));
   }
 
-  /// The recording that is meant: of those long enough the shortest, or, when all frames are asked
-  /// for, the longest; among equals the better kind.
+  /// The wanted recording: the shortest that is long enough, or the longest when all frames are
+  /// wanted; among equals that with the preferred extension.
   [[nodiscard]] Candidate find() const {
     if (input_.empty()) {
       throw InputError(
-          fmt::format("--engine {}: --input must name the recording to replay, or its directory",
+          fmt::format("--engine {}: name the recording to replay, or its directory, with --input",
                       engine_.value));
     }
     const std::vector<Candidate> there = candidates();
     if (objects_ % entry_.bodies_per_recorded != 0) {
-      throw InputError(fmt::format("--engine {} makes {} bodies of each: {} is no multiple of {}{}",
-                                   engine_.value, entry_.bodies_per_recorded, objects_,
-                                   entry_.bodies_per_recorded, whatIsThere(there)));
+      throw InputError(fmt::format(
+          "--engine {} makes {} bodies of each: {} is not a multiple of {}{}", engine_.value,
+          entry_.bodies_per_recorded, objects_, entry_.bodies_per_recorded, whatIsThere(there)));
     }
     if (fs::is_regular_file(input_)) return given();
     const Candidate* best = nullptr;
@@ -155,7 +153,7 @@ class ReplaySimulation final : public Simulation {
     return *best;
   }
 
-  /// The very file that `input` names.
+  /// The file that `input` names.
   [[nodiscard]] Candidate given() const {
     const fs::path path = input_;
     if (std::ranges::find(entry_.extensions, path.extension().string()) ==
@@ -171,7 +169,7 @@ class ReplaySimulation final : public Simulation {
     return a.preference < b.preference;
   }
 
-  /// The input directory, and the folders in it that recordings are baked into.
+  /// The input directory, and those of its folders that baked recordings lie in.
   [[nodiscard]] std::vector<fs::path> directories() const {
     std::vector<fs::path> all = {input_};
     for (const RecorderListing& recorder : builtinRecorders()) {
@@ -181,7 +179,7 @@ class ReplaySimulation final : public Simulation {
     return all;
   }
 
-  /// All recordings of this scene and object type that are there, by size.
+  /// All recordings of this scene and object type in the input directory, by size.
   [[nodiscard]] std::vector<Candidate> candidates() const {
     if (fs::is_regular_file(input_)) return {};
     std::vector<Candidate> found;
@@ -189,7 +187,7 @@ class ReplaySimulation final : public Simulation {
       std::error_code error;
       for (const auto& file : fs::directory_iterator(directory, error)) {
         const auto candidate =
-            understand(file.path(), listing().name, objectTypeName(), entry_.extensions);
+            candidateOf(file.path(), listing().name, objectTypeName(), entry_.extensions);
         if (candidate) found.push_back(*candidate);
       }
       if (error) {
@@ -202,11 +200,11 @@ class ReplaySimulation final : public Simulation {
     return found;
   }
 
-  /// "; there is N1000 F50 (gives 8000 bodies), …": for those who asked for something else.
+  /// For messages: "; there are N1000 F50 (gives 8000 bodies), …".
   [[nodiscard]] std::string whatIsThere(const std::vector<Candidate>& candidates) const {
     if (fs::is_regular_file(input_)) return {};
     if (candidates.empty()) {
-      return fmt::format("; there is none of {} {} at all", listing().name, objectTypeName());
+      return fmt::format("; there is none of {} {}", listing().name, objectTypeName());
     }
     std::vector<std::string> names;
     for (const Candidate& candidate : candidates) {
@@ -215,20 +213,19 @@ class ReplaySimulation final : public Simulation {
         name += fmt::format(" (gives {} bodies)",
                             std::uint64_t{candidate.objects} * entry_.bodies_per_recorded);
       }
-      // They are sorted: recordings of several kinds follow each other.
+      // Sorted: recordings of several kinds with equal counts follow each other.
       if (names.empty() || names.back() != name) names.push_back(std::move(name));
     }
     constexpr std::size_t kMost = 8;
     if (names.size() > kMost) names[kMost] = "…";
     names.resize(std::min(names.size(), kMost + 1));
-    return fmt::format("; there is {}", fmt::join(names, ", "));
+    return fmt::format("; there are {}", fmt::join(names, ", "));
   }
 
   ReplayEntry entry_;
   std::int64_t objects_ = 1000;
   std::int64_t frames_ = 0;
   Choice object_type_;
-  std::vector<std::string> object_type_names_;
   Choice engine_;
   std::string input_;
   mutable SceneInfo info_;

@@ -1,4 +1,4 @@
-// Engines that simulate nothing: their frames are made from a recording. One implementation per
+// Engines that simulate nothing: they make their frames from a recording. One implementation per
 // file, listed in CMakeLists.txt.
 #pragma once
 
@@ -11,23 +11,23 @@
 
 namespace broadmark::scenes {
 
-/// The frames made from one recording, all of them.
+/// The frames made from one recording.
 class Replay : public FrameSource, public PoseSource {};
 
 struct ReplayEntry {
   EngineListing listing;
-  /// How many bodies each recorded one becomes.
+  /// Bodies made from each recorded body.
   std::uint32_t bodies_per_recorded;
-  /// What it can read, the best first.
+  /// Extensions of the recordings that it reads, the preferred one first.
   std::vector<std::string_view> extensions;
-  /// The recording is of one of these kinds.
+  /// The recording has one of these extensions.
   std::unique_ptr<Replay> (*create)(std::unique_ptr<Recording>);
 };
 
 /// All of them, in the order of the list in CMakeLists.txt.
 std::vector<ReplayEntry> replayEntries();
 
-/// A replay of a built-in scene: a simulation whose parameters say which recording is meant.
+/// A replay of a built-in scene: a simulation whose parameters say which recording it reads.
 std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine);
 
 }  // namespace broadmark::scenes

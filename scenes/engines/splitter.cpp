@@ -1,12 +1,13 @@
-// Splitter: large scenes from small ones. World and bodies are blown up to twice their size, then
-// each body is cut into eight of the size that it had: 8n bodies that move like n, at the same
-// density, for a few additions each. What it records it can split again.
+// Splitter: large scenes from small ones. World and bodies grow to twice their size, then each body
+// is cut into eight of its former size: 8n bodies that move like n, at the same density, for a few
+// additions each. Its recordings can be split again.
 
 #include <Eigen/Geometry>
 #include <array>
 
 #include "broadmark/posrot.h"
 #include "engines/replay.h"
+#include "entries.h"
 
 namespace broadmark::scenes::splitter {
 namespace {
@@ -30,7 +31,8 @@ std::array<Vec3, kParts> centresOf(const Vec3& half_extents, const Pose& pose) {
   return centres;
 }
 
-/// The eighth of a box blown up to twice its size. The parts share their faces to the last bit.
+/// An eighth of a box that has grown to twice its size. The parts share their faces to the last
+/// bit.
 Aabb partOf(const Aabb& box, std::size_t part) {
   Aabb eighth;
   for (int axis = 0; axis < 3; ++axis) {
@@ -42,7 +44,7 @@ Aabb partOf(const Aabb& box, std::size_t part) {
   return eighth;
 }
 
-SceneInfo blownUp(SceneInfo scene) {
+SceneInfo grown(SceneInfo scene) {
   scene.objects *= kParts;
   for (int axis = 0; axis < 3; ++axis) {
     scene.world.min[axis] *= 2;
@@ -53,8 +55,10 @@ SceneInfo blownUp(SceneInfo scene) {
 
 class Splitter final : public Replay {
  public:
-  explicit Splitter(std::unique_ptr<PosrotReader> recording)
-      : recording_(std::move(recording)), info_(blownUp(recording_->scene())) {}
+  explicit Splitter(std::unique_ptr<Recording> recording)
+      : recording_(std::move(recording)),
+        whole_(dynamic_cast<PosrotReader&>(*recording_)),
+        info_(grown(recording_->scene())) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return info_; }
 
@@ -71,8 +75,8 @@ class Splitter final : public Replay {
     const auto whole = recording_->next();
     if (!whole) return {};
     forEachBody([this](std::size_t body, const Pose& pose, const auto& centres) {
-      // The parts are as large as the body was, and turned alike.
-      const Vec3 extents = recording_->extents(body, pose.rotation);
+      // Each part is as large as the body was, and turned like it.
+      const Vec3 extents = whole_.extents(body, pose.rotation);
       for (std::size_t part = 0; part < kParts; ++part) {
         boxes_[kParts * body + part] = boxAround(centres[part], extents);
       }
@@ -80,10 +84,10 @@ class Splitter final : public Replay {
     return Frame{whole->index, boxes_};
   }
 
-  /// Nothing is turned in the initial pose.
+  /// No body is turned in the initial pose.
   std::span<const Aabb> unturnedBoxes() override { return boxes_; }
 
-  /// Made only when asked for.
+  /// Computed only on demand.
   std::span<const Pose> poses() override {
     poses_.resize(info_.objects);
     forEachBody([this](std::size_t body, const Pose& pose, const auto& centres) {
@@ -97,13 +101,14 @@ class Splitter final : public Replay {
  private:
   template <class Visit>
   void forEachBody(Visit&& visit) {
-    const std::span<const Pose> poses = recording_->poses();
+    const std::span<const Pose> poses = whole_.poses();
     for (std::size_t body = 0; body < poses.size(); ++body) {
-      visit(body, poses[body], centresOf(recording_->halfExtents()[body], poses[body]));
+      visit(body, poses[body], centresOf(whole_.halfExtents()[body], poses[body]));
     }
   }
 
-  std::unique_ptr<PosrotReader> recording_;
+  std::unique_ptr<Recording> recording_;
+  PosrotReader& whole_;  ///< the same
   SceneInfo info_;
   std::vector<Aabb> boxes_;
   std::vector<Pose> poses_;
@@ -117,10 +122,7 @@ ReplayEntry entry() {
                       .dynamics = Dynamics::replayed},
           .bodies_per_recorded = kParts,
           .extensions = {kPosrotExtension},
-          .create = [](std::unique_ptr<Recording> recording) -> std::unique_ptr<Replay> {
-            auto& posrot = dynamic_cast<PosrotReader&>(*recording.release());
-            return std::make_unique<Splitter>(std::unique_ptr<PosrotReader>(&posrot));
-          }};
+          .create = makeAs<Replay, Splitter>};
 }
 
 }  // namespace broadmark::scenes::splitter

@@ -3,6 +3,7 @@
 #include "broadmark/error.h"
 #include "broadmark/posrot.h"
 #include "engines/replay.h"
+#include "entries.h"
 
 namespace broadmark::scenes::viewer {
 namespace {
@@ -20,7 +21,7 @@ class Viewer final : public Replay {
  private:
   [[nodiscard]] PoseSource& posed() const {
     if (auto* source = dynamic_cast<PoseSource*>(recording_.get())) return *source;
-    throw InputError(recording_->name() + ": holds boxes only: no .posrot can be made from it");
+    throw InputError(recording_->name() + ": holds boxes only, not the poses that .posrot needs");
   }
 
   std::unique_ptr<Recording> recording_;
@@ -34,9 +35,7 @@ ReplayEntry entry() {
                       .dynamics = Dynamics::replayed},
           .bodies_per_recorded = 1,
           .extensions = {kPosrotExtension, kAabbsExtension},
-          .create = [](std::unique_ptr<Recording> recording) -> std::unique_ptr<Replay> {
-            return std::make_unique<Viewer>(std::move(recording));
-          }};
+          .create = makeAs<Replay, Viewer>};
 }
 
 }  // namespace broadmark::scenes::viewer

@@ -1,5 +1,5 @@
-// Assorted: boxes of very different sizes and forms, as in the original Broadmark. Of every 80
-// bodies the first 19 are small and large cubes, bars, planks and plates; the others have random
+// Assorted: boxes of very different sizes and proportions, as in the original Broadmark. Of every
+// 80 bodies the first 19 are small and large cubes, bars, planks and plates; the others have random
 // edges.
 
 #include <array>
@@ -13,7 +13,7 @@ using Edges = std::array<double, 3>;
 
 constexpr std::size_t kPeriod = 80;
 
-/// The first bodies of every period: those before `end`, from the last row's end on.
+/// The first bodies of every period: from the end of the row above to `end`, which is not included.
 constexpr struct {
   std::size_t end;
   Edges edges;

@@ -1,6 +1,7 @@
 // Boxes, as .aabbs: what algorithms are run on.
 
 #include "broadmark/recording.h"
+#include "entries.h"
 #include "recorders/recorder.h"
 
 namespace broadmark::scenes::aabbs_recorder {
@@ -20,11 +21,8 @@ class AabbsRecorder final : public Recorder {
 }  // namespace
 
 RecorderEntry entry() {
-  return {.listing = {"aabbs", "boxes of all bodies, frame after frame", "Recordings_AABBs"},
-          .create = [](const std::filesystem::path& path,
-                       const SceneInfo& scene) -> std::unique_ptr<Recorder> {
-            return std::make_unique<AabbsRecorder>(path, scene);
-          }};
+  return {{"aabbs", "boxes of all bodies, frame after frame", "Recordings_AABBs"},
+          makeAs<Recorder, AabbsRecorder>};
 }
 
 }  // namespace broadmark::scenes::aabbs_recorder

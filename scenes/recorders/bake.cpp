@@ -1,14 +1,14 @@
-// Recordings of simulations, each with a sidecar that says how it was made.
+// Recordings of simulations, each with a sidecar that says how it was made: a .json beside it.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
+#include <algorithm>
 #include <optional>
 #include <set>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/recording.h"
 #include "recorders/recorder.h"
 #include "scene_parameters.h"
@@ -17,14 +17,13 @@ namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Sidecar = nlohmann::json;  // unlike Json equal whatever the order of keys
 
 constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 
 fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
-/// What stands beside a recording with this hash. Of an input its contents count, not where it
-/// lies.
+/// The sidecar of a recording with this hash. It names an input by its contents, not by its path.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
   Json json = sceneParametersJson(simulation, kBakeSchema);
   if (const std::string input = simulation.inputHash(); !input.empty()) {
@@ -35,14 +34,17 @@ Json sidecarJson(Simulation& simulation, const std::string& hash) {
   return json;
 }
 
-/// The hash that a sidecar's text states, if it is the sidecar of a recording of this simulation.
-/// The order of keys does not count.
-std::optional<std::string> statedHash(const std::string& text, Simulation& simulation) {
-  const auto found = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!found.is_object() || !found.contains("hash") || !found["hash"].is_string()) return {};
-  auto hash = found["hash"].get<std::string>();
-  if (found != nlohmann::json(sidecarJson(simulation, hash))) return {};
-  return hash;
+/// The JSON object in a file; empty if the file holds anything else. Throws InputError.
+Sidecar readSidecar(const fs::path& path) {
+  const std::string text = readTextFile(path, kSidecarLimitBytes);
+  Sidecar json = Sidecar::parse(text, nullptr, /*allow_exceptions=*/false);
+  return json.is_object() ? json : Sidecar::object();
+}
+
+std::optional<std::string> statedHash(const Sidecar& sidecar) {
+  const auto hash = sidecar.find("hash");
+  if (hash == sidecar.end() || !hash->is_string()) return {};
+  return hash->get<std::string>();
 }
 
 scenes::RecorderEntry recorderOf(const fs::path& path) {
@@ -59,26 +61,26 @@ scenes::RecorderEntry recorderOf(const fs::path& path) {
 
 bool isBaked(const fs::path& path, Simulation& simulation) {
   try {
-    const std::string sidecar = readTextFile(sidecarPath(path), kSidecarLimitBytes);
-    const std::optional<std::string> hash = statedHash(sidecar, simulation);
-    if (!hash) return false;
+    const Sidecar sidecar = readSidecar(sidecarPath(path));
+    const std::optional<std::string> hash = statedHash(sidecar);
+    if (!hash || sidecar != Sidecar(sidecarJson(simulation, *hash))) return false;
     const auto recording = openRecordingFile(path);
     return recording->scene() == simulation.scene() && recording->hash() == *hash;
   } catch (const InputError&) {
-    return false;  // missing or damaged: to be baked anew
+    return false;  // missing or damaged
   }
 }
 
 std::optional<std::string> bakedHash(const fs::path& recording) {
   const fs::path path = sidecarPath(recording);
   if (!fs::exists(path)) return std::nullopt;
-  const std::string text = readTextFile(path, kSidecarLimitBytes);
-  const auto json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || json.value("schema", Json()) != kBakeSchema) return std::nullopt;
-  if (!json.contains("hash") || !json["hash"].is_string()) {
-    throw InputError(fmt::format("{}: states no hash: bake anew with --force", path.string()));
+  const Sidecar sidecar = readSidecar(path);
+  if (sidecar.value("schema", Sidecar()) != kBakeSchema) return std::nullopt;
+  const std::optional<std::string> hash = statedHash(sidecar);
+  if (!hash) {
+    throw InputError(fmt::format("{}: states no hash: bake again with --force", path.string()));
   }
-  return json["hash"].get<std::string>();
+  return hash;
 }
 
 void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
@@ -88,10 +90,9 @@ void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
   if (!input.empty()) taken.insert(place(input));
   for (const fs::path& path : paths) {
     if (taken.insert(place(path)).second) continue;
-    throw InputError(fmt::format("{}: would be written over {}: another directory is needed",
-                                 path.string(),
+    throw InputError(fmt::format("{}: would overwrite {}: choose another directory", path.string(),
                                  input.empty() ? "the .json beside another recording"
-                                               : "what it is made from, or the .json beside that"));
+                                               : "its own source, or the .json beside that"));
   }
 }
 
@@ -106,11 +107,11 @@ bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
     for (const auto& recorder : recorders) recorder->record(frame, simulation);
   };
   if (!recordAll(simulation, record, progress)) return false;
-  // Reads the input of a replay while the recorders may still be writing.
+  // Hashes the input of a replay while the recorders may still be writing.
   Json sidecar = sidecarJson(simulation, {});
   for (std::size_t i = 0; i < paths.size(); ++i) {
     sidecar["hash"] = recorders[i]->finish();
-    writeTextFile(sidecarPath(paths[i]), sidecar.dump(2) + "\n");
+    writeTextFile(sidecarPath(paths[i]), formatJson(sidecar, 2));
   }
   return true;
 }

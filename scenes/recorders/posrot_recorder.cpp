@@ -1,6 +1,7 @@
 // Positions and rotations, as .posrot: what the engines viewer and splitter replay.
 
 #include "broadmark/posrot.h"
+#include "entries.h"
 #include "recorders/recorder.h"
 
 namespace broadmark::scenes::posrot_recorder {
@@ -27,12 +28,9 @@ class PosrotRecorder final : public Recorder {
 }  // namespace
 
 RecorderEntry entry() {
-  return {.listing = {"posrot", "positions and rotations of all bodies, frame after frame",
-                      "Recordings_PositionRotation"},
-          .create = [](const std::filesystem::path& path,
-                       const SceneInfo& scene) -> std::unique_ptr<Recorder> {
-            return std::make_unique<PosrotRecorder>(path, scene);
-          }};
+  return {{"posrot", "positions and rotations of all bodies, frame after frame",
+           "Recordings_PositionRotation"},
+          makeAs<Recorder, PosrotRecorder>};
 }
 
 }  // namespace broadmark::scenes::posrot_recorder

@@ -1,4 +1,4 @@
-// What takes down the frames of a simulation. One implementation per file, listed in
+// Recorders write the frames of a simulation. One implementation per file, listed in
 // CMakeLists.txt.
 #pragma once
 
@@ -13,12 +13,12 @@
 
 namespace broadmark::scenes {
 
-/// Writes one recording. Nothing is left of it unless it is finished.
+/// Writes one recording. Leaves no file unless finish() is called.
 class Recorder {
  public:
   virtual ~Recorder() = default;
 
-  /// Takes down a frame that `poses` has just handed out; the initial pose comes first.
+  /// Writes the frame that `poses` has just handed out. The initial pose comes first.
   virtual void record(const Frame& frame, PoseSource& poses) = 0;
   /// Makes the recording whole. Returns its hash.
   virtual std::string finish() = 0;

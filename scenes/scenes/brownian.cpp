@@ -1,9 +1,10 @@
-// Brownian: no gravity, and in every frame some bodies get a new random velocity, in turn. Bodies
-// stay spread over the whole world and never rest.
+// Brownian: no gravity; in every frame the next few bodies get a new random velocity. Bodies stay
+// spread over the whole world and never rest.
 
 #include <cmath>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 
 namespace broadmark::scenes::brownian {
 namespace {
@@ -34,14 +35,14 @@ class Brownian final : public Scene {
 
  private:
   double launch_share_ = 0.01;
-  std::size_t next_ = 0;  ///< whose turn it is
+  std::size_t next_ = 0;  ///< body to launch
 };
 
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"brownian", "Brownian", "bodies fly about without gravity, pushed at random"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Brownian>(); }};
+  return {{"brownian", "Brownian", "bodies fly about without gravity, pushed at random"},
+          makeAs<Scene, Brownian>};
 }
 
 }  // namespace broadmark::scenes::brownian

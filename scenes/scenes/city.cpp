@@ -1,10 +1,10 @@
-// City: buildings of very different sizes on the ground, which never move, and a few bodies that
-// drive and fly along the streets between them. Broad phases meet big ratios of size, pairs that
-// stay (annexes), and hardly any motion.
+// City: buildings of very different sizes that never move, and a few bodies that drive and fly
+// along the streets between them. It tests broad phases with large ratios of size, pairs that stay
+// (buildings that overlap) and hardly any motion.
 //
-// Blocks stand in a square pattern, with streets between them. A block is divided into four lots,
-// these into four again, and so on; some lots are built on at each stage, so that large buildings
-// stand among small ones. The more bodies, the finer the division: the rest looks the same.
+// Blocks form a square grid with streets between them. A block is divided into four lots, each of
+// these into four, and so on. Some lots are built on at each stage, so that large buildings stand
+// among small ones. More bodies mean a finer division and otherwise the same city.
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +12,9 @@
 #include <deque>
 #include <vector>
 
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 #include "scenes/course.h"
-#include "scenes/scene.h"
 
 namespace broadmark::scenes::city {
 namespace {
@@ -25,8 +26,7 @@ struct Lot {
   double edge = 0;
 };
 
-/// A shape made as wide as `width`, and, if it has corners, as high as it then is times `stretch`,
-/// within limits.
+/// The shape scaled to `width`; the height of a box is also multiplied by `stretch`, within limits.
 Shape fitted(BoxShape box, double width, double stretch) {
   const double factor = width / (2 * std::max(box.half_extents[0], box.half_extents[2]));
   const double half_height = factor * stretch * box.half_extents[1];
@@ -68,7 +68,7 @@ class City final : public Scene {
         static_cast<std::size_t>(std::ceil(movers_ * static_cast<double>(count) - 1e-9));
     kinds_.assign(count, Kind::building);
     std::fill_n(kinds_.begin(), moving, Kind::mover);
-    random.shuffle(kinds_);  // lest an id tells what the body is
+    random.shuffle(kinds_);  // ids must not tell buildings from movers
     lots_ = buildingLots(count - moving, settings.side(), random);
     drivers_.clear();
   }
@@ -101,7 +101,7 @@ class City final : public Scene {
     float to_other_lane = 0;  ///< across the street
   };
 
-  /// As many lots as there are buildings, in random order.
+  /// One lot for each building, in random order.
   [[nodiscard]] std::vector<Lot> buildingLots(std::size_t count, double side,
                                               Random& random) const {
     std::deque<Lot> open;
@@ -130,7 +130,7 @@ class City final : public Scene {
     }
     closed.insert(closed.end(), open.begin(), open.end());
     random.shuffle(closed);
-    closed.resize(count);  // the others are parks
+    closed.resize(count);  // the others stay empty
     return closed;
   }
 
@@ -138,7 +138,8 @@ class City final : public Scene {
     const Lot lot = lots_.back();
     lots_.pop_back();
     const double wanted = lot.edge * random.between(std::min(0.6, crowding_), crowding_);
-    const double width = std::min(wanted, lot.edge + 0.2 * street(settings));  // lanes stay free
+    const double width =
+        std::min(wanted, lot.edge + 0.2 * street(settings));  // the lanes stay free
     const double stretch = 0.4 + 3 * std::pow(random.uniform(), 2);
     BodyDescription body{.shape = fitted(base, width, stretch), .mass = settings.mass};
     body.pose.position = {static_cast<float>(lot.x), onGround(body.shape, settings),
@@ -162,8 +163,8 @@ class City final : public Scene {
     course.lane[1] = onGround(body.shape, settings);
     if (random.uniform() < fliers_) course.lane[1] = static_cast<float>(random.between(-limit, 0));
 
-    // They keep to the right, and turn where the street ends.
-    double middle = 1;  // of the street, across the city: a single block has but its rim
+    // Movers keep to the right and turn where the street ends.
+    double middle = 1;  // of the street, across the city; around a single block it is the rim
     if (blocks_ > 1) {
       const auto streets = static_cast<double>(blocks_ - 1);
       middle = (1 + std::floor(random.uniform() * streets)) / static_cast<double>(blocks_);
@@ -191,12 +192,12 @@ class City final : public Scene {
     body.setVelocity(course.velocityAt(position), body.angularVelocity());
   }
 
-  /// Width of a street in world units.
+  /// The width of a street, in world units.
   [[nodiscard]] double street(const Settings& settings) const {
     return street_width_ * settings.side() / static_cast<double>(blocks_);
   }
 
-  /// Height of the centre of a body that stands on the ground.
+  /// The height of the centre of a body on the ground.
   static float onGround(const Shape& shape, const Settings& settings) {
     return tightBox(shape, {}).max[1] - static_cast<float>(settings.side() / 2);
   }
@@ -208,16 +209,15 @@ class City final : public Scene {
   double large_ = 0.12;
   double crowding_ = 1.1;
   std::vector<Kind> kinds_;      ///< by body
-  std::vector<Lot> lots_;        ///< not yet built on
+  std::vector<Lot> lots_;        ///< without a building yet
   std::vector<Driver> drivers_;  ///< the movers
 };
 
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"city", "City",
-                      "buildings of all sizes that never move, and traffic in the streets"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<City>(); }};
+  return {{"city", "City", "buildings of all sizes that never move, and traffic in the streets"},
+          makeAs<Scene, City>};
 }
 
 }  // namespace broadmark::scenes::city

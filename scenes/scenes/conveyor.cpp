@@ -1,17 +1,18 @@
 // Conveyor: belts carry bodies through the world at different speeds and cross each other. A body
-// that reaches the end of its belt is put back to the start: broad phases that rely on small moves
-// meet teleports in every frame.
+// at the end of its belt is put back to the start. So broad phases that rely on small moves meet
+// large ones in every frame.
 //
-// The belts run along the edges of a cube within the world, on to its walls: four along each axis,
-// and three of them cross at each of the cube's corners.
+// The belts lie along the edges of a cube within the world and reach from wall to wall: four along
+// each axis, three of which cross at each of the cube's corners.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 #include "scenes/course.h"
-#include "scenes/scene.h"
 
 namespace broadmark::scenes::conveyor {
 namespace {
@@ -38,7 +39,7 @@ class Conveyor final : public Scene {
                        Random& random) override {
     BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
     const Course course = courseOn(static_cast<std::int64_t>(index) % belts_, settings, random);
-    // Nobody is to meet the wall in the frame in which it passes the end.
+    // A body must not meet the wall in the frame in which it passes the end.
     const auto step = std::abs(course.speed) * static_cast<float>(settings.physics.time_step);
     const float limit = std::max(0.0F, farthestInside(body.shape, settings.side()) - step);
     body.pose = course.poseAt(static_cast<float>(random.between(-limit, limit)));
@@ -57,7 +58,7 @@ class Conveyor final : public Scene {
     float limit = 0;  ///< where the belt ends, on both sides of the origin
   };
 
-  /// A line somewhere inside belt `belt`.
+  /// A random line within belt `belt`.
   [[nodiscard]] Course courseOn(std::int64_t belt, const Settings& settings, Random& random) const {
     const auto axis = static_cast<int>(belt % 3);
     const std::int64_t corner = belt / 3;
@@ -78,7 +79,7 @@ class Conveyor final : public Scene {
     const Course& course = rider.course;
     const float along = body.pose().position[course.axis];
     if (course.speed > 0 ? along > rider.limit : along < -rider.limit) {
-      // As far behind the start as it went beyond the end: the stream stays even.
+      // As far from the start as it went beyond the end, to keep the stream even.
       const float again = along - std::copysign(2 * rider.limit, course.speed);
       body.setPose(course.poseAt(std::clamp(again, -rider.limit, rider.limit)));
     }
@@ -94,9 +95,9 @@ class Conveyor final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"conveyor", "Conveyor",
-                      "crossing streams of bodies that start anew at the end of their belts"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Conveyor>(); }};
+  return {{"conveyor", "Conveyor",
+           "crossing streams of bodies that start again at the end of their belts"},
+          makeAs<Scene, Conveyor>};
 }
 
 }  // namespace broadmark::scenes::conveyor

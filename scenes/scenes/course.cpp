@@ -12,7 +12,7 @@ Pose Course::poseAt(float along) const {
 }
 
 Vec3 Course::velocityAt(const Vec3& position) const {
-  constexpr float kPull = 2;  // per second: back on the line in about a second
+  constexpr float kPull = 2;  // per second
   Vec3 velocity;
   for (int i = 0; i < 3; ++i) velocity[i] = kPull * (lane[i] - position[i]);
   velocity[axis] = speed;

@@ -1,4 +1,4 @@
-// Bodies that are driven along straight lines instead of being left to their forces.
+// Bodies that are driven along straight lines, whatever forces act on them.
 #pragma once
 
 #include "broadmark/scenes/physics_engine.h"
@@ -13,13 +13,13 @@ struct Course {
 
   /// The body's pose at `along` on the line, unturned.
   [[nodiscard]] Pose poseAt(float along) const;
-  /// What a body at `position` needs to follow the line: its speed, and a gentle pull back to the
-  /// line, which collisions push it off.
+  /// The velocity of a body at `position` that follows the line: its speed, and a gentle pull back
+  /// to the line after collisions.
   [[nodiscard]] Vec3 velocityAt(const Vec3& position) const;
 };
 
-/// The largest coordinate of the body's centre along `axis` at which a body of this shape, turned
-/// anyhow, is inside a world of this side; 0 for a body larger than the world.
+/// The largest coordinate of a body's centre at which the body is inside a world of this side,
+/// however it is turned; 0 for a body larger than the world.
 float farthestInside(const Shape&, double side);
 
 }  // namespace broadmark::scenes

@@ -1,5 +1,5 @@
-// Explosion: a dense ball of tumbling bodies flies apart until the walls stop it. At first all of
-// them are in a small part of the world, with a density that falls in every frame.
+// Explosion: a dense ball of tumbling bodies flies apart until the walls stop it. At first all
+// bodies are in a small part of the world; their density falls in every frame.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 
 namespace broadmark::scenes::explosion {
 namespace {
@@ -60,7 +61,7 @@ class Explosion final : public Scene {
     const double lattice_radius =
         std::cbrt(3 * static_cast<double>(count) / (4 * std::numbers::pi));
     spacing_ = settings.initial_radius * settings.side() / lattice_radius;
-    random.shuffle(places_);  // lest an id tells where the body is
+    random.shuffle(places_);  // ids must not tell places
   }
 
   BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
@@ -88,8 +89,8 @@ class Explosion final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"explosion", "Explosion", "a dense ball of bodies flies apart"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Explosion>(); }};
+  return {{"explosion", "Explosion", "a dense ball of bodies flies apart"},
+          makeAs<Scene, Explosion>};
 }
 
 }  // namespace broadmark::scenes::explosion

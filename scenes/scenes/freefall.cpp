@@ -1,9 +1,11 @@
 // FreeFall: bodies fly apart, fall to the floor and come to rest. Much motion at first, hardly any
-// in the end.
+// at the end.
 
 #include <cmath>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "broadmark/scenes/simulation.h"
+#include "entries.h"
 
 namespace broadmark::scenes::freefall {
 namespace {
@@ -14,8 +16,8 @@ class FreeFall final : public Scene {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"freeze_slow", "freeze slow bodies for good once the scene has settled", &freeze_slow_});
-    visit(
-        {"freeze_after", "frame after which slow bodies are frozen", &freeze_after_, 0, 1'000'000});
+    visit({"freeze_after", "frame after which slow bodies are frozen", &freeze_after_, 0,
+           kMostFrames});
     visit({"freeze_speed", "speed below which a body is slow, in world units per second",
            &freeze_speed_, 0, 1e6});
     visit({"freeze_angular_speed",
@@ -45,8 +47,8 @@ class FreeFall final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"freefall", "FreeFall", "bodies fall to the floor and come to rest"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<FreeFall>(); }};
+  return {{"freefall", "FreeFall", "bodies fall to the floor and come to rest"},
+          makeAs<Scene, FreeFall>};
 }
 
 }  // namespace broadmark::scenes::freefall

@@ -6,14 +6,15 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
 
 Vec3 turnedAbout(const Vec3& axis, double angle, const Vec3& vector) {
   const Eigen::AngleAxisf rotation(static_cast<float>(angle), Eigen::Vector3f(axis.data()));
-  // Unit length is restored, lest rounding changes the force over thousands of turns.
+  // Normalised, because rounding would change the force over thousands of turns.
   const Eigen::Vector3f turned = (rotation * Eigen::Vector3f(vector.data())).normalized();
   return {turned.x(), turned.y(), turned.z()};
 }
@@ -64,8 +65,8 @@ class Gravity final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"gravity", "Gravity", "a strong gravity that keeps turning to other sides"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Gravity>(); }};
+  return {{"gravity", "Gravity", "a strong gravity that keeps turning to other sides"},
+          makeAs<Scene, Gravity>};
 }
 
 }  // namespace gravity

@@ -5,14 +5,14 @@
 
 namespace broadmark::scenes {
 
-/// A direction that turns about an axis that turns itself, so that it comes by all sides in time.
+/// A direction that turns about an axis, which turns, too: in time it points to all sides.
 struct TurningDirection {
   Vec3 direction{1, 0, 0};
   Vec3 axis{0, 1, 0};
 };
 
-/// One turn on: the axis turns by `angle` (radians) about +z, then the direction turns by `angle`
-/// about the new axis.
+/// After one turn: the axis turns by `angle` (radians) about +z, then the direction turns by
+/// `angle` about the new axis.
 TurningDirection turned(const TurningDirection&, double angle);
 
 }  // namespace broadmark::scenes

@@ -1,4 +1,4 @@
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
 
 namespace broadmark::scenes {
 

@@ -1,9 +1,11 @@
-#include "scenes/settings.h"
+#include "broadmark/scenes/settings.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "broadmark/scenes/registry.h"
+#include "broadmark/scenes/simulation.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 
@@ -27,8 +29,8 @@ void PhysicsSettings::visit(const ParameterVisitor& visit) {
 Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
 
 void Settings::visit(const ParameterVisitor& visit) {
-  visit({"objects", "number of bodies", &objects, 0, 10'000'000});
-  visit({"frames", "number of frames after the initial pose", &frames, 1, 1'000'000});
+  visit({"objects", "number of bodies", &objects, 0, kMostBodies});
+  visit({"frames", "number of frames after the initial pose", &frames, 1, kMostFrames});
   visit({"object_type", "what the bodies are", &object_type});
   visit({"engine", "physics engine that moves them", &engine});
   visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
@@ -45,7 +47,7 @@ void Settings::visit(const ParameterVisitor& visit) {
 }
 
 double Settings::side() const {
-  // Of no bodies at all, the world is that of one.
+  // A world without bodies is as large as a world of one.
   const auto bodies = static_cast<double>(std::max<std::int64_t>(objects, 1));
   return std::cbrt(bodies * scale * scale * scale / density);
 }

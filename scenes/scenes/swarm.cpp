@@ -1,12 +1,13 @@
-// Swarm: flocks that gather, wander about, turn at the walls and meet. Moving clusters in an
-// otherwise empty world. Made for the boids engine; with others the flocks fly apart.
+// Swarm: flocks that gather, wander about, turn at the walls and meet: moving clusters in an
+// otherwise empty world. Made for the boids engine; with other engines the flocks fly apart.
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 
 namespace broadmark::scenes::swarm {
 namespace {
@@ -72,8 +73,7 @@ class Swarm final : public Scene {
 }  // namespace
 
 SceneEntry entry() {
-  return {.listing = {"swarm", "Swarm", "flocks of boids wander about"},
-          .create = []() -> std::unique_ptr<Scene> { return std::make_unique<Swarm>(); }};
+  return {{"swarm", "Swarm", "flocks of boids wander about"}, makeAs<Scene, Swarm>};
 }
 
 }  // namespace broadmark::scenes::swarm

@@ -1,7 +1,7 @@
-// Checks that the steady state of an algorithm allocates nothing. A program of its own, as it puts
-// itself between everybody and malloc.
+// Checks that the steady state of an algorithm allocates nothing. A program of its own, as it
+// replaces malloc.
 //
-// Algorithms whose library allocates (they say so) are not ours to answer for, and are left out.
+// Algorithms whose library allocates (by their traits) are left out: that is not in our hands.
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ using namespace broadmark::tests;
 /// The algorithms that have all allocations in their own hands.
 std::vector<Algorithm> ourPairFinders() {
   std::vector<Algorithm> all = pairFinders();
-  std::erase_if(all, &Algorithm::library_allocates);
+  std::erase_if(all, [](const Algorithm& a) { return a.traits.library_allocates; });
   return all;
 }
 
@@ -77,8 +77,8 @@ std::vector<Algorithm> ourPairFinders() {
 long allocationsPerRound(const Algorithm& algorithm, const Configuration& way) {
   constexpr int kRoundsBefore = 3;
   const auto frames = framesOf({"drifting", inputs::drifting}, 2000, 6);
-  Execution execution(way.threads, way.isa);
-  Instance run(algorithm, execution, sceneOf(frames), frames[0]);
+  TestRun run(algorithm, way);
+  run.start(sceneOf(frames), frames[0]);
   long before = 0;
   for (int round = 0; round <= kRoundsBefore; ++round) {
     before = allocations;

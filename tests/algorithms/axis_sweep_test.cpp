@@ -9,16 +9,13 @@
 namespace broadmark::tests {
 namespace {
 
-class AxisSweep : public testing::Test {
- protected:
-  Instance start(const std::vector<Aabb>& first) { return start(first, sceneOf({first})); }
-  Instance start(const std::vector<Aabb>& first, const SceneInfo& scene) {
-    return {algorithmOf("axis-sweep"), execution_, scene, first};
-  }
-
- private:
-  Execution execution_{1, Isa::scalar};
-};
+/// A run of axis-sweep from this initial pose.
+TestRun startedAt(const std::vector<Aabb>& first, const SceneInfo& scene) {
+  TestRun run(algorithmOf("axis-sweep"));
+  run.start(scene, first);
+  return run;
+}
+TestRun startedAt(const std::vector<Aabb>& first) { return startedAt(first, sceneOf({first})); }
 
 std::vector<Aabb> shifted(std::vector<Aabb> boxes, float way) {
   for (Aabb& box : boxes) {
@@ -31,32 +28,34 @@ std::vector<Aabb> shifted(std::vector<Aabb> boxes, float way) {
 }
 
 // Bullet would insert them one by one: about n²/3 swaps on each axis.
-TEST_F(AxisSweep, TakesInManyBodiesAtOnce) {
+TEST(AxisSweep, TakesInManyBodiesAtOnce) {
   constexpr std::uint64_t kCount = 20'000;
   const std::vector<Aabb> boxes = inputs::uniform(kCount, 0, 1);
-  Instance run = start(boxes);
+  TestRun run = startedAt(boxes);
   auto counters = countersOf(run.broadPhase());
   EXPECT_EQ(counters.at("swaps"), 0U);
   EXPECT_GT(counters.at("first tests"), 0U);
   EXPECT_LT(counters.at("first tests"), kCount * kCount / 20);
+  EXPECT_EQ(counters.at("moves"), kCount);
   EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+  EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 0U);
 }
 
 // One axis on which all boxes meet must not be the one that is swept.
-TEST_F(AxisSweep, SweepsFirstAlongTheBestAxis) {
+TEST(AxisSweep, SweepsFirstAlongTheBestAxis) {
   for (std::size_t best = 0; best < 3; ++best) {
     std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       boxes[i].min[best] = static_cast<float>(2 * i);
       boxes[i].max[best] = static_cast<float>(2 * i + 1);
     }
-    EXPECT_EQ(countersOf(start(boxes).broadPhase()).at("first tests"), 0U) << best;
+    EXPECT_EQ(countersOf(startedAt(boxes).broadPhase()).at("first tests"), 0U) << best;
   }
 }
 
-TEST_F(AxisSweep, WorksOnlyForWhatMoves) {
+TEST(AxisSweep, WorksOnlyForWhatMoves) {
   std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
-  Instance run = start(boxes);
+  TestRun run = startedAt(boxes);
   run.step(boxes);
   EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 0U);
   EXPECT_EQ(countersOf(run.broadPhase()).at("swaps"), 0U);
@@ -66,7 +65,7 @@ TEST_F(AxisSweep, WorksOnlyForWhatMoves) {
   EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 1U);
   EXPECT_LT(countersOf(run.broadPhase()).at("swaps"), 100U);
 
-  // All of them alike: nobody passes anybody but for a moment.
+  // All move alike: one passes another for a moment only.
   boxes = shifted(boxes, 50);
   EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
   EXPECT_EQ(countersOf(run.broadPhase()).at("moves"), 1000U);
@@ -74,11 +73,11 @@ TEST_F(AxisSweep, WorksOnlyForWhatMoves) {
 }
 
 // Bullet's own positions end at the borders of a world given beforehand.
-TEST_F(AxisSweep, HasNoWorldToLeave) {
+TEST(AxisSweep, HasNoWorldToLeave) {
   std::vector<Aabb> boxes = inputs::uniform(300, 0, 1);
   SceneInfo scene = sceneOf({boxes});
   scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};
-  Instance run = start(boxes, scene);
+  TestRun run = startedAt(boxes, scene);
   for (const float way : {5.0F, -1e3F, 1e6F, -3e6F, 0.0F}) {
     boxes = shifted(inputs::uniform(300, 1, 1), way);
     EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << way;
@@ -93,7 +92,7 @@ TEST_F(AxisSweep, HasNoWorldToLeave) {
 }
 
 // Positions lack the last bit of the floats; the answer must not.
-TEST_F(AxisSweep, TellsNeighbouringFloatsApart) {
+TEST(AxisSweep, TellsNeighbouringFloatsApart) {
   for (const float place : {1.0F, -1.0F, 100.0F, -0.3F, 1e-40F, 1e30F}) {
     const float next = std::nextafter(place, 1e38F);
     const float after = std::nextafter(next, 1e38F);
@@ -101,15 +100,15 @@ TEST_F(AxisSweep, TellsNeighbouringFloatsApart) {
       for (const float end : {place, next, after}) {
         const std::vector<Aabb> boxes = {{{place - 1, 0, 0, 0}, {end, 1, 1, 0}},
                                          {{begin, 0, 0, 0}, {begin + 1, 1, 1, 0}}};
-        Instance run = start(inputs::uniform(2, 0, 1));
+        TestRun run = startedAt(inputs::uniform(2, 0, 1));
         EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << begin << " " << end;
       }
     }
   }
 }
 
-TEST_F(AxisSweep, SurvivesTheLimitsOfFloats) {
-  Instance run = start(inputs::limits(300, 0, 1));
+TEST(AxisSweep, SurvivesTheLimitsOfFloats) {
+  TestRun run = startedAt(inputs::limits(300, 0, 1));
   for (std::uint32_t frame = 1; frame < 4; ++frame) {
     const std::vector<Aabb> boxes = inputs::limits(300, frame, 1);
     EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes));
@@ -117,11 +116,11 @@ TEST_F(AxisSweep, SurvivesTheLimitsOfFloats) {
   }
 }
 
-TEST_F(AxisSweep, InstancesDoNotDisturbEachOther) {
+TEST(AxisSweep, InstancesDoNotDisturbEachOther) {
   const std::vector<Aabb> some = inputs::clustered(200, 0, 1);
   const std::vector<Aabb> others = inputs::clustered(100, 0, 2);
-  Instance a = start(some);
-  Instance b = start(others);
+  TestRun a = startedAt(some);
+  TestRun b = startedAt(others);
   for (std::uint32_t frame = 1; frame < 4; ++frame) {
     const std::vector<Aabb> some_next = inputs::clustered(200, frame, 1);
     const std::vector<Aabb> others_next = inputs::clustered(100, frame, 2);
@@ -130,8 +129,8 @@ TEST_F(AxisSweep, InstancesDoNotDisturbEachOther) {
   }
 }
 
-TEST_F(AxisSweep, StatesHowManyBodiesItsHandlesAllow) {
-  EXPECT_EQ(algorithmOf("axis-sweep").create()->capabilities().max_objects, 0x7FFF'FFFDU);
+TEST(AxisSweep, StatesHowManyBodiesItsHandlesAllow) {
+  EXPECT_EQ(algorithmOf("axis-sweep").traits.max_objects, 0x7FFF'FFFDU);
 }
 
 }  // namespace

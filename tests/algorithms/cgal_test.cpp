@@ -22,20 +22,10 @@ class Cgal : public testing::Test {
 
   /// The pairs of one frame.
   std::vector<Pair> pairsOf(const std::vector<Aabb>& boxes, const ParameterValues& values = {}) {
-    const std::unique_ptr<BroadPhase> cgal = algorithm_.create();
-    setParameters(*cgal, values);
-    cgal->initialize(sceneOf({boxes}), {0, boxes}, execution_);
-    cgal->updateObjects({1, boxes});
-    cgal->cleanCache();
-    cgal->updateStructures();
-    cgal->searchOverlaps();
-    return sorted(cgal->overlaps());
+    return sorted(TestRun(algorithm_, {}, values).start(boxes).step(boxes));
   }
 
   Algorithm algorithm_;
-
- private:
-  Execution execution_{1, Isa::scalar};
 };
 
 TEST_F(Cgal, HasTheLibrarysCutoffByDefault) {

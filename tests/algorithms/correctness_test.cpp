@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <list>
+#include <string>
+#include <utility>
 
 #include "algorithms/runs.h"
 
@@ -13,29 +17,21 @@ namespace {
 constexpr std::uint32_t kFrames = 4;
 constexpr std::size_t kCounts[] = {0, 1, 2, 3, 15, 16, 17, 31, 33, 100, 257, 1000};
 
-/// The right pairs of each frame but the first, which is never searched.
-std::vector<std::vector<Pair>> rightPairs(const std::vector<std::vector<Aabb>>& frames) {
-  std::vector<std::vector<Pair>> right = {{}};
-  for (std::size_t i = 1; i < frames.size(); ++i) right.push_back(bruteForcePairs(frames[i]));
-  return right;
-}
-
 class EveryAlgorithm : public testing::TestWithParam<Algorithm> {
  protected:
   /// Runs all configurations over the frames and checks every answer. False if it cannot run here.
   void check(const std::string& input, const std::vector<std::vector<Aabb>>& frames) {
     const SceneInfo scene = sceneOf(frames);
-    const std::vector<std::vector<Pair>> right = rightPairs(frames);
-    for (Execution& execution : executions_) {
-      SCOPED_TRACE(describe(GetParam(), {execution.isa(), execution.threads()}) + " on " + input +
-                   ", n = " + std::to_string(scene.objects));
+    std::vector<std::vector<Pair>> right;
+    for (const std::vector<Aabb>& boxes : frames) right.push_back(rightPairs(boxes));
+    if (GetParam().traits.max_objects < scene.objects) return;
+    for (auto& [name, run] : runs_) {
+      SCOPED_TRACE(name + " on " + input + ", n = " + std::to_string(scene.objects));
       try {
-        if (GetParam().create()->capabilities().max_objects < scene.objects) continue;
-        Instance run(GetParam(), execution, scene, frames[0]);
+        run.start(scene, frames[0]);
         for (std::uint32_t i = 1; i < frames.size(); ++i) {
           const PairRuns answer = run.step(frames[i]);
-          const float margin = run.broadPhase().capabilities().margin;
-          ASSERT_TRUE(isRight(answer, right[i], {i, frames[i]}, margin)) << "in frame " << i;
+          ASSERT_TRUE(isRight(answer, right[i], {i, frames[i]}, run.margin())) << "in frame " << i;
           ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
         }
       } catch (const UnsupportedError& error) {
@@ -48,12 +44,12 @@ class EveryAlgorithm : public testing::TestWithParam<Algorithm> {
 
   void SetUp() override {
     for (const Configuration& way : configurations(GetParam())) {
-      executions_.emplace_back(way.threads, way.isa);
+      runs_.emplace_back(describe(GetParam(), way), TestRun(GetParam(), way));
     }
   }
 
  private:
-  std::list<Execution> executions_;
+  std::list<std::pair<std::string, TestRun>> runs_;  ///< one per configuration, with its name
 };
 
 TEST_P(EveryAlgorithm, FindsExactlyTheRightPairs) {
@@ -87,18 +83,136 @@ TEST_P(EveryAlgorithm, ReportsPairsThatNeverMove) {
   check("still", framesOf({"still", inputs::still}, 600, 5));
 }
 
-TEST_P(EveryAlgorithm, IsDescribed) {
-  const Algorithm& algorithm = GetParam();
-  for (const std::string& text : {algorithm.id, algorithm.family, algorithm.summary,
-                                  algorithm.principle, algorithm.optimisations, algorithm.exactness,
-                                  algorithm.time, algorithm.space, algorithm.source}) {
-    EXPECT_NE(text, "");
-  }
-  EXPECT_EQ(algorithm.parallel, algorithm.id.ends_with("-mt") || algorithm.id.starts_with("gpu-") ||
-                                    algorithm.id.starts_with("b3-"));
+// What the traits promise is what the tests above ran.
+TEST_P(EveryAlgorithm, IsRunInEveryWayThatItsTraitsName) {
+  const AlgorithmTraits& traits = GetParam().traits;
+  const std::vector<Configuration> ways = configurations(GetParam());
+  const bool several_threads = std::ranges::any_of(ways, [](auto way) { return way.threads > 1; });
+  EXPECT_EQ(several_threads, traits.parallel);
+  const auto widest = std::ranges::max_element(ways, {}, &Configuration::isa);
+  EXPECT_EQ(widest->isa, traits.vectorised ? bestIsa() : Isa::scalar);
+  EXPECT_TRUE(traits.parallel || !traits.on_device) << "a device has threads";
+  EXPECT_GE(traits.max_objects, kCounts[std::size(kCounts) - 1]) << "tests would be skipped";
+}
+
+// An incremental algorithm shows by its counters that it spares itself work.
+TEST_P(EveryAlgorithm, DoesLessWhenNothingMovesIfIncremental) {
+  if (!GetParam().traits.incremental) GTEST_SKIP() << "not incremental";
+  const auto frames = framesOf({"uniform", inputs::uniform}, 300, 3);
+  TestRun run(GetParam());
+  run.start(sceneOf(frames), frames[0]);
+  run.step(frames[1]);
+  run.step(frames[2]);
+  const Counters moving = countersOf(run.broadPhase());
+  for (int i = 0; i < 3; ++i) run.step(frames[2]);
+  const Counters still = countersOf(run.broadPhase());
+  EXPECT_TRUE(std::ranges::any_of(moving, [&](const auto& counter) {
+    return counter.second > 0 && still.at(counter.first) == 0;
+  })) << "no counter falls to 0";
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithm, testing::ValuesIn(pairFinders()),
+                         [](const auto& tested) { return testName(tested.param); });
+
+/// Lower-case words and numbers, joined by `joint`.
+bool isJoinedWords(std::string_view text, char joint) {
+  const auto is_lower = [](char c) { return c >= 'a' && c <= 'z'; };
+  const auto is_word = [&](char c) { return is_lower(c) || (c >= '0' && c <= '9'); };
+  if (text.empty() || !is_lower(text.front()) || !is_word(text.back())) return false;
+  for (std::size_t i = 1; i < text.size(); ++i) {
+    if (!is_word(text[i]) && (text[i] != joint || text[i - 1] == joint)) return false;
+  }
+  return true;
+}
+
+std::string lowered(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Whether all parts of a list "a, b" are in `allowed`.
+bool consistsOf(std::string_view list, std::initializer_list<std::string_view> allowed) {
+  for (;;) {
+    const std::size_t comma = list.find(", ");
+    if (std::ranges::count(allowed, list.substr(0, comma)) == 0) return false;
+    if (comma == std::string_view::npos) return true;
+    list.remove_prefix(comma + 2);
+  }
+}
+
+/// A phrase within a sentence: it begins with a lower-case letter or a name that the source has,
+/// and has no full stop.
+bool isPhrase(const std::string& text, const std::string& source = {}) {
+  const std::string first_word = text.substr(0, text.find_first_of(" ',"));
+  if (first_word.empty() || text.ends_with('.')) return false;
+  return std::isupper(static_cast<unsigned char>(first_word.front())) == 0 ||
+         source.find(first_word) != std::string::npos;
+}
+
+/// Parameter `name` of an instance, raised to the most it may be; the margin before and after.
+std::pair<float, float> marginBeforeAndAfterRaising(BroadPhase& algorithm, std::string_view name) {
+  const float before = algorithm.margin();
+  algorithm.visitParameters([&](const Parameter& parameter) {
+    auto* const* value = std::get_if<double*>(&parameter.value);
+    if (parameter.name == name && value != nullptr) **value = parameter.max;
+  });
+  return {before, algorithm.margin()};
+}
+
+/// The table of algorithms, self-checks included.
+class EveryListedAlgorithm : public testing::TestWithParam<Algorithm> {};
+
+TEST_P(EveryListedAlgorithm, HasAnIdOfItsOwn) {
+  EXPECT_TRUE(isJoinedWords(GetParam().id, '-'));
+  EXPECT_EQ(std::ranges::count(builtinAlgorithms(), GetParam().id, &Algorithm::id), 1);
+  EXPECT_NE(GetParam().family, "");
+}
+
+TEST_P(EveryListedAlgorithm, IsDescribed) {
+  const AlgorithmDescription& description = GetParam().description;
+  EXPECT_TRUE(isPhrase(GetParam().summary, description.source)) << GetParam().summary;
+  if (GetParam().traits.finds_pairs) {
+    EXPECT_TRUE(consistsOf(description.principle, {"brute force", "sorting", "grid", "tree"}))
+        << description.principle;
+  } else {
+    EXPECT_EQ(description.principle, "none");
+  }
+  for (const std::string& complexity : {description.time, description.space}) {
+    EXPECT_TRUE(complexity.starts_with("O(")) << complexity;
+    EXPECT_NE(complexity.find(')'), std::string::npos) << complexity;
+  }
+  // The list derives these from the traits.
+  for (const char* derived : {"simd", "thread", "opencl", "none"}) {
+    EXPECT_EQ(lowered(description.optimisations).find(derived), std::string::npos);
+  }
+  EXPECT_NE(description.source, "");
+  EXPECT_FALSE(description.source.ends_with('.'));
+}
+
+TEST_P(EveryListedAlgorithm, ExplainsItsParameters) {
+  const std::unique_ptr<BroadPhase> algorithm = GetParam().create();
+  const ParameterValues defaults = parameterValues(*algorithm);
+  algorithm->visitParameters([&](const Parameter& parameter) {
+    EXPECT_TRUE(isJoinedWords(parameter.name, '_')) << parameter.name;
+    EXPECT_TRUE(isPhrase(std::string(parameter.doc))) << parameter.name;
+    EXPECT_EQ(defaults.count(std::string(parameter.name)), 1U) << parameter.name;
+  });
+  // Names are unique, and every default is a value that may be set.
+  EXPECT_EQ(parameterNames(*algorithm).size(), defaults.size());
+  EXPECT_NO_THROW(setParameters(*algorithm, defaults));
+}
+
+// A conservative algorithm has a parameter that says how far, and margin() goes by it.
+TEST_P(EveryListedAlgorithm, HasAMarginOnlyFromItsParameter) {
+  const std::unique_ptr<BroadPhase> algorithm = GetParam().create();
+  if (algorithm->margin() == 0) return;
+  ASSERT_EQ(std::ranges::count(parameterNames(*algorithm), "margin"), 1);
+  const auto [before, after] = marginBeforeAndAfterRaising(*algorithm, "margin");
+  EXPECT_GT(before, 0);
+  EXPECT_GT(after, before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, EveryListedAlgorithm, testing::ValuesIn(builtinAlgorithms()),
                          [](const auto& tested) { return testName(tested.param); });
 
 }  // namespace

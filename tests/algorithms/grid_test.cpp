@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
+#include "algorithms/runs.h"
 #include "cell_grid.h"
 #include "row_shares.h"
-#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {
@@ -183,54 +183,28 @@ TEST(RowShares, HoldEveryRowOnceAndTheSameWork) {
   }
 }
 
-/// Counts what an instance shows.
-std::map<std::string, std::uint64_t, std::less<>> countersOf(const BroadPhase& broad_phase) {
-  std::map<std::string, std::uint64_t, std::less<>> counters;
-  broad_phase.visitCounters(
-      [&](std::string_view name, std::uint64_t count) { counters.emplace(name, count); });
-  return counters;
-}
-
-class DrawnBoxes final : public DebugDraw {
- public:
-  void box(const Aabb& box, Rgb, int) override { boxes.push_back(box); }
-  void line(const std::array<float, 3>&, const std::array<float, 3>&, Rgb) override {}
-  std::vector<Aabb> boxes;
-};
-
 class Grids : public testing::TestWithParam<Algorithm> {
  protected:
-  /// An instance with its parameter set, that has seen an unrelated frame.
-  std::unique_ptr<BroadPhase> begun(Execution& execution, const std::string& objects_per_cell,
-                                    std::size_t n) {
-    std::unique_ptr<BroadPhase> grid = GetParam().create();
-    setParameters(*grid, {{"objects_per_cell", objects_per_cell}});
+  /// A run that has seen an unrelated initial pose.
+  TestRun begun(const Configuration& way, const std::string& objects_per_cell, std::size_t n) {
+    TestRun run(GetParam(), way, {{"objects_per_cell", objects_per_cell}});
     SceneInfo scene;
     scene.objects = static_cast<std::uint32_t>(n);
     scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};  // most bodies are outside
-    grid->initialize(scene, {0, inputs::clustered(n, 99, 1)}, execution);
-    return grid;
-  }
-
-  static void search(BroadPhase& grid, std::uint32_t index, const std::vector<Aabb>& boxes) {
-    grid.updateObjects({index, boxes});
-    grid.cleanCache();
-    grid.updateStructures();
-    grid.searchOverlaps();
+    run.start(scene, inputs::clustered(n, 99, 1));
+    return run;
   }
 
   /// In every configuration, with cells for one body, a few, and all of them.
   void check(const std::vector<Aabb>& boxes) {
     const std::vector<Pair> right = sweptPairs(boxes);
     for (const Configuration& way : configurations(GetParam())) {
-      Execution execution(way.threads, way.isa);
       for (const std::string objects_per_cell : {"1", "10", "1000000000"}) {
         SCOPED_TRACE(describe(GetParam(), way) + ", objects_per_cell " + objects_per_cell);
-        const auto grid = begun(execution, objects_per_cell, boxes.size());
-        search(*grid, 1, boxes);
-        ASSERT_EQ(sorted(grid->overlaps()), right);
-        ASSERT_EQ(grid->validate(), "");
-        const auto counters = countersOf(*grid);
+        TestRun run = begun(way, objects_per_cell, boxes.size());
+        ASSERT_EQ(sorted(run.step(boxes)), right);
+        ASSERT_EQ(run.broadPhase().validate(), "");
+        const Counters counters = countersOf(run.broadPhase());
         ASSERT_LE(counters.at("copies"), 8 * boxes.size());
         ASSERT_LE(counters.at("cells"), std::max<std::size_t>(boxes.size() * 5 / 2, 1));
       }
@@ -249,11 +223,10 @@ TEST_P(Grids, TestOneHugeBoxAmongManySmall) {
   boxes[700] = inputs::boxAt({-1e6F, 3, -1e6F}, {2e6F, 17, 2e6F});  // a floor
   check(boxes);
 
-  Execution execution(1, bestIsa());
-  const auto grid = begun(execution, "10", boxes.size());
-  search(*grid, 1, boxes);
-  EXPECT_EQ(countersOf(*grid).at("large bodies"), 1U);
-  EXPECT_GT(countersOf(*grid).at("cells"), 100U);
+  TestRun run = begun({bestIsa(), 1}, "10", boxes.size());
+  run.step(boxes);
+  EXPECT_EQ(countersOf(run.broadPhase()).at("large bodies"), 1U);
+  EXPECT_GT(countersOf(run.broadPhase()).at("cells"), 100U);
 }
 
 // Bars along each of the axes: the mean box is long, yet all of them touch many cells.
@@ -288,16 +261,14 @@ TEST_P(Grids, CopeWithABodyFarOff) {
 // The original missed pairs whenever the number of bodies was not divisible by that of threads, and
 // raced when a cell held more than a thread's share.
 TEST_P(Grids, LoseNothingWhateverTheTeam) {
-  if (!GetParam().parallel) GTEST_SKIP() << "uses one thread";
+  if (!GetParam().traits.parallel) GTEST_SKIP() << "uses one thread";
   for (const std::size_t n : {5U, 1009U}) {
     for (const inputs::Generator boxes : {inputs::uniform, inputs::clustered, inputs::identical}) {
       const std::vector<Aabb> frame = boxes(n, 1, 3);
       const std::vector<Pair> right = bruteForcePairs(frame);
       for (const int threads : {1, 2, 3, 4, 5, 6, 7, 8, 13}) {
-        Execution execution(threads, bestIsa());
-        const auto grid = begun(execution, "20", n);
-        search(*grid, 1, frame);
-        EXPECT_EQ(sorted(grid->overlaps()), right) << threads << " threads, n = " << n;
+        TestRun run = begun({bestIsa(), threads}, "20", n);
+        EXPECT_EQ(sorted(run.step(frame)), right) << threads << " threads, n = " << n;
       }
     }
   }
@@ -306,37 +277,30 @@ TEST_P(Grids, LoseNothingWhateverTheTeam) {
 TEST_P(Grids, FindAllPairsOfALargerFrame) {
   constexpr std::size_t kCount = 20'000;
   for (const inputs::Generator boxes : {inputs::assorted, inputs::clustered}) {
-    Execution execution(GetParam().parallel ? 3 : 1, bestIsa());
-    const std::unique_ptr<BroadPhase> grid = GetParam().create();
-    const std::vector<Aabb> first = boxes(kCount, 0, 1);
-    grid->initialize({.objects = kCount, .world = boundsOf(first)}, {0, first}, execution);
+    TestRun run(GetParam(), {bestIsa(), 3});
+    run.start(boxes(kCount, 0, 1));
     const std::vector<Aabb> frame = boxes(kCount, 1, 1);
-    search(*grid, 1, frame);
-    EXPECT_EQ(sorted(grid->overlaps()), sweptPairs(frame));
-    EXPECT_GE(countersOf(*grid).at("cells"), 12U);
+    EXPECT_EQ(sorted(run.step(frame)), sweptPairs(frame));
+    EXPECT_GE(countersOf(run.broadPhase()).at("cells"), 12U);
   }
 }
 
 TEST_P(Grids, DrawCellsThatHoldSomething) {
-  Execution execution(1, bestIsa());
-  const auto grid = begun(execution, "1", 20'000);
-  std::vector<Aabb> boxes = inputs::uniform(20'000, 0, 1);
-  search(*grid, 1, boxes);
-  DrawnBoxes many;
-  grid->drawStructure(many);
-  EXPECT_GT(many.boxes.size(), 500U);
-  EXPECT_LE(many.boxes.size(), std::min<std::size_t>(countersOf(*grid).at("cells"), 10'000));
+  TestRun run = begun({bestIsa(), 1}, "1", 20'000);
+  run.step(inputs::uniform(20'000, 0, 1));
+  const std::size_t many = drawingOf(run.broadPhase()).boxes().size();
+  EXPECT_GT(many, 500U);
+  EXPECT_LE(many, std::min<std::size_t>(countersOf(run.broadPhase()).at("cells"), 10'000));
 
   // Two far corners: two cells hold something.
   std::vector<Aabb> corners(8, inputs::boxAt({0, 0, 0}, {1, 1, 1}));
   std::fill_n(corners.begin(), 4, inputs::boxAt({90, 90, 90}, {1, 1, 1}));
-  search(*grid, 2, corners);
-  DrawnBoxes two;
-  grid->drawStructure(two);
-  ASSERT_EQ(two.boxes.size(), 2U);
-  for (const Aabb& drawn : two.boxes) {
-    EXPECT_EQ(merged(drawn, boundsOf(corners)), boundsOf(corners));
-    EXPECT_NE(overlaps(drawn, corners.front()), overlaps(drawn, corners.back()));
+  run.step(corners);
+  const RecordedDrawing two = drawingOf(run.broadPhase());
+  ASSERT_EQ(two.boxes().size(), 2U);
+  for (const RecordedDrawing::Box& drawn : two.boxes()) {
+    EXPECT_EQ(merged(drawn.box, boundsOf(corners)), boundsOf(corners));
+    EXPECT_NE(overlaps(drawn.box, corners.front()), overlaps(drawn.box, corners.back()));
   }
 }
 

@@ -3,9 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-
-#include "broadmark/runner.h"
 #include "algorithms/runs.h"
 
 namespace broadmark::tests {
@@ -27,26 +24,27 @@ TEST_P(HonestClocks, AnswerDoesNotDependOnBoxesAfterwards) {
   const SceneInfo scene = sceneOf(frames);
   for (const Configuration& way : configurations(GetParam())) {
     SCOPED_TRACE(describe(GetParam(), way));
-    Execution execution(way.threads, way.isa);
+    TestRun run(GetParam(), way);
     try {
       std::vector<Pair> undisturbed;
-      {
-        Instance run(GetParam(), execution, scene, frames[0]);
-        for (std::size_t i = 1; i < frames.size(); ++i) undisturbed = sorted(run.step(frames[i]));
-      }
+      run.start(scene, frames[0]);
+      for (std::size_t i = 1; i < frames.size(); ++i) undisturbed = sorted(run.step(frames[i]));
       ASSERT_FALSE(undisturbed.empty());
 
       std::vector<Aabb> boxes = frames[0];
-      Instance run(GetParam(), execution, scene, boxes);
+      run.start(scene, boxes);
       scramble(boxes);
+      BroadPhase& algorithm = run.broadPhase();
       for (std::uint32_t i = 1; i < frames.size(); ++i) {
         boxes = frames[i];
-        run.broadPhase().updateObjects({i, boxes});
+        algorithm.updateObjects({i, boxes});
         scramble(boxes);
-        run.search();
+        algorithm.cleanCache();
+        algorithm.updateStructures();
+        algorithm.searchOverlaps();
         scramble(boxes);
       }
-      EXPECT_EQ(sorted(run.broadPhase().overlaps()), undisturbed);
+      EXPECT_EQ(sorted(algorithm.overlaps()), undisturbed);
     } catch (const UnsupportedError& error) {
       GTEST_SKIP() << error.what();
     }
@@ -59,9 +57,9 @@ TEST_P(HonestClocks, SamePairsHoweverRun) {
   std::vector<std::vector<Pair>> expected;
   for (const Configuration& way : configurations(GetParam())) {
     SCOPED_TRACE(describe(GetParam(), way));
-    Execution execution(way.threads, way.isa);
+    TestRun run(GetParam(), way);
     try {
-      Instance run(GetParam(), execution, scene, frames[0]);
+      run.start(scene, frames[0]);
       std::vector<std::vector<Pair>> answers;
       for (std::size_t i = 1; i < frames.size(); ++i)
         answers.push_back(sorted(run.step(frames[i])));
@@ -78,27 +76,22 @@ INSTANTIATE_TEST_SUITE_P(Algorithms, HonestClocks, testing::ValuesIn(pairFinders
 
 TEST(SelfChecks, NoneFindsNothing) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
-  Execution execution(1, Isa::scalar);
-  EXPECT_EQ(
-      pairCount(
-          Instance(algorithmOf("none"), execution, sceneOf(frames), frames[0]).step(frames[1])),
-      0);
+  TestRun run(algorithmOf("none"));
+  run.start(frames[0]);
+  EXPECT_EQ(pairCount(run.step(frames[1])), 0U);
 }
 
 TEST(SelfChecks, TimeValidatorTakesItsTime) {
   const auto frames = framesOf({"identical", inputs::identical}, 10, 2);
-  Execution execution(1, Isa::scalar);
-  const std::unique_ptr<BroadPhase> validator = algorithmOf("time-validator").create();
-  setParameters(*validator, {{"phase_us", "2000"}});
-  validator->initialize(sceneOf(frames), {0, frames[0]}, execution);
-  const FrameTimes times = runFrame(*validator, {1, frames[1]});
+  TestRun run(algorithmOf("time-validator"), {}, {{"phase_us", "2000"}});
+  run.start(frames[0]).step(frames[1]);
   std::int64_t sum = 0;
   for (const Phase phase : {Phase::update_objects, Phase::clean_cache, Phase::update_structures,
                             Phase::search_overlaps}) {
-    EXPECT_GE(times[phase], 2'000'000) << phaseName(phase);
-    sum += times[phase];
+    EXPECT_GE(run.times()[phase], 2'000'000) << phaseName(phase);
+    sum += run.times()[phase];
   }
-  EXPECT_GE(times[Phase::total], sum);
+  EXPECT_GE(run.times()[Phase::total], sum);
 }
 
 }  // namespace

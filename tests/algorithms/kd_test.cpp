@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <string>
 
 #include "algorithms/runs.h"
@@ -14,17 +13,6 @@ using Frames = std::vector<std::vector<Aabb>>;
 using inputs::Random;
 using inputs::Vec3;
 
-/// "kd" or "kd-mt", whose instances are made with these parameters.
-Algorithm kd(const ParameterValues& parameters, const std::string& id = "kd") {
-  Algorithm algorithm = algorithmOf(id);
-  algorithm.create = [create = algorithm.create, parameters] {
-    std::unique_ptr<BroadPhase> made = create();
-    setParameters(*made, parameters);
-    return made;
-  };
-  return algorithm;
-}
-
 ParameterValues leaf(int objects) { return {{"objects_per_leaf", std::to_string(objects)}}; }
 
 /// All that an update may do to the tree.
@@ -34,17 +22,15 @@ std::uint64_t structuralWork(const BroadPhase& broad_phase) {
          counters.at("erasures") + counters.at("partitions");
 }
 
-std::vector<Pair> rightPairs(const std::vector<Aabb>& boxes) {
-  return boxes.size() < 1000 ? bruteForcePairs(boxes) : sweptPairs(boxes);
-}
-
 /// Steps through the frames, checking tree and answer each time, and calls look(broad phase, frame
 /// number) after each.
 template <class Look>
-void follow(const Algorithm& algorithm, const Configuration& way, const Frames& frames, Look look) {
-  SCOPED_TRACE(describe(algorithm, way));
-  Execution execution(way.threads, way.isa);
-  Instance run(algorithm, execution, sceneOf(frames), frames[0]);
+void follow(const std::string& id, int threads, const ParameterValues& parameters,
+            const Frames& frames, Look look) {
+  const Configuration way = {bestIsa(), threads};
+  SCOPED_TRACE(describe(algorithmOf(id), way));
+  TestRun run(algorithmOf(id), way, parameters);
+  run.start(sceneOf(frames), frames[0]);
   ASSERT_EQ(run.broadPhase().validate(), "") << "at first";
   for (std::size_t i = 1; i < frames.size(); ++i) {
     ASSERT_EQ(sorted(run.step(frames[i])), rightPairs(frames[i])) << "in frame " << i;
@@ -55,8 +41,8 @@ void follow(const Algorithm& algorithm, const Configuration& way, const Frames& 
 
 void follow(const ParameterValues& parameters, const Frames& frames) {
   const auto nothing = [](const BroadPhase&, std::size_t) {};
-  follow(kd(parameters), {bestIsa(), 1}, frames, nothing);
-  follow(kd(parameters, "kd-mt"), {bestIsa(), 3}, frames, nothing);
+  follow("kd", 1, parameters, frames, nothing);
+  follow("kd-mt", 3, parameters, frames, nothing);
 }
 
 void shift(Aabb& box, const Vec3& way) {
@@ -70,7 +56,7 @@ Vec3 randomWay(Random& random, float most) {
   return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
 }
 
-/// Frames in which moves(body, frame) tells who takes a random step of at most `most`.
+/// Frames in which the bodies for which moves(body, frame) take a random step of at most `most`.
 template <class Moves>
 Frames randomSteps(std::vector<Aabb> boxes, std::uint32_t count, float most, Moves moves) {
   Frames frames = {boxes};
@@ -84,16 +70,16 @@ Frames randomSteps(std::vector<Aabb> boxes, std::uint32_t count, float most, Mov
   return frames;
 }
 
-// The original keeps the pairs of still bodies without ever having sought them.
+// The original keeps the pairs of still bodies without ever having searched for them.
 TEST(Kd, FindsPairsOfASceneThatNeverMoves) {
   const Frames frames(5, inputs::clustered(3000, 0, 1));
   for (const std::string id : {"kd", "kd-mt"}) {
-    follow(kd(leaf(50), id), {bestIsa(), id == "kd" ? 1 : 2}, frames,
+    follow(id, id == "kd" ? 1 : 2, leaf(50), frames,
            [&](const BroadPhase& broad_phase, std::size_t frame) {
              EXPECT_EQ(structuralWork(broad_phase), 0U) << "in frame " << frame;
              auto counters = countersOf(broad_phase);
              EXPECT_EQ(counters.at("moved bodies"), 0U);
-             // All pairs are sought in the first frame, none afterwards.
+             // All pairs are searched for in the first frame, none afterwards.
              const std::uint64_t right = rightPairs(frames[0]).size();
              EXPECT_EQ(counters.at("pairs kept"), frame == 1 ? 0 : right);
              EXPECT_EQ(counters.at("subtrees skipped in searches"), frame == 1 ? 0U : 1U);
@@ -108,7 +94,7 @@ TEST(Kd, StaysIncrementalWhereLittleMoves) {
     return std::max({start[i].min[0], start[i].min[1], start[i].min[2]}) < 8;
   });
   for (const std::string id : {"kd", "kd-mt"}) {
-    follow(kd(leaf(50), id), {bestIsa(), id == "kd" ? 1 : 2}, frames,
+    follow(id, id == "kd" ? 1 : 2, leaf(50), frames,
            [](const BroadPhase& broad_phase, std::size_t frame) {
              if (frame == 1) return;
              auto counters = countersOf(broad_phase);
@@ -166,7 +152,7 @@ TEST(Kd, FollowsAStreamThroughSpace) {
   std::uint64_t translations = 0;
   std::uint64_t erasures = 0;
   std::uint64_t partitions = 0;
-  follow(kd(leaf(30)), {bestIsa(), 1}, frames, [&](const BroadPhase& broad_phase, std::size_t) {
+  follow("kd", 1, leaf(30), frames, [&](const BroadPhase& broad_phase, std::size_t) {
     auto counters = countersOf(broad_phase);
     translations += counters.at("translations");
     erasures += counters.at("erasures");
@@ -199,15 +185,13 @@ TEST(Kd, DividesBodiesInSpiteOfOutliers) {
   std::vector<Aabb> boxes = inputs::uniform(2000, 0, 6);
   for (std::size_t i = 0; i < 5; ++i) shift(boxes[i], {1e6F, 1e6F, 1e6F});
   const Frames frames = {boxes, boxes};
-  struct Levels final : DebugDraw {
-    void box(const Aabb&, Rgb, int level) override { deepest = std::max(deepest, level); }
-    void line(const std::array<float, 3>&, const std::array<float, 3>&, Rgb) override {}
+  follow("kd", 1, leaf(50), frames, [](const BroadPhase& broad_phase, std::size_t) {
+    const RecordedDrawing drawing = drawingOf(broad_phase);
     int deepest = 0;
-  };
-  follow(kd(leaf(50)), {bestIsa(), 1}, frames, [](const BroadPhase& broad_phase, std::size_t) {
-    Levels levels;
-    broad_phase.drawStructure(levels);
-    EXPECT_GT(levels.deepest, 4);
+    for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
+      deepest = std::max(deepest, drawn.level);
+    }
+    EXPECT_GT(deepest, 4);
   });
 }
 
@@ -215,7 +199,7 @@ TEST(Kd, DividesBodiesInSpiteOfOutliers) {
 TEST(Kd, SurvivesAThousandFrames) {
   const Frames frames =
       randomSteps(inputs::clustered(300, 0, 7), 1001, 0.1F, [](std::size_t i, std::uint32_t frame) {
-        // By turns all, a third, and nobody.
+        // In turn all, a third, and none.
         return frame % 50 < 20 || (frame % 50 < 40 && i % 3 == 0);
       });
   follow(leaf(12), frames);
@@ -229,7 +213,7 @@ TEST(Kd, TwentyThousandBodies) {
   follow({}, randomSteps(inputs::clustered(20'000, 0, 8), 4, 0.2F, everybody));
 }
 
-// With a margin bodies that jostle count as still, and the answer is exact all the same.
+// With a margin bodies that jostle count as still, and the answer is still exact.
 TEST(Kd, IsExactWithAMargin) {
   const std::vector<Aabb> start = inputs::clustered(1000, 0, 9);
   Frames frames = {start};
@@ -248,10 +232,10 @@ TEST(Kd, IsExactWithAMargin) {
     follow(parameters, framesOf({"growing", inputs::growing}, 300, 5));
     follow(parameters, framesOf({"huge", inputs::huge}, 300, 3));
   }
-  follow(kd({{"objects_per_leaf", "30"}, {"margin", "0.11"}}), {bestIsa(), 1}, frames,
+  follow("kd", 1, {{"objects_per_leaf", "30"}, {"margin", "0.11"}}, frames,
          [](const BroadPhase& broad_phase, std::size_t frame) {
            EXPECT_LT(countersOf(broad_phase).at("moved bodies"), 100U) << "in frame " << frame;
-           EXPECT_EQ(broad_phase.capabilities().margin, 0);
+           EXPECT_EQ(broad_phase.margin(), 0);
          });
 }
 

@@ -1,13 +1,12 @@
 // What algorithms on a compute device promise beyond the right pairs: both ways to divide work,
-// buffers that grow, transfers within the total, bounded threads, clear words where there is no
-// device. Runs on whatever device there is, PoCL among them.
+// buffers that grow, transfers within the total, bounded threads, several instances at once, a
+// reason where there is no device. Runs on the device that is there, PoCL included.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "broadmark/compute_devices.h"
-#include "broadmark/runner.h"
 #include "algorithms/runs.h"
+#include "broadmark/compute_devices.h"
 
 namespace broadmark::tests {
 namespace {
@@ -26,21 +25,18 @@ std::vector<Algorithm> allOnDevice() {
   return all;
 }
 
+/// Two threads: a device that is a processor is then divided, if it has more.
+constexpr Configuration kTwoThreads = {Isa::scalar, 2};
+
 /// Whether the answers of all frames are right.
-testing::AssertionResult findsAll(const Algorithm& algorithm, Execution& execution,
-                                  const std::vector<std::vector<Aabb>>& frames,
-                                  const ParameterValues& parameters = {}) {
-  Instance run(algorithm, execution, sceneOf(frames), frames[0], parameters);
+testing::AssertionResult findsAll(TestRun& run, const std::vector<std::vector<Aabb>>& frames) {
+  run.start(sceneOf(frames), frames[0]);
   for (std::uint32_t i = 1; i < frames.size(); ++i) {
-    const PairRuns answer = run.step(frames[i]);
-    auto right = isRight(answer, bruteForcePairs(frames[i]), {i, frames[i]}, 0);
+    auto right = isRight(run.step(frames[i]), rightPairs(frames[i]), {i, frames[i]});
     if (!right) return right << " in frame " << i;
   }
   return testing::AssertionSuccess();
 }
-
-/// A slow machine fails no test.
-const RunOptions kPatient = {.frame_limit_seconds = 1e6, .initialize_limit_seconds = 1e6};
 
 class OnDevice : public testing::TestWithParam<Algorithm> {
  protected:
@@ -49,71 +45,75 @@ class OnDevice : public testing::TestWithParam<Algorithm> {
   }
 };
 
-/// Frames as a source, in memory.
-class Frames final : public FrameSource {
- public:
-  explicit Frames(std::vector<std::vector<Aabb>> frames)
-      : frames_(std::move(frames)), scene_(sceneOf(frames_)) {}
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-  Frame rewind() override {
-    index_ = 0;
-    return {0, frames_[0]};
-  }
-  std::optional<Frame> next() override {
-    if (index_ + 1 == frames_.size()) return {};
-    ++index_;
-    return Frame{index_, frames_[index_]};
-  }
-
- private:
-  std::vector<std::vector<Aabb>> frames_;
-  SceneInfo scene_;
-  std::uint32_t index_ = 0;
-};
-
 TEST_P(OnDevice, TwentyThousandBodiesAreRight) {
-  Frames frames(framesOf({"uniform", inputs::uniform}, 20'000, 3));
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames, kPatient);
-  EXPECT_EQ(result.status, Status::ok) << result.reason;
-  EXPECT_GT(result.pairs_mean, 1000);
+  TestRun run(GetParam(), kTwoThreads);
+  EXPECT_TRUE(findsAll(run, framesOf({"uniform", inputs::uniform}, 20'000, 3)));
+  EXPECT_GT(pairCount(run.broadPhase().overlaps()), 1000U);
 }
 
 TEST_P(OnDevice, OneThreadFindsThemToo) {
-  Execution execution(1, Isa::scalar);
+  TestRun run(GetParam());
   for (const inputs::Input& input : inputs::kAll) {
-    ASSERT_TRUE(findsAll(GetParam(), execution, framesOf(input, 257, 3))) << input.name;
+    ASSERT_TRUE(findsAll(run, framesOf(input, 257, 3))) << input.name;
   }
 }
 
 TEST_P(OnDevice, PairBuffersGrow) {
-  // Two million pairs of two thousand bodies, after a frame with none.
+  // Two million pairs of two thousand bodies, after a frame with few.
   std::vector<std::vector<Aabb>> frames = framesOf({"uniform", inputs::uniform}, 2000, 2);
   frames.push_back(inputs::identical(2000, 0, 0));
   frames.push_back(frames[1]);
-  Frames source(frames);
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, source, kPatient);
-  EXPECT_EQ(result.status, Status::ok) << result.reason;
-  EXPECT_EQ(result.pairs_max, 2000U * 1999 / 2);
+  TestRun run(GetParam(), kTwoThreads);
+  EXPECT_TRUE(findsAll(run, frames));
 }
 
 TEST_P(OnDevice, TransfersAreWithinTheTotal) {
-  Frames frames(framesOf({"uniform", inputs::uniform}, 2000, 4));
-  const CaseResult result = runCase({.algorithm = GetParam(), .threads = 2}, frames, kPatient);
-  ASSERT_EQ(result.status, Status::ok) << result.reason;
-  for (const FrameTimes& times : result.repetitions.at(0).frames) {
-    EXPECT_GT(times[Phase::upload], 0);
-    EXPECT_GT(times[Phase::download], 0);
-    EXPECT_LE(times[Phase::upload] + times[Phase::download], times[Phase::total]);
+  const auto frames = framesOf({"uniform", inputs::uniform}, 2000, 4);
+  TestRun run(GetParam(), kTwoThreads);
+  run.start(sceneOf(frames), frames[0]);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    run.step(frames[i]);
+    EXPECT_GT(run.times()[Phase::upload], 0);
+    EXPECT_GT(run.times()[Phase::download], 0);
+    EXPECT_LE(run.times()[Phase::upload] + run.times()[Phase::download], run.times()[Phase::total]);
   }
-  EXPECT_GT(result.counters.at("kernel_build_ns"), 0);
+}
+
+TEST_P(OnDevice, TellsOnceHowLongItsKernelsTookToBuild) {
+  const auto frames = framesOf({"uniform", inputs::uniform}, 100, 2);
+  TestRun run(GetParam(), kTwoThreads);
+  run.start(frames[0]).step(frames[1]);
+  Counters setup;
+  run.broadPhase().visitSetup(
+      [&](std::string_view name, std::uint64_t count) { setup.emplace(name, count); });
+  EXPECT_GT(setup["kernel_build_ns"], 0U);
+  EXPECT_EQ(countersOf(run.broadPhase()).count("kernel_build_ns"), 0U);
+}
+
+// Bullet's grids share global kernels: each must run with its own, made for its own context.
+TEST_P(OnDevice, InstancesThatTakeTurnsAreRight) {
+  const auto some = framesOf({"clustered", inputs::clustered}, 300, 5);
+  const auto others = framesOf({"uniform", inputs::uniform}, 700, 5);
+  TestRun a(GetParam(), kTwoThreads);
+  a.start(sceneOf(some), some[0]);
+  {
+    TestRun b(GetParam());
+    b.start(sceneOf(others), others[0]);
+    for (std::uint32_t i = 1; i < 4; ++i) {
+      EXPECT_TRUE(isRight(a.step(some[i]), rightPairs(some[i]), {i, some[i]}));
+      EXPECT_TRUE(isRight(b.step(others[i]), rightPairs(others[i]), {i, others[i]}));
+    }
+  }
+  // When the other is gone, kernels and all.
+  EXPECT_TRUE(isRight(a.step(some[4]), rightPairs(some[4]), {4, some[4]}));
 }
 
 TEST_P(OnDevice, AnUnknownDeviceIsUnsupported) {
-  Frames frames(framesOf({"uniform", inputs::uniform}, 10, 2));
-  const CaseResult result =
-      runCase({.algorithm = GetParam(), .threads = 1, .device = "no such device"}, frames);
-  EXPECT_EQ(result.status, Status::unsupported);
-  EXPECT_THAT(result.reason, HasSubstr("no such device"));
+  const auto frames = framesOf({"uniform", inputs::uniform}, 10, 1);
+  CaseRun run(makeCase(GetParam(), Isa::scalar, 1, "no such device", {}));
+  EXPECT_FALSE(run.start(sceneOf(frames), {0, frames[0]}));
+  EXPECT_EQ(run.status(), Status::unsupported);
+  EXPECT_THAT(run.reason(), HasSubstr("no such device"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, OnDevice, testing::ValuesIn(allOnDevice()),
@@ -124,48 +124,36 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OnDevice);
 class OwnKernels : public OnDevice {};
 
 TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
-  Execution execution(2, Isa::scalar);
-  for (const inputs::Input& input : inputs::kAll) {
-    for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
-      const std::vector<std::vector<Aabb>> frames = framesOf(input, n, 3);
-      for (const char* way : {"cpu", "gpu"}) {
-        ASSERT_TRUE(findsAll(GetParam(), execution, frames, {{"way", way}}))
+  for (const char* way : {"cpu", "gpu"}) {
+    TestRun run(GetParam(), kTwoThreads, {{"way", way}});
+    for (const inputs::Input& input : inputs::kAll) {
+      for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
+        ASSERT_TRUE(findsAll(run, framesOf(input, n, 3)))
             << "on " << input.name << ", n = " << n << ", way " << way;
       }
     }
   }
 }
 
-class Drawn final : public DebugDraw {
- public:
-  void box(const Aabb& box, Rgb, int) override { boxes.push_back(box); }
-  void line(const std::array<float, 3>&, const std::array<float, 3>&, Rgb) override { ++lines; }
-  std::vector<Aabb> boxes;
-  int lines = 0;
-};
-
 TEST_P(OwnKernels, DrawCellsOrNodesRoundEveryBodyOrTheAxis) {
-  Execution execution(2, Isa::scalar);
   const auto frames = framesOf({"assorted", inputs::assorted}, 500, 3);
-  Instance run(GetParam(), execution, sceneOf(frames), frames[0]);
-  run.step(frames[1]);
-  run.step(frames[2]);
-  Drawn drawn;
-  run.broadPhase().drawStructure(drawn);
-  if (drawn.lines == 1 && drawn.boxes.empty()) return;  // the axis of a sweep
-  EXPECT_GT(drawn.boxes.size(), 10U);
+  TestRun run(GetParam(), kTwoThreads);
+  ASSERT_TRUE(findsAll(run, frames));
+  const RecordedDrawing drawn = drawingOf(run.broadPhase());
+  if (drawn.lines().size() == 1 && drawn.boxes().empty()) return;  // the axis of a sweep
+  EXPECT_GT(drawn.boxes().size(), 10U);
   for (const Aabb& body : frames[2]) {
-    EXPECT_TRUE(std::ranges::any_of(drawn.boxes, [&](const Aabb& b) { return overlaps(b, body); }));
+    EXPECT_TRUE(std::ranges::any_of(
+        drawn.boxes(), [&](const RecordedDrawing::Box& b) { return overlaps(b.box, body); }));
   }
 }
 
 // Little enough for an interpreter that watches each access to memory.
 TEST_P(OwnKernels, FewBodiesAreRight) {
-  Execution execution(2, Isa::scalar);
-  for (const std::size_t n : {2, 65, 130}) {
-    const std::vector<std::vector<Aabb>> frames = framesOf({"few", inputs::uniform}, n, 2);
-    for (const char* way : {"cpu", "gpu"}) {
-      ASSERT_TRUE(findsAll(GetParam(), execution, frames, {{"way", way}}))
+  for (const char* way : {"cpu", "gpu"}) {
+    TestRun run(GetParam(), kTwoThreads, {{"way", way}});
+    for (const std::size_t n : {2, 65, 130}) {
+      ASSERT_TRUE(findsAll(run, framesOf({"few", inputs::uniform}, n, 2)))
           << "n = " << n << ", way " << way;
     }
   }
@@ -178,7 +166,7 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(OwnKernels);
 TEST(BulletSap, RefusesWhatItsSortCannotHold) {
   const std::vector<Algorithm> found = onDevice("b3-sap");
   if (found.empty()) GTEST_SKIP() << "built without OpenCL";
-  EXPECT_EQ(found.front().create()->capabilities().max_objects, 524'287U);
+  EXPECT_EQ(found.front().traits.max_objects, 524'287U);
 }
 
 std::vector<ComputeDevice> threeDevices() {

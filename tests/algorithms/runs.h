@@ -6,16 +6,18 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <ostream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "broadmark/algorithms.h"
+#include "broadmark/case_run.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"
+#include "broadmark/recorded_drawing.h"
 #include "support/inputs.h"
 
 namespace broadmark {
@@ -37,26 +39,31 @@ struct Configuration {
 /// is parallel: among them ones that divide hardly any number of bodies. A compute device divides
 /// the work by itself.
 inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
+  const AlgorithmTraits& traits = algorithm.traits;
   std::vector<int> teams = {1};
-  if (algorithm.parallel) teams = {1, 2, 3, 5};
-  if (algorithm.on_device) teams = {2};
+  if (traits.parallel) teams = {1, 2, 3, 5};
+  if (traits.on_device) teams = {2};
   std::vector<Configuration> all;
-  for (const Isa isa : kAllIsas) {
-    if (!isaSupported(isa) || (isa != Isa::scalar && !algorithm.vectorised)) continue;
+  for (const auto& [isa, name] : kIsas.entries) {
+    if (!isaSupported(isa) || (isa != Isa::scalar && !traits.vectorised)) continue;
     for (const int threads : teams) all.push_back({isa, threads});
   }
   return all;
 }
 
-inline std::string describe(const Algorithm& algorithm, const Configuration& configuration) {
-  return algorithm.id + "/" + std::string(isaName(configuration.isa)) + "/t" +
-         std::to_string(configuration.threads);
+inline Case caseOf(const Algorithm& algorithm, const Configuration& way,
+                   const ParameterValues& parameters = {}) {
+  return makeCase(algorithm, way.isa, way.threads, "", parameters);
+}
+
+inline std::string describe(const Algorithm& algorithm, const Configuration& way) {
+  return caseName(caseOf(algorithm, way));
 }
 
 /// The listed algorithms that report pairs.
 inline std::vector<Algorithm> pairFinders() {
   std::vector<Algorithm> all = builtinAlgorithms();
-  std::erase_if(all, [](const Algorithm& algorithm) { return !algorithm.finds_pairs; });
+  std::erase_if(all, [](const Algorithm& algorithm) { return !algorithm.traits.finds_pairs; });
   return all;
 }
 
@@ -106,60 +113,80 @@ inline std::vector<Pair> sorted(PairRuns runs) {
   return pairs;
 }
 
+/// The right pairs, ascending: by definition where that is quick enough.
+inline std::vector<Pair> rightPairs(const std::vector<Aabb>& boxes) {
+  return boxes.size() <= 1000 ? bruteForcePairs(boxes) : sweptPairs(boxes);
+}
+
+using Counters = std::map<std::string, std::uint64_t, std::less<>>;
+
 /// The work counters of the last frame.
-inline std::map<std::string, std::uint64_t, std::less<>> countersOf(const BroadPhase& algorithm) {
-  std::map<std::string, std::uint64_t, std::less<>> counters;
+inline Counters countersOf(const BroadPhase& algorithm) {
+  Counters counters;
   algorithm.visitCounters(
       [&](std::string_view name, std::uint64_t count) { counters.emplace(name, count); });
   return counters;
 }
 
-/// An instance at work.
-class Instance {
+/// What the algorithm draws now.
+inline RecordedDrawing drawingOf(const BroadPhase& algorithm) {
+  RecordedDrawing drawing;
+  algorithm.drawStructure(drawing);
+  return drawing;
+}
+
+/// A CaseRun on boxes in memory, without limits or checks. What would become its status is thrown.
+class TestRun {
  public:
-  /// Throws UnsupportedError.
-  Instance(const Algorithm& algorithm, Execution& execution, const SceneInfo& scene,
-           const std::vector<Aabb>& first, const ParameterValues& parameters = {})
-      : broad_phase_(algorithm.create()) {
-    setParameters(*broad_phase_, parameters);
-    broad_phase_->initialize(scene, {0, first}, execution);
+  explicit TestRun(const Algorithm& algorithm, const Configuration& way = {},
+                   const ParameterValues& parameters = {})
+      : run_(std::make_unique<CaseRun>(caseOf(algorithm, way, parameters),
+                                       RunPolicy::unlimited(CheckMode::off))) {}
+
+  /// Begins a pass. Throws UnsupportedError.
+  TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
+    index_ = 0;
+    require(run_->start(scene, {0, first}));
+    return *this;
   }
+  TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
   /// Runs the four phases on the next frame.
   PairRuns step(const std::vector<Aabb>& boxes) {
-    broad_phase_->updateObjects({++index_, boxes});
-    search();
-    return broad_phase_->overlaps();
+    require(run_->step({++index_, boxes}));
+    return broadPhase().overlaps();
   }
 
-  /// The phases after updateObjects.
-  void search() {
-    broad_phase_->cleanCache();
-    broad_phase_->updateStructures();
-    broad_phase_->searchOverlaps();
-  }
-
-  BroadPhase& broadPhase() { return *broad_phase_; }
+  /// The instance: between start() and the next one.
+  BroadPhase& broadPhase() { return run_->algorithm(); }
+  /// Of the last frame.
+  [[nodiscard]] const FrameTimes& times() const { return run_->times(); }
+  [[nodiscard]] float margin() const { return run_->margin(); }
 
  private:
-  std::unique_ptr<BroadPhase> broad_phase_;
+  void require(bool running) const {
+    if (running) return;
+    if (run_->status() == Status::unsupported) throw UnsupportedError(run_->reason());
+    throw std::runtime_error(run_->reason());
+  }
+
+  std::unique_ptr<CaseRun> run_;
   std::uint32_t index_ = 0;
 };
 
-/// Whether an answer has all the right pairs, and none that the margin does not excuse.
+/// Whether an answer has all the right pairs, and no false ones.
 inline testing::AssertionResult isRight(PairRuns answer, const std::vector<Pair>& right,
-                                        const Frame& frame, float margin) {
-  // The digest suffices to tell that an exact answer is right, and is much quicker.
+                                        const Frame& frame, float margin = 0) {
   const PairRun right_run = right;
+  // Much quicker, and enough where no extra pair is allowed.
   if (margin == 0 && digest(answer) == digest({&right_run, 1})) return testing::AssertionSuccess();
   const FrameDifference difference = findDifference(answer, right, frame, margin);
   if (!difference.isMismatch()) return testing::AssertionSuccess();
   auto failure = testing::AssertionFailure()
-                 << "of " << right.size() << " pairs missed " << difference.missed_count
-                 << ", extra " << difference.extra_count << ", invalid "
-                 << difference.invalid_count;
-  if (!difference.missed.empty()) {
-    failure << "; first missed " << difference.missed[0].a << "-" << difference.missed[0].b;
+                 << mismatchText(difference) << " of " << right.size() << " pairs";
+  if (!difference.missed_pairs.empty()) {
+    failure << "; first missed " << difference.missed_pairs[0].a << "-"
+            << difference.missed_pairs[0].b;
   }
   return failure;
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "algorithms/runs.h"
 #include "radix_sort.h"
 #include "simd/overlap_kernels.h"
-#include "algorithms/runs.h"
 
 namespace broadmark::tests {
 namespace {
@@ -53,7 +53,7 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
   const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
   BoxArrays arrays;
   arrays.assign(boxes);
-  for (const Isa isa : kAllIsas) {
+  for (const auto& [isa, name] : kIsas.entries) {
     if (!isaSupported(isa)) continue;
     for (const Range rows : {Range{0, 70}, {0, 0}, {3, 4}, {5, 16}, {17, 39}, {69, 70}}) {
       for (const Range columns : {Range{0, 70}, {0, 0}, {1, 2}, {15, 33}, {20, 25}, {68, 70}}) {
@@ -67,8 +67,8 @@ TEST(OverlapKernels, TileReportsItsOwnPairsOnly) {
         overlapKernels(isa).test_tile(arrays, rows, columns, found);
         const PairRun run = found.run();
         EXPECT_EQ(sorted({&run, 1}), expected)
-            << isaName(isa) << " rows " << rows.begin << "–" << rows.end << " columns "
-            << columns.begin << "–" << columns.end;
+            << name << " rows " << rows.begin << "–" << rows.end << " columns " << columns.begin
+            << "–" << columns.end;
       }
     }
   }
@@ -98,12 +98,12 @@ TEST(OverlapKernels, SweepReportsEveryWindowOnce) {
       }
     }
     std::ranges::sort(expected);
-    for (const Isa isa : kAllIsas) {
+    for (const auto& [isa, name] : kIsas.entries) {
       if (!isaSupported(isa)) continue;
       PairBuffer found;
       overlapKernels(isa).sweep(arrays, ends.data(), bodies.data(), rows, found);
       const PairRun run = found.run();
-      EXPECT_EQ(sorted({&run, 1}), expected) << isaName(isa) << " rows from " << rows.begin;
+      EXPECT_EQ(sorted({&run, 1}), expected) << name << " rows from " << rows.begin;
     }
   }
 }
@@ -115,8 +115,8 @@ TEST(BruteForceAndSweep, SurviveTheLimitsOfFloats) {
   for (const Algorithm& algorithm : pairFinders()) {
     if (algorithm.family != "BF" && algorithm.family != "SAP") continue;
     for (const Configuration& way : configurations(algorithm)) {
-      Execution execution(way.threads, way.isa);
-      Instance run(algorithm, execution, scene, frames[0]);
+      TestRun run(algorithm, way);
+      run.start(scene, frames[0]);
       for (std::size_t i = 1; i < frames.size(); ++i) {
         EXPECT_EQ(sorted(run.step(frames[i])), bruteForcePairs(frames[i]))
             << describe(algorithm, way);
@@ -124,16 +124,6 @@ TEST(BruteForceAndSweep, SurviveTheLimitsOfFloats) {
     }
   }
 }
-
-/// Remembers what was drawn.
-class DrawnLines final : public DebugDraw {
- public:
-  void box(const Aabb&, Rgb, int) override {}
-  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb) override {
-    lines.push_back({from, to});
-  }
-  std::vector<std::array<std::array<float, 3>, 2>> lines;
-};
 
 TEST(SweepAndPrune, SweepsAlongTheAxisOfLargestVariance) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -147,14 +137,12 @@ TEST(SweepAndPrune, SweepsAlongTheAxisOfLargestVariance) {
     }
     for (const Algorithm& algorithm : pairFinders()) {
       if (algorithm.family != "SAP") continue;
-      Execution execution(1, Isa::scalar);
-      Instance run(algorithm, execution, sceneOf(frames), frames[0]);
-      run.step(frames[1]);
-      DrawnLines drawn;
-      run.broadPhase().drawStructure(drawn);
-      ASSERT_EQ(drawn.lines.size(), 1U);
+      TestRun run(algorithm);
+      run.start(sceneOf(frames), frames[0]).step(frames[1]);
+      const RecordedDrawing drawn = drawingOf(run.broadPhase());
+      ASSERT_EQ(drawn.lines().size(), 1U);
       for (std::size_t other = 0; other < 3; ++other) {
-        const float length = drawn.lines[0][1][other] - drawn.lines[0][0][other];
+        const float length = drawn.lines()[0].to[other] - drawn.lines()[0].from[other];
         EXPECT_EQ(length > 0, other == axis) << algorithm.id;
       }
     }

@@ -1,4 +1,4 @@
-// A batch as a window runs it: planned, started, watched, cancelled, with nothing printed.
+// A batch as the inspector runs it: planned, started, watched, cancelled, with nothing printed.
 
 #include "bake_plan.h"
 
@@ -6,8 +6,8 @@
 
 #include <set>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark {
@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-class BatchWizard : public testing::Test {
+class BatchOfBakes : public testing::Test {
  protected:
-  BatchWizard() {
+  BatchOfBakes() {
     std::string name = (fs::temp_directory_path() / "broadmark XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
     directory_ = name;
@@ -29,7 +29,7 @@ class BatchWizard : public testing::Test {
     options_.scene.parameters = {{"frames", "5"}};
     options_.scene.recorders = {"aabbs"};
   }
-  ~BatchWizard() override { fs::remove_all(directory_); }
+  ~BatchOfBakes() override { fs::remove_all(directory_); }
 
   /// Bakes to the end. Returns how many recordings ended.
   static std::size_t finish(BakeBatch& batch) {
@@ -50,7 +50,7 @@ class BatchWizard : public testing::Test {
   BakeOptions options_;
 };
 
-TEST_F(BatchWizard, PlansBakesAndKeeps) {
+TEST_F(BatchOfBakes, PlansBakesAndKeeps) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   auto plan = planBake(options_);
@@ -76,7 +76,7 @@ TEST_F(BatchWizard, PlansBakesAndKeeps) {
   EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
 }
 
-TEST_F(BatchWizard, PlanningCanBeStopped) {
+TEST_F(BatchOfBakes, PlanningCanBeStopped) {
   auto plan = planBake(options_);
   prepare(*plan, options_.output);
   BakeBatch batch(std::move(plan->pending), 2);
@@ -85,7 +85,7 @@ TEST_F(BatchWizard, PlanningCanBeStopped) {
       options_, [](const fs::path&, std::uint64_t number, std::uint64_t) { return number < 3; }));
 }
 
-TEST_F(BatchWizard, CancellingLeavesOnlyWholeRecordings) {
+TEST_F(BatchOfBakes, CancellingLeavesOnlyWholeRecordings) {
   options_.scene.parameters["frames"] = "20000";
   options_.scene.objects = {300};
   auto plan = planBake(options_);
@@ -98,11 +98,11 @@ TEST_F(BatchWizard, CancellingLeavesOnlyWholeRecordings) {
   EXPECT_TRUE(files().empty());
 }
 
-TEST_F(BatchWizard, AuthoredScenesTakePart) {
+TEST_F(BatchOfBakes, AuthoredScenesTakePart) {
   scenes::AuthoredScene scene{.name = "Mine", .parameters = {{"frames", "5"}}};
   scene.bodies.resize(2);
   writeTextFile(directory_ / "mine.json", scenes::formatAuthoredScene(scene));
-  options_.parameter_files = {(directory_ / "mine.json").string()};
+  options_.scenes.push_back(directory_ / "mine.json");
   EXPECT_THROW(planBake(options_), InputError) << "it has its own number of bodies";
   options_.scene.objects.clear();
   options_.scene.object_types.clear();

@@ -1,6 +1,6 @@
 // Measures what brute force and sweep and prune gain from vectors and threads, and prints each
-// ratio beside its target. The contestants take turns frame by frame, so that whatever else slows
-// the machine slows all of them. Exit status 1 if a target is missed.
+// ratio beside its target. The contestants take turns frame by frame, so that anything else that
+// slows the machine slows all of them. Exit status 1 if a target is missed.
 //
 //   algorithm_ratios [ROUNDS]
 
@@ -19,14 +19,14 @@ namespace {
 
 using namespace broadmark;
 using broadmark::benchmarks::Contest;
+using broadmark::benchmarks::findAlgorithm;
 
 std::string nameOf(const std::string& id, Isa isa, int threads) {
   return fmt::format("{}/{}/t{}", id, isaName(isa), threads);
 }
 
 void add(Contest& contest, const std::string& id, Isa isa, int threads) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
-  contest.add(nameOf(id, isa, threads), *std::ranges::find(all, id, &Algorithm::id), isa, threads);
+  contest.add(nameOf(id, isa, threads), makeCase(findAlgorithm(id).value(), isa, threads, "", {}));
 }
 
 /// How many times faster `fast` is than `slow`.
@@ -56,7 +56,7 @@ bool measure(const std::string& family, std::size_t objects, int rounds, const T
   const bool two_threads = std::thread::hardware_concurrency() >= 2;
 
   add(contest, family, Isa::scalar, 1);
-  for (const Isa isa : kAllIsas) {
+  for (const auto& [isa, name] : kIsas.entries) {
     if (isaSupported(isa)) add(contest, simd, isa, 1);
   }
   if (two_threads) {

@@ -11,20 +11,22 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
 
-#include "broadmark/error.h"
 #include "benchmarks/contest.h"
+#include "broadmark/error.h"
 #include "support/inputs.h"
 
 namespace {
 
 using namespace broadmark;
 using broadmark::benchmarks::Contest;
+using broadmark::benchmarks::Contestant;
+using broadmark::benchmarks::findAlgorithm;
 using broadmark::inputs::Random;
 using broadmark::inputs::Vec3;
 
@@ -136,12 +138,11 @@ struct Candidate {
 
 /// Nothing, with a line that says why, if there is no such algorithm here.
 std::vector<Candidate> candidates(const std::vector<std::string>& names) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
   std::vector<Candidate> found;
   for (const std::string& name : names) {
     const std::vector<std::string> parts = CLI::detail::split(name, ':');
-    const auto algorithm = std::ranges::find(all, parts[0], &Algorithm::id);
-    if (algorithm == all.end()) {
+    const std::optional<Algorithm> algorithm = findAlgorithm(parts[0]);
+    if (!algorithm) {
       fmt::print("  {:22} skipped: no such algorithm here\n", name);
       continue;
     }
@@ -157,11 +158,9 @@ std::vector<Candidate> candidates(const std::vector<std::string>& names) {
 }
 
 /// Whether the last frame's answers agree, the candidate's margin granted.
-bool sameAnswer(const BroadPhase& candidate, const BroadPhase& cgal) {
-  if (candidate.capabilities().margin > 0) {
-    return pairCount(candidate.overlaps()) >= pairCount(cgal.overlaps());
-  }
-  return digest(candidate.overlaps()) == digest(cgal.overlaps());
+bool sameAnswer(const Contestant& candidate, const Contestant& cgal) {
+  if (candidate.run->margin() > 0) return pairCount(candidate.answer()) >= pairCount(cgal.answer());
+  return digest(candidate.answer()) == digest(cgal.answer());
 }
 
 std::string verdict(double ratio, const Target& target) {
@@ -172,16 +171,14 @@ std::string verdict(double ratio, const Target& target) {
 /// Prints one line; false if the target is missed or the answer wrong.
 bool measure(const Candidate& candidate, const Algorithm& cgal, const Frames& frames,
              const Target* target, int rounds) {
-  // Two at a time: libraries with process-wide state admit but one instance.
+  // Two at a time: with more, each would find less of its memory in the caches.
   Contest contest("Benchmark", frames);
-  contest.add("cgal", cgal, Isa::scalar, 1);
-  contest.add("candidate", candidate.algorithm, bestIsa(), candidate.algorithm.parallel ? 2 : 1,
-              candidate.parameters);
+  contest.add("cgal", makeCase(cgal, Isa::scalar, 1, "", {}));
+  contest.add("candidate", makeCase(candidate.algorithm, bestIsa(), 2, "", candidate.parameters));
   contest.run(rounds);
 
   const double ratio = contest.ratio("candidate", "cgal");
-  const bool same =
-      sameAnswer(*contest.find("candidate").algorithm, *contest.find("cgal").algorithm);
+  const bool same = sameAnswer(contest.find("candidate"), contest.find("cgal"));
   std::string remark;
   if (target != nullptr) {
     remark = fmt::format("at most {:.3f}", target->most);
@@ -256,11 +253,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "cgal_ratios: %s\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return benchmarks::runMain("cgal_ratios", run, argc, argv); }

@@ -1,30 +1,43 @@
-// Algorithms that take turns, frame by frame, on the same boxes: whatever else slows the machine
-// slows all of them, so that ratios of their times mean something.
+// Algorithms that take turns, frame by frame, on the same boxes: anything else that slows the
+// machine slows all of them, so that ratios of their times mean something.
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/runner.h"
+#include "broadmark/case_run.h"
+#include "broadmark/error.h"
 #include "broadmark/statistics.h"
 
 namespace broadmark::benchmarks {
 
-/// An algorithm at work on one scene, with the times of its frames so far.
+/// The built-in algorithm of that id, or nothing.
+inline std::optional<Algorithm> findAlgorithm(std::string_view id) {
+  const std::vector<Algorithm> all = builtinAlgorithms();
+  const auto found = std::ranges::find(all, id, &Algorithm::id);
+  return found == all.end() ? std::nullopt : std::optional(*found);
+}
+
+/// A case on the contest's scene, with the times of its frames so far.
 struct Contestant {
   std::string name;
-  std::unique_ptr<Execution> execution;
-  std::unique_ptr<BroadPhase> algorithm;
+  std::unique_ptr<CaseRun> run;
   std::vector<double> milliseconds;
 
   [[nodiscard]] double median() const { return quantile(milliseconds, 0.5); }
+  /// Of the last frame.
+  [[nodiscard]] PairRuns answer() const { return run->algorithm().overlaps(); }
 };
 
 /// Contestants on the same frames, which are gone through to and fro, so that all motion is smooth.
@@ -42,12 +55,13 @@ class Contest {
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
 
   /// Throws InputError (parameters) and UnsupportedError.
-  void add(std::string name, const Algorithm& algorithm, Isa isa, int threads,
-           const ParameterValues& parameters = {}, const std::string& device = {}) {
+  void add(std::string name, Case entered) {
     Contestant added = {
-        std::move(name), std::make_unique<Execution>(threads, isa, device), algorithm.create(), {}};
-    setParameters(*added.algorithm, parameters);
-    added.algorithm->initialize(scene_, {0, frames_[0]}, *added.execution);
+        std::move(name),
+        std::make_unique<CaseRun>(std::move(entered), RunPolicy::unlimited(CheckMode::off)),
+        {}};
+    added.run->start(scene_, {0, frames_[0]});
+    requireRunning(added);
     contestants_.push_back(std::move(added));
   }
 
@@ -55,9 +69,11 @@ class Contest {
     for (int round = -1; round < rounds; ++round) {  // the first one warms up
       const auto index = static_cast<std::uint32_t>(round + 2);
       for (Contestant& contestant : contestants_) {
-        const FrameTimes times = runFrame(*contestant.algorithm, {index, boxesOf(index)});
+        contestant.run->step({index, boxesOf(index)});
+        requireRunning(contestant);
         if (round < 0) continue;
-        contestant.milliseconds.push_back(static_cast<double>(times[Phase::total]) * 1e-6);
+        const std::int64_t ns = contestant.run->times()[Phase::total];
+        contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
       }
     }
   }
@@ -76,6 +92,13 @@ class Contest {
   }
 
  private:
+  static void requireRunning(const Contestant& contestant) {
+    const CaseRun& run = *contestant.run;
+    if (run.running()) return;
+    if (run.status() == Status::unsupported) throw UnsupportedError(run.reason());
+    throw std::runtime_error(contestant.name + ": " + run.reason());
+  }
+
   [[nodiscard]] std::span<const Aabb> boxesOf(std::uint32_t index) const {
     const std::size_t last = frames_.size() - 1;
     if (last == 0) return frames_[0];
@@ -87,5 +110,17 @@ class Contest {
   std::span<const std::vector<Aabb>> frames_;
   std::vector<Contestant> contestants_;
 };
+
+/// What main() of a benchmark does: run(argc, argv) returns the exit status; an exception is
+/// printed behind the benchmark's name, and the status is 2.
+template <class Run>
+int runMain(const char* name, Run run, int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name, error.what());
+    return 2;
+  }
+}
 
 }  // namespace broadmark::benchmarks

@@ -1,5 +1,5 @@
 // Whether the inspector measures what a headless run measures: the same cases on the same frames in
-// turns, once by runCase(), once by the inspector while it plays and draws. Prints the ratio of the
+// turn, once by runCase(), once by the inspector while it plays and draws. Prints the ratio of the
 // medians of a frame's total time (1: they agree), and how many of the inspector's frames were
 // disturbed.
 //
@@ -11,9 +11,11 @@
 #include <algorithm>
 #include <chrono>
 
-#include "inspector/inspector.h"
+#include "benchmarks/contest.h"
 #include "broadmark/algorithms.h"
 #include "broadmark/render/framebuffer.h"
+#include "broadmark/runner.h"
+#include "inspector/inspector.h"
 
 namespace {
 
@@ -39,9 +41,7 @@ std::unique_ptr<Simulation> simulationOf(const Setting& setting) {
 }
 
 Case caseOf(const std::string& id) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
-  const auto found = std::ranges::find(all, id, &Algorithm::id);
-  return {.algorithm = *found, .isa = found->vectorised ? bestIsa() : Isa::scalar, .threads = 1};
+  return makeCase(benchmarks::findAlgorithm(id).value(), bestIsa(), 1, "", {});
 }
 
 std::vector<double> headlessTimes(const Setting& setting) {
@@ -67,9 +67,9 @@ InspectorTimes inspectorTimes(const Gl& gl, const Setting& setting) {
   Session& session = inspector.session();
   session.draft = simulationOf(setting);
   session.simulate();
-  LaneEdit& lane = session.addLane(setting.algorithm);
+  LaneEdit& lane = session.lanes.add(setting.algorithm);
   lane.threads = 1;
-  session.lanesChanged();
+  session.lanes.changed();
   session.playback.frames_per_second = 1000;
   InputQueue input;
   InspectorTimes result;
@@ -87,7 +87,7 @@ InspectorTimes inspectorTimes(const Gl& gl, const Setting& setting) {
         }
       }
     });
-    if (!playing && session.lastFrame() > 0) {
+    if (!playing && session.playback.lastFrame() > 0) {
       session.play(true);
       playing = true;
     }

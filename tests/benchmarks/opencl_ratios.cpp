@@ -11,13 +11,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "broadmark/error.h"
 #include "benchmarks/contest.h"
+#include "broadmark/error.h"
 #include "support/inputs.h"
 
 namespace {
@@ -43,14 +43,10 @@ struct Options {
 
 /// Adds the algorithm; false, with a line that says why, if it cannot run here.
 bool enter(Contest& contest, const std::string& id, const Options& options) {
-  const std::vector<Algorithm> all = builtinAlgorithms();
-  const auto algorithm = std::ranges::find(all, id, &Algorithm::id);
-  if (algorithm == all.end()) throw InputError("built without OpenCL");
+  const std::optional<Algorithm> algorithm = benchmarks::findAlgorithm(id);
+  if (!algorithm) throw InputError("built without OpenCL");
   try {
-    if (contest.scene().objects > algorithm->create()->capabilities().max_objects) {
-      throw UnsupportedError("too many bodies for it");
-    }
-    contest.add(id, *algorithm, bestIsa(), options.threads, {}, options.device);
+    contest.add(id, makeCase(*algorithm, bestIsa(), options.threads, options.device, {}));
     return true;
   } catch (const UnsupportedError& error) {
     fmt::print("  {} skipped: {}\n", id, error.what());
@@ -78,8 +74,7 @@ bool measure(const Target& target, std::span<const std::vector<Aabb>> frames,
     fmt::print("\n");
     return true;
   }
-  const bool same = digest(contest.find(own).algorithm->overlaps()) ==
-                    digest(contest.find(bullets).algorithm->overlaps());
+  const bool same = digest(contest.find(own).answer()) == digest(contest.find(bullets).answer());
   const double ratio = contest.ratio(bullets, own);
   fmt::print("  {:6.2f}x{}", ratio, same ? "" : "  WRONG PAIRS");
   const bool counts = contest.scene().objects == kTargetObjects;
@@ -124,11 +119,4 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "opencl_ratios: %s\n", error.what());
-    return 2;
-  }
-}
+int main(int argc, char** argv) { return benchmarks::runMain("opencl_ratios", run, argc, argv); }

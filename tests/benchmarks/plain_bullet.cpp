@@ -23,7 +23,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
 
 // Margins are settings of the whole process: whoever steps sets them.
 extern btScalar gContactBreakingThreshold;
@@ -79,10 +79,10 @@ class PlainBody final : public PhysicsBody {
 struct Setup {
   std::string name;
   bool sweep_and_prune = false;     ///< as broad phase, instead of the tree
-  bool pairs_at_once = false;       ///< sought by one pass over the tree (m_deferedcollide)
+  bool pairs_at_once = false;       ///< searched in one pass over the tree (m_deferedcollide)
   int tree_improvement = 0;         ///< per cent of the tree in each step (m_dupdates)
   bool sleepers_keep_box = false;   ///< bodies asleep are left alone in the broad phase
-  btScalar tree_margin = 0.05F;     ///< how far a body may move before the tree is told
+  btScalar tree_margin = 0.05F;     ///< how far a body may move before the tree is updated
   btScalar contact_margin = 0.02F;  ///< contacts are kept up to this distance
   bool conjugate_gradients = false;
   bool warm_start = true;
@@ -109,7 +109,7 @@ std::vector<Setup> variations() {
     all.push_back(setup);
   };
   add("sweep and prune (bt32BitAxisSweep3)", [](Setup& s) { s.sweep_and_prune = true; });
-  add("pairs sought body by body", [](Setup& s) { s.pairs_at_once = false; });
+  add("pairs searched body by body", [](Setup& s) { s.pairs_at_once = false; });
   add("tree not improved", [](Setup& s) { s.tree_improvement = 0; });
   add("tree improved by 5 % per step", [](Setup& s) { s.tree_improvement = 5; });
   add("boxes of sleepers updated, too", [](Setup& s) { s.sleepers_keep_box = false; });

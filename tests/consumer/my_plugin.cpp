@@ -3,26 +3,15 @@
 #include <broadmark/plugin.h>
 
 #include <memory>
+#include <vector>
+
+#include "all_pairs.h"
 
 namespace {
 
-/// Tests each box against each.
-class MyBroadPhase final : public broadmark::BoxBroadPhase {
- public:
-  void searchOverlaps() override {
-    for (std::uint32_t a = 0; a < boxes().size(); ++a) {
-      for (std::uint32_t b = a + 1; b < boxes().size(); ++b) {
-        if (broadmark::overlaps(boxes()[a], boxes()[b])) pairs().add(a, b);
-      }
-    }
-    publishPairs();
-  }
-};
-
-/// The same with the boxes as arrays, on all threads.
-class MyParallelBroadPhase final : public broadmark::SimdBroadPhase {
- public:
-  void searchOverlaps() override {
+/// Tests each box against each, with the boxes as arrays, on all threads.
+class ParallelAllPairs final : public broadmark::SimdBroadPhase {
+  void findPairs() override {
     team().run([&](int worker) {
       const auto [first, last] = broadmark::share(arrays().size(), team().size(), worker);
       for (std::size_t a = first; a < last; ++a) {
@@ -33,16 +22,14 @@ class MyParallelBroadPhase final : public broadmark::SimdBroadPhase {
         }
       }
     });
-    publishPairs();
   }
 };
 
 std::vector<broadmark::Algorithm> variants() {
-  return {
-      {.id = "mine", .family = "Mine", .create = [] { return std::make_unique<MyBroadPhase>(); }},
-      {.id = "mine-mt", .family = "Mine", .parallel = true, .create = [] {
-         return std::make_unique<MyParallelBroadPhase>();
-       }}};
+  return {{.id = "mine", .family = "Mine", .create = [] { return std::make_unique<AllPairs>(); }},
+          {.id = "mine-mt", .family = "Mine", .traits = {.parallel = true}, .create = [] {
+             return std::make_unique<ParallelAllPairs>();
+           }}};
 }
 
 }  // namespace

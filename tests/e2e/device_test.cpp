@@ -37,7 +37,7 @@ TEST_F(Device, IsChosenByNumberOrNameAndRecorded) {
 TEST_F(Device, UnknownOnesAreRefused) {
   Arguments arguments = short_run_;
   arguments.insert(arguments.end(), {"--device", "nothing like it"});
-  expectRefusal(arguments, {"no compute device 'nothing like it'", "0: "});
+  expectRefusal(arguments, {"'nothing like it'", "0: "});
 }
 
 TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
@@ -49,7 +49,7 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
     if (on_device) {
-      EXPECT_THAT(result.at("reason"), HasSubstr("no OpenCL platform"));
+      EXPECT_THAT(result.at("reason"), HasSubstr("OpenCL"));
     }
   }
 }
@@ -64,7 +64,7 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
     if (on_device) {
-      EXPECT_THAT(result.at("reason"), HasSubstr("is its kernel cache writable?"));
+      EXPECT_THAT(result.at("reason"), HasSubstr("cache"));
     }
   }
 }

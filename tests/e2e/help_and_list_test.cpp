@@ -70,7 +70,7 @@ TEST_F(Help, Version) {
 TEST_F(List, NamesEverything) {
   const Ended all = run({"list"});
   for (const Algorithm& algorithm : builtinAlgorithms()) {
-    expectWords(all, {algorithm.id, algorithm.source, algorithm.time});
+    expectWords(all, {algorithm.id, algorithm.description.source, algorithm.description.time});
     expectWords(run({"list", "algorithms"}), {algorithm.id});
   }
   for (const SceneListing& scene : builtinScenes()) {

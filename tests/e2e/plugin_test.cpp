@@ -58,11 +58,9 @@ TEST_F(Plugin, BadFilesAreRefused) {
   fs::create_directory(file("folder.so"));
   expect_refused("missing.so", {"missing.so", "No such file"});
   expect_refused("folder.so", {"folder.so", "not a regular file"});
-  expect_refused("text.so", {"--plugin: text.so: cannot be loaded"});
-  expect_refused(FOREIGN_PLUGIN,
-                 {"libforeign_plugin.so", "9.9.9, headers of old", "build it anew"});
-  expectRefusal({"list", "--plugin", plugin_, "--plugin", plugin_},
-                {plugin_, "'faulty'", "already taken"});
+  expect_refused("text.so", {"--plugin", "text.so"});
+  expect_refused(FOREIGN_PLUGIN, {"libforeign_plugin.so", "9.9.9"});
+  expectRefusal({"list", "--plugin", plugin_, "--plugin", plugin_}, {plugin_, "'faulty'", "taken"});
   expectRefusal(runWith({"--algorithm", "faulty"}), {"--algorithm", "'faulty'"});
   expectRefusal({"--plugin", plugin_, "list"}, {"--plugin", "'list'"});
 }

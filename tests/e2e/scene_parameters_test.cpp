@@ -102,10 +102,10 @@ TEST_F(SceneParameters, BadFilesAreRefused) {
       all.push_back(name);
       expectRefusal(whole, all);
     };
-    refuses("key.json", {"densty", "did you mean 'density'"});
+    refuses("key.json", {"densty", "'density'"});
     refuses("type.json", {"objects", "integer"});
     refuses("range.json", {"density", "1e-06…1"});
-    refuses("scene.json", {"brownain", "did you mean 'brownian'"});
+    refuses("scene.json", {"brownain", "'brownian'"});
     refuses("other.json", {"broadmark-other/1"});
     refuses("broken.json", {"JSON"});
     refuses("missing.json", {});

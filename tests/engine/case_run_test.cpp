@@ -270,7 +270,7 @@ TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(value, 2000);
   const SharedUse first(kState);
-  const SharedUse second(kState);  // would wait for ever if readers did not share
+  const SharedUse second(kState);  // waits for ever unless readers share
 }
 
 }  // namespace

@@ -4,16 +4,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <random>
 
-#include "engine/helpers.h"
+#include "engine/recording_bytes.h"
 
 namespace broadmark::tests {
 namespace {
@@ -23,21 +20,10 @@ using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-using Bytes = std::vector<unsigned char>;
-
 constexpr float kHalfRoot = 0.70710678F;
 
 SceneInfo sceneOf(std::uint32_t objects, std::uint32_t frames, const char* type = "Cubes") {
   return {"FreeFall", type, objects, frames, {{-8, -8, -8, 0}, {8, 8, 8, 0}}};
-}
-
-void put(Bytes& bytes, const std::vector<float>& values) {
-  const auto* raw = reinterpret_cast<const unsigned char*>(values.data());
-  bytes.insert(bytes.end(), raw, raw + values.size() * sizeof(float));
-}
-
-void putFloat(Bytes& bytes, std::size_t offset, float value) {
-  std::memcpy(bytes.data() + offset, &value, sizeof value);
 }
 
 /// Two bodies and two frames, spelled out: a bar of 4 × 1 × 2 around (2, 0, 0), turned by 0 and by
@@ -47,13 +33,13 @@ Bytes handMade(const char* type = "Cubes") {
   std::memcpy(bytes.data(), "FreeFall", 8);
   std::memcpy(bytes.data() + 128, type, std::strlen(type));
   bytes.insert(bytes.end(), {2, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});
-  put(bytes, {-8, -8, -8, 0, 8, 8, 8, 0});
-  put(bytes, {0, -0.5F, -1, 0, 4, 0.5F, 1, 0});
-  put(bytes, {-0.5F, 4.5F, -0.5F, 0, 0.5F, 5.5F, 0.5F, 0});
-  put(bytes, {2, 1, 0, 0, 0, 0, 0, 1});
-  put(bytes, {0, 4, 0, 0, 0, 0, 0, 1});
-  put(bytes, {2, 1, 0, 0, 0, 0, kHalfRoot, kHalfRoot});
-  put(bytes, {0, 3, 0, 0, 0, 0, 0, -1});
+  append(bytes, {-8, -8, -8, 0, 8, 8, 8, 0});
+  append(bytes, {0, -0.5F, -1, 0, 4, 0.5F, 1, 0});
+  append(bytes, {-0.5F, 4.5F, -0.5F, 0, 0.5F, 5.5F, 0.5F, 0});
+  append(bytes, {2, 1, 0, 0, 0, 0, 0, 1});
+  append(bytes, {0, 4, 0, 0, 0, 0, 0, 1});
+  append(bytes, {2, 1, 0, 0, 0, 0, kHalfRoot, kHalfRoot});
+  append(bytes, {0, 3, 0, 0, 0, 0, 0, -1});
   return bytes;
 }
 
@@ -61,22 +47,11 @@ std::vector<Aabb> handMadeBoxes() {
   return {{{0, -0.5F, -1, 0}, {4, 0.5F, 1, 0}}, {{-0.5F, 4.5F, -0.5F, 0}, {0.5F, 5.5F, 0.5F, 0}}};
 }
 
-FileDescriptor memoryFile(const Bytes& bytes) {
-  FileDescriptor file(::memfd_create("recording", 0));
-  writeAll(file.get(), std::as_bytes(std::span(bytes)), "memory");
-  return file;
+PosrotReader readerOf(const Bytes& bytes) {
+  return tests::readerOf<PosrotReader>(bytes, "test.posrot");
 }
-
-PosrotReader readerOf(const Bytes& bytes) { return {memoryFile(bytes), "test.posrot"}; }
-
-/// What is said of a recording with these bytes, read to its end.
 std::string faultOf(const Bytes& bytes) {
-  return inputErrorOf([&] {
-    PosrotReader reader = readerOf(bytes);
-    reader.rewind();
-    while (reader.next()) {
-    }
-  });
+  return tests::faultOf<PosrotReader>(bytes, "test.posrot");
 }
 
 void expectNear(const Aabb& box, const Aabb& expected, float tolerance) {

@@ -10,12 +10,10 @@
 
 #include <climits>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <utility>
 
-#include "engine/helpers.h"
+#include "engine/recording_bytes.h"
 #include "support/inputs.h"
 
 namespace broadmark::tests {
@@ -25,8 +23,6 @@ using testing::AllOf;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-using Bytes = std::vector<unsigned char>;
 
 /// A recording of two bodies, one frame and a world from -8 to 8, spelled out.
 Bytes handMade() {
@@ -60,35 +56,11 @@ SceneInfo handMadeScene() { return {"FreeFall", "Cubes", 2, 1, {{-8, -8, -8, 0},
 
 Aabb handMadeBox(float low) { return {{low, 0, 0, 0}, {2, 2, 2, 0}}; }
 
-Bytes bytesOf(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+RecordingReader readerOf(const Bytes& bytes) {
+  return tests::readerOf<RecordingReader>(bytes, "test.aabbs");
 }
-
-FileDescriptor memoryFile(const Bytes& bytes) {
-  FileDescriptor file(::memfd_create("recording", 0));
-  writeAll(file.get(), std::as_bytes(std::span(bytes)), "memory");
-  return file;
-}
-
-RecordingReader readerOf(const Bytes& bytes) { return {memoryFile(bytes), "test.aabbs"}; }
-
-/// What is said of a recording with these bytes, read to its end.
 std::string faultOf(const Bytes& bytes) {
-  return inputErrorOf([&] {
-    RecordingReader reader = readerOf(bytes);
-    reader.rewind();
-    while (reader.next()) {
-    }
-  });
-}
-
-void putInt(Bytes& bytes, std::size_t offset, std::int32_t value) {
-  std::memcpy(bytes.data() + offset, &value, sizeof value);
-}
-
-void putFloat(Bytes& bytes, std::size_t offset, float value) {
-  std::memcpy(bytes.data() + offset, &value, sizeof value);
+  return tests::faultOf<RecordingReader>(bytes, "test.aabbs");
 }
 
 TEST(Recording, IsWrittenByteForByte) {

@@ -75,30 +75,20 @@ TEST(FrameStatistics, NothingAndPoints) {
 }
 
 TEST(RangeStatistics, MeansMediansAndExtremes) {
-  const std::vector<FrameStatistics> frames = {{.frame = 3,
-                                                .density = 0.1,
-                                                .pairs_per_body = 1,
-                                                .moving_share = {},
-                                                .outside = 0,
-                                                .min_extent = 2,
-                                                .median_extent = 3,
-                                                .max_extent = 4},
-                                               {.frame = 4,
-                                                .density = 0.2,
-                                                .pairs_per_body = 2,
-                                                .moving_share = 0.5,
-                                                .outside = 7,
-                                                .min_extent = 1,
-                                                .median_extent = 2,
-                                                .max_extent = 8},
-                                               {.frame = 5,
-                                                .density = 0.6,
-                                                .pairs_per_body = 6,
-                                                .moving_share = 1,
-                                                .outside = 2,
-                                                .min_extent = 2,
-                                                .median_extent = 9,
-                                                .max_extent = 9}};
+  const auto statistics = [](std::uint32_t frame, double density, double pairs_per_body,
+                             std::optional<double> moving_share, std::uint64_t outside,
+                             std::array<double, 3> extents) {
+    FrameStatistics one{.frame = frame, .density = density, .pairs_per_body = pairs_per_body};
+    one.moving_share = moving_share;
+    one.outside = static_cast<decltype(one.outside)>(outside);
+    one.min_extent = extents[0];
+    one.median_extent = extents[1];
+    one.max_extent = extents[2];
+    return one;
+  };
+  const std::vector<FrameStatistics> frames = {statistics(3, 0.1, 1, {}, 0, {2, 3, 4}),
+                                               statistics(4, 0.2, 2, 0.5, 7, {1, 2, 8}),
+                                               statistics(5, 0.6, 6, 1, 2, {2, 9, 9})};
   const RangeStatistics range = rangeStatistics(frames);
   EXPECT_EQ(range.first, 3U);
   EXPECT_EQ(range.last, 5U);

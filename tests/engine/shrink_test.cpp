@@ -113,12 +113,12 @@ TEST_P(PlantedFault, MissedPairNeedsThreeBodiesAndTwoFrames) {
   const Case run = faultyCase("faulty");
   const FrameDifference known = firstDifference(run, scene_);
   const ShrunkCase shrunk = shrinkCase(run, scene_, known);
+  expectMinimal(run, scene_, shrunk);
   EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
   EXPECT_LE(shrunk.selection.frames.size(), 3U);  // a pose and two frames
   EXPECT_EQ(shrunk.selection.frames.back(), known.frame);
   EXPECT_EQ(shrunk.difference.missed_count, 1U);
   EXPECT_EQ(shrunk.difference.false_count + shrunk.difference.invalid_count, 0U);
-  expectMinimal(run, scene_, shrunk);
 }
 
 TEST_P(PlantedFault, FalsePairNeedsTwoBodies) {

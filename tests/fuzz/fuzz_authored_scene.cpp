@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (std::string_view(error.what()).find('\n') != std::string_view::npos) std::abort();
     return 0;
   }
-  // What we write we must be able to read: an InputError here ends the program.
+  // What the program writes it must read: an InputError here ends the program.
   const std::string text = scenes::formatAuthoredScene(scene);
   const scenes::AuthoredScene again = scenes::parseAuthoredScene(text, "written");
   if (again != scene || scenes::formatAuthoredScene(again) != text) std::abort();

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string text = writer.format(results);
     if (writer.name == "json") first = text;
   }
-  // What we write we must be able to read: an InputError here ends the program.
+  // What the program writes it must read: an InputError here ends the program.
   if (resultWriters().front().format(parseResults(first, "fuzz")) != first) std::abort();
   return 0;
 }

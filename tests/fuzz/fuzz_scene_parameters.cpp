@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Of a replay nothing more is known without its recording.
+/// Whether the scene is known without reading a recording.
 bool isSimulated(broadmark::Simulation& simulation) {
   const std::string engine = broadmark::parameterValues(simulation).at("engine");
   return std::ranges::none_of(broadmark::builtinEngines(), [&](const auto& listing) {
@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (std::string_view(error.what()).find('\n') != std::string_view::npos) std::abort();
     return 0;
   }
-  // What we write we must be able to read: an InputError here ends the program.
+  // What the program writes it must read: an InputError here ends the program.
   const std::string text = formatSceneParameters(*simulation);
   const auto again = parseSceneParameters(text, "written");
   if (parameterValues(*again) != parameterValues(*simulation)) std::abort();

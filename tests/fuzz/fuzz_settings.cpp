@@ -13,12 +13,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::string log;
   try {
-    if (jsonKind(text, "fuzz") != "original-settings") return 0;
+    if (!isOriginalSettings(text, "fuzz")) return 0;
     log = formatOriginalLog(parseOriginalSettings(text, "fuzz"), CaseResult{});
   } catch (const InputError&) {
     return 0;
   }
-  // The log must be JSON, of no kind that we would take for input: an InputError ends the program.
-  if (!jsonKind(log, "log").empty()) std::abort();
+  // The log must be JSON, and not a settings file itself: an InputError ends the program.
+  if (isOriginalSettings(log, "log")) std::abort();
   return 0;
 }

@@ -1,4 +1,4 @@
-// Replays a corpus through a fuzz target: what once broke a parser must never break it again.
+// Runs a fuzz target on its corpus: what once broke a parser must not break it again.
 
 #include <cstdint>
 #include <cstdio>

@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "inspector/session.h"
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
+#include "inspector/session.h"
 
 namespace broadmark::tests {
 namespace {
@@ -40,146 +40,146 @@ class AuthoringTest : public testing::Test {
 
 TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
   for (const Algorithm& algorithm : builtinAlgorithms()) {
-    if (algorithm.family != "GPU") session.addLane(algorithm.id);
+    if (algorithm.family != "GPU") session.lanes.add(algorithm.id);
   }
-  session.author({});
+  session.document.start({});
   const RunProgress seen = settle();
   ASSERT_TRUE(seen.snapshot);
   EXPECT_TRUE(seen.snapshot->boxes->empty());
-  EXPECT_TRUE(session.authoringAtRest());
-  EXPECT_FALSE(session.desk.isModified());
-  EXPECT_TRUE(session.errors.empty());
+  EXPECT_TRUE(session.document.atRest());
+  EXPECT_FALSE(session.document.desk.isModified());
+  EXPECT_TRUE(session.notices.errors.empty());
 }
 
 TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   const RunProgress first = settle();
   ASSERT_EQ(first.snapshot->boxes->size(), 3U);
   const std::uint64_t scene = first.footage->scene;
   EXPECT_NE(scene, 0U);
-  session.select({1});
-  session.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
+  session.selection.select({1});
+  session.document.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
   RunProgress seen = settle();
   EXPECT_EQ(seen.footage->scene, scene);
-  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
-  EXPECT_EQ(session.selection, std::vector<std::uint32_t>{3});
-  EXPECT_TRUE(session.desk.isModified());
-  session.edit(&SceneEditor::undo);
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
+  EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{3});
+  EXPECT_TRUE(session.document.desk.isModified());
+  session.document.edit(&SceneEditor::undo);
   seen = settle();
   EXPECT_EQ(*seen.snapshot->boxes, *first.snapshot->boxes);
-  EXPECT_EQ(session.selection, std::vector<std::uint32_t>{1});
-  EXPECT_FALSE(session.desk.isModified());
+  EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{1});
+  EXPECT_FALSE(session.document.desk.isModified());
 }
 
 TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   settle();
-  session.select({2, 0, 7});
-  EXPECT_THAT(session.desk.editor.selection(), testing::ElementsAre(0, 2));
-  session.toggleSelected(1);
-  session.toggleSelected(0);
-  EXPECT_THAT(session.desk.editor.selection(), testing::ElementsAre(1, 2));
-  session.edit(&SceneEditor::selectAll);
-  EXPECT_THAT(session.selection, testing::ElementsAre(0, 1, 2));
+  session.selection.select({2, 0, 7});
+  EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(0, 2));
+  session.selection.toggle(1);
+  session.selection.toggle(0);
+  EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(1, 2));
+  session.document.edit(&SceneEditor::selectAll);
+  EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2));
   // What is selected elsewhere is none of the document's business.
   setParameters(*session.draft, {{"objects", "40"}, {"frames", "5"}});
   session.simulate();
   settle();
-  session.select({30});
-  EXPECT_EQ(session.desk.editor.selection().size(), 3U);
+  session.selection.select({30});
+  EXPECT_EQ(session.document.desk.editor.selection().size(), 3U);
 }
 
 TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   const std::uint64_t before = settle().footage->scene;
-  session.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
+  session.document.edit([](SceneEditor& e) { e.setWorld({{-99, -99, -99, 0}, {99, 99, 99, 0}}); });
   EXPECT_NE(settle().footage->scene, before);
 }
 
 TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   settle();
-  session.edit([](SceneEditor& editor) { editor.setName("a/b"); });
-  EXPECT_EQ(session.errors.size(), 1U);
-  EXPECT_EQ(session.desk.editor.scene(), threeBodies());
+  session.document.edit([](SceneEditor& editor) { editor.setName("a/b"); });
+  EXPECT_EQ(session.notices.errors.size(), 1U);
+  EXPECT_EQ(session.document.desk.editor.scene(), threeBodies());
 }
 
 TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
-  session.author(threeBodies());
-  session.edit([](SceneEditor& editor) {
+  session.document.start(threeBodies());
+  session.document.edit([](SceneEditor& editor) {
     editor.selectAll();
     editor.turn({0, 0.6F, 0, 0.8F});
   });
-  const AuthoredScene scene = session.desk.editor.scene();
-  EXPECT_TRUE(session.saveAuthored(directory / "three"));  // gets its extension
-  EXPECT_EQ(session.desk.path(), directory / "three.json");
-  EXPECT_FALSE(session.desk.isModified());
-  session.author({});
+  const AuthoredScene scene = session.document.desk.editor.scene();
+  EXPECT_TRUE(session.document.save(directory / "three"));  // gets its extension
+  EXPECT_EQ(session.document.desk.path(), directory / "three.json");
+  EXPECT_FALSE(session.document.desk.isModified());
+  session.document.start({});
   session.open(directory / "three.json");
   settle();
-  EXPECT_TRUE(session.errors.empty());
-  EXPECT_TRUE(session.authoring());
-  EXPECT_EQ(session.desk.editor.scene(), scene);
-  EXPECT_TRUE(session.saveAuthored(directory / "again.json"));
+  EXPECT_TRUE(session.notices.errors.empty());
+  EXPECT_TRUE(session.document.shown());
+  EXPECT_EQ(session.document.desk.editor.scene(), scene);
+  EXPECT_TRUE(session.document.save(directory / "again.json"));
   EXPECT_EQ(readTextFile(directory / "again.json"), readTextFile(directory / "three.json"));
 }
 
 TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   settle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
   session.open(directory / "bad.json");
   session.open(directory / "missing.json");
-  EXPECT_FALSE(session.saveAuthored(directory / "no such" / "directory.json"));
-  ASSERT_EQ(session.errors.size(), 3U);
-  EXPECT_THAT(session.errors[0], testing::HasSubstr("bad.json"));
-  EXPECT_THAT(session.errors[1], testing::HasSubstr("missing.json"));
-  EXPECT_THAT(session.errors[2], testing::HasSubstr("no such"));
-  EXPECT_EQ(session.desk.editor.scene(), threeBodies());
+  EXPECT_FALSE(session.document.save(directory / "no such" / "directory.json"));
+  ASSERT_EQ(session.notices.errors.size(), 3U);
+  EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("bad.json"));
+  EXPECT_THAT(session.notices.errors[1], testing::HasSubstr("missing.json"));
+  EXPECT_THAT(session.notices.errors[2], testing::HasSubstr("no such"));
+  EXPECT_EQ(session.document.desk.editor.scene(), threeBodies());
 }
 
 TEST_F(AuthoringTest, UnsavedChangesWaitForADecision) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   int left = 0;
-  session.leaveDocument([&] { ++left; });
+  session.document.leave([&] { ++left; });
   EXPECT_EQ(left, 1);
-  session.edit([](SceneEditor& editor) { editor.setName("Other"); });
-  session.leaveDocument([&] { ++left; });
+  session.document.edit([](SceneEditor& editor) { editor.setName("Other"); });
+  session.document.leave([&] { ++left; });
   EXPECT_EQ(left, 1);
-  ASSERT_TRUE(session.leaving);
-  session.leaving();
+  ASSERT_TRUE(session.document.leaving);
+  session.document.leaving();
   EXPECT_EQ(left, 2);
 }
 
 TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
-  session.author(threeBodies());
+  session.document.start(threeBodies());
   settle();
   session.play(true);
-  EXPECT_TRUE(session.authoring());
-  EXPECT_FALSE(session.authoringAtRest());
-  session.seek(12);
+  EXPECT_TRUE(session.document.shown());
+  EXPECT_FALSE(session.document.atRest());
+  session.playback.seek(12);
   RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.snapshot->frame, 12U);
-  EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
-  session.edit([](SceneEditor& editor) { editor.setName("Other"); });
+  EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
+  session.document.edit([](SceneEditor& editor) { editor.setName("Other"); });
   seen = settle();
-  EXPECT_TRUE(session.authoringAtRest());
-  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.desk.editor.scene()));
+  EXPECT_TRUE(session.document.atRest());
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
 }
 
 TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
   setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
   session.simulate();
-  session.seek(9);
+  session.playback.seek(9);
   const RunProgress live = settle();
-  session.authorFrame();
+  session.document.startFromFrame();
   const RunProgress seen = settle();
-  EXPECT_TRUE(session.errors.empty());
-  EXPECT_TRUE(session.authoringAtRest());
-  EXPECT_TRUE(session.desk.isModified());
+  EXPECT_TRUE(session.notices.errors.empty());
+  EXPECT_TRUE(session.document.atRest());
+  EXPECT_TRUE(session.document.desk.isModified());
   EXPECT_EQ(*seen.snapshot->boxes, *live.snapshot->boxes);
-  const auto& bodies = session.desk.editor.scene().bodies;
+  const auto& bodies = session.document.desk.editor.scene().bodies;
   ASSERT_EQ(bodies.size(), 30U);
   EXPECT_TRUE(std::ranges::any_of(
       bodies, [](const AuthoredBody& body) { return body.linear_velocity[1] < 0; }));
@@ -188,29 +188,29 @@ TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
 TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
   session.simulate();
-  session.seek(9);
+  session.playback.seek(9);
   settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
   session.open(directory / "some.aabbs");
   settle();
-  session.seek(4);
+  session.playback.seek(4);
   const RunProgress recorded = settle();
-  session.authorFrame();
+  session.document.startFromFrame();
   const RunProgress seen = settle();
-  EXPECT_TRUE(session.errors.empty());
+  EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(seen.snapshot->boxes->size(), recorded.snapshot->boxes->size());
-  EXPECT_TRUE(session.authoringAtRest());
+  EXPECT_TRUE(session.document.atRest());
 }
 
 TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
-  session.author({});
-  AuthorDesk& desk = session.desk;
+  session.document.start({});
+  AuthorDesk& desk = session.document.desk;
   for (std::size_t brush = 0; brush < desk.brushes.size(); ++brush) {
     desk.chooseBrush(brush);
     desk.paint_at = {100.0F * static_cast<float>(brush), 0, 0};
     const std::size_t before = desk.editor.scene().bodies.size();
-    session.edit([&](SceneEditor&) { desk.addStroke(); });
+    session.document.edit([&](SceneEditor&) { desk.addStroke(); });
     EXPECT_GT(desk.editor.scene().bodies.size(), before) << desk.brushes[brush].listing.id;
     EXPECT_NEAR(desk.editor.selectionCentre()[0], desk.paint_at[0], 12);
   }
@@ -218,12 +218,12 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
 }
 
 TEST_F(AuthoringTest, BakesTheWholeScene) {
-  session.author(threeBodies());
-  session.bakeAuthored(directory / "three");
+  session.document.start(threeBodies());
+  session.document.bake(directory / "three");
   while (session.bake.running()) std::this_thread::sleep_for(1ms);
   settle();
-  EXPECT_TRUE(session.errors.empty());
-  EXPECT_EQ(session.bake.report().state, BackgroundBake::State::done);
+  EXPECT_TRUE(session.notices.errors.empty());
+  EXPECT_EQ(session.bake.report().state, TaskState::done);
   session.open(directory / "three.aabbs");
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);

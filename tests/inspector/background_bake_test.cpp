@@ -6,15 +6,14 @@
 
 #include <algorithm>
 
-#include "broadmark/files.h"
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "engine/helpers.h"
 
 namespace broadmark::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using State = BackgroundBake::State;
 using Outcome = BackgroundBake::Outcome;
 
 class BackgroundBakeTest : public testing::Test {
@@ -41,10 +40,10 @@ class BackgroundBakeTest : public testing::Test {
 };
 
 TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
-  EXPECT_EQ(bake.report().state, State::idle);
+  EXPECT_EQ(bake.report().state, TaskState::idle);
   bake.start(options({20, 30}, 5));
   BackgroundBake::Report report = wait();
-  EXPECT_EQ(report.state, State::done);
+  EXPECT_EQ(report.state, TaskState::done);
   ASSERT_EQ(report.items.size(), 2U);
   for (const auto& item : report.items) {
     EXPECT_EQ(item.outcome, Outcome::baked) << item.failure;
@@ -54,20 +53,21 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
   report = wait();
   EXPECT_EQ(report.count(Outcome::kept), 2U);
   EXPECT_EQ(report.count(Outcome::baked), 1U);
-  EXPECT_EQ(report.text(), "1 baked, 2 kept");
+  EXPECT_THAT(report.text(),
+              testing::AllOf(testing::HasSubstr("1 baked"), testing::HasSubstr("2 kept")));
 }
 
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
   bake.start(options({3000}, 100'000));
-  while (bake.report().state == State::planning) std::this_thread::sleep_for(1ms);
+  while (bake.running() && bake.report().items.empty()) std::this_thread::sleep_for(1ms);
   EXPECT_THROW(bake.start(options({20}, 5)), InputError);
   bake.cancel();
   const BackgroundBake::Report report = wait();
-  EXPECT_EQ(report.state, State::cancelled);
+  EXPECT_EQ(report.state, TaskState::cancelled);
   EXPECT_EQ(report.count(Outcome::waiting), 1U);
   EXPECT_FALSE(std::filesystem::exists(report.items.front().path));
   bake.start(options({20}, 5));  // and it can begin anew
-  EXPECT_EQ(wait().state, State::done);
+  EXPECT_EQ(wait().state, TaskState::done);
 }
 
 TEST_F(BackgroundBakeTest, EndsWithItsOwner) {
@@ -79,7 +79,7 @@ TEST_F(BackgroundBakeTest, WhatCannotBeWrittenIsAFailure) {
   writeTextFile(directory / "baked", "a file where the directory should be");
   bake.start(options({20}, 5));
   const BackgroundBake::Report report = wait();
-  EXPECT_EQ(report.state, State::failed);
+  EXPECT_EQ(report.state, TaskState::failed);
   EXPECT_THAT(report.failure, testing::HasSubstr("baked"));
 }
 

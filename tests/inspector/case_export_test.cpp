@@ -6,18 +6,18 @@
 
 #include <thread>
 
-#include "inspector/session.h"
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
 #include "broadmark/recording.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
+#include "inspector/session.h"
 
 namespace broadmark::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using State = CaseExport::State;
+using State = TaskState;
 
 class CaseExportTest : public testing::Test {
  protected:
@@ -30,9 +30,9 @@ class CaseExportTest : public testing::Test {
     session.chooseScene("brownian", "kinematic");
     setParameters(*session.draft, {{"objects", "200"}, {"frames", "60"}});
     session.simulate();
-    setParameters(*session.addLane(algorithm).parameters, {{"fat_margin", "0.5"}});
-    session.lanesChanged();
-    session.nextMismatch(settle());
+    setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});
+    session.lanes.changed();
+    session.mismatches.goToNext(settle());
     const RunProgress seen = settle();
     EXPECT_TRUE(seen.stop) << "the fault did not show";
     return seen;
@@ -58,7 +58,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     settle();
     const CaseExport::Report report = waitForEnd();
     settle();
-    EXPECT_TRUE(session.errors.empty()) << session.errors.front();
+    EXPECT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
     ASSERT_EQ(report.state, State::done) << report.failure;
     EXPECT_EQ(report.whole_bodies, 200U);
     EXPECT_EQ(report.whole_frames, seen.snapshot->frame);
@@ -67,7 +67,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     EXPECT_GT(report.trials, 0U);
     EXPECT_THAT(report.command, testing::HasSubstr("--algorithm " + algorithm + " "));
     EXPECT_THAT(report.command, testing::HasSubstr("--param fat_margin=0.5"));
-    EXPECT_THAT(session.status.text, testing::HasSubstr("exported"));
+    EXPECT_THAT(session.notices.status.text, testing::HasSubstr("exported"));
     const auto written = openRecordingFile(directory / (algorithm + ".aabbs"));
     EXPECT_EQ(written->scene().objects, report.bodies);
     EXPECT_EQ(written->scene().frames, report.frames);
@@ -78,16 +78,16 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     ASSERT_TRUE(opened.snapshot);
     EXPECT_EQ(opened.snapshot->frame, report.frames);
     EXPECT_TRUE(opened.snapshot->difference.isMismatch());
-    EXPECT_TRUE(session.errors.empty());
+    EXPECT_TRUE(session.notices.errors.empty());
   }
 }
 
 TEST_F(CaseExportTest, TheFirstWrongPairIsVisited) {
   const RunProgress seen = findMismatch("faulty");
-  ASSERT_FALSE(seen.snapshot->difference.missed.empty());
-  const Pair missed = seen.snapshot->difference.missed.front();
-  EXPECT_THAT(session.selection, testing::ElementsAre(missed.a, missed.b));
-  EXPECT_EQ(session.fly_to, session.selection);
+  ASSERT_FALSE(seen.snapshot->difference.missed_pairs.empty());
+  const Pair missed = seen.snapshot->difference.missed_pairs.front();
+  EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(missed.a, missed.b));
+  EXPECT_EQ(session.selection.fly_to, session.selection.bodies());
 }
 
 TEST_F(CaseExportTest, BadFilesAreTold) {
@@ -95,9 +95,10 @@ TEST_F(CaseExportTest, BadFilesAreTold) {
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.posrot");
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "no/a.aabbs");
   settle();
-  ASSERT_EQ(session.errors.size(), 2U);
-  EXPECT_THAT(session.errors[0], testing::HasSubstr(".aabbs is expected"));
-  EXPECT_THAT(session.errors[1], testing::HasSubstr("No such file"));
+  ASSERT_EQ(session.notices.errors.size(), 2U);
+  EXPECT_THAT(session.notices.errors[0],
+              testing::AllOf(testing::HasSubstr("a.posrot"), testing::HasSubstr(".aabbs")));
+  EXPECT_THAT(session.notices.errors[1], testing::HasSubstr("no/a.aabbs"));
   EXPECT_EQ(session.case_export.report().state, State::idle);
 }
 
@@ -106,8 +107,8 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
   session.simulate();
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.aabbs");
   settle();
-  ASSERT_EQ(session.errors.size(), 1U);
-  EXPECT_THAT(session.errors[0], testing::HasSubstr("another scene"));
+  ASSERT_EQ(session.notices.errors.size(), 1U);
+  EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("another scene"));
 }
 
 TEST_F(CaseExportTest, CanBeCancelled) {
@@ -115,7 +116,7 @@ TEST_F(CaseExportTest, CanBeCancelled) {
   CaseExport& work = session.case_export;
   // It is cancelled before the first trial, then while it may be at any point, or be over.
   for (const auto pause : {0ms, 2ms, 10ms}) {
-    std::unique_ptr<FrameSource> frames;
+    std::unique_ptr<IndexedFrames> frames;
     session.runs.withFootage(
         [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
     work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
@@ -134,7 +135,7 @@ TEST_F(CaseExportTest, CanBeCancelled) {
 TEST_F(CaseExportTest, EndsWithItsOwner) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport work;
-  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<IndexedFrames> source;
   session.runs.withFootage(
       [&](Footage* footage) { source = footage->source(seen.snapshot->frame); });
   work.start(seen.lanes[0].spec.run, std::move(source), seen.snapshot->difference,
@@ -150,37 +151,38 @@ TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
   settle();
   EXPECT_EQ(waitForEnd().state, State::failed);
   settle();
-  ASSERT_EQ(session.errors.size(), 1U);
+  ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
 }
 
 TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
   setParameters(*session.draft, {{"objects", "50"}, {"frames", "8"}});
   session.simulate();
-  session.addLane("sap");
-  session.nextMismatch(settle());
-  EXPECT_TRUE(session.searching());
+  session.lanes.add("sap");
+  session.mismatches.goToNext(settle());
+  EXPECT_TRUE(session.mismatches.searching());
   settle();
-  EXPECT_FALSE(session.searching());
-  EXPECT_EQ(session.frame(), 8U);
-  EXPECT_EQ(session.status.text, "no further mismatch up to frame 8");
+  EXPECT_FALSE(session.mismatches.searching());
+  EXPECT_EQ(session.playback.frame(), 8U);
+  EXPECT_THAT(session.notices.status.text,
+              testing::AllOf(testing::HasSubstr("mismatch"), testing::HasSubstr("8")));
 }
 
 TEST_F(CaseExportTest, TheSearchGoesOnFromMismatchToMismatch) {
   const std::uint32_t first = findMismatch("faulty-extra").stop->frame;
   RunProgress seen = settle();
-  session.nextMismatch(seen);
+  session.mismatches.goToNext(seen);
   seen = settle();
   const std::uint32_t second = seen.snapshot->frame;
   EXPECT_GT(second, first);
   EXPECT_TRUE(seen.snapshot->difference.isMismatch());
   // Those known already are gone to directly.
-  session.step(-static_cast<int>(session.frame()));
+  session.playback.step(-static_cast<int>(session.playback.frame()));
   settle();
-  session.nextMismatch(settle());
-  EXPECT_FALSE(session.searching());
+  session.mismatches.goToNext(settle());
+  EXPECT_FALSE(session.mismatches.searching());
   settle();
-  EXPECT_EQ(session.frame(), first);
+  EXPECT_EQ(session.playback.frame(), first);
 }
 
 TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
@@ -210,7 +212,7 @@ TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
   }
   session.open(directory / "r.json");
-  ASSERT_TRUE(session.errors.empty()) << session.errors.front();
+  ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(session.case_choice);
   ASSERT_EQ(session.case_choice->cases.size(), 2U);
   EXPECT_FALSE(session.case_choice->all);
@@ -220,15 +222,15 @@ TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
 
   session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = settle();
-  ASSERT_TRUE(session.errors.empty()) << session.errors.front();
-  ASSERT_EQ(session.lanes.size(), 1U);
+  ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
+  ASSERT_EQ(session.lanes.list.size(), 1U);
   EXPECT_EQ(opened.snapshot->frame, wrong);
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
-  EXPECT_THAT(session.wanted_panels, testing::Contains("Mismatches"));
+  EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));
 
   session.openCase(directory / "r.json", "other/case");
-  ASSERT_EQ(session.errors.size(), 1U);
-  EXPECT_THAT(session.errors.front(), testing::HasSubstr("no case 'other/case'"));
+  ASSERT_EQ(session.notices.errors.size(), 1U);
+  EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("'other/case'"));
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <vector>
 
-#include "inspector/session.h"
 #include "broadmark/algorithms.h"
+#include "inspector/session.h"
 #include "support/faulty_algorithm.h"
 
 namespace broadmark::tests {
@@ -19,7 +19,7 @@ inline std::vector<Algorithm> algorithmsAndFaultyOnes() {
   return all;
 }
 
-/// Commits, waits, and takes note, several times: as pictures would.
+/// Commits, waits, and takes note, several times, as pictures do.
 inline RunProgress settled(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {

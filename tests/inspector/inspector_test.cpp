@@ -122,7 +122,7 @@ TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
 
 TEST_F(InspectorTest, EverySizeCanBeDrawn) {
   inspector.session().simulate();
-  inspector.session().addLane("kd");
+  inspector.session().lanes.add("kd");
   for (const auto& [w, h] : {std::pair{1, 1},
                              {3, 700},
                              {700, 3},
@@ -180,7 +180,7 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
 // Every widget of every panel is pressed once, and whatever that opens is closed again.
 TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   inspector.session().simulate();
-  inspector.session().addLane("grid-bf-mt");
+  inspector.session().lanes.add("grid-bf-mt");
   settle();
   std::set<std::string> pressed;
   for (const auto& panel : makePanels()) {
@@ -200,7 +200,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       settle();
       key(GLFW_KEY_ESCAPE);
       settle();
-      inspector.session().errors.clear();
+      inspector.session().notices.errors.clear();
       inspector.showPanel(panel->name());
       settle();
     }
@@ -222,7 +222,7 @@ TEST_P(RandomEvents, DoNoHarm) {
       GLFW_KEY_TAB,          GLFW_KEY_ENTER,      GLFW_KEY_ESCAPE, GLFW_KEY_F1,
       GLFW_KEY_LEFT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_DELETE, GLFW_KEY_Z};
   inspector.session().simulate();
-  inspector.session().addLane("sap");
+  inspector.session().lanes.add("sap");
   settle();
   for (int event = 0; event < 200; ++event) {
     switch (below(7)) {

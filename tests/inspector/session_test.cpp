@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "broadmark/algorithms.h"
+#include "broadmark/files.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
 
@@ -23,7 +26,7 @@ class SessionTest : public testing::Test {
 
   /// Lets pictures pass until the playback ends, or `most` have.
   void playOn(int most = 2000) {
-    for (int picture = 0; picture < most && session.playback.playing; ++picture) {
+    for (int picture = 0; picture < most && session.playback.playing(); ++picture) {
       session.commit();
       session.runs.settle(60s);
       session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
@@ -41,7 +44,7 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
   EXPECT_EQ(seen.snapshot->frame, 0U);
   EXPECT_EQ(seen.snapshot->boxes->size(), 60U);
   EXPECT_EQ(seen.known_frames, 0U);
-  session.seek(7);
+  session.playback.seek(7);
   seen = settle();
   EXPECT_EQ(seen.snapshot->frame, 7U);
   EXPECT_EQ(seen.known_frames, 7U);
@@ -51,10 +54,10 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
 
 TEST_F(SessionTest, SeekingBackReplaysTheHistory) {
   session.simulate();
-  const int lane = session.addLane("sap").number;
-  session.seek(12);
+  const int lane = session.lanes.add("sap").number;
+  session.playback.seek(12);
   settle();
-  session.seek(3);
+  session.playback.seek(3);
   const RunProgress seen = settle();
   ASSERT_EQ(seen.lanes.size(), 1U);
   EXPECT_EQ(seen.lanes[0].frame, 3U);
@@ -69,15 +72,14 @@ TEST_F(SessionTest, SeekingBackReplaysTheHistory) {
 TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
   session.simulate();
   for (const Algorithm& algorithm : builtinAlgorithms()) {
-    if (!algorithm.on_device) session.addLane(algorithm.id);
+    if (!algorithm.traits.on_device) session.lanes.add(algorithm.id);
   }
-  session.seek(5);
+  session.playback.seek(5);
   const RunProgress seen = settle();
+  EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
   for (const LaneReport& lane : seen.lanes) {
-    const bool excluded = lane.status == Status::unsupported;  // two that share one state
-    EXPECT_TRUE(lane.status == Status::ok || excluded)
-        << lane.spec.run.algorithm.id << ": " << lane.reason;
-    EXPECT_TRUE(excluded || lane.frame == 5U) << lane.spec.run.algorithm.id;
+    EXPECT_EQ(lane.status, Status::ok) << lane.spec.run.algorithm.id << ": " << lane.reason;
+    EXPECT_EQ(lane.frame, 5U) << lane.spec.run.algorithm.id;
   }
 }
 
@@ -86,60 +88,74 @@ TEST_F(SessionTest, PlaysToTheEndAndLoops) {
   settle();
   session.play(true);
   playOn();
-  EXPECT_EQ(session.frame(), 40U);
-  EXPECT_FALSE(session.playback.playing);
+  EXPECT_EQ(session.playback.frame(), 40U);
+  EXPECT_FALSE(session.playback.playing());
   session.playback.loop = true;
   session.play(true);
-  EXPECT_EQ(session.frame(), 0U);
+  EXPECT_EQ(session.playback.frame(), 0U);
   playOn(100);
-  EXPECT_TRUE(session.playback.playing);
+  EXPECT_TRUE(session.playback.playing());
 }
 
 TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
   setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
   session.chooseScene("brownian");
   session.simulate();
-  const int faulty = session.addLane("faulty").number;
-  session.addLane("bf");
-  session.seek(300);
+  const int faulty = session.lanes.add("faulty").number;
+  session.lanes.add("bf");
+  session.playback.seek(300);
   const RunProgress seen = settle();
   ASSERT_TRUE(seen.stop) << "the fault did not show";
   EXPECT_EQ(seen.stop->lane, faulty);
-  EXPECT_EQ(session.frame(), seen.stop->frame);
+  EXPECT_EQ(session.playback.frame(), seen.stop->frame);
   EXPECT_EQ(seen.snapshot->frame, seen.stop->frame);
   EXPECT_EQ(seen.snapshot->lane, faulty);
   ASSERT_TRUE(seen.snapshot->checked);
   EXPECT_GT(seen.snapshot->difference.missed_count, 0U);
   EXPECT_EQ(seen.lanes[1].frame, seen.stop->frame);
-  EXPECT_EQ(session.wanted_panels, std::vector<std::string>{"Mismatches"});
-  session.step(1);
+  EXPECT_EQ(session.notices.wanted_panels, std::vector<std::string>{"Mismatches"});
+  session.playback.step(1);
   const RunProgress later = settle();
-  EXPECT_GT(session.frame(), seen.stop->frame);
-  EXPECT_EQ(later.snapshot->frame, session.frame());
+  EXPECT_GT(session.playback.frame(), seen.stop->frame);
+  EXPECT_EQ(later.snapshot->frame, session.playback.frame());
 }
 
 TEST_F(SessionTest, WithoutCheckingNothingStops) {
-  setParameters(*session.draft, {{"objects", "200"}, {"frames", "60"}});
-  session.wish.check = false;
+  setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
+  session.chooseScene("brownian");
+  session.mismatches.check = false;
   session.simulate();
-  session.addLane("none");
-  session.seek(60);
-  const RunProgress seen = settle();
-  EXPECT_FALSE(seen.stop);
-  EXPECT_EQ(session.frame(), 60U);
+  session.lanes.add("faulty");
+  session.playback.seek(300);
+  const RunProgress unchecked = settle();
+  EXPECT_FALSE(unchecked.stop);
+  EXPECT_EQ(session.playback.frame(), 300U);
+  ASSERT_EQ(unchecked.lanes.size(), 1U);
+  EXPECT_EQ(unchecked.lanes[0].frame, 300U);
+  EXPECT_EQ(unchecked.lanes[0].status, Status::ok);
+  EXPECT_TRUE(std::ranges::none_of(unchecked.lanes[0].frames, &FrameRecord::checked));
+  // The same, checked.
+  session.mismatches.check = true;
+  session.simulate();
+  session.playback.seek(300);
+  const RunProgress checked = settle();
+  ASSERT_TRUE(checked.stop) << "the fault did not show";
+  EXPECT_EQ(session.playback.frame(), checked.stop->frame);
+  EXPECT_LT(checked.stop->frame, 300U);
+  EXPECT_EQ(checked.lanes[0].status, Status::mismatch);
 }
 
 TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
   session.simulate();
-  session.seek(4);
+  session.playback.seek(4);
   const RunProgress live = settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
-  EXPECT_TRUE(session.errors.empty());
+  EXPECT_TRUE(session.notices.errors.empty());
   session.open(directory / "some.aabbs");
-  session.seek(4);
+  session.playback.seek(4);
   settle();  // now its length is known
-  session.seek(4);
+  session.playback.seek(4);
   const RunProgress saved = settle();
   EXPECT_EQ(saved.scene.frames, 4U);
   ASSERT_EQ(saved.snapshot->frame, 4U);
@@ -149,31 +165,94 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
 TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
   session.simulate();
   settle();
-  const auto before = session.wish.footage;
+  const auto before = session.playback.footage();
   session.open(directory / "missing.aabbs");
-  ASSERT_EQ(session.errors.size(), 1U);
-  EXPECT_THAT(session.errors.front(), testing::HasSubstr("missing.aabbs"));
-  EXPECT_EQ(session.wish.footage, before);
+  ASSERT_EQ(session.notices.errors.size(), 1U);
+  EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("missing.aabbs"));
+  EXPECT_EQ(session.playback.footage(), before);
 }
 
-TEST_F(SessionTest, TwoThatShareOneStateDoNotRunSideBySide) {
+TEST_F(SessionTest, AFileOfSceneParametersBecomesTheDraft) {
+  writeTextFile(directory / "scene.json", formatSceneParameters(*session.draft));
+  setParameters(*session.draft, {{"objects", "7"}});
+  session.open(directory / "scene.json");
+  EXPECT_TRUE(session.notices.errors.empty());
+  EXPECT_EQ(parameterValues(*session.draft).at("objects"), "60");
+  EXPECT_EQ(settle().scene.objects, 60U);
+}
+
+TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
   session.simulate();
-  session.addLane("dbvt-d");
-  session.addLane("dbvt-f");
-  session.seek(2);
+  session.playback.seek(4);
+  settle();
+  session.saveRecording(directory / "some.aabbs");
+  settle();
+  writeTextFile(
+      directory / "settings.json",
+      R"({"m_inputScene": "some.aabbs", "m_outputLog": "log.json", "m_algorithm": "SAP"})");
+  session.lanes.add("bf");
+  session.open(directory / "settings.json");
+  ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   const RunProgress seen = settle();
-  EXPECT_EQ(seen.lanes[0].status, Status::ok);
-  EXPECT_EQ(seen.lanes[1].status, Status::unsupported);
+  EXPECT_EQ(seen.scene.frames, 4U);
+  ASSERT_EQ(seen.lanes.size(), 1U);
+  EXPECT_EQ(seen.lanes[0].spec.run.algorithm.id, "sap");
+}
+
+TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
+  Plan plan{.algorithms = session.lanes.algorithms()};
+  plan.entries = openSource("freefall", {.algorithms = plan.algorithms}).entries;
+  const Algorithm& sap = *std::ranges::find(plan.algorithms, "sap", &Algorithm::id);
+  plan.entries[0].cases = {Case{.algorithm = sap}};
+  session.open(std::move(plan));
+  session.playback.seek(2);
+  const RunProgress seen = settle();
+  EXPECT_EQ(seen.scene.name, "FreeFall");
+  ASSERT_EQ(seen.lanes.size(), 1U);
+  EXPECT_EQ(seen.lanes[0].frame, 2U);
+}
+
+TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
+  setParameters(*session.draft, {{"objects", "200"}});
+  session.simulate();
+  for (const char* margin : {"0.01", "0.7"}) {
+    setParameters(*session.lanes.add("dbvt-d").parameters, {{"margin", margin}});
+  }
+  session.lanes.add("dbvt-f");
+  session.lanes.changed();
+  session.playback.seek(40);
+  const RunProgress seen = settle();
+  ASSERT_EQ(seen.lanes.size(), 3U);
+  for (const LaneReport& lane : seen.lanes) {
+    EXPECT_EQ(lane.status, Status::ok) << lane.reason;
+    EXPECT_EQ(lane.frame, 40U);
+    EXPECT_TRUE(std::ranges::all_of(lane.frames, &FrameRecord::checked));
+  }
+  EXPECT_LT(seen.lanes[0].margin, seen.lanes[1].margin);
+}
+
+TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
+  Algorithm small = session.lanes.algorithms().front();
+  small.traits.max_objects = 10;
+  session.simulate();
+  session.lanes.add(Case{.algorithm = small});
+  session.lanes.add("sap");
+  session.playback.seek(3);
+  const RunProgress seen = settle();
+  EXPECT_EQ(seen.lanes[0].status, Status::unsupported);
+  EXPECT_TRUE(seen.lanes[0].ended);
+  EXPECT_THAT(seen.lanes[0].reason, testing::HasSubstr("10"));
+  EXPECT_EQ(seen.lanes[1].frame, 3U);
 }
 
 TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
   session.simulate();
-  session.addLane("grid-bf");
-  session.seek(3);
+  session.lanes.add("grid-bf");
+  session.playback.seek(3);
   settle();
-  LaneEdit& lane = session.lanes.front();
+  LaneEdit& lane = session.lanes.list.front();
   setParameters(*lane.parameters, {{"objects_per_cell", "3"}});
-  session.lanesChanged();
+  session.lanes.changed();
   const RunProgress seen = settle();
   EXPECT_EQ(seen.lanes[0].spec.run.parameters.at("objects_per_cell"), "3");
   EXPECT_EQ(seen.lanes[0].frame, 3U);
@@ -181,9 +260,9 @@ TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
 
 TEST_F(SessionTest, TracksFollowBodiesBackwards) {
   session.simulate();
-  session.seek(9);
+  session.playback.seek(9);
   settle();
-  session.select({5, 2});
+  session.selection.select({5, 2});
   const RunProgress seen = settle();
   ASSERT_EQ(seen.snapshot->tracks.size(), 2U);
   EXPECT_EQ(seen.snapshot->tracks[0].body, 2U);
@@ -193,31 +272,33 @@ TEST_F(SessionTest, TracksFollowBodiesBackwards) {
 
 TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
   session.simulate();
-  session.addLane("sap");
-  session.addLane("bf");
-  session.seek(3);
-  const std::string table = formatFrameTable(settle());
+  session.lanes.add("sap");
+  session.lanes.add("bf");
+  session.playback.seek(3);
+  const std::string table = formatFrameTable(settle().lanes);
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * 3);
   EXPECT_THAT(table, testing::HasSubstr("sap,scalar,1,3,"));
+  EXPECT_THAT(table, testing::HasSubstr(",pairs,missed,false,allowed_extra,invalid,"));
 }
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
   session.simulate();
-  session.addLane("sap");
+  session.lanes.add("sap");
   for (int i = 0; i < 200; ++i) {
-    session.seek((i * 7) % 41);
+    session.playback.seek((i * 7) % 41);
     if (i % 31 == 0) session.simulate();
-    if (i % 17 == 0) session.addLane(i % 2 == 0 ? "bf" : "kd");
-    if (i % 23 == 0 && !session.lanes.empty()) session.removeLane(session.lanes.front().number);
+    if (i % 17 == 0) session.lanes.add(i % 2 == 0 ? "bf" : "kd");
+    if (i % 23 == 0 && !session.lanes.list.empty())
+      session.lanes.remove(session.lanes.list.front().number);
     session.commit();
     session.runs.look([&](const RunProgress& progress) { session.advance(progress, 0.01); });
   }
-  session.seek(11);
+  session.playback.seek(11);
   settle();
-  session.seek(11);
+  session.playback.seek(11);
   const RunProgress seen = settle();
   EXPECT_EQ(seen.snapshot->frame, 11U);
-  EXPECT_EQ(seen.lanes.size(), session.lanes.size());
+  EXPECT_EQ(seen.lanes.size(), session.lanes.list.size());
 }
 
 }  // namespace

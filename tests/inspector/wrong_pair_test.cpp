@@ -1,5 +1,5 @@
 // What is told of a wrong pair.
-#include "inspector/mismatch.h"
+#include "inspector/wrong_pair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+
+#include "inspector/mismatches.h"
 
 namespace broadmark::tests {
 namespace {
@@ -61,18 +63,18 @@ TEST(DecidingAxis, HasTheWidestGapOrTheLeastOverlap) {
   EXPECT_EQ(decidingAxis(a, {{5, 3, 7, 0}, {6, 7, 8, 0}}), 2U);
 }
 
-TEST(WrongPairs, StandByKindAndTellAllowedOnesApart) {
-  const std::vector<Aabb> boxes = {box(0, 1), box(1.5F, 2), box(9, 10)};
+TEST(WrongPairs, StandByKindAndAllowedOnesLast) {
   FrameDifference difference;
-  difference.extra = {{0, 1}, {0, 2}};
-  difference.invalid = {{1, 1}, {0, 77}};
-  difference.missed = {{1, 2}};
+  difference.allowed_extra_pairs = {{0, 1}};
+  difference.false_pairs = {{0, 2}};
+  difference.invalid_pairs = {{1, 1}, {0, 77}};
+  difference.missed_pairs = {{1, 2}};
   std::vector<std::string> names;
-  for (const WrongPair& wrong : wrongPairs(difference, boxes, 0.25F)) {
-    names.push_back(std::string(wrongPairName(wrong.kind)) + " " + pairName(wrong.pair));
+  for (const WrongPair& wrong : wrongPairs(difference)) {
+    names.push_back(std::string(kWrongPairs.nameOf(wrong.kind)) + " " + pairName(wrong.pair));
   }
-  EXPECT_THAT(names, testing::ElementsAre("missed 1-2", "extra 0-2", "invalid 1-1", "invalid 0-77",
-                                          "allowed 0-1"));
+  EXPECT_THAT(names, testing::ElementsAre("missed 1-2", "false 0-2", "invalid 1-1", "invalid 0-77",
+                                          "allowed extra 0-1"));
 }
 
 TEST(PairTracks, TellSinceWhenTheyOverlap) {

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
-#include "colour.h"
 #include "broadmark/render/overlays.h"
+#include "colour.h"
 
 namespace broadmark::tests {
 namespace {
@@ -84,21 +84,21 @@ TEST(Colouring, CountsAreShownInDoublingSteps) {
                           "16 to 31", "16 to 31", "32 or more", "32 or more"));
 }
 
-TEST(Colouring, TheWorseFaultIsShown) {
+TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
   const std::vector<Aabb> boxes = boxesOf(6);
   const std::vector<std::uint32_t> overlaps = {0, 1, 1, 1, 1, 0};
   const std::vector<Pair> missed = {{0, 1}, {2, 77}};
-  const std::vector<Pair> extra = {{1, 3}, {88, 99}};
+  const std::vector<Pair> false_pairs = {{1, 3}, {88, 99}};
   ColouringInput input;
   input.boxes = boxes;
   input.overlaps = overlaps;
   input.missed = missed;
-  input.extra = extra;
+  input.false_pairs = false_pairs;
   EXPECT_THAT(labels(coloured("correctness", input)),
-              ElementsAre("missed", "missed", "missed", "extra", "right", "free"));
+              ElementsAre("missed", "missed", "missed", "false", "right", "free"));
 }
 
-TEST(Colouring, MotionIsSeenAgainstTheFrameBefore) {
+TEST(Colouring, MotionIsSeenAgainstThePreviousFrame) {
   const std::vector<Aabb> boxes = boxesOf(3);
   std::vector<Aabb> previous = boxes;
   previous[1].max[2] += 1e-3F;
@@ -109,7 +109,7 @@ TEST(Colouring, MotionIsSeenAgainstTheFrameBefore) {
   EXPECT_THAT(labels(coloured("motion", input)), ElementsAre("static", "moving", "static"));
 }
 
-TEST(Colouring, SizesAreShownInStepsByTheSameFactor) {
+TEST(Colouring, SizesAreShownInStepsOfEqualRatio) {
   const std::vector<Aabb> boxes = {boxOf(0, 0), boxOf(0, 1), boxOf(0, 9), boxOf(0, 1000),
                                    boxOf(0, 1e6F)};
   ColouringInput input;
@@ -119,7 +119,7 @@ TEST(Colouring, SizesAreShownInStepsByTheSameFactor) {
               ElementsAre("1 to 10", "1 to 10", "1 to 10", "1e+03 to 1e+04", "1e+05 to 1e+06"));
 }
 
-TEST(Colouring, EveryModeColoursWhateverItGets) {
+TEST(Colouring, EveryModeColoursOddInput) {
   constexpr float kHuge = std::numeric_limits<float>::max();
   const std::vector<Aabb> odd = {{{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}},
                                  {{0, 0, 0}, {0, 0, 0}},
@@ -170,14 +170,6 @@ TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
       }
     }
   }
-}
-
-TEST(OverlapCounts, CountsBothBodiesOfEveryPair) {
-  const std::vector<Pair> first = {{0, 1}, {1, 2}};
-  const std::vector<Pair> second = {{1, 3}, {2, 9}};
-  const std::vector<PairRun> runs = {first, second};
-  EXPECT_THAT(overlapCounts(4, runs), ElementsAre(1, 3, 1, 1));
-  EXPECT_THAT(overlapCounts(0, runs), ElementsAre());
 }
 
 TEST(PairLines, GoFromMiddleToMiddle) {

@@ -8,11 +8,11 @@
 #include <cstdlib>
 #include <iostream>
 #include <limits>
-#include <random>
 
 #include "broadmark/render/camera.h"
 #include "broadmark/render/gl.h"
 #include "broadmark/render/offscreen_context.h"
+#include "support/drawing.h"
 #include "support/pictures.h"
 
 namespace broadmark::tests {
@@ -20,48 +20,22 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-/// Software drivers only: the same picture on every machine.
-OffscreenOptions software() {
-  OffscreenOptions options;
-  options.software = true;
-  return options;
-}
-
 bool isInstalled(const std::string& library) {
   return dlopen(library.c_str(), RTLD_LAZY | RTLD_NODELETE) != nullptr;
-}
-
-Aabb cube(const std::array<float, 3>& centre, float side) {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[axis] = centre[axis] - side / 2;
-    box.max[axis] = centre[axis] + side / 2;
-  }
-  return box;
 }
 
 SceneInfo sceneOf(std::size_t objects, float side) {
   return {"FreeFall", "Cubes", static_cast<std::uint32_t>(objects), 100, cube({0, 0, 0}, side)};
 }
 
-/// Boxes of a test scene with side 10 and their pairs. Not std::uniform_real_distribution: its
-/// results are the library's own affair.
+/// Boxes of a world of side 10, and their pairs.
 struct TestScene {
-  explicit TestScene(std::size_t count) {
-    std::mt19937 bits(2026);
-    const auto random = [&](float low, float high) {
-      return low + (high - low) * static_cast<float>(bits() >> 8) / static_cast<float>(1U << 24);
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-      const float x = random(-4.5F, 4.5F);
-      const float y = random(-4.5F, 4.5F);
-      const float z = random(-4.5F, 4.5F);
-      boxes.push_back(cube({x, y, z}, random(0.4F, 1.2F)));
-    }
+  explicit TestScene(std::size_t count) : boxes(randomCubes(count, 0.4F, 1.2F, 2026)) {
     for (std::uint32_t a = 0; a < count; ++a) {
       for (std::uint32_t b = a + 1; b < count; ++b) {
         if (overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
@@ -84,16 +58,13 @@ Picture drawBoxes(OffscreenContext& context, const SceneInfo& scene, const std::
   return drawFrame(context, scene, {1, boxes}, {&run, 1}, kWidth, kHeight);
 }
 
-std::array<int, 3> pixelAt(const Picture& picture, const SceneInfo& scene,
-                           const std::array<float, 4>& world_point) {
+std::array<int, 3> colourAt(const Picture& picture, const SceneInfo& scene,
+                            const std::array<float, 4>& world_point) {
   const ViewSpace space = viewSpaceOf(scene.world);
   const double aspect = static_cast<double>(picture.width) / picture.height;
-  const auto point =
-      project(figureCamera(space.toView(scene.world), aspect), space.toView(world_point)).value();
-  const auto x = static_cast<std::size_t>((point[0] + 1) / 2 * static_cast<float>(picture.width));
-  const auto y = static_cast<std::size_t>((1 - point[1]) / 2 * static_cast<float>(picture.height));
-  const std::uint8_t* pixel = &picture.rgba[4 * (y * static_cast<std::size_t>(picture.width) + x)];
-  return {pixel[0], pixel[1], pixel[2]};
+  const Viewpoint viewpoint{figureCamera(space.toView(scene.world), aspect), picture.width,
+                            picture.height};
+  return tests::colourAt(picture, pixelOf(viewpoint, space.toView(world_point)));
 }
 
 bool isWarm(const std::array<int, 3>& rgb) { return rgb[0] > rgb[2] + 80; }
@@ -112,7 +83,7 @@ std::string messageOf(GlSource source, const OffscreenOptions& options) {
 class EachSource : public testing::TestWithParam<GlSource> {
  protected:
   void SetUp() override {
-    const OffscreenOptions options = software();
+    const OffscreenOptions options = softwareOnly();
     const std::string& library =
         GetParam() == GlSource::egl ? options.egl_library : options.osmesa_library;
     if (!isInstalled(library)) GTEST_SKIP() << library << " is not installed";
@@ -147,7 +118,7 @@ TEST_P(EachSource, ColoursWhatOverlaps) {
   // A little above the middle of the face that looks along z.
   const auto face = [&](std::size_t body) {
     const Aabb& box = boxes[body];
-    return pixelAt(picture, scene, {box.min[0] + 1, box.min[1] + 1.2F, box.max[2], 0});
+    return colourAt(picture, scene, {box.min[0] + 1, box.min[1] + 1.2F, box.max[2], 0});
   };
   EXPECT_TRUE(isWarm(face(0)));
   EXPECT_TRUE(isWarm(face(1)));
@@ -163,7 +134,7 @@ TEST_P(EachSource, DrawsTheNearerBoxInFront) {
     const std::uint32_t near = reversed ? 1 : 0;
     // A pair of the near body with one that does not exist colours it alone.
     const Picture picture = drawBoxes(context(), scene, ordered, {{near, 99}});
-    EXPECT_TRUE(isWarm(pixelAt(picture, scene, {1.14F, 0.6F, 2.2F, 0})));
+    EXPECT_TRUE(isWarm(colourAt(picture, scene, {1.14F, 0.6F, 2.2F, 0})));
   }
 }
 
@@ -198,12 +169,12 @@ TEST_P(EachSource, EmptyAndOddScenesAreDrawn) {
   }
 }
 
-TEST_P(EachSource, BodiesOutsideAFalseWorldAreSeen) {
+TEST_P(EachSource, BodiesOutsideTheWorldAreSeen) {
   SceneInfo scene = sceneOf(1, 0);
   const std::vector<Aabb> boxes = {cube({500, 500, 500}, 3)};
   const Picture picture = drawBoxes(context(), scene, boxes);
-  scene.world = boxes[0];  // which is then what the camera looks at
-  EXPECT_TRUE(isCool(pixelAt(picture, scene, {500, 500.3F, 501.5F, 0})));
+  scene.world = boxes[0];  // what the camera looks at
+  EXPECT_TRUE(isCool(colourAt(picture, scene, {500, 500.3F, 501.5F, 0})));
 }
 
 TEST_P(EachSource, SizesAreObeyedOrRefused) {
@@ -221,7 +192,7 @@ TEST_P(EachSource, SizesAreObeyedOrRefused) {
   }
 }
 
-TEST_P(EachSource, ShaderErrorsAreTold) {
+TEST_P(EachSource, ShaderErrorsAreReported) {
   const Gl gl(context());
   try {
     makeProgram(gl, "#version 330 core\nvoid main() { nonsense = 1; }", "");
@@ -231,20 +202,20 @@ TEST_P(EachSource, ShaderErrorsAreTold) {
   }
 }
 
-TEST_P(EachSource, GlErrorsAreTold) {
+TEST_P(EachSource, GlErrorsAreReported) {
   const Gl gl(context());
   gl.Enable(0xFFFF);
   try {
     gl.check("testing");
     FAIL() << "no error";
   } catch (const RenderError& error) {
-    EXPECT_STREQ(error.what(), "OpenGL error 0x0500 (invalid enum) while testing");
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("invalid enum"), HasSubstr("testing")));
   }
   EXPECT_NO_THROW(gl.check("testing again"));
 }
 
 TEST(OffscreenContext, SourcesGiveTheSamePicture) {
-  const OffscreenOptions options = software();
+  const OffscreenOptions options = softwareOnly();
   for (const std::string& library : {options.egl_library, options.osmesa_library}) {
     if (!isInstalled(library)) GTEST_SKIP() << library << " is not installed";
   }
@@ -255,11 +226,11 @@ TEST(OffscreenContext, SourcesGiveTheSamePicture) {
 }
 
 TEST(OffscreenContext, CanBeMadeAgainAndAgain) {
-  if (!isInstalled(software().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
+  if (!isInstalled(softwareOnly().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
   const TestScene scene(10);
-  const Picture first = scene.draw(*makeOffscreenContext(GlSource::egl, software()));
+  const Picture first = scene.draw(*makeOffscreenContext(GlSource::egl, softwareOnly()));
   for (int i = 0; i < 3; ++i) {
-    EXPECT_EQ(scene.draw(*makeOffscreenContext(GlSource::egl, software())).rgba, first.rgba);
+    EXPECT_EQ(scene.draw(*makeOffscreenContext(GlSource::egl, softwareOnly())).rgba, first.rgba);
   }
 }
 
@@ -267,13 +238,11 @@ TEST(OffscreenContext, WithoutLibrariesNamesEachSourceAndWhy) {
   OffscreenOptions none;
   none.egl_library = "libNoSuchEGL.so.1";
   none.osmesa_library = "libNoSuchOSMesa.so.8";
-  EXPECT_EQ(messageOf(GlSource::automatic, none),
-            "no OpenGL 3.3 for off-screen pictures: EGL: libNoSuchEGL.so.1 not found; "
-            "OSMesa: libNoSuchOSMesa.so.8 not found");
-  EXPECT_EQ(messageOf(GlSource::egl, none),
-            "no OpenGL 3.3 for off-screen pictures: EGL: libNoSuchEGL.so.1 not found");
-  EXPECT_EQ(messageOf(GlSource::osmesa, none),
-            "no OpenGL 3.3 for off-screen pictures: OSMesa: libNoSuchOSMesa.so.8 not found");
+  const auto egl = HasSubstr("EGL: libNoSuchEGL.so.1");
+  const auto osmesa = HasSubstr("OSMesa: libNoSuchOSMesa.so.8");
+  EXPECT_THAT(messageOf(GlSource::automatic, none), AllOf(egl, osmesa));
+  EXPECT_THAT(messageOf(GlSource::egl, none), AllOf(egl, Not(osmesa)));
+  EXPECT_THAT(messageOf(GlSource::osmesa, none), AllOf(osmesa, Not(egl)));
 }
 
 TEST(OffscreenContext, ALibraryThatIsNoGlIsRefused) {
@@ -284,16 +253,16 @@ TEST(OffscreenContext, ALibraryThatIsNoGlIsRefused) {
 }
 
 TEST(OffscreenContext, AutomaticFallsBackToOsmesa) {
-  OffscreenOptions options = software();
+  OffscreenOptions options = softwareOnly();
   if (!isInstalled(options.osmesa_library)) GTEST_SKIP() << "libOSMesa.so.8 is not installed";
   options.egl_library = "libNoSuchEGL.so.1";
   EXPECT_THAT(makeOffscreenContext(GlSource::automatic, options)->description(),
               HasSubstr("OSMesa"));
 }
 
-// EGL is there, its drivers are not. In a process of its own: Mesa reads its environment once.
+// EGL is installed, its drivers are not. In a process of its own: Mesa reads its environment once.
 TEST(OffscreenContextDeathTest, WithoutDriversNamesEachDisplayAndWhy) {
-  if (!isInstalled(software().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
+  if (!isInstalled(softwareOnly().egl_library)) GTEST_SKIP() << "libEGL.so.1 is not installed";
   testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(
       {

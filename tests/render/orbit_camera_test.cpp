@@ -111,7 +111,7 @@ TEST(OrbitCamera, FliesAlongTheAxesOfThePicture) {
 
 TEST(OrbitCamera, FocusShowsAllOfTheBoxAndFillsThePicture) {
   for (const double aspect : {0.3, 1.0, 16.0 / 9, 4.0}) {
-    for (const Direction direction : kAllDirections) {
+    for (const auto& [direction, name] : kDirections.entries) {
       for (const Aabb& box : {kUnit, Aabb{{0.2F, 0.1F, -0.3F}, {0.21F, 0.12F, -0.2999F}}}) {
         const OrbitCamera orbit = focusedOn(lookedFrom(tilted(), direction), box, aspect);
         const Camera camera = toCamera(orbit, aspect, kUnit);
@@ -121,10 +121,10 @@ TEST(OrbitCamera, FocusShowsAllOfTheBoxAndFillsThePicture) {
               project(camera, {i & 1U ? box.max[0] : box.min[0], i & 2U ? box.max[1] : box.min[1],
                                i & 4U ? box.max[2] : box.min[2]});
           ASSERT_TRUE(at.has_value());
-          for (const float value : *at) EXPECT_LT(std::abs(value), 1) << directionName(direction);
+          for (const float value : *at) EXPECT_LT(std::abs(value), 1) << name;
           widest = std::max({widest, std::abs((*at)[0]), std::abs((*at)[1])});
         }
-        EXPECT_GT(widest, 0.6F) << directionName(direction) << " at aspect " << aspect;
+        EXPECT_GT(widest, 0.6F) << name << " at aspect " << aspect;
       }
     }
   }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "broadmark/render/orbit_camera.h"
+#include "support/drawing.h"
 
 namespace broadmark::tests {
 namespace {
@@ -16,16 +17,7 @@ using testing::IsEmpty;
 constexpr int kWidth = 400;
 constexpr int kHeight = 300;
 
-Aabb cube(const std::array<float, 3>& centre, float side) {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[axis] = centre[axis] - side / 2;
-    box.max[axis] = centre[axis] + side / 2;
-  }
-  return box;
-}
-
-/// A world of side 100 around (1000, 0, 0), to see that world and view space are told apart.
+/// A world of side 100 around (1000, 0, 0): world space and view space differ.
 const Aabb kWorld = cube({1000, 0, 0}, 100);
 
 Viewpoint viewpointFrom(Direction direction) {
@@ -35,10 +27,8 @@ Viewpoint viewpointFrom(Direction direction) {
   return {toCamera(orbit, aspect, space.toView(kWorld)), kWidth, kHeight, 0};
 }
 
-/// Pixels from the upper left corner.
 std::array<float, 2> pixelOf(const Viewpoint& viewpoint, const std::array<float, 4>& world_point) {
-  const auto at = project(viewpoint.camera, viewSpaceOf(kWorld).toView(world_point)).value();
-  return {(at[0] + 1) / 2 * kWidth, (1 - at[1]) / 2 * kHeight};
+  return tests::pixelOf(viewpoint, viewSpaceOf(kWorld).toView(world_point));
 }
 
 std::array<float, 4> middle(const Aabb& box) {
@@ -58,16 +48,17 @@ TEST(Picking, RaysGoThroughTheirPixels) {
   const Viewpoint viewpoint = viewpointFrom(Direction::figure);
   for (const auto& [x, y] : {std::pair{0.0F, 0.0F}, {200.0F, 150.0F}, {399.5F, 12.25F}}) {
     const Ray ray = rayThrough(viewpoint, x, y);
-    const auto at = project(viewpoint.camera, ray.at(1.3F)).value();
-    EXPECT_NEAR((at[0] + 1) / 2 * kWidth, x, 1e-2F);
-    EXPECT_NEAR((1 - at[1]) / 2 * kHeight, y, 1e-2F);
+    const std::array at = tests::pixelOf(viewpoint, ray.at(1.3F));
+    EXPECT_NEAR(at[0], x, 1e-2F);
+    EXPECT_NEAR(at[1], y, 1e-2F);
   }
 }
 
 TEST(Picking, FindsEachBodyUnderItsMiddle) {
   const std::vector<Aabb> boxes = {cube({970, 10, 0}, 5), cube({1030, -10, 20}, 5),
                                    cube({1000, 40, -30}, 5)};
-  for (const Direction direction : kAllDirections) {
+  for (const auto& [direction, name] : kDirections.entries) {
+    SCOPED_TRACE(name);
     const Viewpoint viewpoint = viewpointFrom(direction);
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
       EXPECT_EQ(pick(boxes, viewpoint, pixelOf(viewpoint, middle(boxes[body]))), body);
@@ -76,7 +67,7 @@ TEST(Picking, FindsEachBodyUnderItsMiddle) {
   }
 }
 
-TEST(Picking, TakesTheForemostWhateverTheOrder) {
+TEST(Picking, TakesTheForemostInAnyOrder) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   std::vector<Aabb> boxes = {cube({1000, 0, -20}, 10), cube({1000, 0, 20}, 10)};
   EXPECT_EQ(pick(boxes, viewpoint, {200, 150}), 1U);
@@ -91,7 +82,7 @@ TEST(Picking, DepthIsThatOfThePointHit) {
   EXPECT_NEAR(rayThrough(viewpoint, 200, 150).at(hit.depth)[2], 0.25F, 1e-4F);
 }
 
-TEST(Picking, SeesThroughHiddenBodiesAndWhatSurroundsTheEye) {
+TEST(Picking, IgnoresMaskedBodiesAndBodiesAroundTheEye) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   const std::vector<Aabb> boxes = {cube({1000, 0, 20}, 10), cube({1000, 0, -20}, 10),
                                    cube({1000, 0, 0}, 1e5F)};
@@ -129,17 +120,18 @@ TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
   for (int i = 0; i < 500; ++i) boxes.push_back(cube({1000 + random(), random(), random()}, 6));
   std::vector<std::uint32_t> expected;
   std::vector<std::uint32_t> expected_whole;
-  const auto isWithin = [&](const std::array<float, 4>& point) {
+  const auto is_within = [&](const std::array<float, 4>& point) {
     const auto [x, y] = pixelOf(viewpoint, point);
     return x >= 120 && x <= 230 && y >= 90 && y <= 200;
   };
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-    if (isWithin(middle(boxes[body]))) expected.push_back(body);
+    if (is_within(middle(boxes[body]))) expected.push_back(body);
     bool whole = true;
     for (unsigned i = 0; i < 8; ++i) {
       const Aabb& box = boxes[body];
-      whole = whole && isWithin({i & 1U ? box.max[0] : box.min[0], i & 2U ? box.max[1] : box.min[1],
-                                 i & 4U ? box.max[2] : box.min[2], 0});
+      whole =
+          whole && is_within({i & 1U ? box.max[0] : box.min[0], i & 2U ? box.max[1] : box.min[1],
+                              i & 4U ? box.max[2] : box.min[2], 0});
     }
     if (whole) expected_whole.push_back(body);
   }
@@ -152,7 +144,7 @@ TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
             expected_whole);
 }
 
-TEST(Selecting, LeavesOutWhatIsMaskedOrBehindTheEye) {
+TEST(Selecting, LeavesOutBodiesMaskedOrBehindTheEye) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   const std::vector<Aabb> boxes = {cube({1000, 0, 0}, 2), cube({1000, 0, 9}, 2),
                                    cube({1000, 0, 5000}, 2)};

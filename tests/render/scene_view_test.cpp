@@ -1,12 +1,15 @@
 #include "broadmark/render/scene_view.h"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <random>
 
+#include "box_renderer.h"
+#include "box_splatter.h"
+#include "broadmark/render/framebuffer.h"
 #include "broadmark/render/offscreen_context.h"
+#include "support/drawing.h"
 #include "support/pictures.h"
 
 namespace broadmark::tests {
@@ -18,22 +21,7 @@ constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
 constexpr Rgb kBlue = 0x3366CC;
 constexpr Rgb kRed = 0xCC3322;
 
-Aabb cube(const std::array<float, 3>& centre, float side) {
-  Aabb box;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[axis] = centre[axis] - side / 2;
-    box.max[axis] = centre[axis] + side / 2;
-  }
-  return box;
-}
-
 const Aabb kWorld = cube({0, 0, 0}, 10);
-
-std::unique_ptr<OffscreenContext> softwareContext() {
-  OffscreenOptions options;
-  options.software = true;
-  return makeOffscreenContext(GlSource::automatic, options);
-}
 
 struct Bodies {
   std::vector<Aabb> boxes;
@@ -41,18 +29,8 @@ struct Bodies {
 };
 
 Bodies randomBodies(std::size_t count, float smallest, float largest) {
-  std::mt19937 bits(77);
-  const auto random = [&](float low, float high) {
-    return low + (high - low) * static_cast<float>(bits() >> 8) / static_cast<float>(1U << 24);
-  };
-  Bodies bodies;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = random(-4.5F, 4.5F);
-    const float y = random(-4.5F, 4.5F);
-    const float z = random(-4.5F, 4.5F);
-    bodies.boxes.push_back(cube({x, y, z}, random(smallest, largest)));
-    bodies.colours.push_back(i % 3 == 0 ? kRed : kBlue);
-  }
+  Bodies bodies{randomCubes(count, smallest, largest, 77), {}};
+  for (std::size_t i = 0; i < count; ++i) bodies.colours.push_back(i % 3 == 0 ? kRed : kBlue);
   return bodies;
 }
 
@@ -69,19 +47,13 @@ OrbitCamera wholeWorld(Direction direction = Direction::figure) {
   return focusedOn(lookedFrom({}, direction), viewSpaceOf(kWorld).toView(kWorld), kAspect);
 }
 
-std::array<int, 3> pixelAt(const Picture& picture, float x, float y) {
-  const auto column = static_cast<std::size_t>(x);
-  const auto row = static_cast<std::size_t>(y);
-  const std::uint8_t* pixel =
-      &picture.rgba[4 * (row * static_cast<std::size_t>(picture.width) + column)];
-  return {pixel[0], pixel[1], pixel[2]};
+std::array<int, 3> colourAt(const Picture& picture, const Viewpoint& viewpoint,
+                            const std::array<float, 4>& world_point) {
+  return tests::colourAt(picture, pixelOf(viewpoint, viewSpaceOf(kWorld).toView(world_point)));
 }
 
-std::array<int, 3> pixelAt(const Picture& picture, const Viewpoint& viewpoint,
-                           const std::array<float, 4>& world_point) {
-  const auto at = project(viewpoint.camera, viewSpaceOf(kWorld).toView(world_point)).value();
-  return pixelAt(picture, (at[0] + 1) / 2 * static_cast<float>(picture.width),
-                 (1 - at[1]) / 2 * static_cast<float>(picture.height));
+std::array<int, 3> colourInTheMiddle(const SceneView& view) {
+  return tests::colourAt(view.read(), {kWidth / 2.0F, kHeight / 2.0F});
 }
 
 bool isRed(const std::array<int, 3>& rgb) { return rgb[0] > rgb[2] + 60; }
@@ -89,7 +61,8 @@ bool isBlue(const std::array<int, 3>& rgb) { return rgb[2] > rgb[0] + 60; }
 
 class SceneViewTest : public testing::TestWithParam<Technique> {
  protected:
-  SceneViewTest() : context_(softwareContext()), gl_(*context_) {}
+  SceneViewTest()
+      : context_(makeOffscreenContext(GlSource::automatic, softwareOnly())), gl_(*context_) {}
 
   std::unique_ptr<SceneView> makeView(Technique technique, int threads = 2) {
     SceneViewOptions options;
@@ -144,9 +117,9 @@ TEST_P(SceneViewTest, TheNearerBodyIsInFront) {
     SceneViewContent content = contentOf(bodies);
     content.bodies_revision = reversed ? 2 : 1;
     view->draw(content, wholeWorld(Direction::front));
-    EXPECT_TRUE(isRed(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+    EXPECT_TRUE(isRed(colourInTheMiddle(*view)));
     view->draw(content, wholeWorld(Direction::back));
-    EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+    EXPECT_TRUE(isBlue(colourInTheMiddle(*view)));
   }
 }
 
@@ -157,7 +130,7 @@ TEST_P(SceneViewTest, OnlyVisibleBodiesAreDrawn) {
   content.visible = visible;
   const auto view = makeView();
   view->draw(content, wholeWorld(Direction::front));
-  EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+  EXPECT_TRUE(isBlue(colourInTheMiddle(*view)));
 }
 
 TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
@@ -171,36 +144,35 @@ TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
     view->draw(content, wholeWorld(Direction::front));
     const Picture picture = view->read();
     bool seen = false;
-    const auto at = project(view->viewpoint().camera, content.space.toView(somewhere)).value();
+    const std::array at = pixelOf(view->viewpoint(), content.space.toView(somewhere));
     for (int dx = -1; dx <= 1; ++dx) {
       for (int dy = -1; dy <= 1; ++dy) {
-        const float x = (at[0] + 1) / 2 * kWidth + static_cast<float>(dx);
-        const float y = (1 - at[1]) / 2 * kHeight + static_cast<float>(dy);
-        seen = seen || isRed(pixelAt(picture, x, y));
+        const std::array near = {at[0] + static_cast<float>(dx), at[1] + static_cast<float>(dy)};
+        seen = seen || isRed(tests::colourAt(picture, near));
       }
     }
     EXPECT_TRUE(seen);
   }
 }
 
-TEST_P(SceneViewTest, OneSeesOutOfABodyAroundTheEye) {
+TEST_P(SceneViewTest, ABodyAroundTheEyeIsNotDrawn) {
   const Bodies bodies{{cube({0, 0, 0}, 1000), cube({0, 0, 0}, 3)}, {kRed, kBlue}};
   const auto view = makeView();
   view->draw(contentOf(bodies), wholeWorld(Direction::front));
-  EXPECT_TRUE(isBlue(pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F)));
+  EXPECT_TRUE(isBlue(colourInTheMiddle(*view)));
 }
 
 TEST_P(SceneViewTest, BodiesAcrossTheNearPlaneAreDrawn) {
-  // A beam along the line of sight, from behind the eye to far before it, beside its path.
+  // A beam beside the line of sight, from behind the eye to far before it.
   const Bodies bodies{{{{0.2F, -1, -100, 0}, {3, 1, 100, 0}}}, {kRed}};
   const auto view = makeView();
   view->draw(contentOf(bodies), wholeWorld(Direction::front));
   const Picture picture = view->read();
-  EXPECT_TRUE(isRed(pixelAt(picture, kWidth * 0.7F, kHeight / 2.0F)));
-  EXPECT_FALSE(isRed(pixelAt(picture, kWidth * 0.3F, kHeight / 2.0F)));
+  EXPECT_TRUE(isRed(tests::colourAt(picture, {kWidth * 0.7F, kHeight / 2.0F})));
+  EXPECT_FALSE(isRed(tests::colourAt(picture, {kWidth * 0.3F, kHeight / 2.0F})));
 }
 
-TEST_P(SceneViewTest, BodiesHideLinesUnlessToldNotTo) {
+TEST_P(SceneViewTest, BodiesHideLinesUnlessTheyAreToBeShown) {
   const Bodies bodies{{cube({0, 0, 0}, 4)}, {kBlue}};
   std::vector<SceneLine> lines = {{{-4, 0, -4}, {4, 0, -4}, 0xE00000, 3, Behind::hidden}};
   SceneViewContent content = contentOf(bodies);
@@ -211,8 +183,8 @@ TEST_P(SceneViewTest, BodiesHideLinesUnlessToldNotTo) {
     ++content.lines_revision;
     view->draw(content, wholeWorld(Direction::front));
     const Picture picture = view->read();
-    EXPECT_TRUE(isRed(pixelAt(picture, view->viewpoint(), {3.9F, 0, -4, 0})));
-    return pixelAt(picture, view->viewpoint(), {0, 0, -4, 0});
+    EXPECT_TRUE(isRed(colourAt(picture, view->viewpoint(), {3.9F, 0, -4, 0})));
+    return colourAt(picture, view->viewpoint(), {0, 0, -4, 0});
   };
   const auto hidden = drawnWith(Behind::hidden);
   const auto faint = drawnWith(Behind::faint);
@@ -241,10 +213,10 @@ TEST_P(SceneViewTest, DrawsAnewOnlyWhatHasChanged) {
   const auto view = makeView();
   const auto centre = [&](const OrbitCamera& camera) {
     view->draw(content, camera);
-    return pixelAt(view->read(), kWidth / 2.0F, kHeight / 2.0F);
+    return colourInTheMiddle(*view);
   };
   EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::front))));
-  bodies.colours[0] = kRed;  // with the revision left as it was: not read
+  bodies.colours[0] = kRed;  // same revision: not read
   EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::front))));
   EXPECT_TRUE(isBlue(centre(wholeWorld(Direction::back))));
   ++content.bodies_revision;
@@ -285,7 +257,7 @@ TEST_P(SceneViewTest, EverySizeAndNoBodiesAreDrawn) {
   }
 }
 
-/// Edges fade and rays round a little differently, so borders between bodies may.
+/// Edges fade and rays are rounded a little differently, so borders of bodies may differ.
 TEST_P(SceneViewTest, BothTechniquesGiveTheSamePicture) {
   if (GetParam() != Technique::gl) GTEST_SKIP() << "compares both";
   const auto by_gl = makeView(Technique::gl);
@@ -313,8 +285,8 @@ TEST_P(SceneViewTest, BothTechniquesGiveTheSamePicture) {
       }
       const auto pixels = static_cast<double>(a.rgba.size()) / 4;
       EXPECT_LT(static_cast<double>(different) / pixels, 0.01)
-          << count << " bodies, " << directionName(direction);
-      EXPECT_LT(sum / pixels, 1.0) << count << " bodies, " << directionName(direction);
+          << count << " bodies, " << kDirections.nameOf(direction);
+      EXPECT_LT(sum / pixels, 1.0) << count << " bodies, " << kDirections.nameOf(direction);
     }
   }
 }
@@ -353,13 +325,13 @@ TEST(BoxSplatter, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
   BoxSplatter reference(alone, Isa::scalar);
   reference.draw(boxes, viewpoint);
   for (const int threads : {1, 3}) {
-    for (const Isa isa : kAllIsas) {
+    for (const auto& [isa, name] : kIsas.entries) {
       if (!isaSupported(isa)) continue;
       ThreadTeam team(threads);
       BoxSplatter splatter(team, isa);
       splatter.draw(boxes, viewpoint);
-      EXPECT_TRUE(std::ranges::equal(splatter.colours(), reference.colours())) << isaName(isa);
-      EXPECT_TRUE(std::ranges::equal(splatter.depths(), reference.depths())) << isaName(isa);
+      EXPECT_TRUE(std::ranges::equal(splatter.colours(), reference.colours())) << name;
+      EXPECT_TRUE(std::ranges::equal(splatter.depths(), reference.depths())) << name;
     }
   }
 }

@@ -1,7 +1,6 @@
-// Baking: recordings with sidecars, and knowing them again.
+// Baking: recordings with sidecars, and recognising them.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,39 +8,29 @@
 
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
-#include "broadmark/scenes/simulation.h"
+#include "engine/helpers.h"
+#include "scenes/scene_runs.h"
 
-namespace broadmark {
+namespace broadmark::tests {
 namespace {
 
 namespace fs = std::filesystem;
 
 std::unique_ptr<Simulation> simulationOf(const std::string& scene, ParameterValues values = {}) {
   values.insert({{"objects", "40"}, {"frames", "6"}});
-  auto simulation = makeSimulation(scene);
-  setParameters(*simulation, values);
-  return simulation;
+  return sceneWith(scene, values);
 }
 
 class Bake : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "broadmark-bake-XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    directory_ = pattern;
-    path_ = directory_ / "scene.aabbs";
-    sidecar_ = directory_ / "scene.json";
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   [[nodiscard]] nlohmann::json sidecar() const {
     return nlohmann::json::parse(std::ifstream(sidecar_));
   }
   void writeSidecar(const std::string& text) const { std::ofstream(sidecar_) << text; }
 
-  fs::path directory_;
-  fs::path path_;
-  fs::path sidecar_;
+  TemporaryDirectory directory_;
+  fs::path path_ = directory_ / "scene.aabbs";
+  fs::path sidecar_ = directory_ / "scene.json";
 };
 
 TEST_F(Bake, WritesEveryBuiltInSceneAsAReadableRecording) {
@@ -55,14 +44,7 @@ TEST_F(Bake, WritesEveryBuiltInSceneAsAReadableRecording) {
     EXPECT_EQ(fs::file_size(path_), 304U + 32U * 40U * 7U);
 
     auto again = simulationOf(listing.id);
-    std::optional<Frame> recorded = reader.rewind();
-    std::optional<Frame> simulated = again->rewind();
-    while (recorded && simulated) {
-      EXPECT_TRUE(std::ranges::equal(recorded->boxes, simulated->boxes));
-      recorded = reader.next();
-      simulated = again->next();
-    }
-    EXPECT_FALSE(recorded || simulated);
+    EXPECT_EQ(allFrames(reader), allFrames(*again));
     EXPECT_TRUE(isBaked(path_, *again));
   }
 }
@@ -97,7 +79,7 @@ TEST_F(Bake, LeavesNothingWhenStopped) {
   for (const std::uint32_t last : {0U, 3U, 6U}) {
     EXPECT_FALSE(bake(*simulationOf("brownian"), {path_},
                       [&](std::uint32_t frame) { return frame < last; }));
-    EXPECT_TRUE(fs::is_empty(directory_)) << "stopped at frame " << last;
+    EXPECT_TRUE(directory_.empty()) << "stopped at frame " << last;
   }
 }
 
@@ -108,7 +90,7 @@ TEST_F(Bake, StoppingKeepsAnOlderRecording) {
   EXPECT_TRUE(isBaked(path_, *older));
 }
 
-TEST_F(Bake, IsKnownAgainByItsParameters) {
+TEST_F(Bake, IsRecognisedByItsParameters) {
   auto simulation = simulationOf("brownian");
   EXPECT_FALSE(isBaked(path_, *simulation)) << "nothing there";
   bake(*simulation, {path_});
@@ -125,7 +107,7 @@ TEST_F(Bake, ADamagedSidecarMeansNotBaked) {
   bake(*simulation, {path_});
   const nlohmann::json good = sidecar();
   writeSidecar(good.dump());
-  EXPECT_TRUE(isBaked(path_, *simulation)) << "the layout of the text does not count";
+  EXPECT_TRUE(isBaked(path_, *simulation)) << "the layout of the text does not matter";
 
   const auto without = [&](const char* key) {
     nlohmann::json json = good;
@@ -171,7 +153,7 @@ TEST_F(Bake, AChangedRecordingMeansNotBaked) {
   EXPECT_FALSE(isBaked(path_, *simulation)) << "one number differs";
 
   bake(*simulation, {path_});
-  EXPECT_TRUE(isBaked(path_, *simulation)) << "baked anew";
+  EXPECT_TRUE(isBaked(path_, *simulation)) << "baked again";
   fs::resize_file(path_, size - 32);
   EXPECT_FALSE(isBaked(path_, *simulation)) << "cut short";
   fs::remove(path_);
@@ -179,13 +161,13 @@ TEST_F(Bake, AChangedRecordingMeansNotBaked) {
 }
 
 TEST_F(Bake, RejectsPathsThatCannotBeWritten) {
-  EXPECT_THROW(bake(*simulationOf("brownian"), {directory_ / "none" / "scene.aabbs"}), InputError);
+  EXPECT_THROW(bake(*simulationOf("brownian"), {directory_ / "none/scene.aabbs"}), InputError);
   // Its sidecar would take its place.
   EXPECT_THROW(bake(*simulationOf("brownian"), {directory_ / "scene.json"}), InputError);
   // Two recordings cannot share one.
   EXPECT_THROW(bake(*simulationOf("brownian"), {path_, directory_ / "scene.posrot"}), InputError);
-  EXPECT_TRUE(fs::is_empty(directory_));
+  EXPECT_TRUE(directory_.empty());
 }
 
 }  // namespace
-}  // namespace broadmark
+}  // namespace broadmark::tests

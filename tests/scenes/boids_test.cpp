@@ -1,29 +1,24 @@
-// The boids engine: flocks form, keep their distance, and never leave.
+// The boids engine: flocks form, keep their distances and never leave the world.
 
 #include <numbers>
 
 #include "broadmark/scenes/registry.h"
-#include "scenes/scene.h"
+#include "entries.h"
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using scenes::PhysicsBody;
 using scenes::PhysicsEngine;
-using scenes::PhysicsSettings;
 using scenes::Random;
 
 const scenes::BoxShape kUnitCube{{0.5F, 0.5F, 0.5F}};
 
 std::unique_ptr<PhysicsEngine> boidsEngine(const ParameterValues& values = {}) {
-  for (const scenes::EngineEntry& entry : scenes::engineEntries()) {
-    if (entry.listing.id != "boids") continue;
-    auto engine = entry.create(PhysicsSettings{.substeps = 1});
-    setParameters(*engine, values);
-    return engine;
-  }
-  return nullptr;
+  auto engine = entryOf(scenes::engineEntries(), "boids", "engine").create({.substeps = 1});
+  setParameters(*engine, values);
+  return engine;
 }
 
 PhysicsBody& launch(PhysicsEngine& engine, const Vec3& position, const Vec3& velocity) {
@@ -95,7 +90,7 @@ TEST(BoidsEngine, HeadingsAlign) {
   auto indifferent = boidsEngine({{"alignment", "0"}, {"cohesion", "0"}, {"separation", "0"}});
   const auto loners = addCrowd(*indifferent, 200, 5, 1);
   step(*indifferent, 150);
-  EXPECT_NEAR(polarisation(loners), before, 1e-4) << "it is the rules that do it";
+  EXPECT_NEAR(polarisation(loners), before, 1e-4) << "without the rules nothing aligns";
 }
 
 TEST(BoidsEngine, NeighboursKeepTheirDistance) {
@@ -138,7 +133,7 @@ TEST(BoidsEngine, SpeedStaysNearThatOfTheLaunch) {
   EXPECT_FALSE(engine->allAsleep());
 }
 
-TEST(BoidsEngine, NobodyPassesAWallHoweverFast) {
+TEST(BoidsEngine, NoBodyPassesAWallAtAnySpeed) {
   for (const double speed : {2.0, 50.0, 5000.0}) {
     auto engine = boidsEngine();
     addWalls(*engine, 12);
@@ -170,7 +165,7 @@ TEST(BoidsEngine, TurnsAwayBeforeItMeetsAWall) {
   EXPECT_LT(body.linearVelocity()[0], 0);
 }
 
-TEST(BoidsEngine, BodiesLookWhereTheyFly) {
+TEST(BoidsEngine, BodiesPointInTheirDirection) {
   auto engine = boidsEngine();
   PhysicsBody& ahead = launch(*engine, {0, 0, 0}, {2, 0, 0});
   PhysicsBody& aside = launch(*engine, {50, 0, 0}, {0, 0, -2});
@@ -213,7 +208,7 @@ TEST(BoidsEngine, FrozenAndUnlaunchedBodiesStay) {
   EXPECT_GT(idle.pose().position[2], 30);
 }
 
-TEST(BoidsEngine, CrowdsAtOnePlaceAndFarOffAreNoTrouble) {
+TEST(BoidsEngine, HandlesCrowdsAtOnePlaceAndBodiesFarAway) {
   auto engine = boidsEngine();
   for (int i = 0; i < 3000; ++i) launch(*engine, {0, 0, 0}, {1, 0, 0});
   PhysicsBody& far = launch(*engine, {3e30F, -3e30F, 1e12F}, {1, 0, 0});
@@ -221,8 +216,8 @@ TEST(BoidsEngine, CrowdsAtOnePlaceAndFarOffAreNoTrouble) {
   EXPECT_TRUE(std::isfinite(far.pose().position[0]));
 }
 
-TEST(BoidsEngine, EveryNeighbourInSightIsHeeded) {
-  // The steering of one boid among others, recomputed from all of them.
+TEST(BoidsEngine, FollowsEveryNeighbourInSight) {
+  // The steering of each boid, computed again from all others.
   auto engine =
       boidsEngine({{"sight", "4"}, {"separation", "0"}, {"alignment", "1"}, {"cohesion", "0"}});
   const auto bodies = addCrowd(*engine, 60, 7, 2);
@@ -252,7 +247,7 @@ TEST(BoidsEngine, EveryNeighbourInSightIsHeeded) {
   EXPECT_GT(with_neighbours, 50);
 }
 
-TEST(EngineParameters, CountFromTheCommandLineOnAndClashWithNone) {
+TEST(EngineParameters, AreThoseOfTheChosenEngineWithNamesOfTheirOwn) {
   auto simulation = sceneWith("brownian", {{"objects", "40"}, {"frames", "10"}});
   EXPECT_FALSE(parameterValues(*simulation).contains("alignment"));
   setParameters(*simulation, {{"engine", "boids"}, {"alignment", "9.5"}});
@@ -266,10 +261,7 @@ TEST(EngineParameters, CountFromTheCommandLineOnAndClashWithNone) {
 
   for (const SceneListing& scene : builtinScenes()) {
     for (const EngineListing& engine : builtinEngines()) {
-      std::vector<std::string> names;
-      makeSimulation(scene.id, engine.id)->visitParameters([&](const Parameter& p) {
-        names.emplace_back(p.name);
-      });
+      std::vector<std::string> names = parameterNames(*makeSimulation(scene.id, engine.id));
       std::ranges::sort(names);
       EXPECT_EQ(std::ranges::adjacent_find(names), names.end()) << scene.id << ' ' << engine.id;
     }
@@ -277,4 +269,4 @@ TEST(EngineParameters, CountFromTheCommandLineOnAndClashWithNone) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -1,8 +1,8 @@
-// City: nearly all of it stands still, in very different sizes.
+// City: bodies of very different sizes, most of which never move.
 
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 std::vector<std::size_t> moversAmong(const std::vector<Boxes>& frames) {
@@ -44,13 +44,13 @@ TEST(CityScene, BuildingsStandOnTheGroundWithSizesFarApart) {
     }
     std::ranges::sort(sizes);
     EXPECT_GT(sizes.back() / sizes.front(), 20) << type;
-    EXPECT_GT(sizes.back() / sizes[1500], 8) << type << ": a few tower above the rest";
+    EXPECT_GT(sizes.back() / sizes[1500], 8) << type << ": a few are much larger than most";
   }
 }
 
 TEST(CityScene, StreetsAreFree) {
-  // Nobody starts within a building, and traffic never gets into one.
-  // (An engine in which bodies collide may push two that meet aside.)
+  // No mover starts in a building or drives into one. (Without collisions, which may push movers
+  // off their lane.)
   auto simulation =
       sceneWith("city", {{"objects", "2000"}, {"frames", "90"}, {"engine", "kinematic"}});
   const std::vector<Boxes> frames = allFrames(*simulation);
@@ -69,7 +69,7 @@ TEST(CityScene, StreetsAreFree) {
   for (const std::size_t mover : movers) {
     farthest = std::max(farthest, lengthOf(way(frames[0][mover], frames[90][mover])));
   }
-  EXPECT_GT(farthest, 0.2 * side) << "they get on";
+  EXPECT_GT(farthest, 0.2 * side) << "movers move";
 }
 
 TEST(CityScene, BuildingsOverlapWhereTheyAreCrowded) {
@@ -79,8 +79,8 @@ TEST(CityScene, BuildingsOverlapWhereTheyAreCrowded) {
     return pairsAmong({start.boxes.begin(), start.boxes.end()});
   };
   EXPECT_GT(pairs("1.1"), 100U);
-  EXPECT_LT(pairs("0.9"), 3U) << "but for two bodies that meet in the streets";
+  EXPECT_LT(pairs("0.9"), 3U) << "only movers that meet in the streets";
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

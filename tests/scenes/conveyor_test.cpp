@@ -1,10 +1,10 @@
-// Conveyor: streams of different speeds that cross, and bodies that start anew.
+// Conveyor: streams of different speeds that cross, and bodies that start again.
 
 #include <map>
 
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 /// The axis along which a move mostly goes.
@@ -24,7 +24,7 @@ TEST(ConveyorScene, EveryBeltHasItsOwnSpeed) {
   for (std::size_t i = 0; i < 600; ++i) {
     const std::size_t belt = i % 12;
     const Point move = way(frames[0][i], frames[1][i]);
-    if (lengthOf(move) > side / 4) continue;  // started anew
+    if (lengthOf(move) > side / 4) continue;  // started again
     EXPECT_EQ(axisOf(move), static_cast<int>(belt % 3)) << "body " << i;
     EXPECT_NEAR(30 * lengthOf(move) / side, 0.5 * static_cast<double>(belt + 1) / 12, 1e-3)
         << "body " << i;
@@ -41,7 +41,7 @@ TEST(ConveyorScene, BodiesAreTakenBackToTheStartAtASteadyRate) {
     for (std::size_t frame = 1; frame <= 120; ++frame) {
       for (std::size_t i = 0; i < 600; ++i) {
         const double length = lengthOf(way(frames[frame - 1][i], frames[frame][i]));
-        EXPECT_TRUE(length < 0.1 * side || length > 0.8 * side) << "neither ride nor teleport";
+        EXPECT_TRUE(length < 0.1 * side || length > 0.8 * side) << "neither a step nor a restart";
         if (length > side / 2) ++teleports[(frame - 1) / 60];
       }
     }
@@ -59,7 +59,7 @@ TEST(ConveyorScene, StreamsCrossAndKeepTheirBelts) {
   const Aabb& world = simulation->scene().world;
   const double side = world.max[0] * 2.0;
   std::map<std::pair<std::size_t, std::size_t>, int> crossings;
-  int off = 0;  // pushed far off their belt by others
+  int off = 0;  // bodies that others have pushed far off their belt
   for (const std::size_t frame : {30U, 60U, 90U}) {
     const Boxes& boxes = frames[frame];
     EXPECT_TRUE(allInside(boxes, world, 0.2));
@@ -80,4 +80,4 @@ TEST(ConveyorScene, StreamsCrossAndKeepTheirBelts) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -1,4 +1,4 @@
-// The example among the assets, as an author would put it together.
+// The example scene in the assets, made with the editor.
 
 #include <gmock/gmock.h>
 
@@ -8,21 +8,17 @@
 #include "broadmark/scenes/authored_simulation.h"
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
+#include "entries.h"
 #include "scenes/scene_runs.h"
 
 namespace broadmark::scenes {
 namespace {
 
 std::unique_ptr<Brush> lineOf(int count, const ParameterValues& step) {
-  for (const BrushEntry& entry : brushEntries()) {
-    if (entry.listing.id != "line") continue;
-    auto brush = entry.create();
-    ParameterValues values = step;
-    values["count"] = std::to_string(count);
-    setParameters(*brush, values);
-    return brush;
-  }
-  throw std::runtime_error("no line");
+  auto brush = entryOf(brushEntries(), "line", "brush").create();
+  setParameters(*brush, {{"count", std::to_string(count)}});
+  setParameters(*brush, step);
+  return brush;
 }
 
 constexpr int kDominoes = 24;
@@ -74,7 +70,7 @@ TEST(ExampleScene, IsWhatTheEditorMakes) {
 }
 
 TEST(ExampleScene, TheLastDominoFalls) {
-  const auto frames = broadmark::testing::allFrames(*makeAuthoredSimulation(dominoes()));
+  const auto frames = tests::allFrames(*makeAuthoredSimulation(dominoes()));
   for (int domino = 1; domino <= kDominoes; ++domino) {
     const auto id = static_cast<std::size_t>(domino);
     EXPECT_EQ(frames.front()[id].max[1], 2) << domino;

@@ -1,8 +1,8 @@
-// Explosion: dense at first, ever thinner then.
+// Explosion: a density that falls in every frame.
 
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 /// Share of the bodies nearer to the world's centre than `radius` sides.
@@ -40,7 +40,7 @@ TEST(ExplosionScene, DensityFallsAtEverySizeAlike) {
       before = share;
     }
     EXPECT_LT(before, 0.25);
-    EXPECT_GT(before, 0.03) << "the slowest are still there";
+    EXPECT_GT(before, 0.03) << "slow bodies are still there";
   }
 }
 
@@ -64,4 +64,4 @@ TEST(ExplosionScene, OutwardSpeedGrowsWithTheDistance) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -1,4 +1,4 @@
-// What bodies of each object type look like.
+// The shapes of each object type.
 
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <set>
 
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
@@ -15,11 +16,8 @@ std::vector<Shape> shapesOf(const std::string& id, std::size_t count, double sca
                             std::uint64_t seed = 1) {
   std::vector<Shape> shapes;
   Random random(seed);
-  for (const ObjectType& type : objectTypes()) {
-    if (type.listing.id != id) continue;
-    for (std::size_t i = 0; i < count; ++i) shapes.push_back(type.shape(i, scale, random));
-  }
-  EXPECT_EQ(shapes.size(), count) << "object type " << id;
+  const ObjectType type = entryOf(objectTypes(), id, "object type");
+  for (std::size_t i = 0; i < count; ++i) shapes.push_back(type.shape(i, scale, random));
   return shapes;
 }
 
@@ -29,7 +27,7 @@ Vec3 edges(const Shape& shape) {
   return edges;
 }
 
-TEST(ObjectTypes, AreCalledAsInTheOriginal) {
+TEST(ObjectTypes, HaveTheOriginalsNames) {
   std::vector<std::string> names;
   for (const ObjectType& type : objectTypes()) names.push_back(type.listing.name);
   EXPECT_EQ(names, (std::vector<std::string>{"Cubes", "Spheres", "Assorted"}));

@@ -1,4 +1,4 @@
-// Every physics engine: bodies fall, rest, stay inside and freeze as a scene expects.
+// Every physics engine: bodies fall, rest, stay inside the walls and freeze.
 
 #include "broadmark/scenes/physics_engine.h"
 
@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
@@ -25,12 +26,8 @@ std::vector<EngineEntry> enginesWith(std::initializer_list<Dynamics> wanted) {
   return found;
 }
 
-EngineEntry engineNamed(const std::string& id) {
-  for (const EngineEntry& entry : engineEntries()) {
-    if (entry.listing.id == id) return entry;
-  }
-  ADD_FAILURE() << "no engine " << id;
-  return {};
+std::unique_ptr<PhysicsEngine> kinematicEngine(const PhysicsSettings& settings = {}) {
+  return entryOf(engineEntries(), "kinematic", "engine").create(settings);
 }
 
 /// Engines whose bodies obey gravity, velocities and walls.
@@ -48,10 +45,30 @@ class PhysicsEngineTest : public testing::TestWithParam<EngineEntry> {
                            .linear_velocity = velocity});
   }
 
+  /// A cube that is frozen while it moves, under gravity.
+  static PhysicsBody& addFrozenCube(PhysicsEngine& engine) {
+    engine.setGravity({0, -10, 0});
+    PhysicsBody& body = addCube(engine, {0, 0, 0}, {1, 2, 3});
+    engine.step();
+    body.freeze();
+    return body;
+  }
+
   static void step(PhysicsEngine& engine, int count) {
     for (int i = 0; i < count; ++i) engine.step();
   }
+
+  /// An engine with gravity and a floor at this height.
+  static std::unique_ptr<PhysicsEngine> makeFloor(float height) {
+    auto engine = makeEngine();
+    engine->setGravity({0, -10, 0});
+    engine->addWall({.normal = {0, 1, 0}, .offset = height});
+    return engine;
+  }
 };
+
+/// Shapes with the height of their centre above the floor they lie on.
+const std::pair<Shape, float> kRestingShapes[] = {{kUnitCube, 0.5F}, {SphereShape{0.7F}, 0.7F}};
 
 /// Those among them whose bodies collide with each other.
 class RigidEngineTest : public PhysicsEngineTest {};
@@ -68,11 +85,8 @@ TEST_P(PhysicsEngineTest, BodiesFallAsGravityTells) {
 }
 
 TEST_P(PhysicsEngineTest, ABodyComesToRestOnTheFloor) {
-  const std::pair<Shape, float> shapes[] = {{kUnitCube, 0.5F}, {SphereShape{0.7F}, 0.7F}};
-  for (const auto& [shape, height] : shapes) {
-    auto engine = makeEngine();
-    engine->setGravity({0, -10, 0});
-    engine->addWall({.normal = {0, 1, 0}, .offset = -4});
+  for (const auto& [shape, height] : kRestingShapes) {
+    auto engine = makeFloor(-4);
     PhysicsBody& body = engine->addBody({.shape = shape, .pose = {.position = {0, -3, 0}}});
     EXPECT_FALSE(engine->allAsleep());
     step(*engine, 200);
@@ -87,11 +101,8 @@ TEST_P(PhysicsEngineTest, ABodyComesToRestOnTheFloor) {
 }
 
 TEST_P(RigidEngineTest, AStackComesToRestWithBodiesOfTheRightSize) {
-  const std::pair<Shape, float> lower_shapes[] = {{kUnitCube, 0.5F}, {SphereShape{0.7F}, 0.7F}};
-  for (const auto& [shape, height] : lower_shapes) {
-    auto engine = makeEngine();
-    engine->setGravity({0, -10, 0});
-    engine->addWall({.normal = {0, 1, 0}, .offset = -4});
+  for (const auto& [shape, height] : kRestingShapes) {
+    auto engine = makeFloor(-4);
     PhysicsBody& lower = engine->addBody({.shape = shape, .pose = {.position = {0, -3, 0}}});
     PhysicsBody& upper = addCube(*engine, {0, -1, 0});
     EXPECT_FALSE(engine->allAsleep());
@@ -184,10 +195,7 @@ TEST_P(PhysicsEngineTest, AngularSpeedIsLimited) {
 
 TEST_P(RigidEngineTest, FrozenBodiesAreObstaclesForGood) {
   auto engine = makeEngine();
-  engine->setGravity({0, -10, 0});
-  PhysicsBody& obstacle = addCube(*engine, {0, 0, 0}, {1, 2, 3});
-  engine->step();
-  obstacle.freeze();
+  PhysicsBody& obstacle = addFrozenCube(*engine);
   const Pose pose = obstacle.pose();
   PhysicsBody& falling = addCube(*engine, {pose.position[0], 2, pose.position[2]});
   obstacle.setVelocity({5, 5, 5}, {1, 1, 1});
@@ -203,9 +211,7 @@ TEST_P(RigidEngineTest, FrozenBodiesAreObstaclesForGood) {
 }
 
 TEST_P(PhysicsEngineTest, LaunchingAndPlacingWakesASleepingBody) {
-  auto engine = makeEngine();
-  engine->setGravity({0, -10, 0});
-  engine->addWall({.normal = {0, 1, 0}, .offset = 0});
+  auto engine = makeFloor(0);
   PhysicsBody& body = addCube(*engine, {0, 0.5F, 0});
   step(*engine, 200);
   ASSERT_TRUE(body.asleep());
@@ -249,10 +255,7 @@ TEST_P(PhysicsEngineTest, BodiesAtRestInFreeSpaceCountAsAsleep) {
 
 TEST_P(PhysicsEngineTest, FrozenBodiesStayWhateverHappens) {
   auto engine = makeEngine();
-  engine->setGravity({0, -10, 0});
-  PhysicsBody& body = addCube(*engine, {0, 0, 0}, {1, 2, 3});
-  engine->step();
-  body.freeze();
+  PhysicsBody& body = addFrozenCube(*engine);
   const Pose pose = body.pose();
   body.setVelocity({5, 5, 5}, {1, 1, 1});
   engine->setGravity({0, -20, 0});
@@ -285,7 +288,7 @@ TEST_P(PhysicsEngineTest, DampingTakesItsShareOfTheVelocityPerSecond) {
 
 TEST(KinematicEngine, BouncesAsHighAsTheRestitutionTells) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
-    auto engine = engineNamed("kinematic").create({.restitution = restitution});
+    auto engine = kinematicEngine({.restitution = restitution});
     engine->setGravity({0, -10, 0});
     engine->addWall({.normal = {0, 1, 0}, .offset = 0});
     const double height = 3;
@@ -306,7 +309,7 @@ TEST(KinematicEngine, BouncesAsHighAsTheRestitutionTells) {
 }
 
 TEST(KinematicEngine, BodiesPassThroughEachOther) {
-  auto engine = engineNamed("kinematic").create({});
+  auto engine = kinematicEngine();
   PhysicsBody& still = engine->addBody({.shape = kUnitCube});
   PhysicsBody& moving = engine->addBody(
       {.shape = kUnitCube, .pose = {.position = {-2, 0, 0}}, .linear_velocity = {3, 0, 0}});
@@ -316,7 +319,7 @@ TEST(KinematicEngine, BodiesPassThroughEachOther) {
 }
 
 TEST(KinematicEngine, TurningBodiesKeepTheirTightBoxInside) {
-  auto engine = engineNamed("kinematic").create({.restitution = 1, .angular_damping = 0});
+  auto engine = kinematicEngine({.restitution = 1, .angular_damping = 0});
   engine->setGravity({0, -10, 0});
   for (int axis = 0; axis < 3; ++axis) {
     for (const float sign : {-1.0F, 1.0F}) {

@@ -1,5 +1,5 @@
-// Physics that a spectator would believe: bodies stay in the world, do not sink into each other,
-// gain no energy, and come to rest.
+// Plausible physics: bodies stay in the world, do not sink into each other, gain no energy and come
+// to rest.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <cmath>
 #include <tuple>
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
@@ -24,8 +25,8 @@ double reach(const BoxShape& box, const Eigen::Matrix3d& rotation, const Vector&
   return vectorOf(box.half_extents).dot((rotation.transpose() * axis).cwiseAbs());
 }
 
-/// How deep two turned boxes are in each other: the least overlap over the axes that may separate
-/// them (normals of faces, and normals of a pair of edges). Negative: that far apart, or farther.
+/// How deep two turned boxes are in each other: the least overlap on the axes that may separate
+/// them (the normals of faces, and of pairs of edges). Negative: at least that far apart.
 double depth(const BoxShape& a, const Pose& pose_a, const BoxShape& b, const Pose& pose_b) {
   const Eigen::Matrix3d turned_a = rotationOf(pose_a);
   const Eigen::Matrix3d turned_b = rotationOf(pose_b);
@@ -49,7 +50,7 @@ double depth(const SphereShape& a, const Pose& pose_a, const SphereShape& b, con
   return a.radius + b.radius - (vectorOf(pose_b.position) - vectorOf(pose_a.position)).norm();
 }
 
-/// Object types do not mix forms.
+/// Both bodies are boxes, or both are spheres.
 double depth(const PhysicsBody& a, const PhysicsBody& b) {
   return std::visit(
       [&]<class Form>(const Form& form) {
@@ -73,12 +74,7 @@ double kineticEnergy(const PhysicsBody& body) {
   return (vectorOf(body.linearVelocity()).squaredNorm() + about.dot(turning.cwiseAbs2())) / 2;
 }
 
-template <class Entries>
-auto find(const Entries& entries, const std::string& id) {
-  return *std::ranges::find(entries, id, [](const auto& entry) { return entry.listing.id; });
-}
-
-/// FreeFall on one engine, seen from inside.
+/// FreeFall on one engine, with access to its bodies.
 class FreeFallWorld {
  public:
   FreeFallWorld(const std::string& engine, const std::string& object_type, std::int64_t objects) {
@@ -87,7 +83,7 @@ class FreeFallWorld {
     settings_.objects = objects;
     // The longest bar must fit in.
     if (object_type == "assorted") settings_.density = 0.01;
-    engine_ = find(engineEntries(), engine).create(settings_.physics);
+    engine_ = entryOf(engineEntries(), engine, "engine").create(settings_.physics);
     for (int axis = 0; axis < 3; ++axis) {
       for (const float sign : {1.0F, -1.0F}) {
         HalfSpace wall{.offset = static_cast<float>(-settings_.side() / 2)};
@@ -95,8 +91,8 @@ class FreeFallWorld {
         engine_->addWall(wall);
       }
     }
-    const auto scene = find(sceneEntries(), std::string("freefall")).create();
-    const ObjectType type = find(objectTypes(), object_type);
+    const auto scene = entryOf(sceneEntries(), "freefall", "scene").create();
+    const ObjectType type = entryOf(objectTypes(), object_type, "object type");
     for (std::int64_t i = 0; i < objects; ++i) {
       bodies_.push_back(
           &engine_->addBody(scene->body(static_cast<std::size_t>(i), settings_, type, random_)));
@@ -173,6 +169,7 @@ class FreeFallWorld {
   std::unique_ptr<PhysicsEngine> engine_;
   std::vector<PhysicsBody*> bodies_;
 };
+
 using Case = std::tuple<std::string, std::string>;  // engine, object type
 
 std::vector<std::string> enginesThat(Dynamics dynamics) {
@@ -183,14 +180,24 @@ std::vector<std::string> enginesThat(Dynamics dynamics) {
   return ids;
 }
 
-std::vector<std::string> allObjectTypes() {
-  std::vector<std::string> ids;
-  for (const ObjectType& type : objectTypes()) ids.push_back(type.listing.id);
-  return ids;
-}
-
 class Plausibility : public testing::TestWithParam<Case> {
  protected:
+  /// Simulates some frames: bodies gain no energy, and lose much of it. Calls check(frame) after
+  /// each.
+  template <class Check>
+  void expectLossOfEnergy(int frames, Check&& check) {
+    const double start = world_.energy();
+    double before = start;
+    for (int frame = 1; frame <= frames; ++frame) {
+      world_.step();
+      const double now = world_.energy();
+      EXPECT_LT(now, before + 1e-4 * start) << "frame " << frame;
+      before = now;
+      check(frame);
+    }
+    EXPECT_LT(before, 0.5 * start) << "inelastic impacts and friction take energy";
+  }
+
   FreeFallWorld world_{std::get<0>(GetParam()), std::get<1>(GetParam()), 200};
 };
 
@@ -201,37 +208,22 @@ class PassingPlausibility : public Plausibility {};
 
 // Measured, of either engine: no gain at all; depth 0.02 of cubes and spheres, 0.06 of assorted
 // bodies, which are up to 0.08 thin and begin deep inside each other and the walls.
-TEST_P(RigidPlausibility, NobodyGainsEnergySinksInOrEscapes) {
+TEST_P(RigidPlausibility, BodiesGainNoEnergySinkInOrEscape) {
   const double allowed = std::get<1>(GetParam()) == "assorted" ? 0.1 : 0.05;
-  constexpr int kUntangled = 20;  // frames until bodies that started inside each other have parted
-  const double start = world_.energy();
-  double before = start;
-  for (int frame = 1; frame <= 120; ++frame) {
-    world_.step();
-    const double now = world_.energy();
-    EXPECT_LT(now, before + 1e-4 * start) << "frame " << frame;
-    before = now;
+  constexpr int kUntangled = 20;  // frames until bodies that started inside each other are apart
+  expectLossOfEnergy(120, [&](int frame) {
     EXPECT_LT(world_.outside(true), 0) << "frame " << frame << ": a centre is outside";
-    if (frame <= kUntangled || frame % 10 != 0) continue;
+    if (frame <= kUntangled || frame % 10 != 0) return;
     EXPECT_LT(std::ranges::max(world_.depths()), allowed) << "frame " << frame;
-  }
-  EXPECT_LT(before, 0.5 * start) << "inelastic impacts and friction take energy";
+  });
 }
 
-TEST_P(PassingPlausibility, NobodyGainsEnergyOrLeavesTheWorld) {
-  const double start = world_.energy();
-  double before = start;
-  for (int frame = 1; frame <= 120; ++frame) {
-    world_.step();
-    const double now = world_.energy();
-    EXPECT_LT(now, before + 1e-4 * start) << "frame " << frame;
-    before = now;
-    EXPECT_LT(world_.outside(false), 1e-5) << "frame " << frame;
-  }
-  EXPECT_LT(before, 0.5 * start) << "inelastic impacts and friction take energy";
+TEST_P(PassingPlausibility, BodiesGainNoEnergyAndStayInTheWorld) {
+  expectLossOfEnergy(
+      120, [&](int frame) { EXPECT_LT(world_.outside(false), 1e-5) << "frame " << frame; });
 }
 
-TEST_P(PassingPlausibility, EverybodyComesToRest) {
+TEST_P(PassingPlausibility, AllBodiesComeToRest) {
   for (int frame = 0; frame < 1000; ++frame) world_.step();
   EXPECT_EQ(world_.resting(), 200U);
 }
@@ -240,7 +232,7 @@ TEST_P(PassingPlausibility, EverybodyComesToRest) {
 class RigidSettling : public RigidPlausibility {};
 
 // Measured after 1,000 frames: all asleep, depth at most 0.009, gaps at most 0.006.
-TEST_P(RigidSettling, AlmostEverybodyRestsOnSomething) {
+TEST_P(RigidSettling, AlmostAllBodiesRestOnSomething) {
   for (int frame = 0; frame < 1000; ++frame) world_.step();
   EXPECT_GE(world_.resting(), 198U) << "99 %";
   for (const double depth : world_.depths()) {
@@ -254,11 +246,11 @@ const auto name_of_case = [](const auto& param) {
 };
 INSTANTIATE_TEST_SUITE_P(All, RigidPlausibility,
                          testing::Combine(testing::ValuesIn(enginesThat(Dynamics::rigid)),
-                                          testing::ValuesIn(allObjectTypes())),
+                                          testing::ValuesIn(idsOf(objectTypes()))),
                          name_of_case);
 INSTANTIATE_TEST_SUITE_P(All, PassingPlausibility,
                          testing::Combine(testing::ValuesIn(enginesThat(Dynamics::passing)),
-                                          testing::ValuesIn(allObjectTypes())),
+                                          testing::ValuesIn(idsOf(objectTypes()))),
                          name_of_case);
 INSTANTIATE_TEST_SUITE_P(All, RigidSettling,
                          testing::Combine(testing::ValuesIn(enginesThat(Dynamics::rigid)),

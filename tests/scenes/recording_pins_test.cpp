@@ -1,8 +1,8 @@
 // Every scene with every object type on every engine: the same bits for the same parameters,
-// whatever else runs in the process, and statistics as recording_pins.inc has them.
+// whatever else runs in the process, and the statistics in recording_pins.inc.
 //
-// A combination without a pin fails with the line to add there. A line that no longer holds is
-// replaced likewise, once the change is understood and meant.
+// A combination without a pin fails with the line to add there. Replace a line that no longer holds
+// only when the change is understood and intended.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "broadmark/oracle.h"
-#include "broadmark/scenes/simulation.h"
+#include "scenes/scene_runs.h"
 
-namespace broadmark {
+namespace broadmark::tests {
 namespace {
 
 struct Combination {
@@ -57,19 +57,8 @@ std::unique_ptr<Simulation> simulationOf(const Combination& combination,
   return simulation;
 }
 
-using Frames = std::vector<std::vector<Aabb>>;
-
-/// All frames, the initial pose first.
-Frames framesOf(Simulation& simulation) {
-  Frames frames;
-  for (std::optional<Frame> frame = simulation.rewind(); frame; frame = simulation.next()) {
-    frames.emplace_back(frame->boxes.begin(), frame->boxes.end());
-  }
-  return frames;
-}
-
-/// What tells a recording of other physics from this one, and heeds no single body: that may well
-/// fly elsewhere after another rounding.
+/// Numbers that differ when the physics differ, but do not depend on single bodies: a body may take
+/// another path after another rounding.
 struct Statistics {
   double mean_edge = 0;  ///< of the boxes, over all frames
   double height_1 = 0;   ///< mean height of the centres in frame 1
@@ -80,18 +69,17 @@ struct Statistics {
   double moving_20 = 0;  ///< share in frame 20 that differ from frame 19
 };
 
-double centre(const Aabb& box, int axis) { return (box.min[axis] + box.max[axis]) / 2.0; }
-
 double meanHeight(const std::vector<Aabb>& boxes) {
   double sum = 0;
-  for (const Aabb& box : boxes) sum += centre(box, 1);
+  for (const Aabb& box : boxes) sum += centreOf(box)[1];
   return sum / static_cast<double>(boxes.size());
 }
 
 double spread(const std::vector<Aabb>& boxes) {
   double sum = 0;
   for (const Aabb& box : boxes) {
-    for (int axis = 0; axis < 3; ++axis) sum += centre(box, axis) * centre(box, axis);
+    const Point centre = centreOf(box);
+    sum += dot(centre, centre);
   }
   return std::sqrt(sum / static_cast<double>(boxes.size()));
 }
@@ -147,18 +135,18 @@ std::string pinLine(const Combination& c, const Statistics& s) {
 
 class EveryCombination : public testing::TestWithParam<Combination> {};
 
-TEST_P(EveryCombination, HasTheStatisticsThatItIsPinnedTo) {
+TEST_P(EveryCombination, HasThePinnedStatistics) {
   // Dense enough for pairs, large enough for the longest bar.
   auto simulation =
       simulationOf(GetParam(), {{"objects", "200"}, {"frames", "20"}, {"density", "0.05"}});
   const double side = simulation->scene().world.max[0] * 2.0;
-  const Statistics now = statisticsOf(framesOf(*simulation));
+  const Statistics now = statisticsOf(allFrames(*simulation));
   const std::string line = pinLine(GetParam(), now);
   const auto pin = std::ranges::find(kPins, GetParam(), &Pin::combination);
   ASSERT_NE(pin, kPins.end()) << "no pin in tests/scenes/recording_pins.inc; the line to add:\n"
                               << line;
   const Statistics& pinned = pin->statistics;
-  SCOPED_TRACE("if this change is meant, the line in tests/scenes/recording_pins.inc is now\n" +
+  SCOPED_TRACE("if this change is intended, the line in tests/scenes/recording_pins.inc is now\n" +
                line);
   EXPECT_NEAR(now.mean_edge, pinned.mean_edge, 0.02 * pinned.mean_edge);
   EXPECT_NEAR(now.height_1, pinned.height_1, 0.005 * side);
@@ -173,7 +161,7 @@ TEST_P(EveryCombination, GivesTheSameBitsWhateverElseRuns) {
   const ParameterValues values = {{"objects", "120"}, {"frames", "8"}, {"density", "0.05"}};
   const ParameterValues other_values = {
       {"objects", "60"}, {"frames", "8"}, {"seed", "2"}, {"substeps", "2"}, {"friction", "0.1"}};
-  const auto run = [&] { return framesOf(*simulationOf(GetParam(), values)); };
+  const auto run = [&] { return allFrames(*simulationOf(GetParam(), values)); };
   const Frames alone = run();
 
   auto simulation = simulationOf(GetParam(), values);
@@ -198,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryCombination, testing::ValuesIn(allCombination
                                   param.param.engine;
                          });
 
-TEST(RecordingPins, AreOfCombinationsThatThereAre) {
+TEST(RecordingPins, BelongToCombinationsThatExist) {
   const std::vector<Combination> all = allCombinations();
   for (std::size_t i = 0; i < kPins.size(); ++i) {
     const Combination& c = kPins[i].combination;
@@ -209,4 +197,4 @@ TEST(RecordingPins, AreOfCombinationsThatThereAre) {
 }
 
 }  // namespace
-}  // namespace broadmark
+}  // namespace broadmark::tests

@@ -12,51 +12,26 @@
 #include <set>
 
 #include "broadmark/posrot.h"
-#include "broadmark/scenes/simulation.h"
 #include "engine/helpers.h"
+#include "scenes/scene_runs.h"
 
-namespace broadmark {
+namespace broadmark::tests {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using tests::inputErrorOf;
-using tests::TemporaryDirectory;
 
 namespace fs = std::filesystem;
-
-std::unique_ptr<Simulation> simulationOf(const std::string& scene, const std::string& engine,
-                                         const ParameterValues& values) {
-  auto simulation = makeSimulation(scene, engine);
-  setParameters(*simulation, values);
-  return simulation;
-}
 
 std::string bytesOf(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-using Sets = std::vector<std::vector<Aabb>>;
-
-/// Every frame of a source, the initial pose first.
-Sets framesOf(FrameSource& source) {
-  Sets frames;
-  recordAll(source, [&](const Frame& frame) {
-    frames.emplace_back(frame.boxes.begin(), frame.boxes.end());
-  });
-  return frames;
-}
-
 double volume(const Aabb& box) {
   double product = 1;
   for (int axis = 0; axis < 3; ++axis) product *= double{box.max[axis]} - double{box.min[axis]};
   return product;
-}
-
-Vec3 centre(const Aabb& box) {
-  return {(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2,
-          (box.min[2] + box.max[2]) / 2};
 }
 
 void expectNear(const Aabb& a, const Aabb& b, float tolerance) {
@@ -77,9 +52,10 @@ class Replays : public testing::Test {
   /// Simulates a small scene into .aabbs and .posrot below `small_`. Returns the first's path.
   fs::path bakeSmall(const std::string& type, const std::string& objects = "64",
                      const std::string& frames = "5", const std::string& scene = "brownian") {
-    auto simulation = simulationOf(
-        scene, "kinematic",
-        {{"objects", objects}, {"frames", frames}, {"object_type", type}, {"density", "0.2"}});
+    auto simulation = sceneWith(
+        scene,
+        {{"objects", objects}, {"frames", frames}, {"object_type", type}, {"density", "0.2"}},
+        "kinematic");
     return bakeBoth(*simulation, small_);
   }
 
@@ -94,7 +70,7 @@ class Replays : public testing::Test {
   [[nodiscard]] std::unique_ptr<Simulation> replay(const std::string& engine,
                                                    ParameterValues values) const {
     values.insert({"input", small_.string()});
-    return simulationOf("brownian", engine, values);
+    return sceneWith("brownian", values, engine);
   }
 
   TemporaryDirectory directory_;
@@ -103,7 +79,7 @@ class Replays : public testing::Test {
 };
 
 TEST_F(Replays, PosesGiveTheBoxesThatTheSimulationHad) {
-  // Those whose bodies are as their object type makes them, and start unturned.
+  // Scenes whose bodies have the sizes of their object type and start unturned.
   const std::set<std::string> usual_scenes = {"freefall", "brownian", "gravity"};
   for (const SceneListing& scene : builtinScenes()) {
     for (const std::string type : {"cubes", "spheres", "assorted"}) {
@@ -112,8 +88,8 @@ TEST_F(Replays, PosesGiveTheBoxesThatTheSimulationHad) {
       RecordingReader boxes(path);
       PosrotReader poses(posrotOf(path));
       EXPECT_EQ(poses.scene(), boxes.scene());
-      const Sets recorded = framesOf(boxes);
-      const Sets replayed = framesOf(poses);
+      const Frames recorded = allFrames(boxes);
+      const Frames replayed = allFrames(poses);
       // Eight units in the last place of the farthest corner, where sizes are any numbers.
       const float uncertain = 8 * 0x1p-23F * 2 * boxes.scene().world.max[0];
       const bool usual = type != "assorted" && usual_scenes.contains(scene.id);
@@ -149,13 +125,13 @@ TEST_F(Replays, ViewerTakesTheFramesAskedFor) {
   auto viewer = replay("viewer", {{"objects", "64"}, {"frames", "3"}});
   EXPECT_EQ(viewer->input(), posrotOf(path)) << "the shortest that is long enough";
   EXPECT_EQ(viewer->scene().frames, 3U);
-  const Sets first = framesOf(*viewer);
+  const Frames first = allFrames(*viewer);
   EXPECT_EQ(first.size(), 4U);
-  EXPECT_EQ(framesOf(*viewer), first) << "from the start again";
+  EXPECT_EQ(allFrames(*viewer), first) << "from the start again";
   EXPECT_EQ(replay("viewer", {{"objects", "64"}})->scene().frames, 9U) << "all there are";
 }
 
-TEST_F(Replays, ViewerMakesDoWithBoxes) {
+TEST_F(Replays, ViewerAcceptsBoxesWithoutPoses) {
   const fs::path path = bakeSmall("assorted");
   fs::remove(posrotOf(path));
   auto viewer = replay("viewer", {{"objects", "64"}, {"object_type", "assorted"}});
@@ -166,12 +142,12 @@ TEST_F(Replays, ViewerMakesDoWithBoxes) {
               AllOf(HasSubstr(path.string()), HasSubstr("boxes only")));
 }
 
-TEST_F(Replays, AFileMayBeNamedItself) {
+TEST_F(Replays, TheInputMayBeAFile) {
   const fs::path path = bakeSmall("cubes");
   fs::rename(posrotOf(path), directory_ / "other name.posrot");
   auto viewer =
       replay("viewer", {{"objects", "64"}, {"input", (directory_ / "other name.posrot").string()}});
-  EXPECT_EQ(framesOf(*viewer), framesOf(*openRecordingFile(path)));
+  EXPECT_EQ(allFrames(*viewer), allFrames(*openRecordingFile(path)));
 }
 
 TEST_F(Replays, SplitterStartsWithPartsThatTileTheDoubledBody) {
@@ -264,7 +240,7 @@ TEST_F(Replays, SplitterMovesThePartsAsTheBodyMoves) {
 TEST_F(Replays, PartsOfOneBodyStayTogether) {
   bakeSmall("cubes");
   auto splitter = replay("splitter", {{"objects", "512"}});
-  for (const std::vector<Aabb>& boxes : framesOf(*splitter)) {
+  for (const std::vector<Aabb>& boxes : allFrames(*splitter)) {
     for (std::size_t i = 0; i < boxes.size(); i += 8) {
       for (std::size_t a = i; a < i + 8; ++a) {
         for (std::size_t b = i; b < a; ++b) {
@@ -279,36 +255,35 @@ TEST_F(Replays, SplitterCanBeChained) {
   bakeSmall("cubes");
   auto once = replay("splitter", {{"objects", "512"}});
   const fs::path eightfold = bakeBoth(*once, small_);
-  EXPECT_EQ(framesOf(*openRecordingFile(posrotOf(eightfold))),
-            framesOf(*openRecordingFile(eightfold)))
+  EXPECT_EQ(allFrames(*openRecordingFile(posrotOf(eightfold))),
+            allFrames(*openRecordingFile(eightfold)))
       << "what the splitter records is what it shows";
 
   auto twice = replay("splitter", {{"objects", "4096"}});
   EXPECT_EQ(twice->input(), posrotOf(eightfold));
-  EXPECT_EQ(twice->scene().world.max[0],
-            4 * simulationOf("brownian", "", {{"objects", "64"}, {"density", "0.2"}})
-                    ->scene()
-                    .world.max[0]);
-  const Sets frames = framesOf(*twice);
+  EXPECT_EQ(
+      twice->scene().world.max[0],
+      4 * sceneWith("brownian", {{"objects", "64"}, {"density", "0.2"}})->scene().world.max[0]);
+  const Frames frames = allFrames(*twice);
   ASSERT_EQ(frames.size(), 6U);
   RecordingReader parents(eightfold);
   for (std::size_t f = 0; f < frames.size(); ++f) {
     ASSERT_EQ(frames[f].size(), 4096U);
-    const Frame bodies = parents.read(static_cast<std::uint32_t>(f));
+    const Frame bodies = parents.at(static_cast<std::uint32_t>(f));
     for (std::size_t i = 0; i < 512; ++i) {
-      Vec3 middle{};
+      Point middle{};
       for (std::size_t part = 8 * i; part < 8 * i + 8; ++part) {
         ASSERT_NEAR(volume(frames[f][part]), volume(bodies.boxes[i]), 1e-3);
-        for (int axis = 0; axis < 3; ++axis) middle[axis] += centre(frames[f][part])[axis] / 8;
+        for (int axis = 0; axis < 3; ++axis) middle[axis] += centreOf(frames[f][part])[axis] / 8;
       }
       for (int axis = 0; axis < 3; ++axis) {
-        ASSERT_NEAR(middle[axis], 2 * centre(bodies.boxes[i])[axis], 1e-4);
+        ASSERT_NEAR(middle[axis], 2 * centreOf(bodies.boxes[i])[axis], 1e-4);
       }
     }
   }
 }
 
-TEST_F(Replays, AreKnownAgainByTheContentsOfTheirInput) {
+TEST_F(Replays, AreRecognisedByTheContentsOfTheirInput) {
   bakeSmall("cubes");
   const ParameterValues values = {{"objects", "512"}, {"frames", "4"}};
   auto splitter = replay("splitter", values);
@@ -316,7 +291,7 @@ TEST_F(Replays, AreKnownAgainByTheContentsOfTheirInput) {
   const auto sidecar = nlohmann::json::parse(bytesOf(fs::path(path).replace_extension(".json")));
   EXPECT_EQ(sidecar.at("scene"), "brownian");
   EXPECT_EQ(sidecar.at("parameters").at("engine"), "splitter");
-  EXPECT_FALSE(sidecar.at("parameters").contains("input")) << "where it lay does not count";
+  EXPECT_FALSE(sidecar.at("parameters").contains("input")) << "the path does not matter";
   EXPECT_EQ(sidecar.at("input_hash"), openRecordingFile(splitter->input())->hash());
   EXPECT_TRUE(isBaked(path, *replay("splitter", values)));
   EXPECT_TRUE(isBaked(posrotOf(path), *replay("splitter", values)));
@@ -327,12 +302,12 @@ TEST_F(Replays, AreKnownAgainByTheContentsOfTheirInput) {
   fs::rename(directory_ / "moved", small_);
   EXPECT_TRUE(isBaked(path, *replay("splitter", values)));
   auto other =
-      simulationOf("brownian", "kinematic", {{"objects", "64"}, {"frames", "5"}, {"seed", "9"}});
+      sceneWith("brownian", {{"objects", "64"}, {"frames", "5"}, {"seed", "9"}}, "kinematic");
   bakeBoth(*other, small_);
   EXPECT_FALSE(isBaked(path, *replay("splitter", values))) << "another input";
 }
 
-TEST_F(Replays, WhatIsNotThereIsSaidWithWhatIs) {
+TEST_F(Replays, RefusalsListTheRecordingsThatExist) {
   bakeSmall("cubes", "64", "5");
   bakeSmall("cubes", "80", "7");
   const auto refusal = [&](const std::string& engine, const ParameterValues& values) {
@@ -345,7 +320,7 @@ TEST_F(Replays, WhatIsNotThereIsSaidWithWhatIs) {
   EXPECT_THAT(refusal("viewer", {{"objects", "64"}, {"object_type", "spheres"}}),
               HasSubstr("none of Brownian Spheres"));
   EXPECT_THAT(refusal("splitter", {{"objects", "513"}}),
-              AllOf(HasSubstr("513 is no multiple of 8"), HasSubstr("N64 F5 (gives 512 bodies)"),
+              AllOf(HasSubstr("multiple of 8"), HasSubstr("N64 F5 (gives 512 bodies)"),
                     HasSubstr("N80 F7 (gives 640 bodies)")));
   EXPECT_THAT(refusal("splitter", {{"objects", "800"}}), HasSubstr("gives 512"));
   EXPECT_THAT(refusal("viewer", {{"input", ""}}), HasSubstr("--input"));
@@ -364,7 +339,7 @@ TEST_F(Replays, WhatIsNotThereIsSaidWithWhatIs) {
               HasSubstr("did you mean 'viewer'"));
 }
 
-TEST_F(Replays, ABrokenOrRenamedInputIsSaid) {
+TEST_F(Replays, ABrokenOrRenamedInputIsRefused) {
   const fs::path path = posrotOf(bakeSmall("cubes"));
   fs::copy_file(path, small_ / "Brownian Cubes N72 F5frames.posrot");
   EXPECT_THAT(inputErrorOf([&] {
@@ -387,4 +362,4 @@ TEST_F(Replays, NothingIsWrittenOverTheInput) {
 }
 
 }  // namespace
-}  // namespace broadmark
+}  // namespace broadmark::tests

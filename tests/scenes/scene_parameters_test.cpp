@@ -1,13 +1,13 @@
-// Files of scene parameters: what they set, and what is wrong with bad ones.
+// Files of scene parameters: what they set, and how bad ones are refused.
 
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
-#include "broadmark/error.h"
+#include "engine/helpers.h"
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using ::testing::HasSubstr;
@@ -18,12 +18,7 @@ Json fileOf(const std::string& scene, const Json& parameters) {
 }
 
 std::string refusalOf(const std::string& text) {
-  try {
-    parseSceneParameters(text, "some file.json");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return inputErrorOf([&] { parseSceneParameters(text, "some file.json"); });
 }
 
 TEST(SceneParameters, SetWhatTheyStateAndLeaveTheDefaults) {
@@ -62,7 +57,7 @@ TEST(SceneParameters, SurviveARoundTripForEverySceneAndEngine) {
   }
 }
 
-TEST(SceneParameters, OfAnEngineCountOnceItIsChosen) {
+TEST(SceneParameters, OfAnEngineAreKnownWhenItIsChosen) {
   const Json boids = {{"engine", "boids"}, {"alignment", 7}};
   EXPECT_EQ(
       parameterValues(*parseSceneParameters(fileOf("brownian", boids).dump(), "f")).at("alignment"),
@@ -90,15 +85,15 @@ TEST(SceneParameters, RefusalsNameFileKeyAndWhatWouldBeRight) {
       {with("density", 1.5), {"density", "'1.5'", "1e-06…1"}},
       {with("freeze_slow", 1), {"freeze_slow", "true", "false"}},
       {with("freeze_slow", "on"), {"freeze_slow", "true", "false"}},
-      {with("engine", "bulet"), {"engine", "did you mean 'bullet'?"}},
+      {with("engine", "bulet"), {"engine", "'bullet'"}},
       {with("engine", 3), {"engine", "'3'", "bullet"}},
       {with("strength", 4), {"strength"}},
       {fileOf("freefall", {{"engine", "viewer"}, {"input", 4}}).dump(), {"input", "'4'", "text"}},
       {fileOf("freefall", {{"engine", "viewer"}, {"density", 1}}).dump(), {"'density'"}},
-      {fileOf("freefal", Json::object()).dump(), {"freefal", "did you mean 'freefall'?"}},
+      {fileOf("freefal", Json::object()).dump(), {"freefal", "'freefall'"}},
       {fileOf("freefall", 3).dump(), {"parameters", "object"}},
       {no_scene.dump(), {"'scene' is missing"}},
-      {more.dump(), {"paramters", "did you mean 'parameters'?"}},
+      {more.dump(), {"paramters", "'parameters'"}},
       {R"({"schema": "broadmark-results/1"})", {"broadmark-results/1", "scene-parameters"}},
       {R"({"schema": 1})", {"schema"}},
       {"{}", {"'schema' is missing"}},
@@ -114,4 +109,4 @@ TEST(SceneParameters, RefusalsNameFileKeyAndWhatWouldBeRight) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -1,4 +1,4 @@
-// What the tests of scenes share: running one, and a few questions about its frames.
+// Helpers of the tests of scenes: running a scene, and measuring its frames.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,31 +7,36 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "broadmark/scenes/simulation.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 
 using Boxes = std::vector<Aabb>;
+using Frames = std::vector<Boxes>;
 using Point = std::array<double, 3>;
 
-/// A built-in scene with these parameters.
+/// A built-in scene with these parameters; engine "": its default.
 inline std::unique_ptr<Simulation> sceneWith(const std::string& scene,
-                                             const ParameterValues& values) {
-  auto simulation = makeSimulation(scene);
+                                             const ParameterValues& values,
+                                             const std::string& engine = {}) {
+  auto simulation = makeSimulation(scene, engine);
   setParameters(*simulation, values);
   return simulation;
 }
 
-/// All its frames, the initial pose first.
-inline std::vector<Boxes> allFrames(Simulation& simulation) {
-  const auto copy = [](const Frame& frame) {
-    return Boxes(frame.boxes.begin(), frame.boxes.end());
-  };
-  std::vector<Boxes> frames = {copy(simulation.rewind())};
-  while (const auto frame = simulation.next()) frames.push_back(copy(*frame));
+inline Boxes boxesOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
+
+/// All frames of a source, the initial pose first.
+inline Frames allFrames(FrameSource& source) {
+  Frames frames = {boxesOf(source.rewind())};
+  while (const auto frame = source.next()) {
+    EXPECT_EQ(frame->index, frames.size());
+    frames.push_back(boxesOf(*frame));
+  }
   return frames;
 }
 
@@ -50,23 +55,28 @@ inline double dot(const Point& a, const Point& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// The way of a body's centre from one frame to another.
+/// How a body's centre moved from one frame to another.
 inline Point way(const Aabb& from, const Aabb& to) { return minus(centreOf(to), centreOf(from)); }
 
 inline double longestEdgeOf(const Aabb& box) {
   return std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
 }
 
-/// Whether every box is inside the world, but for `slack`.
-inline bool allInside(const Boxes& boxes, const Aabb& world, double slack) {
-  return std::ranges::all_of(boxes, [&](const Aabb& box) {
+/// How far the farthest box reaches out of the world; negative: all are inside.
+inline double reachOutside(std::span<const Aabb> boxes, const Aabb& world) {
+  double farthest = -1e9;
+  for (const Aabb& box : boxes) {
     for (int axis = 0; axis < 3; ++axis) {
-      if (box.min[axis] < world.min[axis] - slack || box.max[axis] > world.max[axis] + slack) {
-        return false;
-      }
+      farthest = std::max({farthest, double{world.min[axis]} - box.min[axis],
+                           double{box.max[axis]} - world.max[axis]});
     }
-    return true;
-  });
+  }
+  return farthest;
+}
+
+/// Whether no box reaches out of the world by more than `slack`.
+inline bool allInside(std::span<const Aabb> boxes, const Aabb& world, double slack) {
+  return reachOutside(boxes, world) <= slack;
 }
 
 inline std::size_t pairsAmong(const Boxes& boxes) {
@@ -77,4 +87,4 @@ inline std::size_t pairsAmong(const Boxes& boxes) {
   return pairs;
 }
 
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -1,6 +1,6 @@
-// What the built-in scenes do to their bodies.
+// What the built-in scenes do with their bodies.
 
-#include "scenes/scene.h"
+#include "broadmark/scenes/scene.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,13 @@
 #include <numbers>
 #include <vector>
 
+#include "entries.h"
 #include "scenes/gravity.h"
 
 namespace broadmark::scenes {
 namespace {
 
-/// Bodies and an engine that do nothing but note what is asked of them.
+/// A body and an engine that only record the calls.
 class NotingBody final : public PhysicsBody {
  public:
   explicit NotingBody(const BodyDescription& description)
@@ -58,12 +59,10 @@ class NotingEngine final : public PhysicsEngine {
   Vec3 noted_gravity{};
 };
 
-/// A scene of `objects` bodies on a noting engine.
+/// A scene of `objects` bodies on such an engine.
 struct Rehearsal {
   Rehearsal(const std::string& id, std::int64_t objects) {
-    for (const SceneEntry& entry : sceneEntries()) {
-      if (entry.listing.id == id) scene = entry.create();
-    }
+    scene = entryOf(sceneEntries(), id, "scene").create();
     scene->setDefaults(settings);
     settings.objects = objects;
     for (std::int64_t i = 0; i < objects; ++i) {

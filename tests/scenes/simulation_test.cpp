@@ -1,4 +1,4 @@
-// Whole simulations: parameters, determinism, and bodies that behave.
+// Whole simulations: parameters, determinism and plausible motion.
 
 #include "broadmark/scenes/simulation.h"
 
@@ -8,60 +8,18 @@
 #include <cmath>
 #include <future>
 
-#include "broadmark/error.h"
+#include "engine/helpers.h"
+#include "scenes/scene_runs.h"
 
-namespace broadmark {
+namespace broadmark::tests {
 namespace {
 
 using testing::HasSubstr;
 
-using Frames = std::vector<std::vector<Aabb>>;
-
-std::unique_ptr<Simulation> simulationOf(const std::string& scene, const ParameterValues& values) {
-  auto simulation = makeSimulation(scene);
-  setParameters(*simulation, values);
-  return simulation;
-}
-
-std::vector<Aabb> copyOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
-
-/// All frames, the initial pose first.
-Frames framesOf(Simulation& simulation) {
-  Frames frames = {copyOf(simulation.rewind())};
-  while (const auto frame = simulation.next()) {
-    EXPECT_EQ(frame->index, frames.size());
-    frames.push_back(copyOf(*frame));
-  }
-  return frames;
-}
-
-std::array<double, 3> centre(const Aabb& box) {
-  return {(box.min[0] + box.max[0]) / 2.0, (box.min[1] + box.max[1]) / 2.0,
-          (box.min[2] + box.max[2]) / 2.0};
-}
-
-double distance(const Aabb& a, const Aabb& b) {
-  const auto p = centre(a);
-  const auto q = centre(b);
-  return std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-}
-
 double meanHeight(std::span<const Aabb> boxes) {
   double sum = 0;
-  for (const Aabb& box : boxes) sum += centre(box)[1];
+  for (const Aabb& box : boxes) sum += centreOf(box)[1];
   return sum / static_cast<double>(boxes.size());
-}
-
-/// How far the farthest box pokes out of the world; negative: none does.
-double pokingOut(std::span<const Aabb> boxes, const Aabb& world) {
-  double farthest = -1e9;
-  for (const Aabb& box : boxes) {
-    for (int axis = 0; axis < 3; ++axis) {
-      farthest = std::max({farthest, static_cast<double>(world.min[axis]) - box.min[axis],
-                           static_cast<double>(box.max[axis]) - world.max[axis]});
-    }
-  }
-  return farthest;
 }
 
 class EveryScene : public testing::TestWithParam<SceneListing> {};
@@ -88,15 +46,15 @@ TEST_P(EveryScene, DescribesItselfByItsParameters) {
 
 TEST_P(EveryScene, GivesTheSameBitsForTheSameSeedOnly) {
   const ParameterValues values = {{"objects", "120"}, {"frames", "20"}, {"seed", "5"}};
-  auto simulation = simulationOf(GetParam().id, values);
-  const Frames first = framesOf(*simulation);
+  auto simulation = sceneWith(GetParam().id, values);
+  const Frames first = allFrames(*simulation);
   EXPECT_EQ(first.size(), 21U);
-  EXPECT_EQ(framesOf(*simulation), first) << "after rewinding";
-  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, values)), first) << "in another instance";
+  EXPECT_EQ(allFrames(*simulation), first) << "after rewinding";
+  EXPECT_EQ(allFrames(*sceneWith(GetParam().id, values)), first) << "in another instance";
 
   auto other_values = values;
   other_values["seed"] = "6";
-  const Frames other = framesOf(*simulationOf(GetParam().id, other_values));
+  const Frames other = allFrames(*sceneWith(GetParam().id, other_values));
   EXPECT_NE(other.front(), first.front());
   EXPECT_NE(other.back(), first.back());
 }
@@ -105,22 +63,22 @@ TEST_P(EveryScene, SimulationsAliveAtOnceDoNotInfluenceEachOther) {
   const ParameterValues values = {{"objects", "150"}, {"frames", "15"}};
   const ParameterValues other_values = {
       {"objects", "90"}, {"frames", "15"}, {"seed", "2"}, {"substeps", "2"}, {"friction", "0.1"}};
-  const Frames alone = framesOf(*simulationOf(GetParam().id, values));
-  const Frames other_alone = framesOf(*simulationOf(GetParam().id, other_values));
+  const Frames alone = allFrames(*sceneWith(GetParam().id, values));
+  const Frames other_alone = allFrames(*sceneWith(GetParam().id, other_values));
 
-  auto simulation = simulationOf(GetParam().id, values);
-  auto other = simulationOf(GetParam().id, other_values);
+  auto simulation = sceneWith(GetParam().id, values);
+  auto other = sceneWith(GetParam().id, other_values);
   simulation->rewind();
   other->rewind();
   for (std::size_t i = 1; i <= 15; ++i) {
-    ASSERT_EQ(copyOf(*simulation->next()), alone[i]);
-    ASSERT_EQ(copyOf(*other->next()), other_alone[i]);
+    ASSERT_EQ(boxesOf(*simulation->next()), alone[i]);
+    ASSERT_EQ(boxesOf(*other->next()), other_alone[i]);
   }
 }
 
 TEST_P(EveryScene, ThreadsDoNotInfluenceEachOther) {
   const ParameterValues values = {{"objects", "150"}, {"frames", "15"}};
-  const auto run = [&] { return framesOf(*simulationOf(GetParam().id, values)); };
+  const auto run = [&] { return allFrames(*sceneWith(GetParam().id, values)); };
   const Frames alone = run();
   std::vector<std::future<Frames>> others;
   for (int i = 0; i < 3; ++i) others.push_back(std::async(std::launch::async, run));
@@ -128,13 +86,14 @@ TEST_P(EveryScene, ThreadsDoNotInfluenceEachOther) {
 }
 
 TEST_P(EveryScene, BoxesAreValidTightAndStayInTheWorld) {
-  auto simulation = simulationOf(GetParam().id, {{"objects", "300"}, {"frames", "90"}});
+  auto simulation = sceneWith(GetParam().id, {{"objects", "300"}, {"frames", "90"}});
   const double diagonal = std::sqrt(3.0);
   bool moved = false;
-  auto previous = copyOf(simulation->rewind());
+  auto previous = boxesOf(simulation->rewind());
   while (const auto frame = simulation->next()) {
     ASSERT_EQ(frame->boxes.size(), 300U);
-    EXPECT_LT(pokingOut(frame->boxes, simulation->scene().world), 0.2) << "frame " << frame->index;
+    EXPECT_LT(reachOutside(frame->boxes, simulation->scene().world), 0.2)
+        << "frame " << frame->index;
     for (const Aabb& box : frame->boxes) {
       ASSERT_EQ(box.min[3], 0);
       ASSERT_EQ(box.max[3], 0);
@@ -145,13 +104,13 @@ TEST_P(EveryScene, BoxesAreValidTightAndStayInTheWorld) {
         ASSERT_LE(edge, diagonal + 1e-5) << "larger than the turned cube";
       }
     }
-    moved = moved || previous != copyOf(*frame);
-    previous = copyOf(*frame);
+    moved = moved || previous != boxesOf(*frame);
+    previous = boxesOf(*frame);
   }
   EXPECT_TRUE(moved);
 }
 
-TEST_P(EveryScene, OfHardlyAnyBodiesWorksWithEveryEngineAndObjectType) {
+TEST_P(EveryScene, OfVeryFewBodiesWorksWithEveryEngineAndObjectType) {
   const auto options = [](const char* name) {
     std::vector<std::string> found;
     makeSimulation("freefall")->visitParameters([&](const Parameter& parameter) {
@@ -163,10 +122,10 @@ TEST_P(EveryScene, OfHardlyAnyBodiesWorksWithEveryEngineAndObjectType) {
     for (const std::string& type : options("object_type")) {
       for (const std::string count : {"0", "1", "2", "30"}) {
         SCOPED_TRACE(engine + ' ' + type + ' ' + count);
-        auto simulation = simulationOf(
+        auto simulation = sceneWith(
             GetParam().id,
             {{"objects", count}, {"frames", "12"}, {"engine", engine}, {"object_type", type}});
-        for (const auto& boxes : framesOf(*simulation)) {
+        for (const auto& boxes : allFrames(*simulation)) {
           ASSERT_EQ(boxes.size(), std::stoul(count));
           for (const Aabb& box : boxes) {
             for (int axis = 0; axis < 3; ++axis) {
@@ -181,9 +140,8 @@ TEST_P(EveryScene, OfHardlyAnyBodiesWorksWithEveryEngineAndObjectType) {
 }
 
 TEST_P(EveryScene, OfOneBodyOrWithTheFewestFramesWorks) {
-  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, {{"objects", "1"}, {"frames", "5"}})).size(), 6U);
-  EXPECT_EQ(framesOf(*simulationOf(GetParam().id, {{"objects", "40"}, {"frames", "1"}})).size(),
-            2U);
+  EXPECT_EQ(allFrames(*sceneWith(GetParam().id, {{"objects", "1"}, {"frames", "5"}})).size(), 6U);
+  EXPECT_EQ(allFrames(*sceneWith(GetParam().id, {{"objects", "40"}, {"frames", "1"}})).size(), 2U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryScene, testing::ValuesIn(builtinScenes()),
@@ -193,23 +151,13 @@ TEST(Simulation, IsFoundByIdOrNameInAnyCase) {
   EXPECT_EQ(makeSimulation("freefall")->scene().name, "FreeFall");
   EXPECT_EQ(makeSimulation("FreeFall")->scene().name, "FreeFall");
   EXPECT_EQ(makeSimulation("BROWNIAN")->scene().name, "Brownian");
-  try {
-    makeSimulation("freefal");
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("freefal"));
-    EXPECT_THAT(error.what(), HasSubstr("did you mean 'freefall'"));
-  }
+  EXPECT_THAT(inputErrorOf([] { makeSimulation("freefal"); }),
+              testing::AllOf(HasSubstr("freefal"), HasSubstr("'freefall'")));
 }
 
 TEST(Simulation, RejectsWrongParameters) {
-  const auto message = [](const ParameterValues& values) -> std::string {
-    try {
-      simulationOf("brownian", values);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  const auto message = [](const ParameterValues& values) {
+    return inputErrorOf([&] { sceneWith("brownian", values); });
   };
   EXPECT_THAT(message({{"densty", "1"}}), HasSubstr("density"));
   EXPECT_THAT(message({{"launch_shore", "1"}}), HasSubstr("launch_share"));
@@ -219,11 +167,11 @@ TEST(Simulation, RejectsWrongParameters) {
   EXPECT_THAT(message({{"object_type", "cones"}}), HasSubstr("cubes"));
   EXPECT_THAT(message({{"engine", "bulet"}}), HasSubstr("bullet"));
   EXPECT_THAT(message({{"strength", "4"}}), HasSubstr("strength")) << "of another scene";
-  EXPECT_EQ(message({{"objects", "10"}, {"engine", "bullet"}}), "");
+  EXPECT_NO_THROW(sceneWith("brownian", {{"objects", "10"}, {"engine", "bullet"}}));
 }
 
-TEST(Simulation, NewParametersCountFromTheNextRewindOn) {
-  auto simulation = simulationOf("freefall", {{"objects", "10"}, {"frames", "4"}});
+TEST(Simulation, NewParametersTakeEffectAtTheNextRewind) {
+  auto simulation = sceneWith("freefall", {{"objects", "10"}, {"frames", "4"}});
   simulation->rewind();
   setParameters(*simulation, {{"frames", "2"}});
   EXPECT_EQ(simulation->scene().frames, 4U) << "of the running simulation";
@@ -232,8 +180,8 @@ TEST(Simulation, NewParametersCountFromTheNextRewindOn) {
 }
 
 TEST(FreeFallSimulation, FallsAndComesToRestOnTheFloor) {
-  auto simulation = simulationOf("freefall", {{"objects", "50"}, {"frames", "450"}});
-  const Frames frames = framesOf(*simulation);
+  auto simulation = sceneWith("freefall", {{"objects", "50"}, {"frames", "450"}});
+  const Frames frames = allFrames(*simulation);
   const Aabb& world = simulation->scene().world;
   EXPECT_LT(meanHeight(frames[100]), meanHeight(frames[0]) - 0.1 * world.max[1]);
   EXPECT_LT(meanHeight(frames[200]), meanHeight(frames[100]));
@@ -241,53 +189,52 @@ TEST(FreeFallSimulation, FallsAndComesToRestOnTheFloor) {
 
   const std::vector<Aabb>& rest = frames.back();
   EXPECT_LT(meanHeight(rest), world.min[1] + 2);
-  EXPECT_LT(pokingOut(rest, world), 0.02);
+  EXPECT_LT(reachOutside(rest, world), 0.02);
   for (std::size_t i = 0; i < rest.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       // The balls inscribed into two unit cubes meet only if the cubes do.
-      EXPECT_GT(distance(rest[i], rest[j]), 0.97) << i << " penetrates " << j;
+      EXPECT_GT(lengthOf(way(rest[i], rest[j])), 0.97) << i << " penetrates " << j;
     }
   }
 }
 
 TEST(FreeFallSimulation, FrozenBodiesStayForGood) {
-  auto simulation = simulationOf("freefall", {{"objects", "60"},
-                                              {"frames", "60"},
-                                              {"freeze_slow", "on"},
-                                              {"freeze_after", "50"},
-                                              {"freeze_speed", "1000"},
-                                              {"freeze_angular_speed", "1000"}});
-  const Frames frames = framesOf(*simulation);
+  auto simulation = sceneWith("freefall", {{"objects", "60"},
+                                           {"frames", "60"},
+                                           {"freeze_slow", "on"},
+                                           {"freeze_after", "50"},
+                                           {"freeze_speed", "1000"},
+                                           {"freeze_angular_speed", "1000"}});
+  const Frames frames = allFrames(*simulation);
   EXPECT_NE(frames[49], frames[50]);
   for (std::size_t i = 51; i <= 60; ++i) EXPECT_EQ(frames[i], frames[50]) << "frame " << i;
 }
 
 TEST(BrownianSimulation, NeverSettles) {
-  auto simulation = simulationOf("brownian", {{"objects", "100"}, {"frames", "300"}});
-  const Frames frames = framesOf(*simulation);
+  auto simulation = sceneWith("brownian", {{"objects", "100"}, {"frames", "300"}});
+  const Frames frames = allFrames(*simulation);
   double path = 0;
-  for (std::size_t i = 0; i < 100; ++i) path += distance(frames[299][i], frames[300][i]);
+  for (std::size_t i = 0; i < 100; ++i) path += lengthOf(way(frames[299][i], frames[300][i]));
   EXPECT_GT(path / 100, 0.01) << "mean way of a body in the last frame";
   EXPECT_NEAR(meanHeight(frames[300]), 0, 0.3 * simulation->scene().world.max[1]);
 }
 
 TEST(GravitySimulation, GathersBodiesAtTheWallThatGravityPointsTo) {
-  auto simulation =
-      simulationOf("gravity", {{"objects", "100"}, {"frames", "80"}, {"period", "1e6"}});
-  const Frames frames = framesOf(*simulation);
+  auto simulation = sceneWith("gravity", {{"objects", "100"}, {"frames", "80"}, {"period", "1e6"}});
+  const Frames frames = allFrames(*simulation);
   double mean_x = 0;
-  for (const Aabb& box : frames.back()) mean_x += centre(box)[0] / 100;
+  for (const Aabb& box : frames.back()) mean_x += centreOf(box)[0] / 100;
   EXPECT_GT(mean_x, 0.5 * simulation->scene().world.max[0]);
 }
 
 TEST(Simulation, BodiesThatLeaveTheWorldAreFrozen) {
   // Bodies start in a ball that reaches out of the world.
   auto simulation =
-      simulationOf("brownian", {{"objects", "200"}, {"frames", "20"}, {"initial_radius", "0.8"}});
-  const Frames frames = framesOf(*simulation);
+      sceneWith("brownian", {{"objects", "200"}, {"frames", "20"}, {"initial_radius", "0.8"}});
+  const Frames frames = allFrames(*simulation);
   const Aabb& world = simulation->scene().world;
   const auto outside = [&](const Aabb& box) {
-    const auto c = centre(box);
+    const auto c = centreOf(box);
     for (int axis = 0; axis < 3; ++axis) {
       if (std::abs(c[axis]) > world.max[axis] + 1e-3) return true;
     }
@@ -308,4 +255,4 @@ TEST(Simulation, BodiesThatLeaveTheWorldAreFrozen) {
 }
 
 }  // namespace
-}  // namespace broadmark
+}  // namespace broadmark::tests

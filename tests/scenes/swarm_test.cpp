@@ -1,8 +1,8 @@
-// Swarm: flocks that stay flocks, wherever they go.
+// Swarm: flocks that move and stay together.
 
 #include "scenes/scene_runs.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 /// Mean cosine between the headings of bodies nearer than `distance` to each other.
@@ -68,4 +68,4 @@ TEST(SwarmScene, IsMuchDenserWhereTheFlocksAre) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -6,12 +6,12 @@
 // queried anew. Moved bodies are taken from a small buffer in turn, and of two moved bodies only
 // the lower one reports the pair, so that it is found once.
 //
-// The fault of "faulty": that last rule holds where all new fat boxes stand before the first query,
-// as they do within one fill of the buffer only. When i < j move in the same frame but in different
-// fills, i is queried while j's old fat box still stands, and j leaves the pair to i. Two bodies
-// that come together in one frame can be lost, if a third one moves, too, and splits the buffer
-// between them: three bodies, an initial pose, and one frame, or two where they come to overlap
-// later only. They stay lost until one of them moves again.
+// The fault of "faulty": that last rule is right only if all new fat boxes are set before the first
+// query. They are so within one fill of the buffer only. When i < j move in the same frame but in
+// different fills, i is queried while j's fat box is still the old one, and j leaves the pair to i.
+// Two bodies that come together in one frame can be lost if a third one moves, too, and splits the
+// buffer between them. It takes three bodies, an initial pose, and one frame, or two if they begin
+// to overlap later. The pair stays lost until one of the two moves again.
 //
 // The fault of "faulty-extra": pairs of two bodies that moved in this frame go into the answer as
 // they are found, that is, for their fat boxes.
@@ -71,15 +71,6 @@ class FatBoxes final : public BoxBroadPhase {
     update(fault_ == Fault::missed ? kBuffer : moved_.size());
   }
 
-  void searchOverlaps() override {
-    for (const Pair pair : candidates_) {
-      if (broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]) || isTakenUntested(pair)) {
-        pairs().add(pair.a, pair.b);
-      }
-    }
-    publishPairs();
-  }
-
   void drawStructure(DebugDraw& draw) const override {
     constexpr Rgb kResting = 0x4f81bd;
     constexpr Rgb kMoved = 0xe0a030;
@@ -92,6 +83,14 @@ class FatBoxes final : public BoxBroadPhase {
  private:
   /// So small that two bodies and a third one show the fault.
   static constexpr std::size_t kBuffer = 2;
+
+  void findPairs() override {
+    for (const Pair pair : candidates_) {
+      if (broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]) || isTakenUntested(pair)) {
+        pairs().add(pair.a, pair.b);
+      }
+    }
+  }
 
   /// New fat boxes and queries for the moved bodies, `fill` of them at a time.
   void update(std::size_t fill) {
@@ -137,14 +136,13 @@ Algorithm variant(const std::string& id, const std::string& summary, Fault fault
   return {.id = id,
           .family = "Faulty",
           .summary = summary,
-          .create = [fault] { return std::make_unique<FatBoxes>(fault); },
-          .principle = "fat boxes",
-          .optimisations = "none",
-          .incremental = true,
-          .exactness = "wrong on purpose",
-          .time = "O(n·m), m the number of bodies that left their fat box",
-          .space = "O(n + k)",
-          .source = "a test of Broadmark's"};
+          .traits = {.incremental = true},
+          .description = {.principle = "brute force",
+                          .optimisations = "fat boxes",
+                          .time = "O(n·m), m the number of bodies that left their fat box",
+                          .space = "O(n + k)",
+                          .source = "a test of Broadmark's, wrong on purpose"},
+          .create = [fault] { return std::make_unique<FatBoxes>(fault); }};
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace broadmark {
 
-/// What is known of a device before it is used.
+/// A device as its driver describes it.
 struct ComputeDevice {
   std::string name;
   std::string platform;
@@ -26,8 +26,8 @@ std::vector<ComputeDevice> computeDevices();
 /// A device in one line: name, platform, units, memory, driver.
 std::string describe(const ComputeDevice&);
 
-/// The position in `devices` of the one that is meant: by its position, or by a part of its name or
-/// platform, any case; the first when `wanted` is "". Throws InputError that lists what there is.
+/// The position in `devices` of the wanted one: `wanted` is its position, or a part of its name or
+/// platform in any case; "": the first. Throws InputError that lists the devices.
 std::size_t chooseDevice(const std::vector<ComputeDevice>& devices, std::string_view wanted);
 
 }  // namespace broadmark

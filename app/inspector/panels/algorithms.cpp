@@ -36,25 +36,25 @@ class AlgorithmsPanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     Session& session = context.session;
-    if (ui.button("Add…##add", "Chooses another algorithm", ImGui::GetContentRegionAvail().x)) {
+    if (ui.button("Add…##add", "Adds an algorithm", ImGui::GetContentRegionAvail().x)) {
       ImGui::OpenPopup("add");
     }
     drawChoice(ui, session);
-    ui.checkbox("check every answer", session.wish.check,
+    ui.checkbox("check every answer", session.mismatches.check,
                 "Compares every answer with the oracle's, outside the timed region");
-    ImGui::BeginDisabled(!session.wish.check);
-    ui.checkbox("stop at a mismatch", session.wish.stop_at_mismatch,
-                "Stays at the first frame in which a pair is missed, or wrongly reported");
+    ImGui::BeginDisabled(!session.mismatches.check);
+    ui.checkbox("stop at a mismatch", session.mismatches.stop_at_mismatch,
+                "Stays at the first frame in which an algorithm is wrong");
     ImGui::EndDisabled();
-    if (session.lanes.empty()) {
+    if (session.lanes.list.empty()) {
       ImGui::Spacing();
       ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
     }
     int removed = 0;
-    for (LaneEdit& lane : session.lanes) {
+    for (LaneEdit& lane : session.lanes.list) {
       if (!drawLane(ui, session, lane)) removed = lane.number;
     }
-    if (removed != 0) session.removeLane(removed);
+    if (removed != 0) session.lanes.remove(removed);
   }
 
  private:
@@ -62,7 +62,7 @@ class AlgorithmsPanel final : public Panel {
     if (!ImGui::BeginPopup("add")) return;
     const auto scope = ui.scope("add");
     const Algorithm* chosen = nullptr;
-    for (const Family& family : familiesOf(session.algorithms)) {
+    for (const Family& family : familiesOf(session.lanes.algorithms())) {
       ui.faint(family.name);
       for (const Algorithm* algorithm : family.members) {
         if (ui.selectable(algorithm->id.c_str(), false, algorithm->summary.c_str())) {
@@ -70,7 +70,7 @@ class AlgorithmsPanel final : public Panel {
         }
       }
     }
-    if (chosen != nullptr) session.addLane(chosen->id);
+    if (chosen != nullptr) session.lanes.add(chosen->id);
     ImGui::EndPopup();
   }
 
@@ -85,13 +85,13 @@ class AlgorithmsPanel final : public Panel {
     ui.tooltip(lane.algorithm.summary.c_str());
     if (open) {
       bool changed = false;
-      bool shown = session.wish.shown_lane == lane.number;
+      bool shown = session.lanes.shown() == lane.number;
       if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
-        session.showLane(shown ? lane.number : 0);
+        session.lanes.show(shown ? lane.number : 0);
       }
       changed |= drawExecution(ui, lane);
       changed |= ui.parameters(*lane.parameters);
-      if (changed) session.lanesChanged();
+      if (changed) session.lanes.changed();
       if (ui.button("Remove")) keep = false;
     }
     ImGui::PopID();
@@ -100,22 +100,22 @@ class AlgorithmsPanel final : public Panel {
 
   static bool drawExecution(Ui& ui, LaneEdit& lane) {
     bool changed = false;
-    if (lane.algorithm.vectorised) {
+    if (lane.algorithm.traits.vectorised) {
       std::vector<std::string> names;
       std::size_t chosen = 0;
       std::vector<Isa> isas;
-      for (const Isa isa : kAllIsas) {
+      for (const auto& [isa, name] : kIsas.entries) {
         if (!isaSupported(isa)) continue;
         if (isa == lane.isa) chosen = isas.size();
         isas.push_back(isa);
-        names.emplace_back(isaName(isa));
+        names.emplace_back(name);
       }
       if (ui.combo("instruction set", chosen, names)) {
         lane.isa = isas[chosen];
         changed = true;
       }
     }
-    if (lane.algorithm.parallel) {
+    if (lane.algorithm.traits.parallel) {
       std::int64_t threads = lane.threads;
       if (ui.integer("threads", threads, 1, 256, "Threads that share the work")) {
         lane.threads = static_cast<int>(threads);

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "broadmark/scenes/authored_simulation.h"
 #include "inspector/author_dialogs.h"
 #include "inspector/panel.h"
-#include "broadmark/scenes/authored_simulation.h"
 
 namespace broadmark::panels::author {
 namespace {
@@ -76,7 +76,7 @@ class AuthorPanel final : public Panel {
     while (!changes_.empty()) {
       const auto change = std::move(changes_.front());
       changes_.erase(changes_.begin());
-      session.edit(change);
+      session.document.edit(change);
     }
   }
 
@@ -86,13 +86,13 @@ class AuthorPanel final : public Panel {
 
   /// Takes over what the document says, if that has changed.
   void reload(const Session& session) {
-    const SceneEditor& editor = session.desk.editor;
-    const bool same = known_ && revision_ == editor.revision() && name_ == session.desk.title() &&
-                      selection_ == editor.selection();
+    const SceneEditor& editor = session.document.desk.editor;
+    const bool same = known_ && revision_ == editor.revision() &&
+                      name_ == session.document.desk.title() && selection_ == editor.selection();
     if (same) return;
     known_ = true;
     revision_ = editor.revision();
-    name_ = session.desk.title();
+    name_ = session.document.desk.title();
     selection_ = editor.selection();
     const scenes::AuthoredScene& scene = editor.scene();
     inputs_ = {.name = scene.name, .parameters = scenes::AuthoredParameters(scene.parameters)};
@@ -120,11 +120,11 @@ class AuthorPanel final : public Panel {
     Session& session = context.session;
     ButtonRow first(ui, 2);
     if (first.button("New", "An empty scene")) {
-      session.leaveDocument([&session] { session.author({}); });
+      session.document.leave([&session] { session.document.start({}); });
     }
-    if (first.button("From this frame", "Makes a scene of the frame that is looked at",
-                     session.wish.footage && !session.authoringAtRest())) {
-      session.leaveDocument([&session] { session.authorFrame(); });
+    if (first.button("From this frame", "Makes a scene of the frame that is shown",
+                     session.playback.footage() && !session.document.atRest())) {
+      session.document.leave([&session] { session.document.startFromFrame(); });
     }
     ButtonRow second(ui, 3);
     if (second.button("Open…", "Opens a scene (.json)")) askOpenScene(context.files, session);
@@ -132,22 +132,22 @@ class AuthorPanel final : public Panel {
     if (second.button("Save as…", "Saves the scene in another file")) {
       askSaveScene(context.files, session);
     }
-    const SceneEditor& editor = session.desk.editor;
+    const SceneEditor& editor = session.document.desk.editor;
     ButtonRow third(ui, 2);
     const auto tip = [](const char* key, const std::string& name) {
       return name.empty() ? std::string(key) : fmt::format("{} ({})", name, key);
     };
     if (third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo())) {
-      session.edit(&SceneEditor::undo);
+      session.document.edit(&SceneEditor::undo);
     }
     if (third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo())) {
-      session.edit(&SceneEditor::redo);
+      session.document.edit(&SceneEditor::redo);
     }
     ButtonRow fourth(ui, 2);
     const bool bodies = !editor.scene().bodies.empty();
     if (fourth.button("Simulate", "Moves the scene on, frame by frame as it is watched (Space)",
                       bodies)) {
-      session.simulateAuthored();
+      session.document.simulate();
       session.play(true);
     }
     if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
@@ -167,15 +167,15 @@ class AuthorPanel final : public Panel {
   }
 
   static void drawState(Ui& ui, Session& session) {
-    const AuthorDesk& desk = session.desk;
+    const AuthorDesk& desk = session.document.desk;
     ImGui::Spacing();
     ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
     ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
                                   desk.editor.selection().size()));
-    if (session.authoringAtRest()) return;
-    if (ui.button(session.authoring() ? "Back to the start###show" : "Show the scene###show",
+    if (session.document.atRest()) return;
+    if (ui.button(session.document.shown() ? "Back to the start###show" : "Show the scene###show",
                   "Shows the bodies where they start", ImGui::GetContentRegionAvail().x)) {
-      session.showAuthored();
+      session.document.show();
     }
   }
 
@@ -183,7 +183,7 @@ class AuthorPanel final : public Panel {
     if (!ImGui::CollapsingHeader("Brush", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto scope = ui.scope("Brush");
     ImGui::PushID("brush");
-    AuthorDesk& desk = session.desk;
+    AuthorDesk& desk = session.document.desk;
     std::vector<std::string> ids;
     for (const scenes::BrushEntry& entry : desk.brushes) ids.push_back(entry.listing.id);
     std::size_t chosen = desk.chosenBrush();
@@ -198,11 +198,11 @@ class AuthorPanel final : public Panel {
     if (ui.button("Add", "Paints once, and selects what was added",
                   ImGui::GetContentRegionAvail().x)) {
       std::size_t left_out = 0;
-      session.edit([&](SceneEditor&) { left_out = desk.addStroke(); });
+      session.document.edit([&](SceneEditor&) { left_out = desk.addStroke(); });
       const std::size_t added = desk.editor.selection().size();
-      session.say(left_out == 0 ? fmt::format("{} bodies added", added)
-                                : fmt::format("no room for {} bodies", left_out),
-                  left_out == 0 ? Message::Kind::note : Message::Kind::warning);
+      session.notices.say(left_out == 0 ? fmt::format("{} bodies added", added)
+                                        : fmt::format("no room for {} bodies", left_out),
+                          left_out == 0 ? Message::Kind::note : Message::Kind::warning);
     }
     ImGui::PopID();
   }
@@ -219,9 +219,8 @@ class AuthorPanel final : public Panel {
       drawPlaces(ui, session);
       drawProperties(ui);
     } else {
-      ImGui::PushTextWrapPos(0);
-      ui.faint("Click a body in the view to select it; drag with Shift to select several.");
-      ImGui::PopTextWrapPos();
+      ui.faintParagraph(
+          "Click a body in the view to select it; drag with Shift to select several.");
     }
     ImGui::PopID();
   }
@@ -241,10 +240,10 @@ class AuthorPanel final : public Panel {
     }
     if (row.button("Delete", "Deletes the selected bodies (Delete)")) edit(&SceneEditor::erase);
     if (row.button("Fly there", "Looks at the selected bodies (F)")) {
-      session.fly_to = session.selection;
+      session.selection.flyThere();
     }
     if (row.button("Paint here", "The brush paints at the centre of the selection")) {
-      session.desk.paint_at = session.desk.editor.selectionCentre();
+      session.document.desk.paint_at = session.document.desk.editor.selectionCentre();
     }
   }
 
@@ -296,19 +295,15 @@ class AuthorPanel final : public Panel {
       });
       known_ = false;
     }
-    if (ui.parameters(inputs_.parameters)) enterParameters(session.desk.editor);
+    if (ui.parameters(inputs_.parameters)) enterParameters(session.document.desk.editor);
     ImGui::PopID();
   }
 
   void enterParameters(const SceneEditor& editor) {
-    const ParameterValues before = scenes::AuthoredParameters(editor.scene().parameters).values();
-    ParameterValues changed = inputs_.parameters.values();
+    scenes::AuthoredParameters before(editor.scene().parameters);
+    ParameterValues changed = changedValues(inputs_.parameters.values(), before);
     // Another engine comes with parameters of its own, which keep their defaults.
-    if (changed.at("engine") != before.at("engine")) changed = {{"engine", changed.at("engine")}};
-    std::erase_if(changed, [&](const auto& value) {
-      const auto found = before.find(value.first);
-      return found != before.end() && found->second == value.second;
-    });
+    if (const auto engine = changed.find("engine"); engine != changed.end()) changed = {*engine};
     edit([changed](SceneEditor& e) { e.setParameters(changed); });
   }
 

@@ -7,9 +7,9 @@
 #include <thread>
 
 #include "bake_plan.h"
+#include "broadmark/error.h"
 #include "inspector/panel.h"
 #include "words.h"
-#include "broadmark/error.h"
 
 namespace broadmark::panels::batch {
 namespace {
@@ -17,21 +17,7 @@ namespace {
 using Outcome = BackgroundBake::Outcome;
 namespace fs = std::filesystem;
 
-const char* outcomeName(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::waiting:
-      return "";
-    case Outcome::kept:
-      return "kept";
-    case Outcome::baked:
-      return "baked";
-    case Outcome::failed:
-      return "failed";
-  }
-  return "";
-}
-
-/// What a parameter of built-in scenes can be chosen from.
+/// The choices of a parameter of built-in scenes.
 std::vector<std::string> optionsOf(std::string_view parameter) {
   std::vector<std::string> options;
   makeSimulation("freefall")->visitParameters([&](const Parameter& p) {
@@ -42,7 +28,7 @@ std::vector<std::string> optionsOf(std::string_view parameter) {
   return options;
 }
 
-/// A box for each of `all`; the marked ones are `chosen`. Returns whether they changed.
+/// A checkbox for each of `all`; the marked ones are `chosen`. Returns whether they changed.
 bool chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
                 std::vector<std::string>& chosen) {
   ui.heading(name);
@@ -64,7 +50,7 @@ bool chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
   return changed;
 }
 
-/// What is going to be baked, as far as it can be told before.
+/// What the inputs come to.
 struct Preview {
   std::vector<std::pair<fs::path, std::uint64_t>> recordings;
   std::uint64_t bytes = 0;
@@ -96,9 +82,9 @@ class BatchPanel final : public Panel {
                     ImGui::GetContentRegionAvail().x)) {
         update();
         if (!preview_.fault.empty()) {
-          session.complain(preview_.fault);
+          session.notices.complain(preview_.fault);
         } else {
-          session.attempt([&] { session.bake.start(options_); });
+          session.notices.attempt([&] { session.bake.start(options_); });
         }
       }
     }
@@ -106,7 +92,7 @@ class BatchPanel final : public Panel {
     drawOptions(context);
     ImGui::EndDisabled();
     if (stale_) update();
-    if (report.state != BackgroundBake::State::idle) drawItems(ui, session, report);
+    if (report.state != TaskState::idle) drawItems(ui, session, report);
     if (!running) drawPreview(ui);
   }
 
@@ -138,7 +124,7 @@ class BatchPanel final : public Panel {
     }
   }
 
-  /// Takes over the inputs and finds out what they come to.
+  /// Takes over the inputs and makes the preview.
   void update() {
     stale_ = false;
     preview_ = {};
@@ -148,7 +134,7 @@ class BatchPanel final : public Panel {
       if (options_.scene.recorders.empty()) throw InputError("no recorder is chosen");
       if (directory_.empty()) throw InputError("a directory is needed");
       options_.scene.objects = parseCounts(counts_);
-      if (options_.scene.objects.empty()) throw InputError("a number of objects is needed");
+      if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
       options_.scene.parameters = {{"frames", std::to_string(frames_)},
                                    {"engine", engines_.at(engine_)}};
       options_.output = directory_;
@@ -172,16 +158,14 @@ class BatchPanel final : public Panel {
     if (ui.button("Cancel", "Keeps what is finished", ImGui::GetContentRegionAvail().x)) {
       session.bake.cancel();
     }
-    ImGui::PushTextWrapPos(0);
-    const std::string left = report.state == BackgroundBake::State::baking
+    const std::string left = report.seconds_left > 0
                                  ? fmt::format("about {} left", waitingTime(report.seconds_left))
                                  : "";
-    ui.faint(left.empty() ? report.doing : fmt::format("{}; {}", left, report.doing));
-    ImGui::PopTextWrapPos();
+    ui.faintParagraph(left.empty() ? report.doing : fmt::format("{}; {}", left, report.doing));
   }
 
   static void drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report) {
-    ui.heading(fmt::format("{}: {}", bakeStateName(report.state), report.text()).c_str());
+    ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
     const auto scope = ui.scope("recordings");
     for (const BackgroundBake::Item& item : report.items) {
       const bool there = item.outcome == Outcome::kept || item.outcome == Outcome::baked;
@@ -194,7 +178,7 @@ class BatchPanel final : public Panel {
       }
       ImGui::EndDisabled();
       ImGui::PopID();
-      const std::string outcome = outcomeName(item.outcome);
+      const std::string outcome(kBakeOutcomes.nameOf(item.outcome));
       ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(outcome.c_str()).x);
       ui.coloured(item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good, outcome);
     }

@@ -1,14 +1,15 @@
-// Why a pair is missed, or wrongly reported: the frames and pairs in which an algorithm is wrong,
-// the two boxes, what led to it, and the smallest recording that shows it.
+// Why a pair is missed or false: the frames and pairs in which an algorithm is wrong, the two
+// boxes, what led to it, and the smallest recording that shows it.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "inspector/mismatch.h"
+#include "broadmark/sub_recording.h"
 #include "inspector/pair_drawing.h"
 #include "inspector/panel.h"
+#include "inspector/wrong_pair.h"
 #include "words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
@@ -22,7 +23,7 @@ constexpr float kListRows = 4.6F;
 class MismatchesPanel final : public Panel {
  public:
   MismatchesPanel()
-      : Panel("Mismatches", Place::right, "Pairs that are missed or wrongly reported, and why") {}
+      : Panel("Mismatches", Place::right, "Pairs that are missed, false or invalid, and why") {}
 
   void draw(PanelContext& context) override {
     if (context.progress.lanes.empty()) {
@@ -47,12 +48,12 @@ class MismatchesPanel final : public Panel {
     std::vector<std::string> names;
     std::size_t chosen = 0;
     for (const LaneReport& lane : lanes) {
-      if (lane.spec.number == context.session.wish.shown_lane) chosen = names.size();
+      if (lane.spec.number == context.session.lanes.shown()) chosen = names.size();
       names.push_back(caseName(lane.spec.run));
     }
     if (context.ui.combo("##algorithm", chosen, names, "Whose answers are looked at",
                          ImGui::GetContentRegionAvail().x)) {
-      context.session.showLane(lanes[chosen].spec.number);
+      context.session.lanes.show(lanes[chosen].spec.number);
     }
     return lanes[chosen];
   }
@@ -65,15 +66,15 @@ class MismatchesPanel final : public Panel {
 
   static void drawVerdict(PanelContext& context, const LaneReport& lane) {
     Ui& ui = context.ui;
-    if (!context.session.wish.check) {
+    if (!context.session.mismatches.check) {
       ui.coloured(ui.theme.warning, "answers are not checked");
       ImGui::SameLine();
       if (ui.button("Check them", "Compares every answer with the oracle's")) {
-        context.session.wish.check = true;
+        context.session.mismatches.check = true;
       }
       return;
     }
-    if (!lane.spec.run.algorithm.finds_pairs) {
+    if (!lane.spec.run.algorithm.traits.finds_pairs) {
       ui.faint("it reports no pairs by design");
       return;
     }
@@ -87,22 +88,20 @@ class MismatchesPanel final : public Panel {
       ui.coloured(ui.theme.good, fmt::format("right in frame {}", seen.frame));
       return;
     }
-    ui.coloured(ui.theme.bad, fmt::format("frame {}: {} missed, {} extra, {} invalid", seen.frame,
-                                          difference.missed_count, difference.forbidden_count,
-                                          difference.invalid_count));
+    ui.coloured(ui.theme.bad, fmt::format("frame {}: {}", seen.frame, mismatchText(difference)));
   }
 
   static void drawSearch(PanelContext& context) {
     Ui& ui = context.ui;
     Session& session = context.session;
-    if (session.searching()) {
+    if (session.mismatches.searching()) {
       if (ui.button("Stop here", "Stays at the frame that has been reached")) {
-        session.endSearch(context.progress);
+        session.mismatches.endSearch(context.progress);
       }
       ImGui::SameLine();
       ui.faint(context.progress.doing);
-    } else if (ui.button("Next mismatch", "Goes on to the next frame with a wrong answer")) {
-      session.nextMismatch(context.progress);
+    } else if (ui.button("Next mismatch", "Goes on to the next frame with a mismatch")) {
+      session.mismatches.goToNext(context.progress);
     }
   }
 
@@ -126,9 +125,8 @@ class MismatchesPanel final : public Panel {
     if (wrong.empty()) context.ui.faint("no frames");
     clipped(wrong.size(), [&](std::size_t row) {
       const std::string name = fmt::format("frame {}", wrong[row]);
-      if (context.ui.selectable(name.c_str(), wrong[row] == context.session.frame())) {
-        context.session.playback.playing = false;
-        context.session.seek(wrong[row]);
+      if (context.ui.selectable(name.c_str(), wrong[row] == context.session.playback.frame())) {
+        context.session.playback.goTo(wrong[row]);
       }
     });
   }
@@ -137,24 +135,26 @@ class MismatchesPanel final : public Panel {
     Ui& ui = context.ui;
     if (!showsAnswerOf(context, lane)) return;
     const Snapshot& seen = *context.progress.snapshot;
-    const std::vector<WrongPair> wrong = wrongPairs(seen.difference, *seen.boxes, lane.margin);
+    const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
     if (wrong.empty()) ui.faint("no wrong pairs");
     clipped(wrong.size(), [&](std::size_t row) {
       const WrongPair& one = wrong[row];
-      const std::string name = fmt::format("{} {}", wrongPairName(one.kind), pairName(one.pair));
+      const std::string name =
+          fmt::format("{} {}", kWrongPairs.nameOf(one.kind), pairName(one.pair));
       const std::vector<std::uint32_t> bodies = {one.pair.a, one.pair.b};
-      const bool allowed = one.kind == WrongPair::Kind::allowed;
+      const bool allowed = one.kind == WrongPair::Kind::allowed_extra;
       ImGui::PushStyleColor(ImGuiCol_Text, colour(allowed ? ui.theme.faint : ui.theme.bad));
-      const bool clicked = ImGui::Selectable(name.c_str(), context.session.selection == bodies);
+      const bool clicked =
+          ImGui::Selectable(name.c_str(), context.session.selection.bodies() == bodies);
       ImGui::PopStyleColor();
       ui.note(name);
       if (row == 0) ui.note("first pair");
-      ui.tooltip(allowed ? "Reported though apart, within the algorithm's margin: no fault"
+      ui.tooltip(allowed ? "Reported though apart, within the algorithm's margin: no mismatch"
                          : "Selects both bodies and flies there");
-      if (clicked) context.session.visit(one.pair);
+      if (clicked) context.session.selection.visit(one.pair);
     });
-    const std::uint64_t all =
-        seen.difference.missed_count + seen.difference.extra_count + seen.difference.invalid_count;
+    const std::uint64_t all = seen.difference.missed_count + seen.difference.false_count +
+                              seen.difference.allowed_extra_count + seen.difference.invalid_count;
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
@@ -197,10 +197,10 @@ class MismatchesPanel final : public Panel {
     Ui& ui = context.ui;
     CaseExport& export_ = context.session.case_export;
     const CaseExport::Report report = export_.report();
-    if (report.state == CaseExport::State::idle) return;
+    if (report.state == TaskState::idle) return;
     const auto scope = ui.scope("export");
     ImGui::PushID("export");
-    if (report.state == CaseExport::State::running) {
+    if (report.state == TaskState::running) {
       const double whole = static_cast<double>(report.whole_bodies * report.whole_frames);
       const double left = static_cast<double>(report.bodies * report.frames);
       ImGui::ProgressBar(
@@ -208,12 +208,12 @@ class MismatchesPanel final : public Panel {
           fmt::format("{}, {} runs", extentText(report.bodies, report.frames), report.trials)
               .c_str());
       if (ui.button("Cancel", "Nothing is written then")) export_.cancel();
-    } else if (report.state == CaseExport::State::done) {
+    } else if (report.state == TaskState::done) {
       drawExported(context, report);
     } else {
-      const bool failed = report.state == CaseExport::State::failed;
+      const bool failed = report.state == TaskState::failed;
       ui.coloured(failed ? ui.theme.bad : ui.theme.faint,
-                  fmt::format("export {}", exportStateName(report.state)));
+                  fmt::format("export {}", kTaskStates.nameOf(report.state)));
     }
     ImGui::PopID();
   }
@@ -239,7 +239,7 @@ class MismatchesPanel final : public Panel {
 
   static void drawPair(PanelContext& context) {
     Ui& ui = context.ui;
-    const auto& bodies = context.session.selection;
+    const auto& bodies = context.session.selection.bodies();
     const auto& seen = context.progress.snapshot;
     ui.heading("Pair");
     if (bodies.size() != 2 || !seen || bodies[1] >= seen->boxes->size()) {
@@ -254,20 +254,16 @@ class MismatchesPanel final : public Panel {
     drawHistory(context, pair);
   }
 
-  /// "They overlap, least on y".
+  /// "they overlap, least on y".
   static std::string sentenceOn(const BoxPair& pair) {
     constexpr std::string_view kAxes = "xyz";
     const std::size_t axis = decidingAxis(pair.a, pair.b);
     const AxisRelation relation = relationOn(axis, pair.a, pair.b);
-    switch (relation.kind) {
-      case AxisRelation::Kind::overlap:
-        return fmt::format("they overlap, least on {}", kAxes[axis]);
-      case AxisRelation::Kind::touch:
-        return fmt::format("they overlap, just touching on {}", kAxes[axis]);
-      case AxisRelation::Kind::gap:
-        return fmt::format("they are apart, most on {}", kAxes[axis]);
-    }
-    return {};
+    constexpr NameTable kSentences{
+        {NamedValue{AxisRelation::Kind::overlap, "they overlap, least on"},
+         {AxisRelation::Kind::touch, "they overlap, just touching on"},
+         {AxisRelation::Kind::gap, "they are apart, most on"}}};
+    return fmt::format("{} {}", kSentences.nameOf(relation.kind), kAxes[axis]);
   }
 
   static void drawHistory(PanelContext& context, const BoxPair& pair) {
@@ -288,8 +284,7 @@ class MismatchesPanel final : public Panel {
       ui.faint(fmt::format("overlapping since frame {}", *began));
     }
     if (const auto clicked = drawPairHistory(ui, track)) {
-      context.session.playback.playing = false;
-      context.session.seek(*clicked);
+      context.session.playback.goTo(*clicked);
     }
   }
 
@@ -299,9 +294,11 @@ class MismatchesPanel final : public Panel {
     ui.toggle("Show structure", context.session.view.structure,
               "Draws its cells, nodes or planes in the view, around the pair");
     for (const LaneReport& lane : context.progress.lanes) {
-      if (lane.spec.number != context.session.wish.shown_lane) continue;
+      if (lane.spec.number != context.session.lanes.shown()) continue;
       if (lane.margin > 0) ui.fact("margin", fmt::format("{}", lane.margin));
-      for (const auto& [name, count] : lane.counters) ui.fact(name.c_str(), std::to_string(count));
+      for (const auto* counts : {&lane.setup, &lane.counters}) {
+        for (const auto& [name, count] : *counts) ui.fact(name.c_str(), std::to_string(count));
+      }
     }
   }
 };

@@ -4,15 +4,16 @@
 
 #include <array>
 
+#include "broadmark/render/plot.h"
 #include "inspector/curve_colours.h"
 #include "inspector/panel.h"
-#include "broadmark/render/plot.h"
 
 namespace broadmark::panels::results {
 namespace {
 
-constexpr std::array kColumns = {"algorithm", "status", "total", "update", "clean", "structures",
-                                 "search",    "mean",   "pairs", "missed", "extra"};
+constexpr std::array kColumns = {"algorithm",  "status",        "total",  "update", "clean",
+                                 "structures", "search",        "mean",   "pairs",  "missed",
+                                 "false",      "allowed extra", "invalid"};
 
 std::string time(std::int64_t ns) { return withPrefix(static_cast<double>(ns) * 1e-9, "s"); }
 
@@ -54,11 +55,11 @@ class ResultsPanel final : public Panel {
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
-    const bool shown = context.session.wish.shown_lane == lane.spec.number;
+    const bool shown = context.session.lanes.shown() == lane.spec.number;
     ImGui::PushStyleColor(ImGuiCol_Text, colour(curveColour(lane.spec.number, ui.theme.dark)));
     if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
                           ImGuiSelectableFlags_SpanAllColumns)) {
-      context.session.showLane(lane.spec.number);
+      context.session.lanes.show(lane.spec.number);
     }
     ImGui::PopStyleColor();
     ui.note(lane.spec.run.algorithm.id);
@@ -66,7 +67,7 @@ class ResultsPanel final : public Panel {
     const bool bad = lane.status != Status::ok;
     ui.coloured(bad ? ui.theme.bad : ui.theme.good, statusName(lane.status));
     ui.tooltip(lane.reason.c_str());
-    drawTimes(ui, lane, context.session.frame());
+    drawTimes(ui, lane, context.session.playback.frame());
     ImGui::PopID();
   }
 
@@ -96,10 +97,15 @@ class ResultsPanel final : public Panel {
     const double mean = meanTotal(lane);
     cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
     cell(record == nullptr ? "–" : std::to_string(record->pairs));
-    const bool checked = record != nullptr && record->checked;
-    cell(checked ? std::to_string(record->missed) : "–", checked && record->missed > 0);
-    cell(checked ? std::to_string(record->extra) : "–",
-         checked && record->mismatch && record->extra > 0);
+    const auto wrong = [&](std::uint64_t FrameRecord::*count, bool allowed = false) {
+      const bool checked = record != nullptr && record->checked;
+      cell(checked ? std::to_string(record->*count) : "–",
+           checked && !allowed && record->*count > 0);
+    };
+    wrong(&FrameRecord::missed_count);
+    wrong(&FrameRecord::false_count);
+    wrong(&FrameRecord::allowed_extra_count, true);
+    wrong(&FrameRecord::invalid_count);
   }
 };
 

@@ -20,10 +20,10 @@ class ScenePanel final : public Panel {
                   "Starts the scene anew with these parameters; frames are simulated "
                   "as they are watched",
                   ImGui::GetContentRegionAvail().x)) {
-      session.attempt([&] { session.simulate(); });
+      session.notices.attempt([&] { session.simulate(); });
     }
     ui.heading("Parameters");
-    session.attempt([&] { ui.parameters(*session.draft); });
+    session.notices.attempt([&] { ui.parameters(*session.draft); });
   }
 
  private:
@@ -34,12 +34,10 @@ class ScenePanel final : public Panel {
     const auto& present = session.draft->listing().id;
     auto chosen = static_cast<std::size_t>(std::ranges::find(ids, present) - ids.begin());
     if (ui.combo("scene", chosen, ids, "What happens")) {
-      session.attempt([&] { session.chooseScene(ids[chosen]); });
+      session.notices.attempt([&] { session.chooseScene(ids[chosen]); });
     }
     if (chosen < scenes.size()) {
-      ImGui::PushTextWrapPos(0);
-      ui.faint(scenes[chosen].summary);
-      ImGui::PopTextWrapPos();
+      ui.faintParagraph(scenes[chosen].summary);
     }
   }
 };

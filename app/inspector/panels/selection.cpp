@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "inspector/panel.h"
 #include "broadmark/scene_statistics.h"
+#include "inspector/panel.h"
 
 namespace broadmark::panels::selection {
 namespace {
@@ -26,10 +26,10 @@ class SelectionPanel final : public Panel {
       return;
     }
     goTo(context);
-    if (context.session.selection.empty()) {
+    if (context.session.selection.bodies().empty()) {
       drawScene(context.ui, context.progress.snapshot);
-    } else if (context.session.selection.size() == 1) {
-      drawBody(context, *snapshot, context.session.selection.front());
+    } else if (context.session.selection.bodies().size() == 1) {
+      drawBody(context, *snapshot, context.session.selection.bodies().front());
     } else {
       drawBodies(context, *snapshot);
     }
@@ -41,8 +41,8 @@ class SelectionPanel final : public Panel {
     if (last < 0) return;
     if (context.ui.integer("body", wanted_, 0, last,
                            "Selects a body by its number, and flies there")) {
-      context.session.select({static_cast<std::uint32_t>(wanted_)});
-      context.session.fly_to = context.session.selection;
+      context.session.selection.select({static_cast<std::uint32_t>(wanted_)});
+      context.session.selection.flyThere();
     }
   }
 
@@ -64,22 +64,23 @@ class SelectionPanel final : public Panel {
       if (pair.a != body && pair.b != body) continue;
       if (listed++ == kListedPartners) break;
       const std::uint32_t other = pair.a == body ? pair.b : pair.a;
-      if (ui.selectable(fmt::format("{}", other).c_str(), false)) context.session.visit(pair);
+      if (ui.selectable(fmt::format("{}", other).c_str(), false))
+        context.session.selection.visit(pair);
     }
     ImGui::EndChild();
   }
 
   static void drawBodies(PanelContext& context, const Snapshot& snapshot) {
     Ui& ui = context.ui;
-    const std::vector<std::uint32_t> bodies = context.session.selection;
+    const std::vector<std::uint32_t> bodies = context.session.selection.bodies();
     ui.heading(fmt::format("{} bodies", bodies.size()).c_str());
-    if (ui.button("Fly there", "(F)")) context.session.fly_to = bodies;
+    if (ui.button("Fly there", "(F)")) context.session.selection.fly_to = bodies;
     ImGui::BeginChild("bodies");
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
       const std::string label =
           fmt::format("{}    {} overlaps", bodies[i], snapshot.overlaps[bodies[i]]);
-      if (ui.selectable(label.c_str(), false)) context.session.select({bodies[i]});
+      if (ui.selectable(label.c_str(), false)) context.session.selection.select({bodies[i]});
     }
     if (bodies.size() > kListedBodies) ui.faint("…");
     ImGui::EndChild();
@@ -105,9 +106,7 @@ class SelectionPanel final : public Panel {
     }
     ui.fact("moving", std::to_string(moving_));
     ImGui::Spacing();
-    ImGui::PushTextWrapPos(0);
-    ui.faint("Click a body to select it; drag with Shift to select several.");
-    ImGui::PopTextWrapPos();
+    ui.faintParagraph("Click a body to select it; drag with Shift to select several.");
   }
 
   std::int64_t wanted_ = 0;

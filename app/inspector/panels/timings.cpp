@@ -7,9 +7,9 @@
 #include <limits>
 #include <set>
 
+#include "broadmark/render/plot.h"
 #include "inspector/curve_colours.h"
 #include "inspector/panel.h"
-#include "broadmark/render/plot.h"
 
 namespace broadmark::panels::timings {
 namespace {
@@ -30,18 +30,18 @@ class TimingsPanel final : public Panel {
       last_ = last;
     }
     const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", curves,
-                                     {.logarithmic = logarithmic_,
-                                      .unit = quantity_ == 0 ? "" : "s",
-                                      .marked_frame = static_cast<double>(context.session.frame()),
-                                      .first = first_,
-                                      .last = last_,
-                                      .dark = context.ui.theme.dark},
-                                     room.x, room.y);
+    const PlotResult done =
+        drawPlot("plot", curves,
+                 {.logarithmic = logarithmic_,
+                  .unit = quantity_ == 0 ? "" : "s",
+                  .marked_frame = static_cast<double>(context.session.playback.frame()),
+                  .first = first_,
+                  .last = last_,
+                  .dark = context.ui.theme.dark},
+                 room.x, room.y);
     context.ui.note("plot");
     if (done.clicked_frame) {
-      context.session.playback.playing = false;
-      context.session.seek(std::llround(*done.clicked_frame));
+      context.session.playback.goTo(std::llround(*done.clicked_frame));
     }
     if (done.toggled) toggle(context.progress.lanes[*done.toggled].spec.number);
     if (done.zoom != 0) zoom(done, last);
@@ -50,7 +50,7 @@ class TimingsPanel final : public Panel {
  private:
   void drawControls(Ui& ui) {
     std::vector<std::string> names = {"pairs"};
-    for (const Phase phase : kAllPhases) names.emplace_back(phaseName(phase));
+    for (const std::string& phase : kPhases.names()) names.push_back(phase);
     const float width = 150 * ui.scale;
     ui.combo("##quantity", quantity_, names, "What is plotted", width);
     ImGui::SameLine();
@@ -97,7 +97,7 @@ class TimingsPanel final : public Panel {
     zoomed_ = span < last;
   }
 
-  std::size_t quantity_ = kAllPhases.size();  // 0: pairs; then the phases: the last is the total
+  std::size_t quantity_ = kPhases.entries.size();  ///< 0: pairs; then the phases; the last: total
   bool logarithmic_ = true;
   bool zoomed_ = false;
   double first_ = 0;

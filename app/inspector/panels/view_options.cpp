@@ -36,9 +36,7 @@ class ViewPanel final : public Panel {
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
     view.colouring %= titles.size();
     ui.combo("colours", view.colouring, titles, "What the bodies' colours tell (C: the next)");
-    ImGui::PushTextWrapPos(0);
-    ui.faint(colourModes()[view.colouring].help);
-    ImGui::PopTextWrapPos();
+    ui.faintParagraph(colourModes()[view.colouring].help);
   }
 
   static void drawStructure(PanelContext& context) {
@@ -66,10 +64,9 @@ class ViewPanel final : public Panel {
   static void drawDirections(PanelContext& context) {
     context.ui.heading("Look from");
     int column = 0;
-    for (const Direction direction : kAllDirections) {
+    for (const auto& [direction, name] : kDirections.entries) {
       if (column++ % 4 != 0) ImGui::SameLine();
-      const std::string name(directionName(direction));
-      if (context.ui.button(name.c_str())) context.view.lookFrom(direction);
+      if (context.ui.button(std::string(name).c_str())) context.view.lookFrom(direction);
     }
     if (context.ui.button("all of it", "Brings everything into the picture")) {
       context.view.lookAtAll();

@@ -12,15 +12,15 @@
 
 namespace broadmark {
 
-/// What holds for every instance of an algorithm. Whoever runs, lists or tests it goes by this.
+/// What holds for every instance of an algorithm: runs, lists and tests derive from it.
 struct AlgorithmTraits {
   bool parallel = false;     ///< uses as many threads as it is given
   bool vectorised = false;   ///< heeds the instruction set
-  bool on_device = false;    ///< runs on a compute device, whose driver has threads of its own
+  bool on_device = false;    ///< runs on a compute device, whose driver starts threads itself
   bool incremental = false;  ///< keeps pairs from frame to frame
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
-  /// A library beneath it allocates in a steady state, out of its reach.
+  /// A library that it calls allocates in a steady state; the algorithm cannot prevent that.
   bool library_allocates = false;
   /// Largest number of bodies it can handle.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
@@ -40,9 +40,9 @@ struct AlgorithmDescription {
 
 /// One algorithm variant.
 struct Algorithm {
-  std::string id;       ///< "sap-simd-mt"
-  std::string family;   ///< "SAP"
-  std::string summary;  ///< one sentence
+  std::string id;            ///< "sap-simd-mt"
+  std::string family;        ///< "SAP"
+  std::string summary = {};  ///< one sentence
   AlgorithmTraits traits = {};
   AlgorithmDescription description = {};
   /// A new instance with default parameters.

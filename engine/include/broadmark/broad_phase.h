@@ -72,8 +72,8 @@ class BroadPhase : public Parametrised {
 
 /// Layer 1: keeps the execution and one pair buffer per worker, and answers with them. Phases 2 and
 /// 4 are its own: an algorithm adds pairs in findPairs(), to buffers that are empty, and they are
-/// the answer. Whoever overrides initialize() calls this one first; forgetting that is noticed in
-/// the first search.
+/// the answer. An override of initialize() calls this one first; if it does not, the first search
+/// throws std::logic_error.
 class PairBroadPhase : public BroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;

@@ -16,8 +16,8 @@ struct Case {
   Algorithm algorithm;
   Isa isa = Isa::scalar;
   int threads = 1;
-  std::string device;          ///< as Execution::device()
-  ParameterValues parameters;  ///< those that differ from the default
+  std::string device = {};          ///< as Execution::device()
+  ParameterValues parameters = {};  ///< those that differ from the default
 };
 
 /// A case of `algorithm`; what it does not heed is left at its neutral value.

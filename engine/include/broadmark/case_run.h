@@ -14,8 +14,8 @@
 
 namespace broadmark {
 
-/// How answers are compared with the oracle's: as sets, or by count and hash (sets all the same
-/// for a conservative algorithm, and where the hashes differ), or not at all.
+/// How answers are compared with the oracle's. `full`: as sets. `hash`: by count and hash; as sets
+/// where these differ, and always for a conservative algorithm. `off`: not at all.
 enum class CheckMode { full, hash, off };
 
 inline constexpr NameTable kCheckModes{

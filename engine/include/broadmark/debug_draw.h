@@ -11,8 +11,7 @@ namespace broadmark {
 /// Colour of a drawn structure, 0xRRGGBB.
 using Rgb = std::uint32_t;
 
-/// Receives the drawing. Implemented by whoever shows it; the thread that runs the algorithm calls
-/// drawStructure() between frames.
+/// Receives the drawing. The thread that runs the algorithm calls drawStructure() between frames.
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;

@@ -22,12 +22,12 @@ struct Environment {
   std::string build_type;
   std::string version;  ///< Broadmark's
   std::string started;  ///< UTC, ISO 8601
-  /// OpenCL's devices, described in a line each; the first is the one used. The engine knows of
-  /// none: who uses them fills this in.
+  /// OpenCL's devices, a line each; the first is the one used. Filled in by the caller: engine does
+  /// not know OpenCL.
   std::vector<std::string> compute_devices;
 };
 
-/// Asks this machine.
+/// That of this process.
 Environment thisEnvironment();
 
 }  // namespace broadmark

@@ -1,8 +1,9 @@
 // Libraries with process-wide state: who may use it when.
 //
-// A name stands for such a state. Whoever changes it, even for the length of a call, holds an
-// ExclusiveUse; whoever only depends on it holds a SharedUse. CaseRun holds the former around every
-// call into an algorithm whose traits name a state, so an algorithm need not do it itself.
+// Each such state has a name. Code that changes it, even for the length of a call, holds an
+// ExclusiveUse; code that only depends on it holds a SharedUse. CaseRun holds an ExclusiveUse
+// around every call into an algorithm whose traits name a state, so algorithms need not do it
+// themselves.
 #pragma once
 
 #include <string_view>
@@ -15,8 +16,9 @@ inline constexpr std::string_view kBulletTreeMargin = "Bullet's tree margin";
 /// Per name: a lock, made when it is first used, which lasts as long as the process.
 struct NamedLock;
 
-/// While this lives nobody else uses the state of that name; "" stands for none. Waits for its
-/// turn, which comes before that of later SharedUses. Not reentrant: a thread holds one at most.
+/// While this lives no other thread uses the state of that name; "" stands for no state. Waits
+/// until present uses end; SharedUses that come later wait for it. A thread may hold only one use
+/// of a name.
 class ExclusiveUse {
  public:
   explicit ExclusiveUse(std::string_view name);
@@ -28,7 +30,7 @@ class ExclusiveUse {
   NamedLock* lock_;
 };
 
-/// While this lives nobody changes the state; any number may read it at the same time.
+/// While this lives no other thread changes the state. Any number of threads may hold one.
 class SharedUse {
  public:
   explicit SharedUse(std::string_view name);

@@ -21,13 +21,13 @@ struct SceneInfo {
   std::string object_type;  ///< "Cubes"; likewise
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;  ///< the initial pose not counted
-  Aabb world;                ///< bodies may poke out a little
+  Aabb world = {};           ///< bodies may poke out a little
 
   friend bool operator==(const SceneInfo&, const SceneInfo&) = default;
 };
 
-/// The boxes of one moment. Body id = position. Borrowed: valid until the next call to whoever
-/// handed the frame out.
+/// The boxes of one moment. Body id = position. Borrowed: valid until the next call to the source
+/// of the frame.
 struct Frame {
   std::uint32_t index = 0;  ///< 0 is the initial pose, 1…F are the frames that count
   std::span<const Aabb> boxes;

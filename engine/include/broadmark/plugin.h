@@ -33,8 +33,7 @@ inline constexpr char kPluginInterface[] =
 
 /// What a library exports under kPluginSymbol.
 struct Plugin {
-  /// kPluginInterface of its build; alone in being read before it is known to be the program's, and
-  /// therefore first for ever.
+  /// kPluginInterface of its build. Read before compatibility is known; must stay the first member.
   const char* interface;
   std::vector<Algorithm> (*variants)();
 };

@@ -23,9 +23,10 @@ inline constexpr float kRotationTolerance = 1e-3F;
 /// boxes as large as their initial ones; where the object type is "Spheres" they are balls, whose
 /// boxes do not depend on the rotation.
 ///
-/// The initial boxes state sizes only up to the rounding of their corners. A size that could be a
-/// whole number of thousandths is taken to be that: bodies of usual sizes get the very boxes that
-/// they had in the simulation, others differ by a few units in the last place of an initial corner.
+/// The initial boxes give sizes only up to the rounding of their corners. A size within that
+/// rounding of a whole number of thousandths is taken to be that number. So bodies of usual sizes
+/// get exactly the boxes they had in the simulation; others differ by a few units in the last
+/// place.
 class PosrotReader final : public Recording, public PoseSource {
  public:
   explicit PosrotReader(const std::filesystem::path& path);
@@ -56,7 +57,7 @@ class PosrotReader final : public Recording, public PoseSource {
   std::vector<Aabb> boxes_;
 };
 
-/// Writes a .posrot recording under the same promises as RecordingWriter.
+/// Writes a .posrot recording; as RecordingWriter, it leaves nothing unless finished.
 class PosrotWriter {
  public:
   /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
@@ -68,7 +69,7 @@ class PosrotWriter {
   /// Then, for each frame from 1 on, its poses. Throws InputError when one is not finite or a
   /// quaternion not of unit length.
   void write(std::span<const Pose> poses);
-  /// Makes the recording whole and gives it its name. Exactly 1 + frames sets must be written.
+  /// Completes the recording and gives it its name. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();
 

@@ -90,7 +90,7 @@ class RecordingWriter {
   /// Appends one set of boxes; the first is the initial pose. Throws InputError when a box is not
   /// finite or inverted (a simulation that blew up), or the disc is full.
   void write(std::span<const Aabb> boxes);
-  /// Makes the recording whole and gives it its name. Exactly 1 + frames sets must be written.
+  /// Completes the recording and gives it its name. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();
   /// The same for an unnamed recording: a reader of it. It vanishes with the reader.

@@ -43,7 +43,7 @@ struct RangeStatistics {
   double median_extent = 0;            ///< the median of the frames' medians
   double max_extent = 0;               ///< of all frames
 
-  /// The largest body in terms of the smallest; nothing if that is a point.
+  /// Extent of the largest body divided by that of the smallest; nothing if the latter is 0.
   [[nodiscard]] std::optional<double> sizeRatio() const;
 };
 

@@ -21,7 +21,7 @@ struct ShrinkOptions {
   std::function<void(const ShrinkProgress&)> progress;  ///< told after each trial
   std::function<bool()> cancelled;                      ///< asked between frames; true ends it
   /// A part of the recording that takes no more than this is held in memory; a larger one is read
-  /// anew for each trial.
+  /// again for each trial.
   std::size_t memory_bytes = std::size_t{256} << 20;
 };
 
@@ -35,14 +35,13 @@ struct ShrunkCase {
 };
 
 /// The smallest part of `source` on which `run` still fails as it does in frame `known.frame`,
-/// which becomes the part's last one. The case fails where the answer for that frame is a mismatch
-/// of any kind, by the oracle's definition and the algorithm's own margin; each trial is a fresh
-/// instance that goes through all frames of its part. A run that throws is no answer, and counts as
-/// not failing; time is not looked at. Same input, same result, if the algorithm's own is.
+/// which becomes the part's last frame. The case fails where the answer for that frame is a
+/// mismatch of any kind. Each trial is a pass of a fresh instance over all frames of a part; one
+/// that throws counts as not failing. Time limits are off. Deterministic if the algorithm is.
 ///
-/// The pairs that `known` lists only tell where to look first. Cancelled: the best so far. Throws
-/// InputError when the case does not fail in that frame, when the algorithm finds no pairs by
-/// design, or for a bad recording.
+/// The pairs listed in `known` only tell where to look first. Cancelled: the best part so far.
+/// Throws InputError when the case does not fail in that frame, when the algorithm is a self-check
+/// that finds no pairs, or for a bad recording.
 ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options = {});
 

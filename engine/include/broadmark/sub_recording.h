@@ -10,7 +10,7 @@
 
 namespace broadmark {
 
-/// Which part. Bodies and frames keep their order and are numbered anew, from 0.
+/// Which bodies and frames. They keep their order and get new numbers, from 0.
 struct Selection {
   std::vector<std::uint32_t> bodies;  ///< ascending
   std::vector<std::uint32_t> frames;  ///< ascending; the first becomes the initial pose
@@ -21,7 +21,7 @@ struct Selection {
 /// All bodies in frames 0…last.
 Selection wholeSelection(const SceneInfo&, std::uint32_t last_frame);
 
-/// The selected part as a source of its own: same world, the given name.
+/// The selected part as a source: same world, the given name.
 class SubRecording final : public IndexedFrames {
  public:
   /// `whole` outlives this; the selection's numbers exist in it.

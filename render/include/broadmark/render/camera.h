@@ -1,5 +1,5 @@
-// Cameras. Everything is seen in view space: the world moved to the origin and scaled to side 1 in
-// double precision, so that neither huge nor far-off coordinates ever reach a matrix.
+// Cameras. They live in view space: the world, moved to the origin and scaled to side 1 in double
+// precision, so that no huge or far-off coordinate reaches a matrix.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 #include <span>
 
 #include "broadmark/aabb.h"
+#include "broadmark/debug_draw.h"
 
 namespace broadmark {
 
@@ -15,7 +16,7 @@ struct ViewSpace {
   std::array<double, 3> origin{};  ///< the world point that becomes 0
   double side = 1;                 ///< the world length that becomes 1; positive
 
-  /// Clamped to ±kLimit, so always finite for a finite point.
+  /// Clamped to ±kLimit: finite for every finite point.
   [[nodiscard]] std::array<float, 3> toView(const std::array<float, 4>& world_point) const;
   [[nodiscard]] Aabb toView(const Aabb& world_box) const;
 
@@ -24,12 +25,12 @@ struct ViewSpace {
   friend bool operator==(const ViewSpace&, const ViewSpace&) = default;
 };
 
-/// The view space in which `box` is centred and its longest edge has length 1 (a point: its
-/// neighbourhood of side 1).
+/// The view space in which `box` is centred and its longest edge has length 1. Around a point
+/// lengths stay as they are.
 ViewSpace viewSpaceOf(const Aabb& box);
 
-/// What a picture should show: the world, joined with all bodies when it has no extent or holds
-/// fewer than half of their centres.
+/// What a picture should show: the world; joined with all bodies if it has no extent or holds fewer
+/// than half of their centres.
 Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes);
 
 /// A perspective camera in view space; y is up. The frustum may be shifted off the view axis.
@@ -45,9 +46,8 @@ struct Camera {
   friend bool operator==(const Camera&, const Camera&) = default;
 };
 
-/// The camera of the paper's figures, at (0.57, 0.20, 0.60)·3 looking at (0, −0.15, 0), with the
-/// window chosen so that all of `box` (in view space) is in the picture, for any aspect ratio
-/// (width / height).
+/// The camera of the paper's figures: at (0.57, 0.20, 0.60)·3, looking at (0, −0.15, 0). Its window
+/// shows all of `box` (in view space), for any aspect ratio (width / height).
 Camera figureCamera(const Aabb& box, double aspect);
 
 /// Directions of the picture in view space, each of length 1.
@@ -61,12 +61,25 @@ CameraAxes axesOf(const Camera& camera);
 /// The length that one pixel covers at distance 1 before the eye, in a picture of that height.
 float pixelSize(const Camera& camera, int height);
 
-/// View space to clip space, column by column as OpenGL wants it.
+/// From view space to clip space, by columns as in OpenGL.
 std::array<float, 16> viewProjection(const Camera& camera);
+
+/// Distance from the eye to the target.
+float focus(const Camera& camera);
 
 /// Where a point of view space appears: x and y in [-1, 1] from left to right and bottom to top,
 /// depth in [-1, 1]. Nothing for a point behind the eye.
 std::optional<std::array<float, 3>> project(const Camera& camera,
                                             const std::array<float, 3>& point);
+
+/// Where and how a picture is drawn.
+struct Viewpoint {
+  Camera camera;
+  int width = 1;   ///< pixels
+  int height = 1;  ///< pixels
+  Rgb haze = 0;    ///< far things fade towards it: the background
+
+  friend bool operator==(const Viewpoint&, const Viewpoint&) = default;
+};
 
 }  // namespace broadmark

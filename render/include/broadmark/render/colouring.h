@@ -1,5 +1,5 @@
-// What the bodies' colours tell: one mode of a list, which the user interface and its legend are
-// made from. Colours are told apart by colour-blind people and on light and dark backgrounds.
+// The list of colour modes: what the colours of bodies mean. The user interface and its legend are
+// made from it. Colour-blind people can tell the colours apart, on light and dark backgrounds.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@
 
 namespace broadmark {
 
-/// What colours are made from, borrowed. Pairs may name bodies that do not exist.
+/// What a mode reads, borrowed. Pairs may name bodies that do not exist.
 struct ColouringInput {
   std::span<const Aabb> boxes;
-  std::span<const Aabb> previous;           ///< of the frame before; empty when there is none
+  std::span<const Aabb> previous;           ///< of the previous frame; empty without one
   std::span<const std::uint32_t> overlaps;  ///< of each body: see overlapCounts()
   std::span<const Pair> missed;
-  std::span<const Pair> extra;
+  std::span<const Pair> false_pairs;
   bool dark = false;  ///< the background
 };
 
 struct LegendEntry {
   std::string label;
   Rgb swatch = 0;
-  std::uint64_t count = 0;  ///< of bodies
+  std::uint64_t count = 0;  ///< bodies
 
   friend bool operator==(const LegendEntry&, const LegendEntry&) = default;
 };
@@ -40,7 +40,7 @@ struct ColourMode {
   std::string_view id;     ///< "overlapping"
   std::string_view title;  ///< "Overlapping"
   std::string_view help;   ///< one line
-  /// Fills the colouring anew; its memory is used again. O(boxes + pairs).
+  /// Replaces the content of `colouring`; its memory is reused. O(boxes + pairs).
   void (*colour)(const ColouringInput& input, Colouring& colouring);
 };
 

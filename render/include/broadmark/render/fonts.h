@@ -1,4 +1,4 @@
-// The interface's font, part of the program.
+// The font of the user interface, built into the program.
 #pragma once
 
 #include <string_view>

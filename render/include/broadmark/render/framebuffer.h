@@ -1,5 +1,5 @@
-// An own target to draw into, to show as a texture and to read back: contexts without a surface
-// have none.
+// A target to draw into, to show as a texture and to read back. Contexts without a surface have no
+// target of their own.
 #pragma once
 
 #include <cstdint>
@@ -9,22 +9,22 @@
 
 namespace broadmark {
 
-/// Reads what is in the framebuffer that is bound for reading, opaque. Throws RenderError.
+/// Reads the framebuffer that is bound for reading; the picture is opaque. Throws RenderError.
 Picture readPicture(const Gl& gl, int width, int height);
 
-/// A picture-sized target with depth.
+/// Colour and depth of one picture. Needs its context current from construction to destruction.
 class Framebuffer {
  public:
-  static constexpr int kSamples = 4;  ///< what is asked for by default
+  static constexpr int kSamples = 4;  ///< a pixel, by default
 
-  /// With so many samples a pixel, or fewer where the driver cannot. Throws RenderError when it
+  /// With `samples` a pixel, or fewer if the driver cannot do so many. Throws RenderError if it
   /// cannot hold a picture of that size.
   Framebuffer(const Gl& gl, int width, int height, int samples = kSamples);
 
   /// Makes it the target of drawing and sets the viewport.
   void bind() const;
-  /// Puts a picture and its depths (0 to 1) in place of what has been drawn: RGBA8 in memory order,
-  /// rows from bottom to top. Only with one sample a pixel. Throws RenderError.
+  /// Replaces picture and depths (0 to 1): RGBA8 in memory order, rows from bottom to top. Only
+  /// with one sample a pixel. Throws RenderError.
   void write(std::span<const std::uint32_t> rgba, std::span<const float> depths) const;
   /// Brings texture() up to date with what has been drawn.
   void resolve() const;
@@ -42,7 +42,7 @@ class Framebuffer {
     GlObject depth;
     GlObject framebuffer;
   };
-  /// Nothing is thrown for a target that cannot be had: its framebuffer is then 0.
+  // These do not throw: a target that the driver cannot make has framebuffer 0.
   [[nodiscard]] Target makeTextureTarget() const;
   [[nodiscard]] Target makeMultisampleTarget(int samples) const;
   [[nodiscard]] Target whereComplete(Target target) const;
@@ -50,7 +50,7 @@ class Framebuffer {
   const Gl* gl_;
   int width_;
   int height_;
-  Target drawn_;     ///< with several samples a pixel, if any
+  Target drawn_;     ///< with several samples a pixel; empty without
   Target resolved_;  ///< textures
 };
 

@@ -1,7 +1,8 @@
-// The OpenGL 3.3 functions that are used here, in one table, filled through whatever made the
-// context (EGL, OSMesa, GLFW). Loader libraries do not cope with all three.
+// The OpenGL 3.3 functions that we use, in one table. Whatever made the context (EGL, OSMesa, GLFW)
+// fills it: no loader library works with all three.
 #pragma once
 
+#define GL_GLEXT_PROTOTYPES  // for the types of the functions; none is linked
 #include <GL/glcorearb.h>
 
 #include <functional>
@@ -14,36 +15,20 @@
 namespace broadmark {
 
 // clang-format off
-#define BROADMARK_GL_FUNCTIONS(X)                                                              \
-  X(ATTACHSHADER, AttachShader) X(BINDBUFFER, BindBuffer)                                      \
-  X(BINDFRAMEBUFFER, BindFramebuffer) X(BINDRENDERBUFFER, BindRenderbuffer)                    \
-  X(BINDTEXTURE, BindTexture) X(BINDVERTEXARRAY, BindVertexArray) X(BLENDFUNC, BlendFunc)      \
-  X(BLITFRAMEBUFFER, BlitFramebuffer) X(BUFFERDATA, BufferData)                                \
-  X(CHECKFRAMEBUFFERSTATUS, CheckFramebufferStatus) X(CLEAR, Clear)                            \
-  X(CLEARCOLOR, ClearColor) X(COMPILESHADER, CompileShader) X(CREATEPROGRAM, CreateProgram)    \
-  X(CREATESHADER, CreateShader) X(DELETEBUFFERS, DeleteBuffers)                                \
-  X(DELETEFRAMEBUFFERS, DeleteFramebuffers) X(DELETEPROGRAM, DeleteProgram)                    \
-  X(DELETERENDERBUFFERS, DeleteRenderbuffers) X(DELETESHADER, DeleteShader)                    \
-  X(DELETETEXTURES, DeleteTextures) X(DELETEVERTEXARRAYS, DeleteVertexArrays)                  \
-  X(DEPTHMASK, DepthMask) X(DEPTHFUNC, DepthFunc) X(DISABLE, Disable)                          \
-  X(DRAWARRAYS, DrawArrays) X(ENABLE, Enable)                                                  \
-  X(FRAMEBUFFERRENDERBUFFER, FramebufferRenderbuffer) X(GENBUFFERS, GenBuffers)                \
-  X(GENFRAMEBUFFERS, GenFramebuffers) X(GENRENDERBUFFERS, GenRenderbuffers)                    \
-  X(GENTEXTURES, GenTextures) X(GENVERTEXARRAYS, GenVertexArrays) X(GETERROR, GetError)        \
-  X(GETINTEGERV, GetIntegerv) X(GETPROGRAMINFOLOG, GetProgramInfoLog)                          \
-  X(GETPROGRAMIV, GetProgramiv) X(GETSHADERINFOLOG, GetShaderInfoLog)                          \
-  X(GETSHADERIV, GetShaderiv) X(GETSTRING, GetString)                                          \
-  X(GETUNIFORMLOCATION, GetUniformLocation) X(LINKPROGRAM, LinkProgram)                        \
-  X(PIXELSTOREI, PixelStorei) X(READPIXELS, ReadPixels)                                        \
-  X(RENDERBUFFERSTORAGEMULTISAMPLE, RenderbufferStorageMultisample)                            \
-  X(SHADERSOURCE, ShaderSource) X(TEXBUFFER, TexBuffer) X(UNIFORM1F, Uniform1f)                \
-  X(UNIFORM2F, Uniform2f) X(UNIFORM3F, Uniform3f) X(UNIFORMMATRIX4FV, UniformMatrix4fv)        \
-  X(USEPROGRAM, UseProgram) X(VIEWPORT, Viewport)                                              \
-  X(ENABLEVERTEXATTRIBARRAY, EnableVertexAttribArray)                                          \
-  X(VERTEXATTRIBPOINTER, VertexAttribPointer) X(DRAWELEMENTSBASEVERTEX, DrawElementsBaseVertex) \
-  X(SCISSOR, Scissor) X(TEXIMAGE2D, TexImage2D) X(TEXPARAMETERI, TexParameteri)                \
-  X(TEXSUBIMAGE2D, TexSubImage2D) X(FRAMEBUFFERTEXTURE2D, FramebufferTexture2D)                \
-  X(DEPTHRANGE, DepthRange) X(FINISH, Finish) X(COLORMASK, ColorMask)
+#define BROADMARK_GL_FUNCTIONS(X)                                                                 \
+  X(AttachShader) X(BindBuffer) X(BindFramebuffer) X(BindRenderbuffer) X(BindTexture)             \
+  X(BindVertexArray) X(BlendFunc) X(BlitFramebuffer) X(BufferData) X(CheckFramebufferStatus)      \
+  X(Clear) X(ClearColor) X(CompileShader) X(CreateProgram) X(CreateShader) X(DeleteBuffers)       \
+  X(DeleteFramebuffers) X(DeleteProgram) X(DeleteRenderbuffers) X(DeleteShader) X(DeleteTextures) \
+  X(DeleteVertexArrays) X(DepthMask) X(DepthFunc) X(Disable) X(DrawArrays) X(Enable)              \
+  X(FramebufferRenderbuffer) X(GenBuffers) X(GenFramebuffers) X(GenRenderbuffers) X(GenTextures)  \
+  X(GenVertexArrays) X(GetError) X(GetIntegerv) X(GetProgramInfoLog) X(GetProgramiv)              \
+  X(GetShaderInfoLog) X(GetShaderiv) X(GetString) X(GetUniformLocation) X(LinkProgram)            \
+  X(PixelStorei) X(ReadPixels) X(RenderbufferStorageMultisample) X(ShaderSource) X(TexBuffer)     \
+  X(Uniform1f) X(Uniform2f) X(Uniform3f) X(UniformMatrix4fv) X(UseProgram) X(Viewport)            \
+  X(EnableVertexAttribArray) X(VertexAttribPointer) X(DrawElementsBaseVertex) X(Scissor)          \
+  X(TexImage2D) X(TexParameteri) X(TexSubImage2D) X(FramebufferTexture2D) X(DepthRange) X(Finish) \
+  X(ColorMask)
 // clang-format on
 
 /// Address of a GL function, or null.
@@ -55,7 +40,7 @@ struct Gl {
   explicit Gl(const GlLoader& load);
   explicit Gl(const OffscreenContext& context);
 
-#define BROADMARK_GL_MEMBER(TYPE, name) PFNGL##TYPE##PROC name = nullptr;
+#define BROADMARK_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
   BROADMARK_GL_FUNCTIONS(BROADMARK_GL_MEMBER)
 #undef BROADMARK_GL_MEMBER
 

@@ -1,7 +1,6 @@
-// What happens at mouse and keyboard, in the order in which it happened, whether it comes from a
-// window or from a script.
+// Events of mouse and keyboard in their order, from a window or from a script.
 //
-// Dear ImGui 1.86 looks at the state of keys and buttons once per picture: a press and a release
+// Dear ImGui 1.86 reads the state of keys and buttons once per picture: a press and a release
 // between two pictures would be lost. So events wait here, and each picture takes only as many as
 // it can tell apart.
 #pragma once
@@ -27,7 +26,7 @@ struct InputEvent {
   bool down = false;
 };
 
-/// The number of a key that is called "Escape", "F12", "Left", "A", …; 0 if there is none.
+/// The key named "Escape", "F12", "Left", "A", …; 0 if there is none.
 Key keyNamed(const std::string& name);
 
 class InputQueue {
@@ -35,16 +34,16 @@ class InputQueue {
   void push(const InputEvent& event) { events_.push_back(event); }
   [[nodiscard]] bool empty() const { return events_.empty(); }
 
-  /// Hands events over to the next picture, up to one that it could not tell from those before: a
-  /// key or button changes twice, the mouse moves or its wheel turns after a button, a key follows
-  /// a character, or a modifier another key.
+  /// Hands events over to the next picture. Stops before an event that the picture could not tell
+  /// from those already handed over: a key or button changes a second time, the mouse moves or its
+  /// wheel turns after a button, a key follows a character, a modifier follows another key.
   void applyTo(ImGuiIO& io);
 
  private:
   std::deque<InputEvent> events_;
 };
 
-/// Tells Dear ImGui which of our numbers its own keys have.
+/// Tells Dear ImGui our numbers of its keys.
 void setKeyMap(ImGuiIO& io);
 
 }  // namespace broadmark

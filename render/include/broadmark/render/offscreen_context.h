@@ -1,4 +1,4 @@
-// How an off-screen context is found; the public face is makeOffscreenContext(GlSource).
+// How an off-screen context is made. Most code only needs makeOffscreenContext(GlSource).
 #pragma once
 
 #include <memory>
@@ -8,16 +8,16 @@
 
 namespace broadmark {
 
-/// What a context is made from.
+/// The libraries that a context is made from.
 struct OffscreenOptions {
   std::string egl_library = "libEGL.so.1";
   std::string osmesa_library = "libOSMesa.so.8";
-  bool software = false;  ///< skip hardware devices: the same picture on every machine
+  bool software = false;  ///< no hardware devices: the same picture on every machine
 };
 
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource, const OffscreenOptions&);
 
-// The single sources. Both throw RenderError.
+// The two sources. Both throw RenderError.
 std::unique_ptr<OffscreenContext> makeEglContext(const OffscreenOptions&);
 std::unique_ptr<OffscreenContext> makeOsmesaContext(const OffscreenOptions&);
 

@@ -1,4 +1,4 @@
-// What is drawn over the bodies: the lines of pairs, and the structure of an algorithm.
+// What is drawn over the bodies: lines of pairs, and the structure of an algorithm.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +13,11 @@
 
 namespace broadmark {
 
-/// What to draw with SceneView, and how much there was besides.
+/// Lines and boxes for SceneView.
 struct Overlay {
   std::vector<SceneLine> lines;
   std::vector<SceneWireBox> boxes;
-  std::size_t left_out = 0;  ///< lines and boxes beyond the limit
+  std::size_t left_out = 0;  ///< number of lines and boxes beyond the limit
 };
 
 struct PairLineStyle {
@@ -27,8 +27,8 @@ struct PairLineStyle {
   std::size_t most = 50'000;  ///< lines
 };
 
-/// A line from middle to middle for each pair; with `only`, for the pairs that one of these bodies
-/// is in. Pairs of bodies that do not exist are left out.
+/// A line from middle to middle for each pair; with `only`, for each pair with one of these bodies.
+/// Pairs of bodies that do not exist are left out.
 Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineStyle& style,
                   std::optional<std::span<const std::uint32_t>> only = {});
 

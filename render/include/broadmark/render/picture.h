@@ -1,4 +1,4 @@
-// Pictures of a frame, drawn off-screen.
+// Pictures: drawing a frame off-screen, PNG files.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace broadmark {
 
-/// No OpenGL to be had, or it failed: one line that says what was tried and why it failed.
+/// There is no OpenGL, or it failed. The message is one line: what was tried and why it failed.
 class RenderError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -43,12 +43,12 @@ class OffscreenContext {
 /// Throws RenderError naming every source that was tried and why each failed.
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource);
 
-/// Draws one frame: all boxes, those that are in a pair of `overlaps` in another colour, the world
-/// box and the ground, seen from the figure camera of the paper. Throws RenderError.
+/// Draws one frame: all boxes, those in a pair of `overlaps` in a colour of their own, the world
+/// and its floor, seen by figureCamera(). Throws RenderError.
 Picture drawFrame(OffscreenContext&, const SceneInfo&, const Frame&, PairRuns overlaps, int width,
                   int height);
 
-/// Writes a PNG atomically. Throws InputError if the path cannot be written.
+/// Writes a PNG, whole or not at all. Throws InputError if the path cannot be written.
 void writePng(const std::filesystem::path&, const Picture&);
 
 /// Reads a PNG. Throws InputError.

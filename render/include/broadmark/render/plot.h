@@ -14,18 +14,18 @@ struct PlotCurve {
   std::string label;
   Rgb colour = 0;
   bool hidden = false;
-  /// Value at frame k in [k]; NaN where there is none.
+  /// values[k] belongs to frame k; NaN if it has none.
   std::vector<double> values;
-  /// Frames that are marked as not to be trusted.
+  /// Frames whose values are marked: something disturbed the measurement.
   std::vector<std::uint32_t> disturbed;
 };
 
 struct PlotOptions {
   bool logarithmic = false;
-  /// Of the values, for axis and crosshair: 0.00125 s is shown as "1.25 ms".
+  /// Unit of the values on axis and crosshair: 0.00125 s is shown as "1.25 ms".
   const char* unit = "s";
   double marked_frame = -1;  ///< a vertical line; below 0: none
-  /// Shown range of frames.
+  /// The frames shown.
   double first = 0;
   double last = 1;
   bool dark = true;
@@ -33,24 +33,24 @@ struct PlotOptions {
 
 /// What the user did.
 struct PlotResult {
-  std::optional<double> clicked_frame;  ///< clicked at, or dragged to
+  std::optional<double> clicked_frame;  ///< clicked, or dragged to
   std::optional<std::size_t> toggled;   ///< curve whose legend entry was clicked
   std::optional<std::size_t> hovered;   ///< curve whose legend entry the mouse is over
   double zoom = 0;                      ///< turns of the wheel
   double zoom_at = 0;                   ///< the frame under the mouse then
 };
 
-/// Draws a plot that fills `width` x `height` pixels of the current Dear ImGui window: axes with
-/// ticks at round values, curves (where several frames fall onto one pixel: the range between
-/// lowest and highest), legend, crosshair with the values under the mouse.
+/// Draws a plot of `width` x `height` pixels into the current Dear ImGui window: axes with ticks at
+/// round values, curves, legend, a crosshair with the values under the mouse. Where several frames
+/// fall onto one pixel, a curve shows the range from the lowest to the highest value.
 PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
                     const PlotOptions& options, float width, float height);
 
 /// A number with an SI prefix and three significant digits: "1.25 ms".
 std::string withPrefix(double value, const char* unit);
 
-/// Round values for an axis from `low` to `high`: about `count` of them; powers of ten, with 2 and
-/// 5 between them where there is room, on a logarithmic axis (`low` > 0).
+/// About `count` round values for an axis from `low` to `high`. On a logarithmic axis (`low` > 0):
+/// powers of ten, with 2 and 5 times these where there is room.
 std::vector<double> axisTicks(double low, double high, int count, bool logarithmic);
 
 }  // namespace broadmark

@@ -1,5 +1,5 @@
-// Draws what Dear ImGui wants drawn. Its own OpenGL backend brings a loader that does not work with
-// OSMesa; this one uses our function table, in windows and off-screen alike.
+// Draws Dear ImGui's lists by our table of functions, in windows and off-screen alike. Dear ImGui's
+// own OpenGL backend brings a loader that does not work with OSMesa.
 #pragma once
 
 #include "broadmark/render/gl.h"
@@ -16,7 +16,7 @@ class UiRenderer {
  public:
   explicit UiRenderer(const Gl& gl);
 
-  /// Makes the atlas's letters a texture. Call anew when its fonts have changed.
+  /// Makes a texture of the atlas. Call it again when its fonts have changed.
   void uploadFonts(ImFontAtlas& atlas);
   /// Draws over the whole of the current framebuffer.
   void draw(const ImDrawData& data);

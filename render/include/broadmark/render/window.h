@@ -1,4 +1,4 @@
-// A window on the screen, by GLFW.
+// A window on the screen, made by GLFW.
 #pragma once
 
 #include <array>
@@ -19,18 +19,18 @@ namespace broadmark {
 /// at a time.
 class Window {
  public:
-  /// `width` and `height` in screen units, or less where the screen is smaller. Throws RenderError
-  /// where no window can be had (no display, no OpenGL 3.3).
+  /// `width` and `height` in screen units, or less if the screen is smaller. Throws RenderError
+  /// without a display or without OpenGL 3.3.
   Window(const std::string& title, int width, int height);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Takes in what has happened; waits for it, at most `seconds`.
+  /// Takes in new events; waits for one, at most `seconds`.
   void poll(double seconds);
   void swap();
   [[nodiscard]] bool closing() const;
-  /// Takes back the wish to close.
+  /// Cancels closing.
   void stayOpen();
   void setTitle(const std::string& title);
   /// Shows the pointer for an ImGuiMouseCursor.
@@ -38,7 +38,7 @@ class Window {
 
   [[nodiscard]] int width() const;   ///< pixels
   [[nodiscard]] int height() const;  ///< pixels
-  /// Pixels per unit at which text is of a readable size: 1, or 2 on a screen of double density.
+  /// Scale at which text has a readable size: 1, or 2 on a screen of double density.
   [[nodiscard]] float scale() const;
 
   InputQueue& input() { return input_; }
@@ -58,7 +58,7 @@ class Window {
   GLFWwindow* window_ = nullptr;
   InputQueue input_;
   std::vector<std::filesystem::path> drops_;
-  std::array<GLFWcursor*, 16> cursors_{};  ///< made when first shown; GLFW ends them
+  std::array<GLFWcursor*, 16> cursors_{};  ///< made when first shown; GLFW frees them
 };
 
 }  // namespace broadmark

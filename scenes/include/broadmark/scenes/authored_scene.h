@@ -1,8 +1,6 @@
-// A scene that a person has put together: the document that is edited, saved and simulated.
+// Authored scenes: documents that are edited, saved and simulated.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,8 +12,7 @@
 namespace broadmark::scenes {
 
 inline constexpr std::string_view kAuthoredSceneSchema = "broadmark-scene/1";
-inline constexpr std::size_t kMostAuthoredBodies = 10'000'000;
-/// Of boxes; for spheres it is the diameter that counts.
+/// Limits of a box's edges and of a sphere's diameter.
 inline constexpr float kLeastEdge = 1e-6F;
 inline constexpr float kMostEdge = 1e6F;
 
@@ -31,43 +28,45 @@ struct AuthoredBody {
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
 
-/// A plain value. Lengths are in world units. Body id = position.
+/// A plain value. Lengths are in world units. Body id = position in the list. At most kMostBodies
+/// (simulation.h) bodies.
 struct AuthoredScene {
-  std::string name = "Untitled";  ///< as recordings call it
+  std::string name = "Untitled";  ///< as recordings state it
   Aabb world{{-10, -10, -10, 0}, {10, 10, 10, 0}};
-  /// Those of AuthoredParameters that are stated; the others have their defaults.
+  /// The values of AuthoredParameters that are stated; the others have their defaults.
   ParameterValues parameters;
   std::vector<AuthoredBody> bodies;
 
   friend bool operator==(const AuthoredScene&, const AuthoredScene&) = default;
 };
 
-/// Frames whose bodies are known wholly, so that a scene can be authored from them.
+/// Frames of bodies with known shapes and velocities, not only boxes.
 class SceneSource {
  public:
   virtual ~SceneSource() = default;
-  /// The bodies of the frame handed out last, as a scene of their own: with their velocities, and
-  /// the gravity that acts on them.
+  /// The frame handed out last as a scene of its own: its bodies with their velocities, and the
+  /// gravity that acts on them.
   [[nodiscard]] virtual AuthoredScene authoredScene() = 0;
 };
 
-/// "" or what is wrong with a part of a scene and what would be right: "mass: 0 is not in …".
+/// What is wrong with a part of a scene and what would be right ("mass: a number from … is
+/// expected"); "": nothing.
 std::string faultOfBody(const AuthoredBody&);
 std::string faultOfName(std::string_view name);
 std::string faultOfWorld(const Aabb&);
 
-/// The scene as JSON (docs/scene-format.md), one body a line: reading it back gives the same scene,
-/// bit for bit. Throws InputError when a part of the scene is faulty.
+/// The scene as JSON (docs/scene-format.md), one body a line. Reading it back gives the same scene,
+/// bit for bit. Throws InputError when a part of the scene is wrong.
 std::string formatAuthoredScene(const AuthoredScene&);
 
 /// Reads such a text, in time and memory proportional to its length; `name` stands for it in
 /// messages. Throws InputError that names the body and the key, and what would be right.
 AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
 
-/// What recordings call its bodies: "Cubes" or "Spheres" when all are, else "Assorted".
+/// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);
 
-/// The tight box of each body: what frame 0 will show.
+/// The tight box of each body: frame 0.
 std::vector<Aabb> boxesOf(const AuthoredScene&);
 
 }  // namespace broadmark::scenes

@@ -1,4 +1,4 @@
-// Authored scenes in motion, and frames of other scenes as authored ones.
+// Simulating authored scenes, and making authored scenes from frames.
 #pragma once
 
 #include <cstdint>
@@ -6,19 +6,25 @@
 #include <memory>
 
 #include "broadmark/scenes/authored_scene.h"
-#include "broadmark/scenes/physics_simulation.h"
+#include "broadmark/scenes/physics_engine.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {
 
-/// The typed parameters of an authored scene: frames, engine, gravity, those of physics, and those
-/// that come with the engine.
+class ChosenEngine;
+
+/// The typed parameters of an authored scene: frames, engine, gravity, physics, and those of the
+/// chosen engine.
 class AuthoredParameters final : public Parametrised {
  public:
-  /// Throws InputError for an unknown parameter or a bad value.
+  /// The defaults, but for the stated values. Throws InputError for an unknown parameter or a bad
+  /// value.
   explicit AuthoredParameters(const ParameterValues& stated = {});
-  /// Takes over those parameters of another scene that an authored one has, too.
+  /// The values of another scene for all parameters that both have.
   AuthoredParameters(const ParameterValues& other, const Vec3& gravity);
+  ~AuthoredParameters() override;
+  AuthoredParameters(AuthoredParameters&&) noexcept;
+  AuthoredParameters& operator=(AuthoredParameters&&) noexcept;
 
   void visitParameters(const ParameterVisitor&) override;
   [[nodiscard]] ParameterValues values() { return parameterValues(*this); }
@@ -36,10 +42,10 @@ class AuthoredParameters final : public Parametrised {
   double gravity_y_ = -9.81;
   double gravity_z_ = 0;
   PhysicsSettings physics_;
-  ChosenEngine engine_parameters_;
+  std::unique_ptr<ChosenEngine> engine_parameters_;
 };
 
-/// What simulates a document.
+/// Has an authored scene as its document.
 class SceneDocument {
  public:
   virtual ~SceneDocument() = default;
@@ -47,15 +53,15 @@ class SceneDocument {
   [[nodiscard]] virtual AuthoredScene document() = 0;
 };
 
-/// The simulation of an authored scene (also a SceneDocument), which it keeps a copy of; `file`:
-/// where that lies, if anywhere. Throws InputError when a part of the scene is faulty.
+/// The simulation of an authored scene; also a SceneDocument. `file` is where the scene is saved,
+/// if it is. Throws InputError when a part of the scene is wrong.
 std::unique_ptr<Simulation> makeAuthoredSimulation(AuthoredScene scene,
                                                    std::filesystem::path file = {});
 
-/// Frame `frame` of any recording or simulation as a scene of its own, with all that is known:
-/// of a SceneSource its bodies with velocities and forces; of poses the turned bodies, at rest; of
-/// boxes alone those, unturned and at rest. Leaves the source at that frame. Throws InputError when
-/// there is no such frame, or it holds what no body can be.
+/// Frame `frame` of a recording or simulation as a scene of its own, with all that the source
+/// knows: a SceneSource gives bodies with velocities and gravity; a PoseSource turned bodies at
+/// rest; any other source unturned bodies at rest, one for each box. Leaves the source at that
+/// frame. Throws InputError when there is no such frame, or a box in it cannot be a body.
 AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame);
 
 }  // namespace broadmark::scenes

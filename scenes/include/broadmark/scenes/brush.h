@@ -1,5 +1,4 @@
-// Brushes: ways to place many bodies at once. One implementation per file, listed in
-// CMakeLists.txt.
+// Brushes place many bodies at once. One implementation per file, listed in CMakeLists.txt.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +14,15 @@
 
 namespace broadmark::scenes {
 
-/// Says where bodies go, around the point that is painted at. Its parameters are those that only it
-/// has; lengths are in world units.
+/// Says how many bodies go where, relative to a point. Visits the parameters that only this brush
+/// has. Lengths are in world units.
 class Brush : public Parametrised {
  public:
-  /// How many bodies it places, if one is this large: the volume of a cube around it.
+  /// The number of bodies, for bodies of this volume (scale³).
   [[nodiscard]] virtual double count(double body_volume) const = 0;
-  /// Where body `index` goes, seen from the point that is painted at.
+  /// The place of body `index`, relative to the point.
   [[nodiscard]] virtual Vec3 place(std::size_t index, Random&) const = 0;
-  /// Whether asking again gives another place.
+  /// Whether place() is random, so that calling it again gives another place.
   [[nodiscard]] virtual bool scatters() const { return false; }
 };
 
@@ -38,7 +37,7 @@ struct BrushEntry {
 /// All of them, in the order of the list in CMakeLists.txt.
 std::vector<BrushEntry> brushEntries();
 
-/// What all brushes paint with.
+/// What the bodies are like: the same for all brushes.
 class Paint final : public Parametrised {
  public:
   Paint();
@@ -52,17 +51,16 @@ class Paint final : public Parametrised {
   std::int64_t seed = 1;
 };
 
-/// What one touch of a brush gives.
+/// The bodies of one use of a brush.
 struct Stroke {
   std::vector<AuthoredBody> bodies;
-  std::size_t left_out = 0;  ///< bodies for which there was no room
+  std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// Bodies painted at a point. Unless the paint allows overlaps, none is placed where its tight box
-/// would overlap that of another or of one of `present`, by more than a touch: a brush that
-/// scatters then tries elsewhere, the others leave the body out. The same arguments give the same
-/// bodies. O(present + placed). Throws InputError when the brush asks for more bodies than a scene
-/// may hold.
+/// Bodies placed around the point `at`. Unless the paint allows overlaps, no tight box overlaps
+/// that of another placed body or of one in `present` by more than a touch: a brush that scatters
+/// tries other places, and a body without room is left out. The same arguments give the same
+/// bodies. O(present + placed). Throws InputError when the brush would place more than kMostBodies.
 Stroke paint(const Brush&, const Paint&, const Vec3& at, std::span<const AuthoredBody> present);
 
 }  // namespace broadmark::scenes

@@ -1,4 +1,4 @@
-// What a scene asks of a physics engine. One implementation per file, listed in CMakeLists.txt.
+// The interface of a physics engine. One implementation per file, listed in CMakeLists.txt.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +28,11 @@ struct BodyDescription {
   Shape shape;
   double mass = 1;
   Pose pose;
-  Vec3 linear_velocity{};
-  Vec3 angular_velocity{};
+  Vec3 linear_velocity{};   ///< world units per second
+  Vec3 angular_velocity{};  ///< radians per second
 };
 
-/// The immovable outside of a plane: bodies stay where normal · point >= offset.
+/// One side of a plane, which bodies cannot leave: normal · point >= offset.
 struct HalfSpace {
   Vec3 normal{};  ///< unit length, towards the free side
   float offset = 0;
@@ -48,12 +48,12 @@ class PhysicsBody {
   [[nodiscard]] virtual Vec3 linearVelocity() const = 0;
   [[nodiscard]] virtual Vec3 angularVelocity() const = 0;
 
-  /// Places the body anew and wakes it.
+  /// Moves the body to another pose and wakes it.
   virtual void setPose(const Pose&) = 0;
-  /// Launches the body and wakes it; a frozen one stays as it is.
+  /// Sets the velocities and wakes the body. Does nothing to a frozen one.
   virtual void setVelocity(const Vec3& linear, const Vec3& angular) = 0;
 
-  /// Asleep: at rest until something touches it. A frozen body counts as asleep.
+  /// At rest until something touches it. A frozen body counts as asleep.
   [[nodiscard]] virtual bool asleep() const = 0;
   [[nodiscard]] virtual bool frozen() const = 0;
   /// Makes the body an immovable obstacle from now on.
@@ -61,8 +61,8 @@ class PhysicsBody {
 };
 
 /// A world of bodies. Deterministic: the same calls give the same bits. Instances do not influence
-/// each other. Visits the parameters that only this engine has; their names must not clash with
-/// those of the settings or of any scene.
+/// each other. Visits the parameters that only this engine has; their names must differ from those
+/// of the settings and of every scene.
 class PhysicsEngine : public Parametrised {
  public:
   /// Adds a body. The reference stays valid as long as the engine lives.
@@ -72,7 +72,7 @@ class PhysicsEngine : public Parametrised {
   virtual void setGravity(const Vec3&) = 0;
   [[nodiscard]] virtual Vec3 gravity() const = 0;
 
-  /// Moves on by one time step.
+  /// Advances by one time step.
   virtual void step() = 0;
   [[nodiscard]] virtual bool allAsleep() const = 0;
 };

@@ -1,5 +1,5 @@
-// Random numbers that are the same everywhere: the engine is fixed by the C++ standard, and the
-// sampling is written out, since the standard's distributions differ between libraries.
+// Random numbers that are the same on every machine: the standard defines the generator, and the
+// sampling is our own, because the standard's distributions differ between libraries.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/scenes/shape.h"
+#include "broadmark/pose.h"
 
 namespace broadmark::scenes {
 
@@ -23,7 +23,7 @@ class Random {
   /// Uniform in the ball of this radius around the origin.
   Vec3 inBall(double radius);
 
-  /// Puts elements into random order.
+  /// Puts the elements into random order.
   template <class Element>
   void shuffle(std::vector<Element>& elements) {
     for (std::size_t left = elements.size(); left > 1; --left) {

@@ -16,16 +16,18 @@ namespace broadmark::scenes {
 /// Ids of bodies, ascending, each once.
 using BodyIds = std::vector<std::uint32_t>;
 
+class SceneChange;  // private to the sources
+
 /// Changes a scene in steps that can be undone. A step keeps only what it changed: the former
-/// values of one property of the bodies concerned, or the bodies that were added or deleted.
+/// values of one property of some bodies, or the bodies that were added or deleted.
 ///
-/// Every edit acts on the selected bodies; with none selected, or with nothing to change, it does
-/// nothing and is no step. Each throws InputError, and leaves all as it was, when a body would no
-/// longer be valid. Undoing or redoing a step also brings back the selection before or after it.
-/// O(bodies concerned); adding and deleting O(bodies).
+/// Every edit acts on the selected bodies. An edit that changes nothing is not a step. An edit that
+/// would make a body invalid throws InputError and changes nothing. Undo and redo also restore the
+/// selection. O(selected bodies); adding and deleting O(all bodies).
 class SceneEditor {
  public:
-  /// Memory that all steps together may take. The oldest are given up for it, the latest never.
+  /// Most memory of all steps together. Beyond it the oldest steps are forgotten, but never the
+  /// latest.
   static constexpr std::size_t kHistoryBytes = std::size_t{256} << 20;
 
   explicit SceneEditor(AuthoredScene scene = {}, std::size_t history_bytes = kHistoryBytes);
@@ -34,20 +36,20 @@ class SceneEditor {
   SceneEditor& operator=(SceneEditor&&) noexcept;
 
   [[nodiscard]] const AuthoredScene& scene() const { return scene_; }
-  /// A number that stands for this very state of the scene: undoing brings back the former one.
+  /// A number for this state of the scene: undo brings back the number, too.
   [[nodiscard]] std::uint64_t revision() const;
-  /// Whether the scene differs from what it was at the last markSaved(), or at first.
+  /// Whether the scene has changed since the last markSaved(), or since it was handed in.
   [[nodiscard]] bool isModified() const { return revision() != saved_revision_; }
   void markSaved() { saved_revision_ = revision(); }
 
-  // ---- Selection: no step of its own
+  // ---- Selection: not a step
 
   [[nodiscard]] const BodyIds& selection() const { return *selection_; }
   /// In any order. Throws InputError when there is no such body.
   void select(BodyIds bodies);
   void selectAll();
   void selectNone() { select({}); }
-  /// Adds those that are not selected, takes away those that are.
+  /// Selects those that are not selected, and deselects the others.
   void toggle(const BodyIds& bodies);
   /// The centre of the selected bodies' positions.
   [[nodiscard]] Vec3 selectionCentre() const;
@@ -57,65 +59,62 @@ class SceneEditor {
   /// Appends bodies and selects them.
   void add(std::vector<AuthoredBody> bodies);
   void erase();
-  /// Appends copies, moved by `offset`, and selects them.
+  /// Appends copies of the selected bodies, moved by `offset`, and selects them.
   void duplicate(const Vec3& offset);
   void move(const Vec3& by);
   /// Turns the selected bodies about their common centre by a quaternion of unit length.
   void turn(const Quaternion& by);
   /// Scales places and sizes about the common centre.
   void scale(float factor);
-  /// The edges of boxes; a sphere gets the first as its diameter.
+  /// Sets the edges of boxes, and the diameter of spheres to the first of the three.
   void setSize(const Vec3& edges);
-  /// Boxes and spheres into each other: a cube of the sphere's diameter, a sphere of the mean edge.
+  /// Spheres become cubes whose edge is the diameter; boxes become spheres whose diameter is the
+  /// mean edge.
   void makeBoxes();
   void makeSpheres();
   void setMass(double mass);
   void setFrozen(bool frozen);
   void setVelocity(const Vec3& linear);
   void setAngularVelocity(const Vec3& angular);
-  /// These act on the scene as a whole.
+  // These change the scene as a whole.
   void setName(std::string name);
   void setWorld(const Aabb& world);
-  /// States these parameters (see AuthoredParameters); those not named keep their values. Those of
-  /// an engine that is no longer chosen are dropped.
+  /// States these parameters (see AuthoredParameters). Others keep their values, but those of an
+  /// engine that is no longer chosen are dropped.
   void setParameters(const ParameterValues& values);
 
   // ---- History
 
-  /// Until endGesture() all edits are one step, called `name`: a drag of the mouse, or one touch of
-  /// a slider. Repeated edits of the same property take no more memory. Gestures do not nest.
+  /// All edits until endGesture() are one step with this name: a drag of the mouse or of a slider.
+  /// Repeated edits of the same property take no more memory. Gestures do not nest.
   void beginGesture(std::string name);
   void endGesture();
   [[nodiscard]] bool inGesture() const { return in_gesture_; }
 
   [[nodiscard]] bool canUndo() const { return done_ > 0; }
   [[nodiscard]] bool canRedo() const { return done_ < history_.size(); }
-  /// What would be undone, in words: "move 12 bodies"; "": nothing.
+  /// The name of the step that undo() would undo: "move 12 bodies"; "": none.
   [[nodiscard]] std::string undoName() const;
   [[nodiscard]] std::string redoName() const;
-  /// Both end a gesture, and do nothing when there is nothing to do.
+  /// Both end the gesture. Without a step to undo or redo they do nothing else.
   void undo();
   void redo();
-  /// What the history takes at present.
+  /// Memory of all steps at present.
   [[nodiscard]] std::size_t historyBytes() const;
-
-  /// One change, which can be exchanged for its reverse; see the source.
-  class Change;
 
  private:
   using SharedIds = std::shared_ptr<const BodyIds>;
   struct Step;
 
-  /// Computes the new value of one property for each selected body, checks it and exchanges them.
+  /// Makes a new value of one property for each selected body, and checks the bodies with it.
   template <class Value, class Make>
   void changeBodies(std::string_view verb, Value AuthoredBody::*property, Make&& make);
   template <class Value>
   void changeScene(std::string name, Value AuthoredScene::*property, Value value,
                    const std::string& fault);
   void addCopies(std::string_view verb, std::vector<AuthoredBody> bodies);
-  void perform(std::string name, std::unique_ptr<Change> change, SharedIds selected_after);
+  void perform(std::string name, std::unique_ptr<SceneChange> change, SharedIds selected_after);
   void forgetOldest();
-  [[nodiscard]] std::string nameOf(std::string_view verb, std::size_t bodies) const;
 
   AuthoredScene scene_;
   SharedIds selection_;

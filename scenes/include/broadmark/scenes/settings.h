@@ -8,8 +8,8 @@
 
 namespace broadmark::scenes {
 
-/// Lengths are in world units; the world is a cube of side (objects · scale³ / density)^(1/3), so
-/// that a scene looks alike at every size.
+/// Lengths are in world units. The world is a cube of side (objects · scale³ / density)^(1/3), so a
+/// scene looks alike at every size.
 struct Settings {
   Settings();
 

@@ -1,4 +1,4 @@
-// Shapes of bodies, and the boxes around them when they are posed.
+// Shapes of bodies, and the tight boxes around them.
 #pragma once
 
 #include <variant>
@@ -19,7 +19,7 @@ struct SphereShape {
   friend bool operator==(const SphereShape&, const SphereShape&) = default;
 };
 
-/// The form of a body around its centre.
+/// The shape of a body around its centre.
 using Shape = std::variant<BoxShape, SphereShape>;
 
 /// The smallest axis-aligned box around the posed shape, with no margin: a turned box reaches

@@ -1,13 +1,14 @@
-// Scenes as the rest of the program sees them: described by parameters, turned into frames.
+// Scenes as the rest of the program sees them: parameters in, frames out. Also their files of
+// parameters, and baking them into recordings.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -17,95 +18,107 @@
 
 namespace broadmark {
 
-/// A built-in scene or physics engine, for lists and help.
+/// Most bodies of any scene, built-in or authored.
+inline constexpr std::uint32_t kMostBodies = 10'000'000;
+/// Most frames after the initial pose.
+inline constexpr std::uint32_t kMostFrames = 1'000'000;
+
+/// A built-in scene, for lists and help.
 struct SceneListing {
   std::string id;       ///< "freefall"
-  std::string name;     ///< as recordings call it: "FreeFall"
+  std::string name;     ///< as recordings state it: "FreeFall"
   std::string summary;  ///< one sentence
 };
 std::vector<SceneListing> builtinScenes();
+
 /// What an engine does with the bodies of a scene.
 enum class Dynamics {
   rigid,     ///< gravity and velocities move them; they collide with each other and the walls
   passing,   ///< as above, but they pass through each other
-  scripted,  ///< by rules of its own: gravity, launching and walls may count for nothing
-  replayed,  ///< none at all: the frames come from a recording
+  scripted,  ///< rules of its own, which may ignore gravity, velocities and walls
+  replayed,  ///< nothing: the frames come from a recording
 };
+
+/// A built-in physics engine, for lists and help.
 struct EngineListing {
   std::string id;  ///< "bullet"
   std::string summary;
   Dynamics dynamics = Dynamics::rigid;
 };
 std::vector<EngineListing> builtinEngines();
+
+/// A kind of recording that can be written, for lists and help.
 struct RecorderListing {
-  std::string id;  ///< "aabbs": also the extension of what it writes
+  std::string id;  ///< "aabbs": also the extension of its recordings
   std::string summary;
-  std::string folder;  ///< where the original keeps such recordings: "Recordings_AABBs"
+  std::string folder;  ///< the original's name for a folder of such recordings
 };
 std::vector<RecorderListing> builtinRecorders();
 
-/// The parameters that come with the engine of this id: besides those of a scene, or, if it replays
-/// recordings, in their place. Throws InputError for an unknown one.
+/// The engine's own parameters. They are added to those of a scene; of an engine that replays
+/// recordings they replace them. Throws InputError for an unknown id.
 std::unique_ptr<Parametrised> engineParameters(const std::string& id);
 
-/// A live physics simulation, frame by frame: a FrameSource that knows the poses, too. Its
-/// parameters (objects, frames, seed, density, object_type, engine, …, the scene's own, and those
-/// of the engine that is chosen) count from the next rewind() on. Same parameters, same frames, bit
-/// for bit. rewind() starts the simulation anew.
+/// A live physics simulation, frame by frame. Its parameters (objects, frames, seed, density,
+/// object_type, engine, …, the scene's own, and those of the chosen engine) take effect at the next
+/// rewind(), which starts the simulation again. Same parameters, same frames, bit for bit.
 class Simulation : public Parametrised, public FrameSource, public PoseSource {
  public:
   explicit Simulation(SceneListing listing) : listing_(std::move(listing)) {}
 
-  /// The built-in scene it is one of; of an authored one the id is kAuthoredSceneId.
+  /// Of a built-in scene; an authored one has the id kAuthoredSceneId.
   [[nodiscard]] const SceneListing& listing() const { return listing_; }
-  /// The file that it is made from besides its parameters: a recording that is replayed, an
-  /// authored scene; "": none. Throws InputError when a recording is not there.
+  /// The file that it needs besides its parameters: a recording to replay, an authored scene; "":
+  /// none. Throws InputError when there is no such recording.
   [[nodiscard]] virtual std::filesystem::path input() const { return {}; }
-  /// The hash of what it is made from besides its parameters; "": nothing. Throws InputError.
+  /// The hash of what it needs besides its parameters; "": nothing. Throws InputError.
   [[nodiscard]] virtual std::string inputHash() { return {}; }
 
  private:
   SceneListing listing_;
 };
 
-/// The simulation of a built-in scene, by id or recorded name, any case, with its default
-/// parameters, but by this engine ("": the default one). One that replays recordings has other
-/// parameters than physics have. Throws InputError for an unknown name, suggesting the nearest.
+/// The simulation of a built-in scene with its default parameters. `scene` is its id or its name in
+/// recordings, upper or lower case; `engine` an engine's id ("": the scene's default). Throws
+/// InputError for an unknown name, and suggests the nearest.
 std::unique_ptr<Simulation> makeSimulation(const std::string& scene,
                                            const std::string& engine = {});
 
-/// The id in the listing of every authored scene, which no built-in one has.
+/// The id in the listing of every authored scene. No built-in scene has it.
 inline constexpr std::string_view kAuthoredSceneId = "authored";
 
-/// Whether JSON of this kind (see jsonKind) describes a scene: a file of scene parameters
-/// ("broadmark-scene-parameters/1"), the sidecar of a baked recording, or an authored scene
-/// ("broadmark-scene/1").
-bool describesScene(std::string_view json_kind);
+// The "schema" of the JSON files that describe a built-in scene: a file of scene parameters, and
+// the sidecar of a baked recording. (That of an authored scene is scenes::kAuthoredSceneSchema.)
+inline constexpr std::string_view kSceneParametersSchema = "broadmark-scene-parameters/1";
+inline constexpr std::string_view kBakeSchema = "broadmark-bake/1";
 
-/// The simulation that such a JSON text describes; what it does not state keeps its default.
-/// `name`, its path if it has one, stands for the text in messages. Throws InputError that names
-/// the key and what would be right.
+/// Whether JSON with this schema describes a scene: one of the two above, or an authored scene.
+bool describesScene(std::string_view schema);
+
+/// The simulation that such a JSON text describes; an authored scene's, too. A parameter that is
+/// not stated keeps its default. `name`, the text's path if it has one, stands for it in messages.
+/// Throws InputError that names the key and what would be right.
 std::unique_ptr<Simulation> parseSceneParameters(std::string_view json, std::string_view name);
 
-/// Scene and parameters as such a text, of an authored scene the whole of it: reading it back gives
-/// the same simulation.
+/// Scene and parameters as such a text; of an authored scene the whole document. Reading it back
+/// gives the same simulation.
 std::string formatSceneParameters(Simulation&);
 
-/// Whether `path` is a complete recording baked with exactly these parameters (its .json beside it
-/// says so, and the recording has the stated hash) from what has `inputHash()` now.
+/// Whether `path` is a complete recording baked with exactly these parameters and from an input
+/// with the present inputHash(): its sidecar says so, and the recording has the stated hash.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
 
-/// The hash that the .json beside a recording states; nothing if there is none, or it is no sidecar
-/// of a baked recording. Throws InputError when a sidecar states no hash.
+/// The hash that a recording's sidecar states; nothing without a sidecar, or if the file there is
+/// another kind of file. Throws InputError when a sidecar states no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
-/// Throws InputError if bake() to these paths would write over input(), or over the .json beside
-/// that or another of them.
+/// Throws InputError if bake() to these paths would overwrite input(), its sidecar, or one
+/// recording's sidecar with another's.
 void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
 
 /// Simulates all frames once into recordings at `paths`, each by the recorder that its extension
-/// names. Beside each a .json of the same name, which no two may share, holds all parameters and
-/// the hash ("schema": "broadmark-bake/1"). Returns false when progress stopped it: then nothing is
+/// names. Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all
+/// parameters and the recording's hash. Returns false when `progress` stopped it; then no file is
 /// left. Throws InputError.
 bool bake(Simulation& simulation, const std::vector<std::filesystem::path>& paths,
           const FrameProgress& progress = {});

@@ -1,0 +1,81 @@
+// Looking at an adaptive KD tree: its counters, a drawing, and its invariants.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "kd/tree.h"
+
+namespace broadmark::kd {
+
+void UpdateCounts::add(const UpdateCounts& other) {
+  moves += other.moves;
+  trims += other.trims;
+  translations += other.translations;
+  erasures += other.erasures;
+  partitions += other.partitions;
+  skipped_subtrees += other.skipped_subtrees;
+}
+
+void UpdateCounts::visit(const CounterVisitor& visitor) const {
+  visitor("moves between nodes", moves);
+  visitor("trims", trims);
+  visitor("translations", translations);
+  visitor("erasures", erasures);
+  visitor("partitions", partitions);
+  visitor("subtrees skipped in updates", skipped_subtrees);
+}
+
+void Tree::draw(DebugDraw& draw, const Aabb& world) const { drawNode(draw, root_, world, 0); }
+
+void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const {
+  constexpr Rgb kCellColour = 0x4FA3D1;
+  constexpr Rgb kPlaneColour = 0xFFA500;
+  draw.box(region, kCellColour, level);
+  if (node.isLeaf()) return;
+  Aabb left = region;
+  Aabb right = region;
+  // Bodies, and so planes, may lie outside of the world.
+  const float plane = std::clamp(node.plane, region.min[node.axis], region.max[node.axis]);
+  left.max[node.axis] = right.min[node.axis] = plane;
+  Aabb plane_box = left;
+  plane_box.min[node.axis] = plane;
+  draw.box(plane_box, kPlaneColour, level);
+  drawNode(draw, node.left(), left, level + 1);
+  drawNode(draw, node.right(), right, level + 1);
+}
+
+std::string Tree::validate() const {
+  if (root_.size != bodies_.size()) return "the root does not hold all bodies";
+  std::vector<char> seen(bodies_.size(), 0);
+  for (const std::uint32_t body : bodies_) {
+    if (body >= seen.size() || seen[body] != 0)
+      return fmt::format("body {} is lost or twice", body);
+    seen[body] = 1;
+  }
+  return validateNode(root_, {});
+}
+
+std::string Tree::validateNode(const Node& node, const Place& place) const {
+  const std::size_t left_size = node.isLeaf() ? 0 : node.left().size;
+  const std::size_t right_size = node.isLeaf() ? 0 : node.right().size;
+  if (left_size + node.own + right_size != node.size) return "a node's populations do not add up";
+  if (node.escaped != 0 || node.refitted) return "a refit was not completed";
+  if (!node.isLeaf() && (left_size == 0 || right_size == 0)) return "a child is empty";
+  if (!node.isLeaf() && node.size < objects_per_leaf_) return "a node should have been trimmed";
+  for (const std::uint32_t body : bodies().subspan(place.begin + left_size, node.own)) {
+    const Aabb& box = boxes_[body];
+    if (homes_[body] != &node) return fmt::format("body {} is taken to be elsewhere", body);
+    if (!place.cell.holds(box)) return fmt::format("body {} is outside of its cell", body);
+    if (!node.isLeaf() &&
+        (isLeft(box, node.axis, node.plane) || isRight(box, node.axis, node.plane))) {
+      return fmt::format("body {} does not straddle its node's plane", body);
+    }
+  }
+  if (node.isLeaf()) return {};
+  std::string fault = validateNode(node.left(), leftPlace(node, place));
+  if (fault.empty()) fault = validateNode(node.right(), rightPlace(node, place));
+  return fault;
+}
+
+}  // namespace broadmark::kd

@@ -1,0 +1,172 @@
+// broadmark list: everything that can be named on the command line, from the lists themselves.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "broadmark/compute_devices.h"
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "broadmark/scenes/simulation.h"
+#include "commands/command.h"
+#include "option_types.h"
+#include "original/ids.h"
+#include "plugins.h"
+#include "table.h"
+
+namespace broadmark::commands::list {
+namespace {
+
+struct Options {
+  std::string what = "all";
+  std::vector<std::string> plugins;
+};
+
+/// An object's parameters, one line each.
+std::string parameterLines(Parametrised& object) {
+  std::vector<std::vector<std::string>> rows;
+  object.visitParameters([&](const Parameter& parameter) {
+    rows.push_back({"   ", std::string(parameter.name), parameterText(parameter),
+                    parameterRange(parameter), std::string(parameter.doc)});
+  });
+  return alignColumns(rows, {false, false, true, false, false});
+}
+
+std::string optimisationsOf(const Algorithm& algorithm) {
+  std::vector<std::string> all;
+  const auto add = [&](bool has, const std::string& what) {
+    if (has) all.push_back(what);
+  };
+  const AlgorithmTraits& traits = algorithm.traits;
+  add(!algorithm.description.optimisations.empty(), algorithm.description.optimisations);
+  add(traits.vectorised, "SIMD");
+  add(traits.parallel && !traits.on_device, "threads");
+  add(traits.on_device, "OpenCL");
+  return all.empty() ? "none" : fmt::format("{}", fmt::join(all, ", "));
+}
+
+std::string exactnessOf(const Algorithm& algorithm) {
+  if (!algorithm.traits.finds_pairs) return "finds nothing";
+  const float margin = algorithm.create()->margin();
+  return margin == 0 ? "exact" : fmt::format("margin {}", margin);
+}
+
+/// What the columns have no room for, in sentences.
+std::string detailsOf(const Algorithm& algorithm) {
+  std::string text =
+      fmt::format("{}: {}. {}", algorithm.id, algorithm.summary, algorithm.description.source);
+  std::vector<std::string_view> original;
+  for (const OriginalId& id : originalIds()) {
+    if (id.algorithm == algorithm.id) original.push_back(id.name);
+  }
+  if (!original.empty()) text += fmt::format(". In the original: {}", fmt::join(original, ", "));
+  if (algorithm.traits.max_objects < AlgorithmTraits().max_objects) {
+    text += fmt::format(". At most {} bodies", algorithm.traits.max_objects);
+  }
+  if (!algorithm.plugin.empty()) text += fmt::format(". From {}", algorithm.plugin);
+  return text;
+}
+
+void listAlgorithms(const std::vector<Algorithm>& algorithms) {
+  fmt::print(
+      "Algorithms (id, family, principle, optimisations, pairs kept over frames, answer, "
+      "time, space)\n");
+  std::vector<std::vector<std::string>> rows;
+  for (const Algorithm& a : algorithms) {
+    rows.push_back({" ", a.id, a.family, a.description.principle, optimisationsOf(a),
+                    a.traits.incremental ? "incremental" : "from scratch", exactnessOf(a),
+                    a.description.time, a.description.space});
+  }
+  fmt::print("{}", alignColumns(rows, std::vector<bool>(rows.front().size(), false)));
+  fmt::print("\nTheir sources, other names, limits and parameters (default, range)\n");
+  for (const Algorithm& a : algorithms) {
+    fmt::print("  {}\n{}", detailsOf(a), parameterLines(*a.create()));
+  }
+}
+
+void listScenes() {
+  fmt::print("Scenes, with their parameters (default, range)\n");
+  for (const SceneListing& scene : builtinScenes()) {
+    fmt::print("  {} ({}): {}\n{}", scene.id, scene.name, scene.summary,
+               parameterLines(*makeSimulation(scene.id)));
+  }
+}
+
+void listEngines() {
+  fmt::print("Engines, with the parameters that come with them (default, range)\n");
+  for (const EngineListing& engine : builtinEngines()) {
+    fmt::print("  {}: {}\n{}", engine.id, engine.summary,
+               parameterLines(*engineParameters(engine.id)));
+  }
+}
+
+void listRecorders() {
+  fmt::print("Recorders\n");
+  for (const RecorderListing& recorder : builtinRecorders()) {
+    fmt::print("  {}: {}\n", recorder.id, recorder.summary);
+  }
+}
+
+void listDevices() {
+  fmt::print("Compute devices (OpenCL); the first is used unless --device names another\n");
+  const std::vector<ComputeDevice> devices = computeDevices();
+  for (std::size_t i = 0; i < devices.size(); ++i) {
+    fmt::print("  {}: {}\n", i, describe(devices[i]));
+  }
+  if (devices.empty()) fmt::print("  none\n");
+}
+
+/// What can be listed.
+struct Section {
+  const char* name;
+  std::function<void(const Options&)> print;
+};
+std::vector<Section> sections() {
+  return {{"algorithms",
+           [](const Options& options) { listAlgorithms(availableAlgorithms(options.plugins)); }},
+          {"scenes", [](const Options&) { listScenes(); }},
+          {"engines", [](const Options&) { listEngines(); }},
+          {"recorders", [](const Options&) { listRecorders(); }},
+          {"devices", [](const Options&) { listDevices(); }}};
+}
+
+std::vector<std::string> sectionNames() {
+  std::vector<std::string> names;
+  for (const Section& section : sections()) names.emplace_back(section.name);
+  names.emplace_back("all");
+  return names;
+}
+
+int run(const Options& options) {
+  const std::vector<std::string> known = sectionNames();
+  if (std::ranges::find(known, options.what) == known.end()) {
+    throw InputError("list: " + unknownName("kind", options.what, known));
+  }
+  bool first = true;
+  for (const Section& section : sections()) {
+    if (options.what != section.name && options.what != "all") continue;
+    if (!std::exchange(first, false)) fmt::print("\n");
+    section.print(options);
+  }
+  return 0;
+}
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("what", options->what, fmt::format("{}", fmt::join(sectionNames(), ", ")))
+      ->capture_default_str();
+  addPlugins(app, options->plugins);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "list",
+          .summary = "Lists algorithms, scenes, engines, recorders and devices, with parameters.",
+          .add = add};
+}
+
+}  // namespace broadmark::commands::list

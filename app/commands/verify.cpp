@@ -1,0 +1,143 @@
+// broadmark verify: reads recordings through, and prints faults and statistics.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/recording.h"
+#include "broadmark/scene_statistics.h"
+#include "broadmark/scenes/simulation.h"
+#include "commands/command.h"
+#include "interrupt.h"
+#include "option_types.h"
+#include "progress.h"
+#include "table.h"
+
+namespace broadmark::commands::verify {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<fs::path> files;
+  bool describe = false;
+  fs::path json;  ///< "": none
+  bool quiet = false;
+};
+
+constexpr const char* kNothing = "–";
+
+std::string percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:.1f} %", 100 * *share) : kNothing;
+}
+
+std::vector<std::string> cells(std::string frames, const RangeStatistics& range) {
+  const std::optional<double> size_ratio = range.sizeRatio();
+  return {"",
+          std::move(frames),
+          fmt::format("{:.4g}", range.density),
+          fmt::format("{:.4g}", range.pairs_per_body),
+          percent(range.moving_share),
+          fmt::format("{:.4g}", range.min_extent),
+          fmt::format("{:.4g}", range.median_extent),
+          fmt::format("{:.4g}", range.max_extent),
+          size_ratio ? fmt::format("{:.4g}", *size_ratio) : kNothing,
+          fmt::format("{}", range.max_outside)};
+}
+
+std::string formatDescription(const SceneDescription& description) {
+  std::vector<std::vector<std::string>> rows = {{"", "frames", "density", "pairs/body", "moving",
+                                                 "smallest", "median", "largest", "ratio",
+                                                 "outside"}};
+  const auto frames = [](const RangeStatistics& range) {
+    return range.first == range.last ? fmt::format("{}", range.first)
+                                     : fmt::format("{}–{}", range.first, range.last);
+  };
+  rows.push_back(cells("initial", description.initial));
+  for (const RangeStatistics& part : description.parts) rows.push_back(cells(frames(part), part));
+  if (description.overall) rows.push_back(cells("all", *description.overall));
+  return alignColumns(rows, std::vector<bool>(rows.front().size(), true));
+}
+
+/// Reads every frame, and describes the scene if wanted. Nothing when interrupted. Throws
+/// InputError at the first fault.
+std::optional<SceneDescription> readThrough(Recording& recording, bool describe_it,
+                                            const FrameProgress& progress) {
+  if (describe_it) return describe(recording, 10, progress);
+  for (std::optional<Frame> frame = recording.rewind(); frame; frame = recording.next()) {
+    if (!progress(frame->index)) return std::nullopt;
+  }
+  return SceneDescription{};
+}
+
+/// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
+std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
+  const auto opened = openRecordingFile(file);
+  Recording& recording = *opened;
+  const SceneInfo& scene = recording.scene();
+  const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
+  Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);
+  const auto description = readThrough(recording, options.describe, [&](std::uint32_t frame) {
+    progress.update(frame);
+    return !InterruptGuard::requested();
+  });
+  if (!description) return std::nullopt;
+  const std::optional<std::string> stated = bakedHash(file);
+  if (stated && *stated != recording.hash()) {
+    throw InputError(fmt::format("{}: its hash is {}, but {} says {}: changed since it was baked",
+                                 file.string(), recording.hash(),
+                                 fs::path(file).replace_extension(".json").string(), *stated));
+  }
+  progress.print(fmt::format("{}: ok: {} {}, {} bodies, {} frames, hash {}{}", file.string(),
+                             scene.name, scene.object_type, scene.objects, scene.frames,
+                             recording.hash(), stated ? ", as baked" : ""));
+  if (options.describe) progress.print(formatDescription(*description));
+  return DescribedRecording{file.string(), recording.hash(), scene, *description};
+}
+
+int run(const Options& options) {
+  if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
+  const InterruptGuard guard;
+  int status = 0;
+  std::vector<DescribedRecording> described;
+  for (const auto& file : options.files) {
+    try {
+      auto one = verifyOne(file, options);
+      if (!one) throw InputError("interrupted");
+      described.push_back(std::move(*one));
+    } catch (const InputError& error) {
+      if (InterruptGuard::requested()) throw;
+      fmt::print(stderr, "broadmark: {}\n", error.what());
+      status = 2;
+    }
+  }
+  if (!options.json.empty()) writeTextFile(options.json, formatDescriptions(described));
+  return status;
+}
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("files", options->files,
+                 fmt::format("recordings ({}, {})", kAabbsExtension, kPosrotExtension))
+      ->type_name("FILE")
+      ->required();
+  CLI::Option* describe =
+      app.add_flag("--describe", options->describe,
+                   "also print what each is like, over time: density, pairs per body, share of "
+                   "moving bodies, sizes (longest edge of a box), most bodies outside the world");
+  addPath(app, "--json", "FILE", options->json, "write that as JSON, too")->needs(describe);
+  addQuiet(app, options->quiet);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command command() {
+  return {
+      .name = "verify", .summary = "Checks recordings, also against their sidecars.", .add = add};
+}
+
+}  // namespace broadmark::commands::verify

@@ -1,0 +1,275 @@
+// Recordings are taken one after the other. On each, repetitions of different cases are
+// interleaved, so that a disturbance of the machine hits all of them alike. Result files are
+// rewritten (each time atomically) after every recording: whatever ends the run, finished cases are
+// kept.
+
+#include "headless.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include "broadmark/compute_devices.h"
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/runner.h"
+#include "interrupt.h"
+#include "progress.h"
+#include "recordings.h"
+#include "screenshot.h"
+#include "table.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Which variants crossed the time limit on a smaller scene of the same kind: they are not run on
+/// larger ones (the paper's rule).
+class Exhausted {
+ public:
+  void note(const CaseResult& result, const Case& run) {
+    if (result.status != Status::timeout) return;
+    const std::uint32_t objects = result.recording.scene.objects;
+    std::uint32_t& smallest = smallest_.try_emplace(key(result, run), objects).first->second;
+    smallest = std::min(smallest, objects);
+  }
+  /// Whether a case is not to be run; then its result says so.
+  bool skip(CaseResult& result, const Case& run) const {
+    const auto found = smallest_.find(key(result, run));
+    if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
+    result.status = Status::timeout;
+    result.reason = fmt::format("not run: crossed the time limit with {} bodies", found->second);
+    return true;
+  }
+
+ private:
+  static std::string key(const CaseResult& result, const Case& run) {
+    const SceneInfo& scene = result.recording.scene;
+    return fmt::format("{}/{}/{}", scene.name, scene.object_type, caseName(run));
+  }
+  std::map<std::string, std::uint32_t> smallest_;
+};
+
+/// All cases of one recording, run in turn.
+class EntryRun {
+ public:
+  /// All arguments outlive this.
+  EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted)
+      : cases_(entry.cases), options_(options), exhausted_(exhausted), runs_(cases_.size()) {
+    for (const Case& run : cases_) results_.push_back(beginCase(run, entry.source.reference));
+  }
+
+  /// Runs all repetitions, interleaved. Returns false when interrupted.
+  bool run(Recording& recording, Oracle& oracle) {
+    const int passes = options_.warmup + options_.repetitions;
+    const SceneInfo& scene = recording.scene();
+    Progress progress(
+        fmt::format("running {} N{}", scene.name, scene.objects),
+        std::uint64_t{scene.frames} * cases_.size() * static_cast<std::uint64_t>(passes),
+        options_.quiet);
+    std::uint64_t steps = 0;
+    const RunHooks hooks{.cancelled = InterruptGuard::requested,
+                         .progress = [&](std::uint32_t frame) { progress.update(steps + frame); }};
+    for (int pass = 0; pass < passes; ++pass) {
+      for (std::size_t i = 0; i < cases_.size(); ++i) {
+        progress.detail(cases_[i].algorithm.id);
+        if (!runOnce(i, recording, oracle, hooks, pass >= options_.warmup)) return false;
+        // Its threads and device are not needed any more.
+        if (pass + 1 == passes || results_[i].status != Status::ok) runs_[i].reset();
+        progress.update(steps += scene.frames);
+      }
+    }
+    return true;
+  }
+
+  void measureMemory(Recording& recording) {
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (results_[i].status != Status::ok || InterruptGuard::requested()) continue;
+      results_[i].peak_bytes = measurePeakBytes(cases_[i], recording);
+    }
+  }
+
+  /// Of the cases that have been run.
+  std::vector<CaseResult> takeResults() {
+    std::erase_if(results_, [](const CaseResult& result) {
+      return result.status == Status::ok && result.repetitions.empty();
+    });
+    return std::move(results_);
+  }
+
+ private:
+  /// One repetition of one case, unless it has failed already. Returns false when interrupted.
+  bool runOnce(std::size_t i, Recording& recording, Oracle& oracle, const RunHooks& hooks,
+               bool measured) {
+    CaseResult& result = results_[i];
+    if (result.status != Status::ok || exhausted_.skip(result, cases_[i])) return true;
+    if (!runs_[i]) runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy);
+    if (!runRepetition(result, *runs_[i], recording, oracle, hooks, measured)) return false;
+    exhausted_.note(result, cases_[i]);
+    return true;
+  }
+
+  const std::vector<Case>& cases_;
+  const SessionOptions& options_;
+  Exhausted& exhausted_;
+  // In the order of the cases.
+  std::vector<CaseResult> results_;
+  std::vector<std::unique_ptr<CaseRun>> runs_;  ///< null before the first and after the last pass
+};
+
+/// A whole plan, run entry by entry.
+class PlanRun {
+ public:
+  PlanRun(const SessionOptions& options, const Plan& plan) : options_(options) {
+    results_.environment = environmentOf(plan.entries.front().cases.front().device);
+    results_.options = options.command_line;
+  }
+
+  void run(Plan& plan) {
+    for (PlanEntry& entry : plan.entries) {
+      runEntry(entry);
+      if (interrupted_) return;
+    }
+  }
+
+  /// Says what has been written. Returns the exit status. Throws InputError when interrupted.
+  int finish() {
+    if (!options_.record.empty()) written_.push_back(options_.record);
+    if (!results_.cases.empty()) {
+      for (const auto& [name, path] : options_.outputs) written_.push_back(path);
+    }
+    for (const fs::path& path : written_) fmt::print("written: {}\n", path.string());
+    if (interrupted_) {
+      throw InputError(fmt::format("interrupted: {} finished cases kept", results_.cases.size()));
+    }
+    if (picture_failed_) return 2;
+    return std::ranges::any_of(results_.cases, isFailure) ? 1 : 0;
+  }
+
+ private:
+  static bool isFailure(const CaseResult& result) {
+    return result.status != Status::ok && result.status != Status::unsupported;
+  }
+
+  /// The machine, with the compute device that is used before the others.
+  static Environment environmentOf(const std::string& wanted_device) {
+    Environment environment = thisEnvironment();
+    std::vector<ComputeDevice> devices = computeDevices();
+    if (devices.empty() && wanted_device.empty()) return environment;
+    const auto chosen =
+        devices.begin() + static_cast<std::ptrdiff_t>(chooseDevice(devices, wanted_device));
+    std::rotate(devices.begin(), chosen, chosen + 1);
+    for (const ComputeDevice& device : devices) {
+      environment.compute_devices.push_back(describe(device));
+    }
+    return environment;
+  }
+
+  void runEntry(PlanEntry& entry) {
+    const auto recording =
+        openRecording(entry.source, options_.record, options_.scene.recorders, options_.quiet);
+    if (!recording) {
+      interrupted_ = true;
+      return;
+    }
+    Oracle oracle;
+    EntryRun run(entry, options_, exhausted_);
+    interrupted_ = !run.run(*recording, oracle);
+    if (!interrupted_ && options_.memory) run.measureMemory(*recording);
+    report(entry, run.takeResults());
+    if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
+  }
+
+  void report(const PlanEntry& entry, const std::vector<CaseResult>& done) {
+    if (done.empty()) return;
+    std::cout << formatTable(done) << std::endl;
+    if (entry.original) {
+      const fs::path log = entry.original->output_log;
+      writeTextFile(log, formatOriginalLog(*entry.original, done.front()));
+      written_.push_back(log);
+    }
+    results_.cases.insert(results_.cases.end(), done.begin(), done.end());
+    for (const ResultWriter& writer : resultWriters()) {
+      const auto output = options_.outputs.find(std::string(writer.name));
+      if (output != options_.outputs.end()) writeTextFile(output->second, writer.format(results_));
+    }
+  }
+
+  void draw(Recording& recording, Oracle& oracle, const fs::path& path) {
+    try {
+      takeScreenshot(recording, options_.screenshot_frame.value_or(recording.scene().frames),
+                     oracle, options_.picture, path);
+      written_.push_back(path);
+    } catch (const RenderError& error) {
+      std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
+      picture_failed_ = true;
+    }
+  }
+
+  const SessionOptions& options_;
+  Results results_;
+  Exhausted exhausted_;
+  bool picture_failed_ = false;
+  bool interrupted_ = false;
+  std::vector<fs::path> written_;
+};
+
+/// Every file that the run will write, with the option that asks for it.
+std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions& options,
+                                                           const Plan& plan) {
+  std::vector<std::pair<std::string, fs::path>> files;
+  for (const auto& [name, path] : options.outputs) files.emplace_back("--" + name, path);
+  for (const PlanEntry& entry : plan.entries) {
+    if (!entry.screenshot.empty()) files.emplace_back("--screenshot", entry.screenshot);
+    if (entry.original) files.emplace_back("m_outputLog", entry.original->output_log);
+  }
+  return files;
+}
+
+/// Fails now rather than after a long run: a file cannot be written, or would overwrite a source or
+/// another file of this run.
+void requireWritable(const SessionOptions& options, const Plan& plan) {
+  std::map<fs::path, std::string> taken;
+  for (const PlanEntry& entry : plan.entries) {
+    const Source& source = entry.source;
+    const fs::path file =
+        source.simulation ? source.simulation->input() : fs::path(source.reference.path);
+    if (!file.empty()) taken[fs::weakly_canonical(file)] = "a source";
+  }
+  for (const auto& [option, path] : plannedFiles(options, plan)) {
+    const auto [other, free] = taken.emplace(fs::weakly_canonical(path), option);
+    if (!free) {
+      throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
+                                   path.string(), other->second));
+    }
+    AtomicFile probe(path);
+  }
+}
+
+/// The frame of the screenshot is in every recording.
+void requireFrame(const SessionOptions& options, const Plan& plan) {
+  for (const PlanEntry& entry : plan.entries) {
+    const SceneInfo& scene = entry.source.reference.scene;
+    if (options.screenshot_frame.value_or(0) <= scene.frames) continue;
+    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}",
+                                 *options.screenshot_frame, scene.name, scene.frames));
+  }
+}
+
+}  // namespace
+
+int runHeadless(Plan plan, const SessionOptions& options) {
+  if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
+  requireFrame(options, plan);
+  requireWritable(options, plan);
+  if (!options.record.empty()) makeDirectory(options.record);
+  const InterruptGuard guard;
+  PlanRun run(options, plan);
+  run.run(plan);
+  return run.finish();
+}
+
+}  // namespace broadmark

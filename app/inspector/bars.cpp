@@ -1,0 +1,100 @@
+// The bars below the view: playback and status.
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "inspector/inspector.h"
+
+namespace broadmark {
+namespace {
+
+constexpr double kSpeeds[] = {1, 5, 10, 15, 24, 30, 60, 120, 1000};
+
+}  // namespace
+
+void Inspector::drawTransport(const RunProgress& progress) {
+  const auto scope = ui_.scope("Playback");
+  Playback& playback = session_.playback;
+  if (ui_.button("|<", "First frame (Home)")) playback.goTo(0);
+  ImGui::SameLine();
+  if (ui_.button("<", "One frame back (Left)")) playback.step(-1);
+  ImGui::SameLine();
+  bool playing = playback.playing();
+  if (ui_.toggle(playing ? "Pause###Play" : "Play###Play", playing, "Play or pause (Space)",
+                 52 * ui_.scale)) {
+    session_.play(playing);
+  }
+  ImGui::SameLine();
+  if (ui_.button(">", "One frame on (Right)")) playback.step(1);
+  ImGui::SameLine();
+  ui_.toggle("Loop", playback.loop, "Begin again after the last frame");
+  ImGui::SameLine();
+  std::vector<std::string> speeds;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < std::size(kSpeeds); ++i) {
+    speeds.push_back(kSpeeds[i] >= 1000 ? "fastest" : fmt::format("{:g} frames/s", kSpeeds[i]));
+    if (kSpeeds[i] <= playback.frames_per_second) chosen = i;
+  }
+  const float width = 108 * ui_.scale;
+  const bool roomy = ImGui::GetContentRegionAvail().x > 330 * ui_.scale;
+  if (roomy) {
+    if (ui_.combo("##speed", chosen, speeds, "Frames shown per second, if all keep pace", width)) {
+      playback.frames_per_second = kSpeeds[chosen];
+    }
+    ImGui::SameLine();
+  }
+  const std::string count = fmt::format("{} / {}", playback.frame(), playback.lastFrame());
+  const float text = ImGui::CalcTextSize(count.c_str()).x + ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - text, 20.0F));
+  int frame = static_cast<int>(playback.frame());
+  if (ui_.slider("##frame", frame, 0, std::max(1, static_cast<int>(playback.lastFrame())), "")) {
+    playback.goTo(frame);
+  }
+  // What has been simulated so far.
+  if (progress.live && progress.scene.frames > 0) {
+    const ImVec2 min = ImGui::GetItemRectMin();
+    const ImVec2 max = ImGui::GetItemRectMax();
+    const float known = min.x + (max.x - min.x) * static_cast<float>(progress.known_frames) /
+                                    static_cast<float>(progress.scene.frames);
+    ImGui::GetWindowDrawList()->AddRectFilled({min.x, max.y - 2 * ui_.scale}, {known, max.y},
+                                              colour(ui_.theme.accent, 0.7F));
+  }
+  ImGui::SameLine();
+  ImGui::TextUnformatted(count.c_str());
+}
+
+void Inspector::drawStatus(const RunProgress& progress) {
+  const auto scope = ui_.scope("Status");
+  ImGui::SetCursorPosY(4 * ui_.scale);
+  if (progress.footage) {
+    ImGui::TextUnformatted(progress.footage->title.c_str());
+    ImGui::SameLine(0, 14 * ui_.scale);
+    ui_.faint(fmt::format("{} {}, {} bodies", progress.scene.name, progress.scene.object_type,
+                          progress.scene.objects));
+    if (progress.snapshot) {
+      ImGui::SameLine(0, 14 * ui_.scale);
+      ui_.faint(fmt::format("{} pairs", progress.snapshot->pairs.size()));
+    }
+  } else {
+    ui_.faint("Nothing is open: simulate a scene, or open or drop a recording");
+  }
+  if (!progress.doing.empty()) {
+    ImGui::SameLine(0, 14 * ui_.scale);
+    ImGui::ProgressBar(progress.fraction, {90 * ui_.scale, ImGui::GetTextLineHeight()}, "");
+    ImGui::SameLine();
+    ui_.faint(progress.doing);
+  }
+  const Message& message = session_.notices.status;
+  if (message.text.empty()) return;
+  const std::string shown = message.text.substr(0, message.text.find('\n'));
+  const float x = ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(shown.c_str()).x;
+  ImGui::SameLine(std::max(x, ImGui::GetCursorPosX() + 20 * ui_.scale));
+  ui_.coloured(message.kind == Message::Kind::error     ? ui_.theme.bad
+               : message.kind == Message::Kind::warning ? ui_.theme.warning
+                                                        : ui_.theme.faint,
+               shown);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,43 @@
+// Which bodies are selected, and which of them the view is to fly to.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "broadmark/pair.h"
+
+namespace broadmark {
+
+class BodySelection {
+ public:
+  using Bodies = std::vector<std::uint32_t>;
+
+  /// Ascending.
+  [[nodiscard]] const Bodies& bodies() const { return bodies_; }
+  [[nodiscard]] bool contains(std::uint32_t body) const;
+
+  /// Selects these, given in any order; those that do not exist are left out.
+  void select(Bodies bodies);
+  /// Adds a body, or takes it away if it is selected.
+  void toggle(std::uint32_t body);
+  /// Selects the two bodies of a pair and flies there.
+  void visit(Pair pair);
+  void flyThere() { fly_to = bodies_; }
+  /// Takes over what has been selected elsewhere (ascending), without calling on_select.
+  void follow(Bodies bodies) { bodies_ = std::move(bodies); }
+
+  /// What the view is to fly to, until it takes it; an empty list means everything.
+  std::optional<Bodies> fly_to;
+
+  // Set by the owner.
+  std::function<std::size_t()> body_count;
+  std::function<void(const Bodies&)> on_select;
+
+ private:
+  Bodies bodies_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,106 @@
+#include "inspector/document.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "broadmark/files.h"
+
+namespace broadmark {
+
+namespace fs = std::filesystem;
+
+void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
+  desk.start(std::move(scene), std::move(path), unsaved);
+  scene_ = 0;
+  show();
+  notices_.bringUp("Author");
+}
+
+void Document::startFromFrame() {
+  if (!playback_.footage() || atRest()) return;
+  // What is looked at is opened anew and goes on to that frame: then its bodies are known wholly.
+  FrameToTake wanted{.former = playback_.footage(),
+                     .frame = playback_.frame(),
+                     .shown = {},
+                     .scene = std::make_shared<scenes::AuthoredScene>()};
+  playback_.show({.open =
+                      [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
+                        *scene = sceneFromFootage(*former, frame);
+                        return stillOf(*scene);
+                      },
+                  .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
+  wanted.shown = playback_.footage();
+  to_take_ = std::move(wanted);
+}
+
+void Document::advance(const RunProgress& progress) {
+  if (!to_take_ || to_take_->shown != progress.footage) return;
+  const FrameToTake wanted = *std::exchange(to_take_, {});
+  if (progress.failure.empty()) {
+    start(std::move(*wanted.scene), {}, true);
+  } else {
+    playback_.showAgain(wanted.former, wanted.frame);
+  }
+}
+
+void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
+  const std::uint64_t before = desk.editor.revision();
+  notices_.attempt([&] { change(desk.editor); });
+  if (desk.editor.revision() != before || !shown()) {
+    show();
+  } else {
+    selection_.follow(desk.editor.selection());
+  }
+}
+
+void Document::showAs(FootageOpener open, bool moves) {
+  // Another world is looked at from anew.
+  const Aabb& world = desk.editor.scene().world;
+  if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
+  world_ = world;
+  playback_.pause();
+  playback_.show(
+      {.open = std::move(open), .title = desk.title() + (moves ? " (live)" : ""), .scene = scene_});
+  footage_ = playback_.footage();
+  moves_ = moves;
+  selection_.follow(desk.editor.selection());
+}
+
+void Document::show() { showAs(desk.still(), false); }
+
+void Document::simulate() { showAs(desk.live(), true); }
+
+bool Document::save(const fs::path& path) {
+  return notices_.attempt([&] {
+    desk.save(path);
+    notices_.say(fmt::format("saved: {}", desk.path().string()));
+    on_save(desk.path());
+  });
+}
+
+void Document::bake(fs::path path) {
+  if (!path.has_extension()) path += kAabbsExtension;
+  notices_.attempt([&] { bake_.start(desk.simulation(), std::move(path)); });
+}
+
+void Document::leave(std::function<void()> then) {
+  if (desk.isModified()) {
+    leaving = std::move(then);
+  } else {
+    then();
+  }
+}
+
+scenes::AuthoredScene sceneOf(scenes::SceneDocument& simulated, const fs::path& file) {
+  scenes::AuthoredScene scene = simulated.document();
+  if (file.empty()) return scene;
+  // The simulation knows all parameters; a file may leave out some, and is saved as it was.
+  scenes::AuthoredScene stated = scenes::parseAuthoredScene(readTextFile(file), file.string());
+  if (scenes::AuthoredParameters(stated.parameters).values() == scene.parameters) {
+    scene.parameters = std::move(stated.parameters);
+  }
+  return scene;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,118 @@
+// The menus, and the dialogs that they open.
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "broadmark/environment.h"
+#include "broadmark/files.h"
+#include "broadmark/recording.h"
+#include "inspector/author_dialogs.h"
+#include "inspector/inspector.h"
+
+namespace broadmark {
+
+namespace fs = std::filesystem;
+
+void Inspector::drawMenus(const RunProgress& progress) {
+  if (!ImGui::BeginMainMenuBar()) return;
+  if (ui_.beginMenu("File")) {
+    const auto scope = ui_.scope("File");
+    if (ui_.menuItem("Open…", "Ctrl+O")) askOpen();
+    if (ImGui::BeginMenu("Open recent", !preferences_.recent.empty())) {
+      const auto inside = ui_.scope("Open recent");
+      for (const std::string& file : std::vector(preferences_.recent)) {
+        if (ui_.menuItem(file.c_str())) session_.open(file);
+      }
+      ImGui::EndMenu();
+    } else {
+      ui_.note("Open recent");
+    }
+    ImGui::Separator();
+    if (ui_.menuItem("Save scene…", session_.document.shown() ? "Ctrl+S" : nullptr)) {
+      askSaveScene(files_, session_);
+    }
+    if (ui_.menuItem("Save recording…", session_.document.shown() ? nullptr : "Ctrl+S", false,
+                     progress.snapshot != nullptr)) {
+      askSaveRecording();
+    }
+    if (ui_.menuItem("Export timings…", nullptr, false, !progress.lanes.empty())) {
+      timings_ = formatFrameTable(progress.lanes);
+      askExportTimings();
+    }
+    ImGui::Separator();
+    if (ui_.menuItem("Screenshot", "F12")) screenshot_asked_ = true;
+    if (movie_directory_.empty()) {
+      if (ui_.menuItem("Record movie…")) askMovie();
+    } else if (ui_.menuItem("End movie")) {
+      session_.notices.say(fmt::format("movie: {}", movie_directory_.string()));
+      movie_directory_.clear();
+    }
+    ImGui::Separator();
+    if (ui_.menuItem("Quit", "Ctrl+Q")) close();
+    ImGui::EndMenu();
+  }
+  if (ui_.beginMenu("View")) {
+    const auto scope = ui_.scope("View menu");
+    if (ui_.menuItem("Dark", nullptr, preferences_.dark)) {
+      preferences_.dark = true;
+      restyle_ = true;
+    }
+    if (ui_.menuItem("Light", nullptr, !preferences_.dark)) {
+      preferences_.dark = false;
+      restyle_ = true;
+    }
+    ImGui::Separator();
+    for (const auto& panel : panels_) {
+      if (ui_.menuItem(panel->name())) session_.notices.wanted_panels.push_back(panel->name());
+    }
+    ImGui::EndMenu();
+  }
+  if (ui_.beginMenu("Help")) {
+    const auto scope = ui_.scope("Help");
+    if (ui_.menuItem("Keys and mouse", "F1")) help_ = true;
+    ImGui::Separator();
+    ui_.faint(fmt::format("Broadmark {}", thisEnvironment().version));
+    ImGui::EndMenu();
+  }
+  ImGui::EndMainMenuBar();
+}
+
+void Inspector::askOpen() {
+  files_.ask({.title = "Open a recording, a scene or results",
+              .purpose = FileDialog::Purpose::open,
+              .extensions = {".aabbs", ".posrot", ".json"},
+              .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
+              .chosen = [this](const fs::path& path) { session_.open(path); }});
+}
+
+void Inspector::askSaveRecording() {
+  SceneInfo scene = session_.playback.scene();
+  files_.ask({.title = "Save the frames known so far as a recording",
+              .purpose = FileDialog::Purpose::save,
+              .extensions = {".aabbs"},
+              .suggestion = fs::path(recordingFileName(scene)),
+              .chosen = [this](const fs::path& path) { session_.saveRecording(path); }});
+}
+
+void Inspector::askExportTimings() {
+  files_.ask({.title = "Export the times of all frames",
+              .purpose = FileDialog::Purpose::save,
+              .extensions = {".csv"},
+              .suggestion = "timings.csv",
+              .chosen = [this](const fs::path& path) {
+                session_.notices.attempt([&] {
+                  writeTextFile(path, timings_.value_or(""));
+                  session_.notices.say(fmt::format("written: {}", path.string()));
+                });
+              }});
+}
+
+void Inspector::askMovie() {
+  files_.ask({.title = "Directory for the movie's pictures",
+              .purpose = FileDialog::Purpose::directory,
+              .extensions = {},
+              .suggestion = {},
+              .chosen = [this](const fs::path& path) { movie_directory_ = path; }});
+}
+
+}  // namespace broadmark

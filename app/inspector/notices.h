@@ -1,0 +1,32 @@
+// What the user is told: the status line, errors to acknowledge, panels that come to the front.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace broadmark {
+
+/// A line for the status bar.
+struct Message {
+  enum class Kind { note, warning, error };
+  Kind kind = Kind::note;
+  std::string text;
+};
+
+struct Notices {
+  void say(std::string text, Message::Kind kind = Message::Kind::note);
+  /// An error that the user has to acknowledge.
+  void complain(std::string text);
+  /// Does something, turning what it throws into an error. Returns whether all went well.
+  bool attempt(const std::function<void()>& act);
+  /// Brings a panel to the front in the next picture.
+  void bringUp(std::string panel) { wanted_panels.push_back(std::move(panel)); }
+
+  Message status;
+  std::deque<std::string> errors;  ///< not yet acknowledged
+  std::vector<std::string> wanted_panels;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,216 @@
+// Options that several commands share.
+
+#include "option_types.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <thread>
+
+#include "broadmark/scenes/simulation.h"
+
+namespace broadmark {
+namespace {
+
+constexpr NameTable kGlSources{{NamedValue{GlSource::automatic, "auto"},
+                                {GlSource::egl, "egl"},
+                                {GlSource::osmesa, "osmesa"}}};
+
+std::vector<std::string> recorderIds() {
+  std::vector<std::string> ids;
+  for (const RecorderListing& recorder : builtinRecorders()) ids.push_back(recorder.id);
+  return ids;
+}
+
+/// Each once, in the order given.
+std::vector<std::string> parseRecorders(const std::vector<std::string>& names) {
+  const std::vector<std::string> known = recorderIds();
+  std::vector<std::string> recorders;
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--recorder: " + unknownName("recorder", name, known));
+    }
+    if (std::ranges::find(recorders, name) == recorders.end()) recorders.push_back(name);
+  }
+  return recorders;
+}
+
+/// Ascending, each once.
+std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& texts) {
+  std::vector<std::uint32_t> counts;
+  for (const std::string& text : texts) {
+    counts.push_back(static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMostBodies)));
+  }
+  std::ranges::sort(counts);
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+  return counts;
+}
+
+/// KEY=VALUE texts as parameter values.
+ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
+  ParameterValues values;
+  for (const std::string& text : texts) {
+    const auto split = text.find('=');
+    if (split == std::string::npos || split == 0) {
+      throw InputError(fmt::format("--param: '{}' is not of the form KEY=VALUE", text));
+    }
+    values[text.substr(0, split)] = text.substr(split + 1);
+  }
+  return values;
+}
+
+void parseSize(const std::string& text, PictureOptions& options) {
+  constexpr int kMostPixels = 16384;
+  const auto x = text.find('x');
+  if (x == std::string::npos) {
+    throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
+  }
+  options.width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, kMostPixels));
+  options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMostPixels));
+}
+
+/// A scene parameter with an option of its own.
+struct SceneShortcut {
+  const char* parameter;
+  const char* type;
+  const char* doc;
+};
+constexpr SceneShortcut kSceneShortcuts[] = {
+    {"frames", "F", "frames to simulate, the initial pose not counted"},
+    {"seed", "S", "seed: same seed, same recording"},
+    {"density", "D", "share of the world's volume that bodies fill"},
+    {"engine", "NAME", "what moves the bodies (see 'broadmark list engines')"},
+    {"input", "PATH", "recording, or directory of those, that an engine replays"}};
+
+}  // namespace
+
+std::vector<std::string> splitList(const std::vector<std::string>& texts) {
+  std::vector<std::string> parts;
+  for (const std::string& text : texts) {
+    for (std::size_t start = 0; start <= text.size();) {
+      const std::size_t end = std::min(text.find(',', start), text.size());
+      if (end > start) parts.push_back(text.substr(start, end - start));
+      start = end + 1;
+    }
+  }
+  return parts;
+}
+
+double parseNumber(const std::string& text, std::string_view option, double min, bool open) {
+  // CLI11's own checks let NaN pass.
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number =
+      error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  if (!number || value < min || (open && value == min)) {
+    throw InputError(
+        fmt::format("{}: '{}' is not a number {} {}", option, text, open ? ">" : ">=", min));
+  }
+  return value;
+}
+
+int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int parseThreadCount(const std::string& text) {
+  constexpr long long kMostThreads = 1024;
+  return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
+}
+
+CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
+                      std::function<void(const std::string&)> set, const std::string& doc,
+                      const std::string& shown) {
+  CLI::Option* option = app.add_option_function<std::string>(name, set, doc)->type_name(type);
+  return shown.empty() ? option : option->default_str(shown);
+}
+
+CLI::Option* addPath(CLI::App& app, const std::string& name, const std::string& type,
+                     std::filesystem::path& target, const std::string& doc) {
+  return app.add_option(name, target, doc)->type_name(type);
+}
+
+CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& type,
+                     std::function<void(const std::vector<std::string>&)> set,
+                     const std::string& doc) {
+  const auto split = [set = std::move(set)](const std::vector<std::string>& texts) {
+    if (const auto parts = splitList(texts); !parts.empty()) set(parts);
+  };
+  return app.add_option_function<std::vector<std::string>>(name, split, doc)
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::string& type,
+                           std::vector<std::string>& target, const std::string& doc) {
+  return app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
+}
+
+CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {
+  return addRepeatable(app, "--plugin", "FILE", plugins,
+                       "shared library with more algorithms, which runs as part of the program "
+                       "(repeatable)");
+}
+
+CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
+  const auto set = [&](const std::vector<std::string>& texts) {
+    parameters = parseKeyValues(texts);
+  };
+  return app
+      .add_option_function<std::vector<std::string>>(
+          "--param", set,
+          "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+CLI::Option* addQuiet(CLI::App& app, bool& quiet) {
+  return app.add_flag("--quiet", quiet, "no progress");
+}
+
+CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
+  const std::vector<std::string> known = recorderIds();
+  recorders = {known.front()};
+  const auto set = [&](const std::vector<std::string>& names) {
+    recorders = parseRecorders(names);
+  };
+  return addList(app, "--recorder", "KIND[,KIND...]", set,
+                 fmt::format("kinds of recordings to keep: {} (default: {})",
+                             fmt::join(known, ", "), known.front()));
+}
+
+std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& options) {
+  CLI::Option* size = addValue(
+      app, "--size", "WxH", [&](const std::string& text) { parseSize(text, options); },
+      "size of the pictures", fmt::format("{}x{}", options.width, options.height));
+  CLI::Option* gl = addNamed(
+      app, "--gl", "SOURCE", options.gl, kGlSources,
+      fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
+  return {size, gl};
+}
+
+std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) {
+  std::vector<CLI::Option*> added = {
+      addList(
+          app, "--objects", "N[,N...]",
+          [&](const std::vector<std::string>& texts) {
+            options.objects = parseObjectCounts(texts);
+          },
+          "numbers of bodies, e.g. 1000,8000,32000"),
+      addList(
+          app, "--object-type", "TYPE[,TYPE...]",
+          [&](const std::vector<std::string>& names) { options.object_types = names; },
+          "shapes of the bodies")};
+  for (const SceneShortcut& shortcut : kSceneShortcuts) {
+    const auto set = [&options, &shortcut](const std::string& text) {
+      options.parameters[shortcut.parameter] = text;
+    };
+    added.push_back(
+        addValue(app, std::string("--") + shortcut.parameter, shortcut.type, set, shortcut.doc));
+  }
+  return added;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,93 @@
+// What the options of several commands share: how values are written, and whole options. A value
+// is taken over while the command line is parsed; a bad one throws an InputError that names the
+// option. Targets must outlive the parsing.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "picture_options.h"
+#include "scene_options.h"
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace broadmark {
+
+/// All texts split at commas, empty parts dropped.
+std::vector<std::string> splitList(const std::vector<std::string>& texts);
+
+/// A finite number >= `min`, or > `min` when `open`.
+double parseNumber(const std::string& text, std::string_view option, double min, bool open);
+
+/// As many threads as this process has cores.
+int allCores();
+/// A number of threads.
+int parseThreadCount(const std::string& text);
+
+/// The value called `text` in a NameTable.
+template <class Table>
+auto parseNamed(const std::string& text, std::string_view option, const Table& table) {
+  if (const auto value = table.find(text)) return *value;
+  throw InputError(std::string(option) + ": " + unknownName("value", text, table.names()));
+}
+
+/// An option of one value, which `set` takes over. `shown` is the default that help shows.
+CLI::Option* addValue(CLI::App&, const std::string& name, const std::string& type,
+                      std::function<void(const std::string&)> set, const std::string& doc,
+                      const std::string& shown = {});
+
+/// An option of one integer. The default is what `target` holds.
+template <class Integer>
+CLI::Option* addInteger(CLI::App& app, const std::string& name, const std::string& type,
+                        Integer& target, long long min, long long max, const std::string& doc) {
+  const auto set = [&target, name, min, max](const std::string& text) {
+    target = static_cast<Integer>(parseInteger(text, name, min, max));
+  };
+  return addValue(app, name, type, set, doc, std::to_string(target));
+}
+
+/// An option of one name of a NameTable. The default is what `target` holds.
+template <class Value, class Table>
+CLI::Option* addNamed(CLI::App& app, const std::string& name, const std::string& type,
+                      Value& target, const Table& table, const std::string& doc) {
+  const auto set = [&target, name, &table](const std::string& text) {
+    target = parseNamed(text, name, table);
+  };
+  return addValue(app, name, type, set, doc, std::string(table.nameOf(target)));
+}
+
+/// An option of a path.
+CLI::Option* addPath(CLI::App&, const std::string& name, const std::string& type,
+                     std::filesystem::path& target, const std::string& doc);
+
+/// An option of a comma-separated list, which may be repeated; `set` gets all parts.
+CLI::Option* addList(CLI::App&, const std::string& name, const std::string& type,
+                     std::function<void(const std::vector<std::string>&)> set,
+                     const std::string& doc);
+
+/// An option of one value that may be repeated; commas are part of the value.
+CLI::Option* addRepeatable(CLI::App&, const std::string& name, const std::string& type,
+                           std::vector<std::string>& target, const std::string& doc);
+
+/// --plugin
+CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);
+/// --param
+CLI::Option* addParameters(CLI::App&, ParameterValues&);
+/// --quiet
+CLI::Option* addQuiet(CLI::App&, bool& quiet);
+/// --recorder. Sets the default, too.
+CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
+/// --size and --gl
+std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
+/// What a scene is like: --objects, --object-type, --frames, …
+std::vector<CLI::Option*> addSceneOptions(CLI::App&, SceneOptions&);
+
+}  // namespace broadmark

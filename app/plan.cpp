@@ -1,0 +1,134 @@
+// From options to a plan.
+
+#include "plan.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <regex>
+
+#include "broadmark/error.h"
+#include "broadmark/runner.h"
+#include "plugins.h"
+#include "screenshot.h"
+#include "session_options.h"
+#include "sources/results.h"
+
+namespace broadmark {
+namespace {
+
+/// Opens one source; its entries still have only cases of their own.
+void addSource(Plan& plan, const std::string& name, const SessionOptions& options) {
+  OpenedSource opened = openSource(name, {.scene = options.scene,
+                                          .parameters = options.parameters,
+                                          .case_id = options.case_id,
+                                          .algorithms = plan.algorithms});
+  if (opened.results) {
+    if (!options.inspector()) throw missingCase(*opened.results, name);
+    plan.results = name;
+  }
+  for (PlanEntry& entry : opened.entries) {
+    if (!options.case_id.empty() && !entry.known) {
+      throw InputError(fmt::format("--case: {}: not a results file", name));
+    }
+    plan.entries.push_back(std::move(entry));
+  }
+}
+
+/// The cases that the options select. The inspector begins without any, if none are named.
+std::vector<Case> selectedCases(const Plan& plan, const SessionOptions& options) {
+  if (options.inspector() && options.cases.algorithms.empty()) return {};
+  return selectCases(options.cases, options.parameters, plan.algorithms);
+}
+
+void addCases(PlanEntry& entry, const std::vector<Case>& selected, const SessionOptions& options) {
+  if (entry.cases.empty()) {
+    entry.cases = selected;
+    return;
+  }
+  if (!options.cases.algorithms.empty()) {
+    throw InputError("--algorithm: the source names its own algorithm");
+  }
+  // The case of a results file states its device, too.
+  if (entry.known) return;
+  for (Case& run : entry.cases) run.device = options.cases.device;
+}
+
+/// Throws InputError for a --param that no scene and no algorithm has.
+void requireUsedParameters(const Plan& plan, const SessionOptions& options) {
+  std::vector<std::string> known;
+  const auto collect = [&](Parametrised& object) {
+    std::ranges::move(parameterNames(object), std::back_inserter(known));
+  };
+  const auto collect_all = [&](const std::vector<Case>& cases) {
+    for (const Case& run : cases) collect(*run.algorithm.create());
+  };
+  collect_all(plan.cases);
+  for (const PlanEntry& entry : plan.entries) {
+    if (entry.source.simulation) collect(*entry.source.simulation);
+    collect_all(entry.cases);
+  }
+  requireKnownParameters(options.parameters, std::move(known));
+}
+
+std::regex compiledFilter(const std::string& filter) {
+  try {
+    return std::regex(filter);
+  } catch (const std::regex_error&) {
+    throw InputError(fmt::format("--filter: '{}' is not a regular expression", filter));
+  }
+}
+
+/// Keeps the cases that pass the filter and are part of the shard.
+void divide(Plan& plan, const SessionOptions& options) {
+  const std::regex filter = compiledFilter(options.filter);
+  int number = 0;
+  for (PlanEntry& entry : plan.entries) {
+    std::erase_if(entry.cases, [&](const Case& run) {
+      if (!std::regex_search(caseId(entry.source.reference, run), filter)) return true;
+      return number++ % options.shard.count != options.shard.index;
+    });
+  }
+}
+
+/// Throws InputError for a parameter out of range.
+void requireSound(const Plan& plan) {
+  for (const Case& run : plan.cases) static_cast<void>(makeInstance(run));
+  for (const PlanEntry& entry : plan.entries) {
+    for (const Case& run : entry.cases) static_cast<void>(makeInstance(run));
+  }
+}
+
+void nameScreenshots(Plan& plan, const SessionOptions& options) {
+  std::vector<const SceneInfo*> scenes;
+  for (const PlanEntry& entry : plan.entries) scenes.push_back(&entry.source.reference.scene);
+  const auto paths = screenshotPaths(options.screenshot, scenes);
+  for (std::size_t i = 0; i < paths.size(); ++i) plan.entries[i].screenshot = paths[i];
+}
+
+}  // namespace
+
+Plan makePlan(const SessionOptions& options) {
+  Plan plan{.algorithms = availableAlgorithms(options.plugins)};
+  for (const std::string& source : options.sources) addSource(plan, source, options);
+  const std::vector<Case> selected = selectedCases(plan, options);
+  for (PlanEntry& entry : plan.entries) addCases(entry, selected, options);
+  if (options.sources.empty()) plan.cases = selected;
+  requireUsedParameters(plan, options);
+  requireSound(plan);
+  if (options.inspector()) return plan;
+  divide(plan, options);
+  std::erase_if(plan.entries, [](const PlanEntry& entry) { return entry.cases.empty(); });
+  if (!options.screenshot.empty()) nameScreenshots(plan, options);
+  return plan;
+}
+
+std::vector<std::string> caseIds(const Plan& plan) {
+  std::vector<std::string> ids;
+  for (const PlanEntry& entry : plan.entries) {
+    for (const Case& run : entry.cases) ids.push_back(caseId(entry.source.reference, run));
+  }
+  return ids;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,18 @@
+// Built-in scenes, by id.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "sources/make_source.h"
+
+namespace broadmark::sources::builtin_scene {
+
+SourceKind kind() {
+  std::vector<std::string> ids;
+  for (const SceneListing& scene : builtinScenes()) ids.push_back(scene.id);
+  return {.what = fmt::format("built-in scenes ({})", fmt::join(ids, ", ")),
+          .recognises = [](NamedSource& source) { return isSceneId(source.name()); },
+          .open = openScene};
+}
+
+}  // namespace broadmark::sources::builtin_scene

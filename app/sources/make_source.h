@@ -1,0 +1,36 @@
+// What several kinds of sources share: recordings to be simulated, and given ones.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sources/source.h"
+
+namespace broadmark {
+
+/// In results, beside the parameters of an authored scene: where its file is.
+inline constexpr const char* kSceneFile = "scene_file";
+
+/// Whether a built-in scene has this id.
+bool isSceneId(const std::string& name);
+
+/// The recording of a simulation.
+Source simulationSource(std::unique_ptr<Simulation>);
+/// A recording in a file. Throws InputError.
+Source recordingSource(const std::filesystem::path&);
+
+/// A path that is stated in `file`: as stated if there is such a file, else relative to `file`.
+std::filesystem::path statedPath(const std::filesystem::path& file, const std::string& stated);
+
+/// Every simulation that the options ask for: object types × object counts. The scene is a built-in
+/// one's name, a file of scene parameters, or an authored scene, of which the options override the
+/// parameters. Throws InputError.
+std::vector<std::unique_ptr<Simulation>> makeSimulations(NamedSource& scene, const SceneOptions&,
+                                                         const ParameterValues& parameters);
+
+/// Opens a scene of any kind: SourceKind::open of all of them.
+OpenedSource openScene(NamedSource&, const OpeningOptions&);
+
+}  // namespace broadmark

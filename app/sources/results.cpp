@@ -1,0 +1,130 @@
+// Results files: one of their cases, on what it ran on.
+
+#include "sources/results.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "broadmark/names.h"
+#include "cases.h"
+#include "sources/make_source.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool hasMismatch(const CaseResult& result) { return !result.differences.empty(); }
+
+/// A few of the ids that can be given.
+std::string someIds(const Results& results) {
+  constexpr std::size_t kShown = 3;
+  std::vector<std::string> wrong;
+  for (const CaseResult& result : results.cases) {
+    if (hasMismatch(result)) wrong.push_back(result.id);
+  }
+  if (results.cases.empty()) return "it has no cases";
+  if (wrong.empty()) {
+    return fmt::format("all answers are right; e.g. '{}'", results.cases.front().id);
+  }
+  std::string text = "with wrong answers:";
+  for (std::size_t i = 0; i < std::min(wrong.size(), kShown); ++i) {
+    text += fmt::format("{} '{}'", i > 0 ? "," : "", wrong[i]);
+  }
+  if (wrong.size() > kShown) text += fmt::format(" and {} more", wrong.size() - kShown);
+  return text;
+}
+
+/// The result of this id; of several the first with a mismatch.
+const CaseResult& resultOf(const Results& results, const std::string& id, const std::string& file) {
+  const CaseResult* found = nullptr;
+  std::vector<std::string> ids;
+  for (const CaseResult& result : results.cases) {
+    ids.push_back(result.id);
+    const bool better = found == nullptr || (!hasMismatch(*found) && hasMismatch(result));
+    if (result.id == id && better) found = &result;
+  }
+  if (found != nullptr) return *found;
+  const std::string nearest = nearestName(id, ids);
+  throw InputError(
+      fmt::format("{}: no case '{}'; {}", file, id,
+                  nearest.empty() ? someIds(results) : fmt::format("did you mean '{}'?", nearest)));
+}
+
+const Algorithm& algorithmOf(const CaseResult& result, const std::vector<Algorithm>& known) {
+  if (const Algorithm* found = findAlgorithm(result.algorithm, known)) return *found;
+  // Never loaded unasked: that would run whatever code a data file names.
+  if (!result.plugin.empty()) {
+    throw InputError(
+        fmt::format("algorithm '{}' is in a library that is not loaded: add --plugin {}",
+                    result.algorithm, result.plugin));
+  }
+  throw InputError(unknownName("algorithm", result.algorithm, algorithmIds(known)));
+}
+
+/// The simulation that a case ran on, again.
+Source simulationAgain(const RecordingReference& reference, const fs::path& results_file) {
+  ParameterValues parameters = reference.scene_parameters;
+  if (const auto file = parameters.extract(kSceneFile)) {
+    NamedSource scene(statedPath(results_file, file.mapped()).string());
+    auto simulation = parseSceneParameters(scene.text(), scene.name());
+    setParameters(*simulation, parameters);
+    return simulationSource(std::move(simulation));
+  }
+  const auto engine = parameters.find("engine");  // which brings parameters of its own
+  auto simulation =
+      makeSimulation(reference.scene.name, engine == parameters.end() ? "" : engine->second);
+  setParameters(*simulation, parameters);
+  return simulationSource(std::move(simulation));
+}
+
+/// What a case ran on: opening it checks that it is the same.
+Source sourceOf(const RecordingReference& reference, const fs::path& results_file) {
+  Source source = reference.path.empty()
+                      ? simulationAgain(reference, results_file)
+                      : recordingSource(statedPath(results_file, reference.path));
+  source.expected_hash = reference.hash;
+  return source;
+}
+
+}  // namespace
+
+InputError missingCase(const Results& results, const fs::path& results_file) {
+  return InputError(fmt::format("{}: a results file: choose a case with --case ID; {}",
+                                results_file.string(), someIds(results)));
+}
+
+namespace sources::results {
+namespace {
+
+OpenedSource open(NamedSource& source, const OpeningOptions& options) {
+  OpenedSource opened;
+  Results results = parseResults(source.text(), source.name());
+  if (options.case_id.empty()) {
+    opened.results = std::move(results);
+    return opened;
+  }
+  const CaseResult& result = resultOf(results, options.case_id, source.name());
+  const Algorithm& algorithm = algorithmOf(result, options.algorithms);
+  const Case run = makeCase(algorithm, result.isa, result.threads, result.device,
+                            changedValues(result.parameters, *algorithm.create()));
+  opened.entries.push_back({.source = sourceOf(result.recording, source.path()),
+                            .cases = {run},
+                            .original = {},
+                            .known = result});
+  return opened;
+}
+
+}  // namespace
+
+SourceKind kind() {
+  return {
+      .what = fmt::format("results with --case (.json, \"{}\")", kResultsSchema),
+      .recognises =
+          [](NamedSource& source) { return source.isJson() && source.schema() == kResultsSchema; },
+      .open = open};
+}
+
+}  // namespace sources::results
+}  // namespace broadmark

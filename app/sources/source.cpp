@@ -1,0 +1,89 @@
+// The list of kinds, and what is known of a source before its kind is.
+
+#include "sources/source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/json_fields.h"
+#include "broadmark/names.h"
+#include "sources/make_source.h"
+
+namespace broadmark {
+
+#define SOURCE_KIND(name)   \
+  namespace sources::name { \
+  SourceKind kind();        \
+  }
+#include "source_kinds.inc"
+#undef SOURCE_KIND
+
+namespace {
+
+/// What is wrong with a source that is of no kind.
+InputError unknownSource(NamedSource& source) {
+  if (!source.isFile()) {
+    std::vector<std::string> scenes;
+    for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
+    return InputError(unknownName("scene", source.name(), scenes) + ", and no such file");
+  }
+  const std::string& schema = source.schema();
+  const std::string kind =
+      schema.empty() ? "no \"schema\"" : fmt::format("unknown \"schema\" '{}'", onOneLine(schema));
+  return InputError(fmt::format("{}: {}; expected: {}", source.name(), kind, sourceKindsText()));
+}
+
+}  // namespace
+
+std::optional<FrameDifference> PlanEntry::knownDifference() const {
+  if (!known) return {};
+  const auto first = std::ranges::min_element(known->differences, {}, &FrameDifference::frame);
+  if (first == known->differences.end()) return {};
+  return *first;
+}
+
+bool NamedSource::isFile() const {
+  return name_.find('/') != std::string::npos || path().has_extension() ||
+         std::filesystem::exists(path());
+}
+
+bool NamedSource::isJson() const { return isFile() && path().extension() == ".json"; }
+
+const std::string& NamedSource::text() {
+  if (!text_) text_ = readTextFile(path());
+  return *text_;
+}
+
+const std::string& NamedSource::schema() {
+  if (!schema_) schema_ = jsonSchema(text(), name_);
+  return *schema_;
+}
+
+std::vector<SourceKind> sourceKinds() {
+  return {
+#define SOURCE_KIND(name) sources::name::kind(),
+#include "source_kinds.inc"
+#undef SOURCE_KIND
+  };
+}
+
+std::string sourceKindsText() {
+  std::string text;
+  for (const SourceKind& kind : sourceKinds()) text += (text.empty() ? "" : ", ") + kind.what;
+  return text;
+}
+
+bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(name).isFile(); }
+
+OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
+  NamedSource source(name);
+  for (const SourceKind& kind : sourceKinds()) {
+    if (kind.recognises(source)) return kind.open(source, options);
+  }
+  throw unknownSource(source);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,18 @@
+// What the writer, the editor and the simulation of authored scenes share: refusing what is wrong.
+#pragma once
+
+#include <cstddef>
+
+#include "broadmark/scenes/authored_scene.h"
+
+namespace broadmark::scenes {
+
+/// Throws InputError when the body with this id is wrong.
+void requireSound(const AuthoredBody&, std::size_t id);
+/// Throws InputError when any part of the scene but its parameters is wrong.
+void requireSound(const AuthoredScene&);
+
+/// The edges of a box, or three times the diameter of a sphere.
+Vec3 edgesOf(const Shape&);
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,254 @@
+// Tracy's parts by themselves: endpoints, the segmented list, the set of pairs.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "algorithms/runs.h"
+#include "tracy/pair_set.h"
+#include "tracy/segmented_list.h"
+
+namespace broadmark::tests {
+namespace {
+
+using tracy::Endpoint;
+using tracy::PairSet;
+using tracy::SegmentedList;
+
+TEST(Endpoint, StartsComeBeforeEndsAtTheSameValue) {
+  const Endpoint ascending[] = {
+      Endpoint::start(-1, 9),  Endpoint::end(-1, 3),      Endpoint::start(-0.0F, 4),
+      Endpoint::start(0, 5),   Endpoint::start(-0.0F, 6), Endpoint::end(0, 1),
+      Endpoint::end(-0.0F, 2), Endpoint::start(1, 0),
+  };
+  for (std::size_t i = 1; i < std::size(ascending); ++i) {
+    EXPECT_LT(ascending[i - 1], ascending[i]) << i;
+  }
+  EXPECT_TRUE(Endpoint::end(1, 7).isEnd());
+  EXPECT_FALSE(Endpoint::start(1, 7).isEnd());
+  EXPECT_EQ(Endpoint::end(1, 0x7FFF'FFFF).slot(), 0x7FFF'FFFFU);
+}
+
+/// A segmented list beside the plainest thing that does the same.
+class ListAndModel {
+ public:
+  ListAndModel(std::uint32_t capacity, int values, std::uint64_t seed)
+      : capacity_(capacity), values_(values), random_(seed, 0) {
+    list_.build({}, capacity);
+  }
+
+  /// Does something at random; `fullness` is the share of intervals it tends to.
+  void step(double fullness) {
+    const auto slot =
+        static_cast<std::uint32_t>(random_.integer(0, static_cast<int>(capacity_) - 1));
+    const auto found = intervals_.find(slot);
+    if (found == intervals_.end()) {
+      if (random_.uniform(0, 1) < fullness) insert(slot);
+    } else if (random_.uniform(0, 1) > fullness) {
+      remove(slot);
+    } else {
+      moveTo(slot, random_.integer(0, 3) == 0 ? anywhere() : nearby(found->second));
+    }
+  }
+
+  void insert(std::uint32_t slot) {
+    const Interval interval = intervals_[slot] = anywhere();
+    list_.insert(Endpoint::start(interval.low, slot), Endpoint::end(interval.high, slot));
+  }
+  void remove(std::uint32_t slot) {
+    const Interval interval = intervals_.at(slot);
+    list_.remove(Endpoint::start(interval.low, slot), Endpoint::end(interval.high, slot));
+    intervals_.erase(slot);
+  }
+
+  void check() const {
+    ASSERT_EQ(list_.validate(), "");
+    ASSERT_TRUE(std::ranges::equal(list_.endpoints(), model()));
+  }
+
+  /// What is said to meet an interval must be what does, and what ends before it at the most.
+  void checkMeeting() const {
+    for (const auto& [slot, interval] : intervals_) {
+      std::map<std::uint32_t, int> visits;
+      list_.forEachMeeting(slot, [&](std::uint32_t other) { ++visits[other]; });
+      EXPECT_EQ(visits.count(slot), 0U);
+      for (const auto& [other, theirs] : intervals_) {
+        if (other == slot) continue;
+        const bool meets = interval.low <= theirs.high && theirs.low <= interval.high;
+        const int count = visits[other];
+        if (meets) {
+          ASSERT_EQ(count, 1) << slot << " meets " << other;
+        }
+        ASSERT_TRUE(count == 0 || (count == 1 && theirs.low <= interval.high)) << slot << other;
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return intervals_.size(); }
+  [[nodiscard]] int chunks() const {
+    int count = 0;
+    list_.forEachChunk([&](auto) { ++count; });
+    return count;
+  }
+  [[nodiscard]] std::uint32_t capacity() const { return capacity_; }
+  SegmentedList& list() { return list_; }
+
+ private:
+  struct Interval {
+    float low;
+    float high;
+  };
+
+  float value() { return static_cast<float>(random_.integer(-values_, values_)); }
+  Interval anywhere() {
+    const float low = value();
+    // Mostly short, so that open sets are neither empty nor full.
+    const int longest = random_.integer(0, 9) == 0 ? values_ : values_ / 20;
+    return {low, low + static_cast<float>(random_.integer(0, longest))};
+  }
+  Interval nearby(const Interval& from) {
+    const auto some = [&] { return static_cast<float>(random_.integer(-2, 2)); };
+    const float low = from.low + some();
+    return {low, std::max(low, from.high + some())};
+  }
+
+  void moveTo(std::uint32_t slot, const Interval& to) {
+    const Interval from = std::exchange(intervals_[slot], to);
+    const auto moveStart = [&] {
+      move(Endpoint::start(from.low, slot), Endpoint::start(to.low, slot));
+    };
+    const auto moveEnd = [&] {
+      move(Endpoint::end(from.high, slot), Endpoint::end(to.high, slot));
+    };
+    if (from.high < to.high) {
+      moveEnd();
+      moveStart();
+    } else {
+      moveStart();
+      moveEnd();
+    }
+  }
+
+  void move(Endpoint from, Endpoint to) {
+    if (from == to) return;
+    std::vector<Endpoint> expected;
+    for (const Endpoint other : list_.endpoints()) {
+      if (std::min(from, to) < other && other < std::max(from, to)) expected.push_back(other);
+    }
+    if (to < from) std::ranges::reverse(expected);
+    std::vector<Endpoint> passed;
+    list_.move(from, to, [&](Endpoint endpoint) { passed.push_back(endpoint); });
+    EXPECT_TRUE(std::ranges::equal(passed, expected));
+  }
+
+  [[nodiscard]] std::vector<Endpoint> model() const {
+    std::vector<Endpoint> all;
+    for (const auto& [slot, interval] : intervals_) {
+      all.push_back(Endpoint::start(interval.low, slot));
+      all.push_back(Endpoint::end(interval.high, slot));
+    }
+    std::ranges::sort(all);
+    return all;
+  }
+
+  std::uint32_t capacity_;
+  int values_;
+  inputs::Random random_;
+  SegmentedList list_{true};
+  std::map<std::uint32_t, Interval> intervals_;
+};
+
+// Few values make many ties. The list fills up and empties again, so that chunks split and merge.
+TEST(SegmentedList, DoesAsANaiveListDoes) {
+  for (const int values : {3, 50, 5000}) {
+    SCOPED_TRACE(values);
+    ListAndModel both(512, values, 7);
+    int most_chunks = 0;
+    for (int round = 0; round < 12; ++round) {
+      for (int i = 0; i < 800; ++i) {
+        both.step(round % 4 < 2 ? 0.9 : 0.1);
+        if (i % 8 == 0) both.check();
+        if (HasFailure()) return;
+      }
+      most_chunks = std::max(most_chunks, both.chunks());
+      both.checkMeeting();
+      if (HasFailure()) return;
+    }
+    EXPECT_GE(most_chunks, 12);
+  }
+}
+
+// A chunk of a very long list holds more, or the open sets would need more than linear memory.
+TEST(SegmentedList, KeepsTheNumberOfChunksBounded) {
+  for (const std::uint32_t capacity : {64U, 1024U, 16384U}) {
+    ListAndModel both(capacity, 100'000, 3);
+    for (std::uint32_t slot = 0; slot < capacity; ++slot) both.insert(slot);
+    both.check();
+    EXPECT_LE(both.chunks(), 200) << capacity;
+    EXPECT_GE(both.chunks(), 2) << capacity;
+    for (std::uint32_t slot = 1; slot < capacity; ++slot) both.remove(slot);
+    both.check();
+    EXPECT_EQ(both.chunks(), 1) << capacity;
+    both.remove(0);
+    both.check();
+  }
+}
+
+TEST(SegmentedList, BuildsAsItInserts) {
+  ListAndModel both(256, 1000, 11);
+  for (std::uint32_t slot = 0; slot < 256; slot += 2) both.insert(slot);
+  for (const std::uint32_t capacity : {256U, 512U, 4096U}) {
+    both.list().build(both.list().endpoints(), capacity);
+    both.check();
+    both.checkMeeting();
+  }
+}
+
+TEST(SegmentedList, TellsWhatIsNear) {
+  SegmentedList list(false);
+  std::vector<Endpoint> sorted;
+  for (std::uint32_t slot = 0; slot < 500; ++slot) {
+    sorted.push_back(Endpoint::start(static_cast<float>(slot), slot));
+    sorted.push_back(Endpoint::end(static_cast<float>(slot) + 0.5F, slot));
+  }
+  list.build(sorted, 512);
+  const auto nearFrom250 = [&](float value) {
+    return list.isNear(Endpoint::start(250, 250), Endpoint::start(value, 250));
+  };
+  EXPECT_TRUE(nearFrom250(250));
+  EXPECT_TRUE(nearFrom250(260));
+  EXPECT_TRUE(nearFrom250(240));
+  EXPECT_FALSE(nearFrom250(400));
+  EXPECT_FALSE(nearFrom250(100));
+}
+
+TEST(PairSet, DoesAsASetDoes) {
+  PairSet pairs;
+  std::set<Pair> expected;
+  inputs::Random random(3, 0);
+  for (int round = 0; round < 2; ++round) {
+    for (int i = 0; i < 20'000; ++i) {
+      const auto a = static_cast<std::uint32_t>(random.integer(0, 60));
+      const Pair pair{a, a + static_cast<std::uint32_t>(random.integer(1, 60))};
+      if (expected.erase(pair) != 0) {
+        pairs.erase(pair);
+      } else {
+        pairs.insert(pair);
+        expected.insert(pair);
+      }
+      if (i % 100 != 0) continue;
+      const PairRun run = pairs.run();
+      ASSERT_EQ(sorted({&run, 1}), std::vector<Pair>(expected.begin(), expected.end()));
+    }
+    EXPECT_THROW(pairs.insert(pairs.run().front()), std::logic_error);
+    EXPECT_THROW(pairs.erase({100, 200}), std::logic_error);
+    pairs.clear();
+    EXPECT_THROW(pairs.erase({0, 1}), std::logic_error);
+    expected.clear();
+    EXPECT_TRUE(pairs.run().empty());
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests

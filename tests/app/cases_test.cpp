@@ -1,0 +1,166 @@
+// Which algorithms and cases selectors mean.
+
+#include "cases.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "broadmark/algorithms.h"
+#include "engine/helpers.h"
+#include "original/case.h"
+#include "original/ids.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::SizeIs;
+using Names = std::vector<std::string>;
+
+Names idsOf(const Names& selectors) {
+  return algorithmIds(selectAlgorithms(selectors, builtinAlgorithms()));
+}
+
+std::vector<Case> casesOf(const CaseOptions& options, const ParameterValues& parameters = {}) {
+  return selectCases(options, parameters, builtinAlgorithms());
+}
+
+Names namesOf(const std::vector<Case>& cases) {
+  Names names;
+  for (const Case& run : cases) names.push_back(caseName(run));
+  return names;
+}
+
+TEST(SelectAlgorithms, ByIdFamilyOrPattern) {
+  EXPECT_THAT(idsOf({"sap"}), ElementsAre("sap")) << "the id, not the family of the same name";
+  EXPECT_THAT(idsOf({"sap*"}), IsSupersetOf({"sap", "sap-simd", "sap-mt", "sap-simd-mt"}));
+  EXPECT_THAT(idsOf({"Self-Check"}), ElementsAre("none", "time-validator"));
+  EXPECT_THAT(idsOf({"grid bf"}), IsSupersetOf({"grid-bf", "grid2d-bf-mt"}));
+  EXPECT_THAT(idsOf({"b?"}), ElementsAre("bf"));
+  EXPECT_THAT(idsOf({}), testing::IsEmpty());
+}
+
+TEST(SelectAlgorithms, EachOnceInTheOrderOfTheList) {
+  EXPECT_EQ(idsOf({"sap", "bf", "sap*", "sap"}), idsOf({"bf", "sap*"}));
+}
+
+TEST(SelectAlgorithms, AllAreThoseThatFindPairs) {
+  const Names all = idsOf({"all"});
+  for (const Algorithm& algorithm : builtinAlgorithms()) {
+    EXPECT_EQ(std::ranges::count(all, algorithm.id), algorithm.traits.finds_pairs ? 1 : 0)
+        << algorithm.id;
+  }
+}
+
+TEST(SelectAlgorithms, UnknownOnesAreSuggested) {
+  EXPECT_THAT(inputErrorOf([] {
+                idsOf({"bf", "sapp"});
+              }),
+              AllOf(HasSubstr("--algorithm"), HasSubstr("'sapp'"), HasSubstr("'sap'")));
+  EXPECT_THAT(inputErrorOf([] { idsOf({"nothing*"}); }), HasSubstr("'nothing*'"));
+}
+
+TEST(SelectCases, WithoutSelectorsAreAll) {
+  EXPECT_EQ(namesOf(casesOf({})), namesOf(casesOf({.algorithms = {"all"}})));
+}
+
+TEST(SelectCases, VaryWhatAnAlgorithmHeeds) {
+  const CaseOptions options{.algorithms = {"sap", "sap-simd", "sap-mt", "sap-simd-mt"},
+                            .threads = {1, 3},
+                            .isas = {Isa::scalar, Isa::sse2}};
+  const std::vector<Case> cases = casesOf(options);
+  ASSERT_THAT(cases, SizeIs(1 + 2 + 2 + 4));
+  for (const Case& run : cases) {
+    if (!run.algorithm.traits.parallel) {
+      EXPECT_EQ(run.threads, 1);
+    }
+    if (!run.algorithm.traits.vectorised) {
+      EXPECT_EQ(run.isa, Isa::scalar);
+    }
+  }
+  const Names names = namesOf(cases);
+  EXPECT_EQ(std::set(names.begin(), names.end()).size(), names.size());
+}
+
+TEST(SelectCases, RepeatedChoicesMakeOneCase) {
+  EXPECT_THAT(casesOf({.algorithms = {"sap-mt", "sap-mt"}, .threads = {2, 2}}), SizeIs(1));
+  EXPECT_THAT(casesOf({.algorithms = {"SAP", "sap"}}), SizeIs(1)) << "the original's name, too";
+}
+
+TEST(SelectCases, TakeTheParametersThatTheyHave) {
+  const auto cases = casesOf({.algorithms = {"kd", "sap"}, .threads = {1}, .isas = {Isa::scalar}},
+                             {{"objects_per_leaf", "7"}, {"density", "0.5"}});
+  ASSERT_THAT(cases, SizeIs(2));
+  for (const Case& run : cases) {
+    const ParameterValues expected =
+        run.algorithm.id == "kd" ? ParameterValues{{"objects_per_leaf", "7"}} : ParameterValues{};
+    EXPECT_EQ(run.parameters, expected);
+  }
+}
+
+TEST(SelectCases, TheOriginalsIdsStateTheirInstructionSet) {
+  const auto cases = casesOf(
+      {.algorithms = {"BF_SSE", "SAP_AVX_Parallel", "SAP"}, .threads = {2}, .isas = {Isa::scalar}});
+  EXPECT_THAT(namesOf(cases), ElementsAre("bf-simd/sse2", "sap-simd-mt/avx2/t2", "sap"));
+}
+
+TEST(RequireKnownParameters, NamesTheUnknownOne) {
+  requireKnownParameters({{"seed", "1"}}, {"density", "seed"});
+  EXPECT_THAT(inputErrorOf([] {
+                requireKnownParameters({{"densty", "1"}}, {"density", "seed"});
+              }),
+              AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
+}
+
+/// Whether algorithms of this id can be left out of the build.
+bool isOptional(std::string_view id) { return id == "cgal" || id.starts_with("b3-"); }
+
+TEST(OriginalIds, AreOfExistingAlgorithms) {
+  std::set<std::string_view> names;
+  for (const OriginalId& original : originalIds()) {
+    SCOPED_TRACE(original.name);
+    EXPECT_TRUE(names.insert(original.name).second) << "twice";
+    EXPECT_EQ(findOriginalId(original.name), &original);
+    const std::vector<Algorithm> known = builtinAlgorithms();
+    const Algorithm* algorithm = findAlgorithm(std::string(original.algorithm), known);
+    if (algorithm == nullptr && isOptional(original.algorithm)) continue;
+    ASSERT_NE(algorithm, nullptr) << original.algorithm;
+    if (original.isa) {
+      EXPECT_TRUE(algorithm->traits.vectorised);
+    }
+    EXPECT_EQ(original.name.ends_with("_Parallel"),
+              algorithm->traits.parallel && !algorithm->traits.on_device);
+  }
+  EXPECT_EQ(findOriginalId("bf"), nullptr);
+}
+
+TEST(OriginalCase, HasTheSettingsThreadsAndParameters) {
+  OriginalSettings settings{.algorithm = "KD", .margin = {0.25, 0.5, 0.125}};
+  settings.kd_objects_per_leaf = 20;
+  const Case kd = originalCase(settings, builtinAlgorithms());
+  EXPECT_EQ(kd.algorithm.id, "kd");
+  EXPECT_EQ(kd.parameters, (ParameterValues{{"margin", "0.5"}, {"objects_per_leaf", "20"}}));
+
+  settings.algorithm = "BF_SSE_Parallel";
+  settings.threads = 9'000;
+  const Case bf = originalCase(settings, builtinAlgorithms());
+  EXPECT_EQ(bf.algorithm.id, "bf-simd-mt");
+  EXPECT_EQ(bf.isa, Isa::sse2);
+  EXPECT_EQ(bf.threads, 1024);
+
+  settings.algorithm = "Tracy_Parallel";
+  settings.grid_objects_per_cell = 7;
+  EXPECT_EQ(originalCase(settings, builtinAlgorithms()).parameters.at("objects_per_cell"), "7");
+
+  settings.algorithm = "BF_SS";
+  EXPECT_THAT(inputErrorOf([&] { originalCase(settings, builtinAlgorithms()); }),
+              AllOf(HasSubstr("m_algorithm"), HasSubstr("'BF_SS'"), HasSubstr("BF_SSE")));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

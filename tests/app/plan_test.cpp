@@ -1,0 +1,217 @@
+// From options to cases: all of them, filtered, divided among machines, for the inspector.
+
+#include "plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/session_files.h"
+#include "session_options.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using Names = std::vector<std::string>;
+
+/// A headless session on two scenes of two sizes each.
+SessionOptions options() {
+  SessionOptions options;
+  options.headless = true;
+  options.sources = {"freefall", "brownian"};
+  options.scene.objects = {10, 20};
+  options.scene.parameters = {{"frames", "3"}};
+  options.cases = {.algorithms = {"bf*", "sap"}, .threads = {1, 2}, .isas = {Isa::scalar}};
+  return options;
+}
+
+/// The inspector on one scene.
+SessionOptions inspector() {
+  SessionOptions inspecting = options();
+  inspecting.headless = false;
+  inspecting.sources = {"freefall"};
+  inspecting.scene.objects = {10};
+  return inspecting;
+}
+
+std::string complaint(const SessionOptions& asked) {
+  return inputErrorOf([&] { makePlan(asked); });
+}
+
+TEST(Plan, HasEveryCaseOnEverySource) {
+  const Plan plan = makePlan(options());
+  ASSERT_THAT(plan.entries, SizeIs(4));
+  for (const PlanEntry& entry : plan.entries) EXPECT_THAT(entry.cases, SizeIs(7));
+  const Names ids = caseIds(plan);
+  EXPECT_THAT(ids, SizeIs(28));
+  EXPECT_THAT(std::set(ids.begin(), ids.end()), SizeIs(28));
+  EXPECT_THAT(ids.front(), HasSubstr("FreeFall/Cubes/N10/F3"));
+  EXPECT_THAT(ids.back(), HasSubstr("Brownian/Cubes/N20/F3"));
+  EXPECT_THAT(plan.cases, IsEmpty());
+}
+
+TEST(Plan, ShardsDivideTheCases) {
+  const Names whole = caseIds(makePlan(options()));
+  for (const int count : {1, 3, 28, 40}) {
+    Names divided;
+    for (int index = 0; index < count; ++index) {
+      SessionOptions part = options();
+      part.shard = {.index = index, .count = count};
+      const Plan plan = makePlan(part);
+      const Names ids = caseIds(plan);
+      EXPECT_LE(ids.size(), whole.size() / static_cast<std::size_t>(count) + 1);
+      for (const PlanEntry& entry : plan.entries) EXPECT_THAT(entry.cases, Not(IsEmpty()));
+      divided.insert(divided.end(), ids.begin(), ids.end());
+    }
+    EXPECT_THAT(divided, testing::UnorderedElementsAreArray(whole)) << count;
+  }
+}
+
+TEST(Plan, FilterKeepsMatchingCases) {
+  SessionOptions filtered = options();
+  filtered.filter = "N20/.*/bf$";
+  const Names ids = caseIds(makePlan(filtered));
+  EXPECT_THAT(ids, SizeIs(2));
+  EXPECT_THAT(ids, Each(AllOf(HasSubstr("N20"), testing::EndsWith("/bf"))));
+  filtered.filter = "matches nothing";
+  EXPECT_THAT(makePlan(filtered).entries, IsEmpty());
+  filtered.filter = "([";
+  EXPECT_THAT(complaint(filtered), AllOf(HasSubstr("--filter"), HasSubstr("'(['")));
+}
+
+TEST(Plan, ShardsDivideWhatTheFilterLeaves) {
+  Names divided;
+  for (int index = 0; index < 2; ++index) {
+    SessionOptions part = options();
+    part.filter = "/sap$";
+    part.shard = {.index = index, .count = 2};
+    const Names ids = caseIds(makePlan(part));
+    EXPECT_THAT(ids, SizeIs(2));
+    divided.insert(divided.end(), ids.begin(), ids.end());
+  }
+  EXPECT_THAT(std::set(divided.begin(), divided.end()), SizeIs(4));
+}
+
+TEST(Plan, ParametersMustBeSomebodys) {
+  SessionOptions asked = options();
+  asked.cases.algorithms = {"kd"};
+  asked.parameters = {{"objects_per_leaf", "9"}, {"density", "0.05"}};
+  EXPECT_THAT(makePlan(asked).entries.front().cases.front().parameters, SizeIs(1));
+  asked.parameters["densty"] = "0.1";
+  EXPECT_THAT(complaint(asked),
+              AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
+}
+
+TEST(Plan, ParametersOfEveryCaseAreChecked) {
+  SessionOptions asked = options();
+  asked.cases.algorithms = {"sap", "kd"};
+  asked.filter = "/sap$";
+  asked.parameters = {{"objects_per_leaf", "none"}};
+  EXPECT_THAT(complaint(asked), AllOf(HasSubstr("objects_per_leaf"), HasSubstr("'none'")));
+  asked.parameters = {{"density", "7"}};
+  EXPECT_THAT(complaint(asked), AllOf(HasSubstr("density"), HasSubstr("'7'")));
+}
+
+TEST(Plan, TheDeviceIsThatOfEveryCase) {
+  SessionOptions asked = options();
+  asked.cases.device = "0";
+  for (const PlanEntry& entry : makePlan(asked).entries) {
+    for (const Case& run : entry.cases) EXPECT_EQ(run.device, "0");
+  }
+}
+
+TEST(Plan, ScreenshotsHaveNamesOfTheirOwn) {
+  SessionOptions asked = options();
+  asked.screenshot = "p.png";
+  std::set<std::filesystem::path> names;
+  for (const PlanEntry& entry : makePlan(asked).entries) names.insert(entry.screenshot);
+  EXPECT_THAT(names, SizeIs(4));
+  EXPECT_TRUE(names.contains("p Brownian Cubes N20.png"));
+  asked.sources = {"freefall"};
+  asked.scene.objects = {10};
+  EXPECT_EQ(makePlan(asked).entries.front().screenshot, "p.png");
+  EXPECT_EQ(makePlan(options()).entries.front().screenshot, "");
+}
+
+TEST(Plan, TheInspectorBeginsWithTheNamedAlgorithmsOnly) {
+  SessionOptions asked = inspector();
+  EXPECT_THAT(makePlan(asked).entries.at(0).cases, SizeIs(7));
+  asked.cases.algorithms.clear();
+  const Plan without = makePlan(asked);
+  ASSERT_THAT(without.entries, SizeIs(1)) << "kept, although it has no cases";
+  EXPECT_THAT(without.entries.front().cases, IsEmpty());
+  EXPECT_GT(without.algorithms.size(), 20U);
+}
+
+TEST(Plan, TheInspectorNeedsNoSource) {
+  SessionOptions asked = inspector();
+  asked.sources.clear();
+  const Plan plan = makePlan(asked);
+  EXPECT_THAT(plan.entries, IsEmpty());
+  EXPECT_THAT(plan.cases, SizeIs(7));
+}
+
+class PlanOfResults : public testing::Test {
+ protected:
+  PlanOfResults() {
+    writeRecording(directory_ / "small.aabbs");
+    wrong_ = resultOn(directory_ / "small.aabbs", "sap", 1);
+    writeResults(directory_ / "results.json", {resultOn(directory_ / "small.aabbs", "bf"), wrong_});
+    asked_.headless = true;
+    asked_.sources = {(directory_ / "results.json").string()};
+  }
+
+  TemporaryDirectory directory_;
+  CaseResult wrong_;
+  SessionOptions asked_;
+};
+
+TEST_F(PlanOfResults, HasTheChosenCase) {
+  asked_.case_id = wrong_.id;
+  const Plan plan = makePlan(asked_);
+  EXPECT_THAT(caseIds(plan), testing::ElementsAre(wrong_.id));
+  ASSERT_TRUE(plan.entries.front().known);
+}
+
+TEST_F(PlanOfResults, NeedsAChosenCase) {
+  EXPECT_THAT(complaint(asked_), AllOf(HasSubstr("results.json"), HasSubstr("--case"),
+                                       HasSubstr("'" + wrong_.id + "'")));
+}
+
+TEST_F(PlanOfResults, InTheInspectorTheCaseIsChosenLater) {
+  asked_.headless = false;
+  const Plan plan = makePlan(asked_);
+  EXPECT_EQ(plan.results, asked_.sources.front());
+  EXPECT_THAT(plan.entries, IsEmpty());
+}
+
+TEST_F(PlanOfResults, OtherSourcesHaveNoCasesToChoose) {
+  asked_.case_id = wrong_.id;
+  for (const std::string& other :
+       {std::string("freefall"), (directory_ / "small.aabbs").string()}) {
+    asked_.sources = {other};
+    EXPECT_THAT(complaint(asked_), AllOf(HasSubstr("--case"), HasSubstr(other)));
+  }
+}
+
+TEST_F(PlanOfResults, SettingsOfTheOriginalNameTheirAlgorithm) {
+  writeTextFile(directory_ / "settings.json",
+                originalSettingsText((directory_ / "small.aabbs").string()));
+  asked_.sources = {(directory_ / "settings.json").string()};
+  asked_.cases.device = "1";
+  const Plan plan = makePlan(asked_);
+  ASSERT_THAT(plan.entries, SizeIs(1));
+  EXPECT_THAT(plan.entries.front().cases, SizeIs(1));
+  EXPECT_TRUE(plan.entries.front().original);
+  asked_.cases.algorithms = {"sap"};
+  EXPECT_THAT(complaint(asked_), HasSubstr("--algorithm"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

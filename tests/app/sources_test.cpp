@@ -1,0 +1,231 @@
+// Every kind of source is recognised and opened; others are refused with what would be right.
+
+#include "sources/source.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "app/session_files.h"
+#include "broadmark/algorithms.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+class Sources : public testing::Test {
+ protected:
+  /// A file with this text.
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    const auto path = directory_ / name;
+    writeTextFile(path, text);
+    return path.string();
+  }
+  [[nodiscard]] std::string recording(const std::string& name = "small.aabbs") const {
+    const auto path = directory_ / name;
+    writeRecording(path);
+    return path.string();
+  }
+
+  static OpenedSource open(const std::string& name, OpeningOptions options = {}) {
+    options.algorithms = builtinAlgorithms();
+    return openSource(name, options);
+  }
+  /// The only entry of a source.
+  static PlanEntry entryOf(const std::string& name, OpeningOptions options = {}) {
+    OpenedSource opened = open(name, std::move(options));
+    EXPECT_FALSE(opened.results);
+    EXPECT_THAT(opened.entries, SizeIs(1));
+    return std::move(opened.entries.at(0));
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Sources, KindsAreDescribed) {
+  std::set<std::string> texts;
+  for (const SourceKind& kind : sourceKinds()) {
+    EXPECT_TRUE(texts.insert(kind.what).second) << kind.what;
+    EXPECT_THAT(sourceKindsText(), HasSubstr(kind.what));
+  }
+  EXPECT_THAT(texts, SizeIs(6));
+}
+
+TEST_F(Sources, BuiltInScenes) {
+  for (const SceneListing& scene : builtinScenes()) {
+    const PlanEntry entry = entryOf(scene.id);
+    ASSERT_TRUE(entry.source.simulation);
+    EXPECT_EQ(entry.source.simulation->listing().id, scene.id);
+    EXPECT_EQ(entry.source.reference.scene.name, scene.name);
+    EXPECT_TRUE(entry.source.reference.seed);
+    EXPECT_THAT(entry.cases, IsEmpty());
+    EXPECT_TRUE(isSource(scene.id));
+  }
+}
+
+TEST_F(Sources, EveryCombinationOfAScenesOptions) {
+  const OpenedSource opened =
+      open("freefall", {.scene = {.objects = {10, 20},
+                                  .object_types = {"spheres", "cubes"},
+                                  .parameters = {{"frames", "3"}}},
+                        .parameters = {{"density", "0.05"}, {"objects_per_cell", "7"}}});
+  std::vector<std::string> made;
+  for (const PlanEntry& entry : opened.entries) {
+    const SceneInfo& scene = entry.source.reference.scene;
+    EXPECT_EQ(scene.frames, 3U);
+    EXPECT_EQ(entry.source.reference.scene_parameters.at("density"), "0.05");
+    made.push_back(scene.object_type + std::to_string(scene.objects));
+  }
+  EXPECT_THAT(made, testing::ElementsAre("Spheres10", "Spheres20", "Cubes10", "Cubes20"));
+}
+
+TEST_F(Sources, Recordings) {
+  const std::string path = recording();
+  const PlanEntry entry = entryOf(path);
+  EXPECT_FALSE(entry.source.simulation);
+  EXPECT_EQ(entry.source.reference.path, path);
+  EXPECT_EQ(entry.source.reference.scene.name, "Small");
+  EXPECT_THAT(entry.source.expected_hash, IsEmpty());
+  EXPECT_FALSE(entry.knownDifference());
+}
+
+TEST_F(Sources, AuthoredScenes) {
+  const std::string path = write("mine.json", kAuthoredSceneText);
+  const PlanEntry entry = entryOf(path);
+  ASSERT_TRUE(entry.source.simulation);
+  EXPECT_EQ(entry.source.simulation->listing().id, kAuthoredSceneId);
+  EXPECT_EQ(entry.source.reference.scene.objects, 1U);
+  EXPECT_EQ(entry.source.reference.scene_parameters.at("scene_file"), path);
+  EXPECT_FALSE(entry.source.reference.seed);
+  EXPECT_EQ(
+      entryOf(path, {.scene = {.parameters = {{"frames", "9"}}}}).source.reference.scene.frames,
+      9U);
+}
+
+TEST_F(Sources, AuthoredScenesStateTheirBodies) {
+  const std::string path = write("mine.json", kAuthoredSceneText);
+  const auto refuses = [&](const SceneOptions& scene, const std::string& option) {
+    EXPECT_THAT(inputErrorOf([&] { open(path, {.scene = scene}); }),
+                AllOf(HasSubstr("mine.json"), HasSubstr(option)));
+  };
+  refuses({.objects = {5}}, "--objects");
+  refuses({.object_types = {"cubes"}}, "--object-type");
+  refuses({.parameters = {{"density", "0.1"}}}, "--density");
+}
+
+TEST_F(Sources, SceneParameters) {
+  const std::string path = write("scene.json", kSceneParametersText);
+  const PlanEntry entry = entryOf(path);
+  ASSERT_TRUE(entry.source.simulation);
+  EXPECT_EQ(entry.source.reference.scene.name, "Brownian");
+  EXPECT_EQ(entry.source.reference.scene.objects, 5U);
+  EXPECT_EQ(entry.source.reference.seed, 8U);
+  EXPECT_THAT(open(path, {.scene = {.objects = {2, 3}}}).entries, SizeIs(2));
+}
+
+TEST_F(Sources, OriginalSettings) {
+  writeRecording(directory_ / "small.aabbs");  // stated by its name alone
+  const PlanEntry entry = entryOf(write("settings.json", originalSettingsText("small.aabbs")));
+  ASSERT_TRUE(entry.original);
+  EXPECT_EQ(entry.original->output_log, "log.json");
+  ASSERT_THAT(entry.cases, SizeIs(1));
+  EXPECT_EQ(entry.cases.front().algorithm.id, "bf-simd");
+  EXPECT_EQ(entry.cases.front().isa, Isa::sse2);
+  EXPECT_EQ(entry.source.reference.scene.objects, 2U);
+}
+
+TEST_F(Sources, ResultsWithAChosenCase) {
+  const std::string path = recording();
+  const CaseResult right = resultOn(path, "sap");
+  const CaseResult wrong = resultOn(path, "bf-simd-mt", 3);
+  const std::string results = (directory_ / "results.json").string();
+  writeResults(results, {right, wrong});
+  const PlanEntry entry = entryOf(results, {.case_id = wrong.id});
+  ASSERT_TRUE(entry.known);
+  EXPECT_EQ(entry.known->id, wrong.id);
+  ASSERT_THAT(entry.cases, SizeIs(1));
+  EXPECT_EQ(entry.cases.front().algorithm.id, "bf-simd-mt");
+  EXPECT_EQ(entry.cases.front().threads, 2);
+  EXPECT_THAT(entry.cases.front().parameters, IsEmpty()) << "none differs from its default";
+  EXPECT_EQ(entry.source.expected_hash, wrong.recording.hash);
+  ASSERT_TRUE(entry.knownDifference());
+  EXPECT_EQ(entry.knownDifference()->frame, 3U) << "the first, wherever it is listed";
+  EXPECT_FALSE(entryOf(results, {.case_id = right.id}).knownDifference());
+}
+
+TEST_F(Sources, OfSeveralCasesOfOneIdTheFirstWithAMismatch) {
+  const std::string path = recording();
+  const std::string results = (directory_ / "results.json").string();
+  writeResults(results,
+               {resultOn(path, "sap"), resultOn(path, "sap", 5), resultOn(path, "sap", 6)});
+  const PlanEntry entry = entryOf(results, {.case_id = resultOn(path, "sap").id});
+  EXPECT_EQ(entry.knownDifference()->frame, 5U);
+}
+
+TEST_F(Sources, ResultsWithoutAChosenCase) {
+  const std::string results = (directory_ / "results.json").string();
+  writeResults(results, {resultOn(recording(), "sap")});
+  const OpenedSource opened = open(results);
+  ASSERT_TRUE(opened.results);
+  EXPECT_THAT(opened.results->cases, SizeIs(1));
+  EXPECT_THAT(opened.entries, IsEmpty());
+}
+
+TEST_F(Sources, CasesThatCannotBeOpenedAreNamed) {
+  const std::string results = (directory_ / "results.json").string();
+  CaseResult result = resultOn(recording(), "sap");
+  CaseResult foreign = result;
+  foreign.id = "foreign";
+  foreign.algorithm = "mine";
+  foreign.plugin = "libmine.so";
+  CaseResult unknown = foreign;
+  unknown.id = "unknown";
+  unknown.plugin.clear();
+  writeResults(results, {result, foreign, unknown});
+  const auto error = [&](const std::string& id) {
+    return inputErrorOf([&] { open(results, {.case_id = id}); });
+  };
+  EXPECT_THAT(error(result.id + "y"), AllOf(HasSubstr("results.json"), HasSubstr(result.id)));
+  EXPECT_THAT(error("foreign"),
+              AllOf(HasSubstr("'mine'"), HasSubstr("--plugin"), HasSubstr("libmine.so")));
+  EXPECT_THAT(error("unknown"), AllOf(HasSubstr("'mine'"), Not(HasSubstr("--plugin"))));
+}
+
+TEST_F(Sources, UnknownOnesAreRefusedWithWhatWouldBeRight) {
+  EXPECT_THAT(inputErrorOf([] { open("freefal"); }),
+              AllOf(HasSubstr("'freefal'"), HasSubstr("'freefall'")));
+  EXPECT_FALSE(isSource("freefal"));
+  EXPECT_TRUE(isSource("freefal.json"));
+  EXPECT_THAT(inputErrorOf([] { open("missing.json"); }), HasSubstr("missing.json"));
+  EXPECT_THAT(inputErrorOf([] { open("missing.aabbs"); }), HasSubstr("missing.aabbs"));
+  for (const char* text : {"{}", "[]", "5", R"({"schema": "something/9"})", R"({"schema": 5})"}) {
+    const std::string error = inputErrorOf([&] { open(write("unknown.json", text)); });
+    for (const char* word : {"unknown.json", "broadmark-scene/1", "broadmark-results/1",
+                             "broadmark-scene-parameters/1", "m_inputScene"}) {
+      EXPECT_THAT(error, HasSubstr(word)) << text;
+    }
+  }
+  EXPECT_THAT(inputErrorOf([&] { open(write("unknown.json", R"({"schema": "something/9"})")); }),
+              HasSubstr("'something/9'"));
+  EXPECT_THAT(inputErrorOf([&] { open(write("broken.json", "{")); }), HasSubstr("broken.json"));
+}
+
+TEST_F(Sources, ATextIsReadOnce) {
+  const std::string path = write("scene.json", kSceneParametersText);
+  NamedSource source(path);
+  EXPECT_TRUE(source.isFile());
+  EXPECT_TRUE(source.isJson());
+  EXPECT_EQ(source.schema(), kSceneParametersSchema);
+  std::filesystem::remove(path);
+  EXPECT_EQ(source.text(), kSceneParametersText);
+  EXPECT_EQ(source.schema(), kSceneParametersSchema);
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,119 @@
+// Lanes, an export and a bake at the same time, all of which use Bullet's tree margin. What
+// ThreadSanitizer is to see, too: small scenes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "broadmark/algorithms.h"
+#include "broadmark/exclusive_use.h"
+#include "broadmark/recording.h"
+#include "engine/helpers.h"
+#include "inspector/helpers.h"
+#include "inspector/session.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// What another algorithm finds, without the last pair.
+class OnePairShort final : public BroadPhase {
+ public:
+  explicit OnePairShort(std::unique_ptr<BroadPhase> inner) : inner_(std::move(inner)) {}
+
+  [[nodiscard]] float margin() const override { return inner_->margin(); }
+  void visitParameters(const ParameterVisitor& visit) override { inner_->visitParameters(visit); }
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    inner_->initialize(scene, first, execution);
+  }
+  void updateObjects(const Frame& frame) override { inner_->updateObjects(frame); }
+  void cleanCache() override { inner_->cleanCache(); }
+  void updateStructures() override { inner_->updateStructures(); }
+  void searchOverlaps() override {
+    inner_->searchOverlaps();
+    pairs_.clear();
+    for (const PairRun run : inner_->overlaps())
+      pairs_.insert(pairs_.end(), run.begin(), run.end());
+    if (!pairs_.empty()) pairs_.pop_back();
+    run_ = pairs_;
+  }
+  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
+
+ private:
+  std::unique_ptr<BroadPhase> inner_;
+  std::vector<Pair> pairs_;
+  PairRun run_;
+};
+
+/// A faulty algorithm that uses the margin as dbvt-d does.
+Algorithm faultyTree() {
+  const std::vector<Algorithm> all = builtinAlgorithms();
+  const Algorithm tree = *std::ranges::find(all, "dbvt-d", &Algorithm::id);
+  Algorithm faulty = tree;
+  faulty.id = "faulty-dbvt";
+  faulty.create = [tree] { return std::make_unique<OnePairShort>(tree.create()); };
+  return faulty;
+}
+
+std::unique_ptr<Simulation> bulletScene() {
+  auto scene = makeSimulation("freefall", "bullet");
+  setParameters(*scene, {{"objects", "60"}, {"frames", "60"}, {"density", "0.3"}});
+  return scene;
+}
+
+void waitFor(const BackgroundBake& bake) {
+  while (bake.running()) std::this_thread::sleep_for(1ms);
+}
+
+TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
+  const TemporaryDirectory directory;
+  BackgroundBake alone;
+  alone.start(bulletScene(), directory / "alone.aabbs");
+  waitFor(alone);
+  ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
+
+  Session session(builtinAlgorithms());
+  session.chooseScene("brownian", "kinematic");
+  setParameters(*session.draft, {{"objects", "150"}, {"frames", "30"}});
+  session.simulate();
+  const Case faulty{.algorithm = faultyTree()};
+  ASSERT_EQ(faulty.algorithm.traits.exclusive, kBulletTreeMargin);
+  session.lanes.add(faulty);
+  for (const char* margin : {"0.01", "0.7"}) {
+    setParameters(*session.lanes.add("dbvt-d").parameters, {{"margin", margin}});
+  }
+  session.lanes.changed();
+  session.mismatches.stop_at_mismatch = false;
+  session.playback.seek(10);
+  const RunProgress seen = settled(session);
+  ASSERT_TRUE(seen.snapshot->difference.isMismatch());
+
+  session.bake.start(bulletScene(), directory / "together.aabbs");
+  session.exportCase(faulty, seen.snapshot, directory / "case.aabbs");
+  RunProgress last;
+  for (int round = 0; round < 50; ++round) {
+    session.playback.seek(round % 2 == 0 ? 30 : 4);
+    last = settled(session);
+    if (round > 0 && !session.bake.running() && !session.case_export.running()) break;
+  }
+  waitFor(session.bake);
+  while (session.case_export.running()) std::this_thread::sleep_for(1ms);
+
+  EXPECT_EQ(last.lanes[0].status, Status::mismatch);
+  for (const std::size_t lane : {1U, 2U}) {
+    EXPECT_EQ(last.lanes[lane].status, Status::ok) << last.lanes[lane].reason;
+  }
+  const CaseExport::Report exported = session.case_export.report();
+  EXPECT_EQ(exported.state, TaskState::done) << exported.failure;
+  EXPECT_EQ(exported.bodies, 2U);
+  ASSERT_EQ(session.bake.report().state, TaskState::done) << session.bake.report().failure;
+  EXPECT_EQ(openRecordingFile(directory / "together.aabbs")->hash(),
+            openRecordingFile(directory / "alone.aabbs")->hash());
+}
+
+}  // namespace
+}  // namespace broadmark::tests
