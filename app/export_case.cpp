@@ -38,7 +38,7 @@ std::string pathWord(const fs::path& path) {
 /// What is left, in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
   return fmt::format("{}: {} of {} ({} runs): {}", partName(whole),
-                     extentText(shrunk.selection.bodies.size(), shrunk.selection.frames.size() - 1),
+                     extentText(shrunk.part.bodies.size(), shrunk.part.frames.size() - 1),
                      extentText(whole.objects, whole.frames), shrunk.trials,
                      mismatchText(shrunk.difference));
 }
@@ -99,7 +99,7 @@ int runExportCase(Plan plan, const SessionOptions& options) {
   if (shrunk.trials == 0) throw InputError("interrupted");
   if (shrunk.minimal) progress.update(size);
 
-  writePart(options.export_case, *recording, shrunk.selection);
+  writePart(options.export_case, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
   progress.print("written: " + options.export_case.string());
   progress.print(reproducingCommand(run, options.export_case));

@@ -75,9 +75,13 @@ CaseRun::~CaseRun() {
 }
 
 void CaseRun::fail(Status status, std::string reason) {
-  if (status_ != Status::ok) return;
-  status_ = status;
-  reason_ = std::move(reason);
+  if (status_ == Status::ok) {
+    status_ = status;
+    reason_ = std::move(reason);
+  } else if (status != Status::mismatch && !ended_early_) {
+    reason_ += fmt::format("; then {}", reason);  // a mismatch does not say why a pass ended
+  }
+  ended_early_ |= status != Status::mismatch;
 }
 
 template <class Call>

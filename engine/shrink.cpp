@@ -4,9 +4,9 @@
 //
 // That alone would begin with the whole recording. But wrong answers mostly have causes nearby. So
 // the wrong pair is tried first with few neighbours, then with more and more (and with a short
-// history of frames, then a longer one), all in memory. If the pair and k neighbours fail, that takes
-// O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only the whole
-// recording fails, O(n log n) passes on nearly n bodies.
+// history of frames, then a longer one), all in memory. If the pair and k neighbours fail, that
+// takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only the
+// whole recording fails, O(n log n) passes on nearly n bodies.
 
 #include "broadmark/shrink.h"
 
@@ -30,7 +30,7 @@ std::size_t bytesOf(std::size_t bodies, std::size_t frames) {
 }
 
 /// Whether all of `part` is in `whole`; both ascend.
-bool isWithin(const Selection& part, const Selection& whole) {
+bool isWithin(const Part& part, const Part& whole) {
   return std::ranges::includes(whole.bodies, part.bodies) &&
          std::ranges::includes(whole.frames, part.frames);
 }
@@ -112,7 +112,7 @@ class Shrinker {
         options_(options),
         whole_(source),
         known_(known) {
-    best_.selection = wholeSelection(source.scene(), known.frame);
+    best_.part = wholePart(source.scene(), known.frame);
     best_.difference = known;
   }
 
@@ -133,50 +133,50 @@ class Shrinker {
  private:
   /// A part of the recording that is held in memory.
   struct Held {
-    Selection origin;
+    Part origin;
     FrameList frames;
 
-    Held(Selection selection, FrameSource& part) : origin(std::move(selection)), frames(part) {}
+    Held(Part part, FrameSource& source) : origin(std::move(part)), frames(source) {}
   };
 
   /// Holds a part in memory, if it fits. Whether it is held now.
-  bool hold(const Selection& selection) {
-    if (isHeld(selection)) return true;
-    if (bytesOf(selection.bodies.size(), selection.frames.size()) > options_.memory_bytes) {
+  bool hold(const Part& part) {
+    if (isHeld(part)) return true;
+    if (bytesOf(part.bodies.size(), part.frames.size()) > options_.memory_bytes) {
       return false;
     }
     held_.reset();
-    SubRecording part(whole_, selection, partName(whole_.scene()));
-    held_ = std::make_unique<Held>(selection, part);
+    SubRecording frames(whole_, part, partName(whole_.scene()));
+    held_ = std::make_unique<Held>(part, frames);
     return true;
   }
 
-  [[nodiscard]] bool isHeld(const Selection& selection) const {
-    return held_ && isWithin(selection, held_->origin);
+  [[nodiscard]] bool isHeld(const Part& part) const {
+    return held_ && isWithin(part, held_->origin);
   }
 
-  SubRecording part(const Selection& selection) {
+  SubRecording framesOf(const Part& part) {
     const std::string name = partName(whole_.scene());
-    if (!isHeld(selection)) return {whole_, selection, name};
+    if (!isHeld(part)) return {whole_, part, name};
     return {held_->frames,
-            {positions(selection.bodies, held_->origin.bodies),
-             positions(selection.frames, held_->origin.frames)},
+            {positions(part.bodies, held_->origin.bodies),
+             positions(part.frames, held_->origin.frames)},
             name};
   }
 
   /// Runs the case on a part, which becomes the best when it fails there.
-  bool fails(const Selection& selection) {
-    std::optional<FrameDifference> difference = lastDifference(selection);
+  bool fails(const Part& part) {
+    std::optional<FrameDifference> difference = lastDifference(part);
     ++best_.trials;
     const bool failed = difference && difference->isMismatch();
     if (failed) {
-      best_.selection = selection;
+      best_.part = part;
       best_.difference = std::move(*difference);
     }
     if (options_.progress) {
       options_.progress({.trials = best_.trials,
-                         .bodies = best_.selection.bodies.size(),
-                         .frames = best_.selection.frames.size() - 1});
+                         .bodies = best_.part.bodies.size(),
+                         .frames = best_.part.frames.size() - 1});
     }
     throwIfCancelled();
     return failed;
@@ -184,8 +184,8 @@ class Shrinker {
 
   /// How the answer for the last frame of a part differs from the right one; nothing when the case
   /// does not get that far.
-  std::optional<FrameDifference> lastDifference(const Selection& selection) {
-    SubRecording source = part(selection);
+  std::optional<FrameDifference> lastDifference(const Part& part) {
+    SubRecording source = framesOf(part);
     const std::uint32_t last = source.scene().frames;
     run_.start(source.scene(), source.rewind());
     for (std::uint32_t index = 1; index <= last && run_.running(); ++index) {
@@ -205,14 +205,13 @@ class Shrinker {
   /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Whether
   /// any of that failed.
   bool failsAmongNeighbours() {
-    const Selection before = best_.selection;
+    const Part before = best_.part;
     const std::vector<std::uint32_t> seeds = suspects(known_, whole_.scene().objects);
     const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
     if (seeds.empty() || limit < seeds.size()) return false;
     const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(known_.frame).boxes, limit);
     const auto first = [&](std::size_t count) {
-      Selection part{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)},
-                     before.frames};
+      Part part{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)}, before.frames};
       std::ranges::sort(part.bodies);
       return part;
     };
@@ -224,9 +223,9 @@ class Shrinker {
   }
 
   void requireFailure() {
-    if (fails(best_.selection)) {
+    if (fails(best_.part)) {
       known_ = best_.difference;
-      known_.frame = best_.selection.frames.back();
+      known_.frame = best_.part.frames.back();
       return;
     }
     throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
@@ -235,7 +234,7 @@ class Shrinker {
 
   /// Tries longer and longer histories before the last frame.
   void shortenHistory() {
-    const Selection before = best_.selection;
+    const Part before = best_.part;
     const auto frames = static_cast<std::ptrdiff_t>(before.frames.size());
     for (std::ptrdiff_t history = 2; history < frames; history *= 2) {
       if (fails({before.bodies, {before.frames.end() - history, before.frames.end()}})) return;
@@ -245,22 +244,22 @@ class Shrinker {
   void shrinkToMinimum() {
     bool smaller = true;
     while (smaller) {
-      hold(best_.selection);
+      hold(best_.part);
       const bool fewer_frames = removeFrames();
       smaller = removeBodies() || fewer_frames;
     }
   }
 
   bool removeBodies() {
-    return removeChunks(best_.selection.bodies, 0, [&](std::vector<std::uint32_t> bodies) {
-      return fails({std::move(bodies), best_.selection.frames});
+    return removeChunks(best_.part.bodies, 0, [&](std::vector<std::uint32_t> bodies) {
+      return fails({std::move(bodies), best_.part.frames});
     });
   }
 
   /// The last frame stays, and one before it: the initial pose.
   bool removeFrames() {
-    return removeChunks(best_.selection.frames, 1, [&](std::vector<std::uint32_t> frames) {
-      return frames.size() > 1 && fails({best_.selection.bodies, std::move(frames)});
+    return removeChunks(best_.part.frames, 1, [&](std::vector<std::uint32_t> frames) {
+      return frames.size() > 1 && fails({best_.part.bodies, std::move(frames)});
     });
   }
 

@@ -9,8 +9,8 @@
 
 namespace broadmark {
 
-Selection wholeSelection(const SceneInfo& scene, std::uint32_t last_frame) {
-  Selection all;
+Part wholePart(const SceneInfo& scene, std::uint32_t last_frame) {
+  Part all;
   all.bodies.resize(scene.objects);
   all.frames.resize(std::size_t{last_frame} + 1);
   std::iota(all.bodies.begin(), all.bodies.end(), 0U);
@@ -18,17 +18,17 @@ Selection wholeSelection(const SceneInfo& scene, std::uint32_t last_frame) {
   return all;
 }
 
-SubRecording::SubRecording(IndexedFrames& whole, Selection selection, std::string name)
-    : whole_(whole), selection_(std::move(selection)), scene_(whole.scene()) {
+SubRecording::SubRecording(IndexedFrames& whole, Part part, std::string name)
+    : whole_(whole), part_(std::move(part)), scene_(whole.scene()) {
   scene_.name = std::move(name);
-  scene_.objects = static_cast<std::uint32_t>(selection_.bodies.size());
-  scene_.frames = static_cast<std::uint32_t>(selection_.frames.size() - 1);
+  scene_.objects = static_cast<std::uint32_t>(part_.bodies.size());
+  scene_.frames = static_cast<std::uint32_t>(part_.frames.size() - 1);
   boxes_.resize(scene_.objects);
 }
 
 std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
-  const Frame frame = whole_.at(selection_.frames[index]);
-  for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = frame.boxes[selection_.bodies[i]];
+  const Frame frame = whole_.at(part_.frames[index]);
+  for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = frame.boxes[part_.bodies[i]];
   return boxes_;
 }
 
@@ -38,11 +38,10 @@ std::string partName(const SceneInfo& scene) {
   return scene.name.substr(0, kLongestName - kSuffix.size()).append(kSuffix);
 }
 
-std::string writePart(const std::filesystem::path& path, IndexedFrames& whole,
-                      const Selection& selection) {
-  SubRecording part(whole, selection, partName(whole.scene()));
-  RecordingWriter writer(path, part.scene());
-  recordAll(part, writer);
+std::string writePart(const std::filesystem::path& path, IndexedFrames& whole, const Part& part) {
+  SubRecording frames(whole, part, partName(whole.scene()));
+  RecordingWriter writer(path, frames.scene());
+  recordAll(frames, writer);
   return writer.finish();
 }
 

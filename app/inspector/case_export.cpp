@@ -30,10 +30,10 @@ bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& kn
       shrinkCase(begun.run, source, known,
                  {.progress = note, .cancelled = [this] { return task_.cancelled(); }});
   if (!shrunk.minimal) return false;
-  writePart(begun.file, source, shrunk.selection);
+  writePart(begun.file, source, shrunk.part);
   note({.trials = shrunk.trials,
-        .bodies = shrunk.selection.bodies.size(),
-        .frames = shrunk.selection.frames.size() - 1});
+        .bodies = shrunk.part.bodies.size(),
+        .frames = shrunk.part.frames.size() - 1});
   task_.update([&](Report& report) { report.command = reproducingCommand(begun.run, begun.file); });
   return true;
 }

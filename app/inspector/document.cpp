@@ -92,15 +92,4 @@ void Document::leave(std::function<void()> then) {
   }
 }
 
-scenes::AuthoredScene sceneOf(scenes::SceneDocument& simulated, const fs::path& file) {
-  scenes::AuthoredScene scene = simulated.document();
-  if (file.empty()) return scene;
-  // The simulation knows all parameters; a file may leave out some, and is saved as it was.
-  scenes::AuthoredScene stated = scenes::parseAuthoredScene(readTextFile(file), file.string());
-  if (scenes::AuthoredParameters(stated.parameters).values() == scene.parameters) {
-    scene.parameters = std::move(stated.parameters);
-  }
-  return scene;
-}
-
 }  // namespace broadmark

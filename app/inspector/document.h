@@ -75,8 +75,4 @@ class Document {
   std::optional<FrameToTake> to_take_;
 };
 
-/// The scene that a simulation moves on, with its parameters as the file states them unless others
-/// were given. Throws InputError.
-scenes::AuthoredScene sceneOf(scenes::SceneDocument& simulated, const std::filesystem::path& file);
-
 }  // namespace broadmark

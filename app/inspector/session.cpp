@@ -181,7 +181,7 @@ void Session::enter(PlanEntry& entry, Opened document_is) {
 void Session::enterSource(Source& source, Opened document_is) {
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
     const fs::path file = source.simulation->input();
-    document.start(sceneOf(*authored, file), file);
+    document.start(authored->document(), file);
     if (document_is == Opened::in_motion) document.simulate();
   } else if (source.simulation) {
     // A hash that is expected would be known only after the last frame.

@@ -40,7 +40,11 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
 
   [[nodiscard]] AuthoredScene document() override {
     AuthoredScene document = scene_;
-    document.parameters = parameters_.values();
+    ParameterValues values = parameters_.values();
+    // Unchanged ones stay as they are stated, so that a file that is saved again stays the same.
+    if (values != AuthoredParameters(scene_.parameters).values()) {
+      document.parameters = std::move(values);
+    }
     return document;
   }
 

@@ -136,7 +136,7 @@ class EndToEnd : public ::testing::Test {
   void expectRefusal(const Arguments& arguments, const std::vector<std::string>& words,
                      const Surroundings& around = {}) const {
     std::string call = "broadmark";
-    for (const std::string& argument : arguments) call += " " + argument;
+    for (const std::string& argument : arguments) call.append(" ").append(argument);
     SCOPED_TRACE(call);
     const auto before = entries();
     const Ended ended = run(arguments, around);

@@ -1,5 +1,7 @@
 // bake --movie: recordings as numbered pictures.
 
+#include <fmt/format.h>
+
 #include "broadmark/render/picture.h"
 #include "e2e/end_to_end.h"
 
@@ -30,7 +32,7 @@ class Movie : public EndToEnd {
 
 TEST_F(Movie, IsDrawnFrameByFrame) {
   const Ended ended = runQuietly(call());
-  EXPECT_THAT(ended.out, HasSubstr(std::string("movie  ") + kFolder + "\n"));
+  EXPECT_THAT(ended.out, HasSubstr(fmt::format("movie  {}\n", kFolder)));
   EXPECT_EQ(pictures(), kAll);
   std::set<std::string> different;
   for (const std::string& name : pictures()) {

@@ -139,18 +139,6 @@ class OnePairPerWorker final : public BoxBroadPhase {
   using BoxBroadPhase::boxes;
 };
 
-TEST(HelperLayers, ForgettingTheBasesInitializeIsNoticed) {
-  class Forgetful final : public BoxBroadPhase {
-   public:
-    void initialize(const SceneInfo&, const Frame&, Execution&) override {}
-
-   private:
-    void findPairs() override {}
-  };
-  Forgetful broad_phase;
-  EXPECT_THROW(broad_phase.searchOverlaps(), std::logic_error);
-}
-
 TEST(HelperLayers, OneRunOfPairsPerWorkerUntilTheNextFrame) {
   Execution execution(3, Isa::scalar);
   OnePairPerWorker broad_phase;

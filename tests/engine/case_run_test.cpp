@@ -140,6 +140,25 @@ TEST(CaseRun, GoesOnAfterAMismatchAndKeepsTheFirstReason) {
   EXPECT_THAT(run.reason(), HasSubstr("frame 1"));
 }
 
+TEST(CaseRun, SaysWhyAPassEndedAlsoAfterAMismatch) {
+  ChainSource source;
+  Oracle oracle;
+  CaseRun run(caseOf({.on_update =
+                          [](std::uint32_t frame) {
+                            if (frame == 2) throw std::runtime_error("out of cells");
+                          },
+                      .on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }}));
+  for (int pass = 0; pass < 2; ++pass) {
+    run.start(source.scene(), source.rewind());
+    run.step(source.at(1));
+    run.check(source.at(1), oracle);
+    EXPECT_FALSE(run.step(source.at(2)));
+  }
+  EXPECT_EQ(run.status(), Status::mismatch);
+  EXPECT_THAT(run.reason(), AllOf(HasSubstr("frame 1"), testing::EndsWith("out of cells")));
+  EXPECT_EQ(run.reason().find("out of cells"), run.reason().rfind("out of cells")) << "said once";
+}
+
 TEST(CaseRun, APassBeyondTheLimitStillHasItsLastAnswer) {
   ChainSource source;
   Oracle oracle;

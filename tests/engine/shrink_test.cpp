@@ -73,31 +73,31 @@ FrameDifference firstDifference(const Case& run, FrameSource& source) {
 }
 
 /// What a fresh instance finds wrong in the last frame of a part.
-FrameDifference lastDifference(const Case& run, IndexedFrames& source, const Selection& selection) {
-  SubRecording part(source, selection, "Part");
-  CaseResult result = runCase(run, part);
+FrameDifference lastDifference(const Case& run, IndexedFrames& source, const Part& part) {
+  SubRecording frames(source, part, "Part");
+  CaseResult result = runCase(run, frames);
   if (result.differences.empty()) return {};
-  if (result.differences.back().frame != part.scene().frames) return {};
+  if (result.differences.back().frame != frames.scene().frames) return {};
   return result.differences.back();
 }
 
 /// The part fails in its last frame, and no longer when anything is left out.
 void expectMinimal(const Case& run, IndexedFrames& source, const ShrunkCase& shrunk) {
   EXPECT_TRUE(shrunk.minimal);
-  const Selection& selection = shrunk.selection;
-  EXPECT_TRUE(std::ranges::is_sorted(selection.bodies));
-  EXPECT_TRUE(std::ranges::is_sorted(selection.frames));
-  const FrameDifference difference = lastDifference(run, source, selection);
+  const Part& part = shrunk.part;
+  EXPECT_TRUE(std::ranges::is_sorted(part.bodies));
+  EXPECT_TRUE(std::ranges::is_sorted(part.frames));
+  const FrameDifference difference = lastDifference(run, source, part);
   EXPECT_TRUE(difference.isMismatch());
   EXPECT_EQ(difference.missed_pairs, shrunk.difference.missed_pairs);
   EXPECT_EQ(difference.false_pairs, shrunk.difference.false_pairs);
-  for (std::size_t i = 0; i < selection.bodies.size(); ++i) {
-    Selection fewer = selection;
+  for (std::size_t i = 0; i < part.bodies.size(); ++i) {
+    Part fewer = part;
     fewer.bodies.erase(fewer.bodies.begin() + static_cast<std::ptrdiff_t>(i));
     EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without body " << i;
   }
-  for (std::size_t i = 0; i + 1 < selection.frames.size() && selection.frames.size() > 2; ++i) {
-    Selection fewer = selection;
+  for (std::size_t i = 0; i + 1 < part.frames.size() && part.frames.size() > 2; ++i) {
+    Part fewer = part;
     fewer.frames.erase(fewer.frames.begin() + static_cast<std::ptrdiff_t>(i));
     EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without frame " << i;
   }
@@ -114,9 +114,9 @@ TEST_P(PlantedFault, MissedPairNeedsThreeBodiesAndTwoFrames) {
   const FrameDifference known = firstDifference(run, scene_);
   const ShrunkCase shrunk = shrinkCase(run, scene_, known);
   expectMinimal(run, scene_, shrunk);
-  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
-  EXPECT_LE(shrunk.selection.frames.size(), 3U);  // a pose and two frames
-  EXPECT_EQ(shrunk.selection.frames.back(), known.frame);
+  EXPECT_EQ(shrunk.part.bodies.size(), 3U);
+  EXPECT_LE(shrunk.part.frames.size(), 3U);  // a pose and two frames
+  EXPECT_EQ(shrunk.part.frames.back(), known.frame);
   EXPECT_EQ(shrunk.difference.missed_count, 1U);
   EXPECT_EQ(shrunk.difference.false_count + shrunk.difference.invalid_count, 0U);
 }
@@ -125,8 +125,8 @@ TEST_P(PlantedFault, FalsePairNeedsTwoBodies) {
   const Case run = faultyCase("faulty-extra");
   const FrameDifference known = firstDifference(run, scene_);
   const ShrunkCase shrunk = shrinkCase(run, scene_, known);
-  EXPECT_EQ(shrunk.selection.bodies.size(), 2U);
-  EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+  EXPECT_EQ(shrunk.part.frames.size(), 2U);
   EXPECT_EQ(shrunk.difference.false_count, 1U);
   EXPECT_EQ(shrunk.difference.missed_count + shrunk.difference.invalid_count, 0U);
   expectMinimal(run, scene_, shrunk);
@@ -137,7 +137,7 @@ TEST_P(PlantedFault, SameInputSameResult) {
   const FrameDifference known = firstDifference(run, scene_);
   const ShrunkCase one = shrinkCase(run, scene_, known);
   const ShrunkCase two = shrinkCase(run, scene_, known);
-  EXPECT_EQ(one.selection, two.selection);
+  EXPECT_EQ(one.part, two.part);
   EXPECT_EQ(one.trials, two.trials);
 }
 
@@ -147,8 +147,8 @@ TEST_P(PlantedFault, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
   const FrameDifference only_frame{.frame = known.frame};
   for (const std::size_t memory : {std::size_t{0}, std::size_t{20'000}, std::size_t{1} << 30}) {
     const ShrunkCase shrunk = shrinkCase(run, scene_, only_frame, {.memory_bytes = memory});
-    EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
-    EXPECT_LE(shrunk.selection.frames.size(), 3U);  // a pose and two frames
+    EXPECT_EQ(shrunk.part.bodies.size(), 3U);
+    EXPECT_LE(shrunk.part.frames.size(), 3U);  // a pose and two frames
     expectMinimal(run, scene_, shrunk);
   }
 }
@@ -159,7 +159,7 @@ TEST(Shrink, ParametersCount) {
   run.parameters = {{"fat_margin", "0.3"}};
   const FrameDifference known = firstDifference(run, scene);
   const ShrunkCase shrunk = shrinkCase(run, scene, known);
-  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 3U);
   expectMinimal(run, scene, shrunk);
   run.parameters = {{"fat_margin", "900"}};  // nothing ever moves
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, known); }), HasSubstr("does not fail"));
@@ -183,8 +183,8 @@ TEST(Shrink, CancelledKeepsTheBestSoFar) {
                                           .cancelled = [&] { return done >= enough; }});
     EXPECT_EQ(shrunk.trials, enough);
     EXPECT_FALSE(shrunk.minimal);
-    EXPECT_EQ(shrunk.selection.bodies.size(), bodies);
-    EXPECT_TRUE(lastDifference(run, scene, shrunk.selection).isMismatch());
+    EXPECT_EQ(shrunk.part.bodies.size(), bodies);
+    EXPECT_TRUE(lastDifference(run, scene, shrunk.part).isMismatch());
   }
 }
 
@@ -196,8 +196,8 @@ TEST(Shrink, FaultsOfManyBodiesKeepThemAll) {
   FrameList scene = wandering(90, 12, 1);
   for (const std::size_t memory : {std::size_t{1000}, std::size_t{1} << 30}) {
     const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 12}, {.memory_bytes = memory});
-    EXPECT_EQ(shrunk.selection.bodies.size(), kNeeded);
-    EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+    EXPECT_EQ(shrunk.part.bodies.size(), kNeeded);
+    EXPECT_EQ(shrunk.part.frames.size(), 2U);
     expectMinimal(run, scene, shrunk);
   }
 }
@@ -210,8 +210,8 @@ TEST(Shrink, FaultsOfLongHistoriesKeepThem) {
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(run, scene, {.frame = 20}); }),
               AllOf(HasSubstr("Wandering"), HasSubstr("spoilt"), HasSubstr("frame 20")));
   const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
-  EXPECT_EQ(shrunk.selection.bodies.size(), 2U);
-  EXPECT_EQ(shrunk.selection.frames.size(), 8U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+  EXPECT_EQ(shrunk.part.frames.size(), 8U);
   expectMinimal(run, scene, shrunk);
 }
 
@@ -229,7 +229,7 @@ TEST(Shrink, PairsWithinTheMarginAreNoFault) {
   const FrameDifference known = firstDifference(run, scene);
   ASSERT_GT(known.allowed_extra_count, 0U);
   const ShrunkCase shrunk = shrinkCase(run, scene, known);
-  EXPECT_EQ(shrunk.selection.bodies.size(), 4U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 4U);
   EXPECT_EQ(shrunk.difference.false_count, 1U);
   expectMinimal(run, scene, shrunk);
 }
@@ -240,7 +240,7 @@ TEST(Shrink, AnswersThatAreNoPairsAreFaults) {
   });
   FrameList scene = wandering(30, 3, 1);
   const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
-  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 3U);
   EXPECT_EQ(shrunk.difference.invalid_count, 1U);
   expectMinimal(run, scene, shrunk);
 }
@@ -252,7 +252,7 @@ TEST(Shrink, WhatThrowsDoesNotFail) {
   });
   FrameList scene = wandering(50, 4, 1);
   const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
-  EXPECT_EQ(shrunk.selection.bodies.size(), 5U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 5U);
 }
 
 TEST(Shrink, ManyBodiesTakeFewTrials) {
@@ -272,8 +272,8 @@ TEST(Shrink, ManyBodiesTakeFewTrials) {
   };
   FrameList scene = wandering(n, 6, 1);
   const ShrunkCase shrunk = shrinkCase(run, scene, {.frame = 6});
-  EXPECT_EQ(shrunk.selection.bodies.size(), 3U);
-  EXPECT_EQ(shrunk.selection.frames.size(), 2U);
+  EXPECT_EQ(shrunk.part.bodies.size(), 3U);
+  EXPECT_EQ(shrunk.part.frames.size(), 2U);
   EXPECT_LT(shrunk.trials, 30U);
 }
 
@@ -302,16 +302,16 @@ TEST(Shrink, WhatCannotBeShrunk) {
 TEST(Shrink, PartsAreWrittenAsRecordings) {
   const TemporaryDirectory directory;
   FrameList scene = wandering(30, 6, 1);
-  const Selection selection{{2, 3, 29}, {0, 4, 6}};
-  const std::string hash = writePart(directory / "part.aabbs", scene, selection);
+  const Part part{{2, 3, 29}, {0, 4, 6}};
+  const std::string hash = writePart(directory / "part.aabbs", scene, part);
   RecordingReader reader(directory / "part.aabbs");
   EXPECT_EQ(reader.hash(), hash);
   EXPECT_EQ(reader.scene().name, "Wandering case");
   EXPECT_EQ(reader.scene().world, scene.scene().world);
   for (std::uint32_t frame = 0; frame < 3; ++frame) {
-    const auto boxes = scene.at(selection.frames[frame]).boxes;
+    const auto boxes = scene.at(part.frames[frame]).boxes;
     for (std::size_t body = 0; body < 3; ++body) {
-      EXPECT_EQ(reader.at(frame).boxes[body], boxes[selection.bodies[body]]);
+      EXPECT_EQ(reader.at(frame).boxes[body], boxes[part.bodies[body]]);
     }
   }
 }

@@ -48,8 +48,8 @@ TEST(SubRecording, IsTheSelectedPart) {
   WanderingBoxes source(6, 8, 2);
   FrameList whole(source);
   FrameList check(source);
-  const Selection selection{{1, 4, 5}, {2, 3, 7}};
-  SubRecording part(whole, selection, "Part");
+  const Part selected{{1, 4, 5}, {2, 3, 7}};
+  SubRecording part(whole, selected, "Part");
   EXPECT_EQ(part.scene().name, "Part");
   EXPECT_EQ(part.scene().object_type, source.scene().object_type);
   EXPECT_EQ(part.scene().world, source.scene().world);
@@ -59,7 +59,7 @@ TEST(SubRecording, IsTheSelectedPart) {
     std::uint32_t index = 0;
     for (std::optional<Frame> frame = part.rewind(); frame; frame = part.next()) {
       EXPECT_EQ(frame->index, index);
-      const std::vector<Aabb> all = boxesOf(check.at(selection.frames.at(index)));
+      const std::vector<Aabb> all = boxesOf(check.at(selected.frames.at(index)));
       EXPECT_THAT(boxesOf(*frame), ElementsAre(all[1], all[4], all[5]));
       ++index;
     }
@@ -70,7 +70,7 @@ TEST(SubRecording, IsTheSelectedPart) {
 TEST(SubRecording, OfEverythingIsTheWhole) {
   WanderingBoxes source(7, 4, 3);
   const auto recording = recorded(source);
-  SubRecording part(*recording, wholeSelection(recording->scene(), 4), recording->scene().name);
+  SubRecording part(*recording, wholePart(recording->scene(), 4), recording->scene().name);
   EXPECT_EQ(part.scene(), recording->scene());
   EXPECT_EQ(recorded(part)->hash(), recording->hash());
 }

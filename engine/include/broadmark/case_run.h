@@ -101,7 +101,8 @@ class CaseRun {
   std::unique_ptr<BroadPhase> next_;      ///< made to check the parameters; the first pass uses it
   std::unique_ptr<BroadPhase> instance_;  ///< of the present pass
   float margin_ = 0;
-  bool ended_ = false;  ///< by the time limit: the instance is still there to be looked at
+  bool ended_ = false;        ///< by the time limit: the instance is still there to be looked at
+  bool ended_early_ = false;  ///< some pass was, by a failure: reason_ says so
   Status status_ = Status::ok;
   std::string reason_;
   std::int64_t initialize_ns_ = 0;

@@ -27,7 +27,7 @@ struct ShrinkOptions {
 
 /// A part of a recording on which a case fails in the last frame.
 struct ShrunkCase {
-  Selection selection;         ///< in the recording's own numbers
+  Part part;                   ///< in the recording's own numbers
   FrameDifference difference;  ///< of the last frame, numbered as in the part
   std::uint64_t trials = 0;
   /// Whether no single body and no single frame can be left out; false when cancelled.
