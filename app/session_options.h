@@ -30,7 +30,7 @@ struct SessionOptions {
   std::vector<std::string> sources;
   SceneOptions scene;
   CaseOptions cases;
-  ParameterValues parameters;         ///< --param: of algorithms or scenes, whoever has them
+  ParameterValues parameters;         ///< --param: of algorithms or scenes
   std::vector<std::string> plugins;   ///< libraries with more algorithms
   std::string case_id;                ///< of the results file that is the source; "": none
   std::filesystem::path export_case;  ///< where its smallest failing recording goes; "": nowhere

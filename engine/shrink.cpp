@@ -35,7 +35,7 @@ bool isWithin(const Part& part, const Part& whole) {
          std::ranges::includes(whole.frames, part.frames);
 }
 
-/// Where each of `numbers` stands in `all`; both ascend.
+/// The position of each of `numbers` in `all`; both ascend.
 std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
                                      const std::vector<std::uint32_t>& all) {
   std::vector<std::uint32_t> found;

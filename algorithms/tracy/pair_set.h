@@ -12,7 +12,7 @@
 
 namespace broadmark::tracy {
 
-/// The pairs themselves stand in an array without gaps; a hash table with linear probing (of at
+/// The pairs themselves lie in an array without gaps; a hash table with linear probing (of at
 /// most half its places taken) holds their positions. Keeps its memory when cleared.
 class PairSet {
  public:

@@ -11,7 +11,7 @@
 namespace broadmark {
 namespace {
 
-/// Inputs are as wide as this share of their panel; their labels stand in the rest.
+/// Inputs are as wide as this share of their panel; their labels take the rest.
 constexpr float kInputShare = 0.52F;
 constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds

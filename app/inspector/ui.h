@@ -43,7 +43,7 @@ ImU32 colour(Rgb rgb, float alpha = 1);
 /// it: "Scene/objects". Every method that is called as a Dear ImGui widget behaves like it.
 class Ui {
  public:
-  /// Until destroyed, names stand in this scope. (Dear ImGui does not know of it.)
+  /// Until destroyed, names are in this scope. (Dear ImGui does not see it.)
   class Scope {
    public:
     Scope(Ui& ui, std::string_view name);

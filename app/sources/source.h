@@ -71,7 +71,7 @@ class NamedSource {
 /// What a kind of source may need to be opened.
 struct OpeningOptions {
   SceneOptions scene;                 ///< of scenes that are simulated
-  ParameterValues parameters;         ///< --param: of scenes or algorithms, whoever has them
+  ParameterValues parameters;         ///< --param: of scenes or algorithms
   std::string case_id;                ///< of a results file; "": none chosen
   std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
 };

@@ -1,4 +1,4 @@
-// What every listed algorithm must do, whoever wrote it: the right pairs, on easy and awkward
+// What every listed algorithm must do: the right pairs, on easy and awkward
 // inputs, for every number of bodies, instruction set and team size, frame after frame.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// The layers that algorithms stand on: what they do by themselves, and which mistakes they notice.
+// The layers that algorithms derive from: what they do by themselves, and which mistakes they
+// notice.
 
 #include <gtest/gtest.h>
 

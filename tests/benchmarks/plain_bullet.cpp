@@ -25,7 +25,7 @@
 
 #include "broadmark/scenes/scene.h"
 
-// Margins are settings of the whole process: whoever steps sets them.
+// Margins are settings of the whole process: each side sets them before it steps.
 extern btScalar gContactBreakingThreshold;
 extern btScalar gDbvtMargin;
 

@@ -90,7 +90,7 @@ inline std::string posesIn(const std::string& directory, const std::string& name
 class EndToEnd : public ::testing::Test {
  protected:
   EndToEnd() {
-    // Names with spaces are the rule for recordings; so be it for directories.
+    // Recordings have names with spaces; so has this directory.
     std::string name = (fs::temp_directory_path() / "broadmark e2e XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
     directory_ = name;

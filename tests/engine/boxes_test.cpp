@@ -112,7 +112,7 @@ TEST(BoxArrays, KeepsItsRoomWhenShrunk) {
   EXPECT_EQ(arrays.min(0), room);
 }
 
-// Whoever holds a little more every frame must not get new memory every frame.
+// A little more in every frame must not take new memory in every frame.
 TEST(BoxArrays, GrowsAgainByLargerSteps) {
   BoxArrays arrays;
   arrays.resize(1000);

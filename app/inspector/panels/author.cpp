@@ -47,7 +47,7 @@ class ButtonRow {
   float width_ = 0;
 };
 
-/// What stands in the inputs until it is entered.
+/// The text of the inputs until it is entered.
 struct Inputs {
   std::string name;
   Numbers world_min{};

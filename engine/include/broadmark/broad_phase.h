@@ -66,9 +66,9 @@ class BroadPhase : public Parametrised {
   [[nodiscard]] virtual std::string validate() const { return {}; }
 };
 
-// Three helper layers. Those who keep their pairs from frame to frame (KD, Tracy) or get them from
-// elsewhere as a whole (compute devices) stand directly on BroadPhase: pair buffers that are
-// emptied for every frame would be in their way. All others use a layer.
+// Three helper layers. Our families use them, too, except those that keep their pairs from frame to
+// frame (KD, Tracy) and those that get all pairs at once from a compute device: for these, pair
+// buffers that are emptied every frame are of no use, and they derive from BroadPhase.
 
 /// Layer 1: keeps the execution and one pair buffer per worker, and answers with them. Phases 2 and
 /// 4 are its own: an algorithm adds pairs in findPairs(), to buffers that are empty, and they are
