@@ -289,7 +289,7 @@ TEST(ExclusiveUse, KeepsReadersOutAndReadersShare) {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(value, 2000);
   const SharedUse first(kState);
-  const SharedUse second(kState);  // never returns unless readers share
+  std::thread([&] { const SharedUse second(kState); }).join();  // never ends unless they share
 }
 
 }  // namespace

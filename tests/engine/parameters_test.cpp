@@ -108,14 +108,15 @@ TEST(Parameters, BadValuesAreRefusedAndNamed) {
 
 TEST(Parameters, MessagesSayWhatWouldBeRight) {
   Knobs knobs;
-  EXPECT_EQ(inputErrorOf([&] {
-              setParameters(knobs, {{"cells", "0"}});
-            }),
-            "parameter cells: '0' is not an integer in 1…1000");
-  EXPECT_EQ(inputErrorOf([&] {
-              setParameters(knobs, {{"shape", "cube"}});
-            }),
-            "unknown shape 'cube'; did you mean 'cubes'? (one of: cubes, spheres)");
+  EXPECT_THAT(inputErrorOf([&] {
+                setParameters(knobs, {{"cells", "0"}});
+              }),
+              AllOf(HasSubstr("cells"), HasSubstr("'0'"), HasSubstr("1…1000")));
+  EXPECT_THAT(inputErrorOf([&] {
+                setParameters(knobs, {{"shape", "cube"}});
+              }),
+              AllOf(HasSubstr("shape"), HasSubstr("'cube'"), HasSubstr("did you mean 'cubes'"),
+                    HasSubstr("spheres")));
 }
 
 TEST(Parameters, UnknownNamesSuggestTheNearest) {
@@ -125,10 +126,10 @@ TEST(Parameters, UnknownNamesSuggestTheNearest) {
               }),
               AllOf(HasSubstr("'cell'"), HasSubstr("did you mean 'cells'?")));
   Parametrised nothing;
-  EXPECT_EQ(inputErrorOf([&] {
-              setParameters(nothing, {{"cells", "7"}});
-            }),
-            "unknown parameter 'cells': there are none here");
+  EXPECT_THAT(inputErrorOf([&] {
+                setParameters(nothing, {{"cells", "7"}});
+              }),
+              AllOf(HasSubstr("unknown"), HasSubstr("'cells'"), HasSubstr("none")));
 }
 
 TEST(Parameters, RangesAsText) {
