@@ -4,11 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "marked_body.h"
 #include "broadmark/box_arrays.h"
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 #include "broadmark/range.h"
+#include "marked_body.h"
 
 namespace broadmark {
 
