@@ -2,6 +2,7 @@
 
 #include "broadmark/names.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,9 +61,9 @@ TEST(ParseInteger, TakesWholeTextsWithinRange) {
 TEST(ParseInteger, RefusesEverythingElse) {
   for (const char* text : {"", " 1", "1 ", "+1", "1.0", "1e2", "0x10", "ten", "101", "-1",
                            "9223372036854775808", "99999999999999999999999"}) {
-    EXPECT_THAT(inputErrorOf([&] { parseInteger(text, "--objects", 0, 100); }),
-                AllOf(HasSubstr("--objects"), HasSubstr("'" + std::string(text) + "'"),
-                      HasSubstr("0 to 100")));
+    EXPECT_THAT(
+        inputErrorOf([&] { parseInteger(text, "--objects", 0, 100); }),
+        AllOf(HasSubstr("--objects"), HasSubstr(fmt::format("'{}'", text)), HasSubstr("0 to 100")));
   }
 }
 
