@@ -43,7 +43,8 @@ struct RunPolicy {
 /// throws becomes the status, and ends the pass; only an InputError goes on to the caller.
 class CaseRun {
  public:
-  /// Makes neither instance nor threads yet. Throws InputError for a bad parameter.
+  /// Sets the parameters; threads and structures are made by start(). Throws InputError for a bad
+  /// parameter.
   explicit CaseRun(Case run, RunPolicy policy = {});
   ~CaseRun();
   CaseRun(const CaseRun&) = delete;
@@ -101,8 +102,8 @@ class CaseRun {
   std::unique_ptr<BroadPhase> next_;      ///< made to check the parameters; the first pass uses it
   std::unique_ptr<BroadPhase> instance_;  ///< of the present pass
   float margin_ = 0;
-  bool ended_ = false;        ///< by the time limit: the instance is still there to be looked at
-  bool ended_early_ = false;  ///< some pass was, by a failure: reason_ says so
+  bool ended_ = false;        ///< the present pass, by a time limit: its instance is still there
+  bool ended_early_ = false;  ///< some pass, by a failure or a limit: reason_ says which
   Status status_ = Status::ok;
   std::string reason_;
   std::int64_t initialize_ns_ = 0;
