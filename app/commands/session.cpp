@@ -25,7 +25,11 @@ int runInspector(Plan plan, const SessionOptions& options) {
   const auto shared = std::make_shared<Plan>(std::move(plan));
   const InspectOptions inspect{
       .algorithms = std::move(algorithms),
-      .begin = [shared](Session& session) { session.open(std::move(*shared)); },
+      .begin =
+          [shared, make_host = hostMaker(options.hosts)](Session& session) {
+            session.make_host = make_host;
+            session.open(std::move(*shared));
+          },
       .script = options.script,
       .screenshot = options.screenshot,
       .width = options.picture.width,

@@ -33,7 +33,7 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                      "--warmup",
                      "--time-limit",
                      "--check",
-                     "--memory",
+                     "--in-process",
                      "--json",
                      "--csv ",
                      "--csv-frames",
