@@ -38,7 +38,8 @@ class Worker : public EndToEnd {
   [[nodiscard]] Outcome outcomeOf(const std::vector<std::string>& parameters,
                                   const Arguments& more = {}) const {
     Outcome outcome{.ended = run(call(parameters, more))};
-    for (const Json& one : readJson(file("r.json")).at("cases")) {
+    const Json results = readJson(file("r.json"));
+    for (const Json& one : results.at("cases")) {
       (one.at("algorithm") == "unruly" ? outcome.unruly : outcome.other) = one;
     }
     return outcome;
