@@ -6,6 +6,7 @@ function(broadmark_configure target)
   # Same inputs, same bits, on every instruction set: no contraction into fused multiply-adds.
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
     -Wno-sign-conversion -Wno-missing-field-initializers  # members left to their defaults on purpose
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-bitwise-instead-of-logical>  # no branch, on purpose
     -ffp-contract=off $<$<BOOL:${BROADMARK_WERROR}>:-Werror>)
   if(BROADMARK_SANITIZE)
     target_compile_options(${target} PUBLIC -fsanitize=${BROADMARK_SANITIZE}
