@@ -30,8 +30,12 @@ function(broadmark_registry target file macro folder)
 endfunction()
 
 # The public headers under include/: installed, and each compiled alone by the target
-# all_verify_interface_header_sets.
+# all_verify_interface_header_sets. Without those named after EXCEPT.
 function(broadmark_public_headers target)
+  cmake_parse_arguments(ARG "" "" EXCEPT ${ARGN})
   file(GLOB_RECURSE headers CONFIGURE_DEPENDS include/*.h)
+  foreach(name IN LISTS ARG_EXCEPT)
+    list(FILTER headers EXCLUDE REGEX "/${name}\\.h$")
+  endforeach()
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
 endfunction()
