@@ -30,9 +30,10 @@ install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
 list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
 install(FILES ${finders} DESTINATION ${package_dir})
 
-# Documents, with the example scene that they mention.
+# Documents, with the example scenes that they mention, laid out as their links expect.
 include(cmake/Copyright.cmake)
+file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
 install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md
   DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs assets/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  FILES_MATCHING PATTERN *.md PATTERN *.json)
+install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+install(DIRECTORY assets/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)
