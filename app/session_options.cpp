@@ -88,10 +88,12 @@ void SessionParser::Parts::addInspector() {
   app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
       ->type_name("SOURCE");
   app.add_flag("--headless", options.headless, "run without a window");
-  app.add_flag("--ui", options.ui,
-               "with --headless: the inspector drawn off-screen (--screenshot)");
-  addPath(app, "--script", "FILE", options.script,
-          "what a user does in the inspector, line by line (see docs/inspector.md)");
+  CLI::Option* ui = app.add_flag("--ui", options.ui,
+                                 "with --headless: the inspector drawn off-screen (--screenshot)");
+  CLI::Option* script =
+      addPath(app, "--script", "FILE", options.script,
+              "what a user does in the inspector, line by line (see docs/inspector.md)");
+  showWith(parts::kInspector, {ui, script});
 }
 
 void SessionParser::Parts::addCases() {
@@ -113,11 +115,12 @@ void SessionParser::Parts::addCases() {
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
-  tag(app.add_option("--device", cases.device,
-                     "OpenCL device, by number or part of its name (see 'broadmark list devices'; "
-                     "default: the first, GPUs before CPUs)")
-          ->type_name("NAME"),
-      kCase);
+  CLI::Option* device = app.add_option(
+      "--device", cases.device,
+      "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
+      "first, GPUs before CPUs)");
+  showWith(parts::kOpenCl, {device->type_name("NAME")});
+  tag(device, kCase);
   tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
           ->type_name("REGEX"),
       kCase | kInspector);
@@ -190,17 +193,20 @@ void SessionParser::Parts::addOutput() {
 
 void SessionParser::Parts::addPictures() {
   constexpr long long kMostFrame = std::numeric_limits<std::int32_t>::max();
-  tag(addPath(app, "--screenshot", "FILE", options.screenshot,
+  CLI::Option* screenshot =
+      addPath(app, "--screenshot", "FILE", options.screenshot,
               "draw a frame of each recording off-screen; with several recordings their names "
-              "are added to the file's"),
-      kExport | kWindow);
+              "are added to the file's");
+  tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
     options.screenshot_frame =
         static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
   };
-  tag(addValue(app, "--frame", "K", set_frame,
-               "frame of the screenshot, 0 being the initial pose (default: the last)"),
-      kInspector);
+  CLI::Option* frame =
+      addValue(app, "--frame", "K", set_frame,
+               "frame of the screenshot, 0 being the initial pose (default: the last)");
+  tag(frame, kInspector);
+  showWith(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
     tagged.emplace_back(option, kWindow);
   }
