@@ -14,6 +14,7 @@
 #include "broadmark/names.h"
 #include "commands/command.h"
 #include "commands/session.h"
+#include "parts.h"
 #include "sources/source.h"
 
 namespace broadmark {
@@ -27,9 +28,10 @@ namespace broadmark {
 
 namespace {
 
+constexpr const char* kWindow =
+    "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
 constexpr const char* kFooter =
-    "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.\n"
-    "Exit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
+    "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
     "bad input.\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
     "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
 
@@ -67,7 +69,7 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.footer(kFooter);
+    app_.footer(parts::kInspector.included ? std::string(kWindow) + kFooter : kFooter);
     app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     app_.set_version_flag("--version", thisEnvironment().version);
     app_.get_formatter()->column_width(34);

@@ -148,6 +148,19 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::st
   return app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
 }
 
+std::string leftOut(const Part& part) {
+  return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
+}
+
+void requirePart(const Part& part, std::string_view option) {
+  if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
+}
+
+void showWith(const Part& part, const std::vector<CLI::Option*>& options) {
+  if (part.included) return;
+  for (CLI::Option* option : options) option->group("");  // which CLI11 does not print
+}
+
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {
   return addRepeatable(app, "--plugin", "FILE", plugins,
                        "shared library with more algorithms, which runs as part of the program "
@@ -188,6 +201,7 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& optio
   CLI::Option* gl = addNamed(
       app, "--gl", "SOURCE", options.gl, kGlSources,
       fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
+  showWith(parts::kRenderer, {size, gl});
   return {size, gl};
 }
 

@@ -11,6 +11,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "parts.h"
 #include "picture_options.h"
 #include "scene_options.h"
 
@@ -77,6 +78,13 @@ CLI::Option* addList(CLI::App&, const std::string& name, const std::string& type
 CLI::Option* addRepeatable(CLI::App&, const std::string& name, const std::string& type,
                            std::vector<std::string>& target, const std::string& doc);
 
+/// "this build has no renderer (BROADMARK_RENDER=OFF)"
+std::string leftOut(const Part&);
+/// Throws InputError if a part that `option` needs has been left out of this build.
+void requirePart(const Part&, std::string_view option);
+/// Hides options from help if the part that they need has been left out of this build.
+void showWith(const Part&, const std::vector<CLI::Option*>& options);
+
 /// --plugin
 CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);
 /// --param
@@ -85,7 +93,7 @@ CLI::Option* addParameters(CLI::App&, ParameterValues&);
 CLI::Option* addQuiet(CLI::App&, bool& quiet);
 /// --recorder. Sets the default, too.
 CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
-/// --size and --gl
+/// --size and --gl. Help shows them only if there is a renderer.
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
 /// What a scene is like: --objects, --object-type, --frames, …
 std::vector<CLI::Option*> addSceneOptions(CLI::App&, SceneOptions&);

@@ -72,6 +72,7 @@ struct SessionParser::Parts {
   void addInspector();
   void addCases();
   void addRun();
+  void addHosts();
   void addOutput();
   void addPictures();
   void addScene();
@@ -87,10 +88,12 @@ void SessionParser::Parts::addInspector() {
   app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
       ->type_name("SOURCE");
   app.add_flag("--headless", options.headless, "run without a window");
-  app.add_flag("--ui", options.ui,
-               "with --headless: the inspector drawn off-screen (--screenshot)");
-  addPath(app, "--script", "FILE", options.script,
-          "what a user does in the inspector, line by line (see docs/inspector.md)");
+  CLI::Option* ui = app.add_flag("--ui", options.ui,
+                                 "with --headless: the inspector drawn off-screen (--screenshot)");
+  CLI::Option* script =
+      addPath(app, "--script", "FILE", options.script,
+              "what a user does in the inspector, line by line (see docs/inspector.md)");
+  showWith(parts::kInspector, {ui, script});
 }
 
 void SessionParser::Parts::addCases() {
@@ -112,11 +115,12 @@ void SessionParser::Parts::addCases() {
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
-  tag(app.add_option("--device", cases.device,
-                     "OpenCL device, by number or part of its name (see 'broadmark list devices'; "
-                     "default: the first, GPUs before CPUs)")
-          ->type_name("NAME"),
-      kCase);
+  CLI::Option* device = app.add_option(
+      "--device", cases.device,
+      "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
+      "first, GPUs before CPUs)");
+  showWith(parts::kOpenCl, {device->type_name("NAME")});
+  tag(device, kCase);
   tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
           ->type_name("REGEX"),
       kCase | kInspector);
@@ -148,11 +152,31 @@ void SessionParser::Parts::addRun() {
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
-  tag(app.add_flag("--memory", options.memory,
-                   "measure each case's memory in a separate untimed process (not on OpenCL "
-                   "devices)"),
-      kExport | kInspector);
+  addHosts();
   tag(addQuiet(app, options.quiet), kNone);
+}
+
+void SessionParser::Parts::addHosts() {
+  HostOptions& hosts = options.hosts;
+  const auto number = [this](const char* name, const char* type, auto& target, const char* doc,
+                             const std::string& shown) {
+    return addValue(
+        app, name, type,
+        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
+        doc, shown);
+  };
+  CLI::Option* in_process =
+      app.add_flag("--in-process", hosts.in_process,
+                   "run all cases in this process, for debuggers and profilers, instead of each in "
+                   "a worker process of its own: a crash or a hang then ends everything, and "
+                   "memory is not measured");
+  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+         "limit on a single call into an algorithm: its process is then ended",
+         fmt::format("{}", hosts.hard_limit_seconds))
+      ->excludes(in_process);
+  number("--memory-limit", "GIB", hosts.memory_limit_gib,
+         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
+      ->excludes(in_process);
 }
 
 void SessionParser::Parts::addOutput() {
@@ -169,17 +193,20 @@ void SessionParser::Parts::addOutput() {
 
 void SessionParser::Parts::addPictures() {
   constexpr long long kMostFrame = std::numeric_limits<std::int32_t>::max();
-  tag(addPath(app, "--screenshot", "FILE", options.screenshot,
+  CLI::Option* screenshot =
+      addPath(app, "--screenshot", "FILE", options.screenshot,
               "draw a frame of each recording off-screen; with several recordings their names "
-              "are added to the file's"),
-      kExport | kWindow);
+              "are added to the file's");
+  tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
     options.screenshot_frame =
         static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
   };
-  tag(addValue(app, "--frame", "K", set_frame,
-               "frame of the screenshot, 0 being the initial pose (default: the last)"),
-      kInspector);
+  CLI::Option* frame =
+      addValue(app, "--frame", "K", set_frame,
+               "frame of the screenshot, 0 being the initial pose (default: the last)");
+  tag(frame, kInspector);
+  showWith(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
     tagged.emplace_back(option, kWindow);
   }

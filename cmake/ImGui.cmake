@@ -1,9 +1,8 @@
 # Dear ImGui as Debian packages it (libimgui-dev), which brings no CMake files: imgui::imgui.
 find_path(IMGUI_INCLUDE imgui.h PATH_SUFFIXES imgui REQUIRED)
 find_library(IMGUI_LIBRARY imgui REQUIRED)
-find_library(STB_LIBRARY stb REQUIRED)  # letters
 add_library(imgui::imgui STATIC IMPORTED GLOBAL)
 set_target_properties(imgui::imgui PROPERTIES
   IMPORTED_LOCATION ${IMGUI_LIBRARY}
   INTERFACE_INCLUDE_DIRECTORIES ${IMGUI_INCLUDE}
-  INTERFACE_LINK_LIBRARIES ${STB_LIBRARY})
+  INTERFACE_LINK_LIBRARIES ${BROADMARK_STB_LIBRARY})

@@ -1,11 +1,26 @@
-# Installs the program and the two libraries, and exports them as a package: find_package(broadmark)
-# gives broadmark::engine and broadmark::algorithms, and the program for plug-ins to link to.
+# Installs the program and the libraries, and exports them as a package: find_package(broadmark)
+# gives broadmark::engine, broadmark::algorithms and broadmark::scenes, and the program for plug-ins
+# to link to.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS broadmark broadmark_engine broadmark_algorithms EXPORT broadmark_targets
+set(installed broadmark_engine broadmark_algorithms)
+if(BROADMARK_APP)
+  list(APPEND installed broadmark_scenes broadmark)
+endif()
+install(TARGETS ${installed} EXPORT broadmark_targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+
+# What finds the libraries that ours link to.
+set(dependencies Bullet)
+if(BROADMARK_ODE)
+  list(APPEND dependencies Ode)
+endif()
+if(BROADMARK_OPENCL)
+  list(APPEND dependencies OpenCL)
+endif()
+list(TRANSFORM dependencies APPEND .cmake)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/broadmark)
 install(EXPORT broadmark_targets NAMESPACE broadmark:: DESTINATION ${package_dir})
@@ -14,4 +29,14 @@ configure_package_config_file(cmake/broadmarkConfig.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
-  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake cmake/Bullet.cmake DESTINATION ${package_dir})
+  ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir})
+list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
+install(FILES ${finders} DESTINATION ${package_dir})
+
+# Documents, with the example scenes that they mention, laid out as their links expect.
+include(cmake/Copyright.cmake)
+file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
+install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${documents} DESTINATION ${CMAKE_INSTALL_DOCDIR}/docs)
+install(DIRECTORY assets/scenes DESTINATION ${CMAKE_INSTALL_DOCDIR}/assets)

@@ -142,6 +142,7 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
 }
 
 int run(const Options& options) {
+  if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   BakePlan plan = makeBakePlan(options);
@@ -178,9 +179,9 @@ void addMovie(CLI::App& app, MovieOptions& movie) {
       addPath(app, "--movie", "DIR", movie.directory,
               "draw each recording into numbered pictures, in a folder of its name in this "
               "directory");
-  addInteger(app, "--movie-every", "K", movie.every, 1, kMostEvery,
-             "frames from one picture to the next")
-      ->needs(directory);
+  CLI::Option* every = addInteger(app, "--movie-every", "K", movie.every, 1, kMostEvery,
+                                  "frames from one picture to the next");
+  showWith(parts::kRenderer, {directory, every->needs(directory)});
   for (CLI::Option* option : addPictureOptions(app, movie.picture)) option->needs(directory);
 }
 

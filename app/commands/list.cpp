@@ -124,23 +124,32 @@ struct Section {
   std::function<void(const Options&)> print;
 };
 std::vector<Section> sections() {
-  return {{"algorithms",
-           [](const Options& options) { listAlgorithms(availableAlgorithms(options.plugins)); }},
-          {"scenes", [](const Options&) { listScenes(); }},
-          {"engines", [](const Options&) { listEngines(); }},
-          {"recorders", [](const Options&) { listRecorders(); }},
-          {"devices", [](const Options&) { listDevices(); }}};
+  std::vector<Section> all = {
+      {"algorithms",
+       [](const Options& options) { listAlgorithms(availableAlgorithms(options.plugins)); }},
+      {"scenes", [](const Options&) { listScenes(); }},
+      {"engines", [](const Options&) { listEngines(); }},
+      {"recorders", [](const Options&) { listRecorders(); }}};
+  if (parts::kOpenCl.included) {
+    all.push_back({"devices", [](const Options&) { listDevices(); }});
+  }
+  return all;
 }
 
 std::vector<std::string> sectionNames() {
   std::vector<std::string> names;
   for (const Section& section : sections()) names.emplace_back(section.name);
+  return names;
+}
+
+std::vector<std::string> choices() {
+  std::vector<std::string> names = sectionNames();
   names.emplace_back("all");
   return names;
 }
 
 int run(const Options& options) {
-  const std::vector<std::string> known = sectionNames();
+  const std::vector<std::string> known = choices();
   if (std::ranges::find(known, options.what) == known.end()) {
     throw InputError("list: " + unknownName("kind", options.what, known));
   }
@@ -155,7 +164,7 @@ int run(const Options& options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("what", options->what, fmt::format("{}", fmt::join(sectionNames(), ", ")))
+  app.add_option("what", options->what, fmt::format("{}", fmt::join(choices(), ", ")))
       ->capture_default_str();
   addPlugins(app, options->plugins);
   return [options] { return run(*options); };
@@ -165,7 +174,7 @@ std::function<int()> add(CLI::App& app) {
 
 Command command() {
   return {.name = "list",
-          .summary = "Lists algorithms, scenes, engines, recorders and devices, with parameters.",
+          .summary = fmt::format("Lists {}, with parameters.", fmt::join(sectionNames(), ", ")),
           .add = add};
 }
 

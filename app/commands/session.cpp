@@ -4,11 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "broadmark/error.h"
 #include "export_case.h"
 #include "headless.h"
-#include "inspector/inspect.h"
-#include "inspector/session.h"
+#include "inspector/run_inspector.h"
+#include "option_types.h"
 #include "plan.h"
 
 namespace broadmark {
@@ -19,30 +18,10 @@ int listCases(const Plan& plan) {
   return 0;
 }
 
-int runInspector(Plan plan, const SessionOptions& options) {
-  std::vector<Algorithm> algorithms = plan.algorithms;
-  // std::function wants to be copied, and a plan cannot be.
-  const auto shared = std::make_shared<Plan>(std::move(plan));
-  const InspectOptions inspect{
-      .algorithms = std::move(algorithms),
-      .begin = [shared](Session& session) { session.open(std::move(*shared)); },
-      .script = options.script,
-      .screenshot = options.screenshot,
-      .width = options.picture.width,
-      .height = options.picture.height,
-      .gl = options.picture.gl};
-  try {
-    if (options.headless) {
-      inspectOffscreen(inspect);
-    } else {
-      inspectInWindow(inspect);
-    }
-  } catch (const RenderError& error) {
-    throw InputError(options.headless
-                         ? error.what()
-                         : fmt::format("{} (--headless runs without a window)", error.what()));
-  }
-  return 0;
+/// Throws InputError if the options need what has been left out of this build.
+void requireParts(const SessionOptions& options) {
+  if (!options.screenshot.empty()) requirePart(parts::kRenderer, "--screenshot");
+  if (!options.cases.device.empty()) requirePart(parts::kOpenCl, "--device");
 }
 
 }  // namespace
@@ -50,6 +29,7 @@ int runInspector(Plan plan, const SessionOptions& options) {
 int runSession(const SessionOptions& options) {
   Plan plan = makePlan(options);
   if (options.list_only) return listCases(plan);
+  requireParts(options);
   if (options.inspector()) return runInspector(std::move(plan), options);
   if (!options.export_case.empty()) return runExportCase(std::move(plan), options);
   return runHeadless(std::move(plan), options);

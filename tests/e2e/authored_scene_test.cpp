@@ -51,8 +51,8 @@ TEST_F(AuthoredScenes, RunLikeBuiltInOnes) {
 }
 
 TEST_F(AuthoredScenes, ACaseOfResultsIsRunAgainWhileTheSceneIsTheSame) {
-  runQuietly({"--headless", "my scene.json", "--frames", "4", "--engine", "ode", "--algorithm",
-              "sap", "--json", "results.json"});
+  runQuietly({"--headless", "my scene.json", "--frames", "4", "--engine", "kinematic",
+              "--algorithm", "sap", "--json", "results.json"});
   const Json before = readJson(file("results.json")).at("cases").at(0);
   const Arguments again = {"--headless", "results.json", "--case", before.at("id"),
                            "--json",     "again.json",   "--quiet"};

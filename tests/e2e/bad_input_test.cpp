@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "e2e/end_to_end.h"
+#include "parts.h"
 
 namespace broadmark::testing {
 namespace {
@@ -65,7 +66,7 @@ TEST_F(BadInput, NumbersOutOfRange) {
   expectRunRefused({"--seed", "-1"}, {"seed", "'-1'"});
   expectRunRefused({"--param", "friction=much"}, {"friction", "'much'"});
   for (const std::string frame : {"4", "abc"}) {
-    expectRunRefused({"--screenshot", "no.png", "--frame", frame}, {"--frame", frame});
+    expectRunRefused({"--frame", frame}, {"--frame", frame});
   }
 }
 
@@ -75,7 +76,9 @@ TEST_F(BadInput, IncompleteCalls) {
   expectRefusal({"freefall"}, {"--headless"}, no_display);
   expectRefusal({"freefal"}, {"'freefal'", "'freefall'"}, no_display);
   expectRefusal({"freefall", "--json", "a.json"}, {"--json", "--headless"}, no_display);
-  expectRefusal({"--headless", "--ui", "--script", "missing.txt"}, {"missing.txt"});
+  if (parts::kInspector.included) {
+    expectRefusal({"--headless", "--ui", "--script", "missing.txt"}, {"missing.txt"});
+  }
   expectRefusal({"--headless"}, {"no source", "freefall"});
   expectRefusal({"bake"}, {"bake", "--output"});
   expectRunRefused({"--filter", "(["}, {"--filter", "'(['"});
@@ -174,7 +177,9 @@ TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
     call.insert(call.end(), more.begin(), more.end());
     expectRefusal(call, words, {.patience = std::chrono::seconds(20)});
   };
-  for (const std::string option : {"--json", "--csv", "--csv-frames", "--screenshot"}) {
+  std::vector<std::string> options = {"--json", "--csv", "--csv-frames"};
+  if (parts::kRenderer.included) options.emplace_back("--screenshot");
+  for (const std::string& option : options) {
     refused({option, "missing/file"}, {"missing/file", "No such file or directory"});
     refused({option, "plain/file"}, {"plain/file"});
     refused({option, "folder"}, {"folder", "cannot write"});

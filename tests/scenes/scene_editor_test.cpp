@@ -173,8 +173,9 @@ TEST(SceneEditor, ParametersOfAnotherEngineAreDropped) {
   editor.setParameters({{"engine", "boids"}, {"sight", "5"}, {"frames", "0070"}});
   EXPECT_EQ(editor.scene().parameters,
             (ParameterValues{{"engine", "boids"}, {"frames", "70"}, {"sight", "5"}}));
-  editor.setParameters({{"engine", "ode"}});
-  EXPECT_EQ(editor.scene().parameters, (ParameterValues{{"engine", "ode"}, {"frames", "70"}}));
+  editor.setParameters({{"engine", "kinematic"}});
+  EXPECT_EQ(editor.scene().parameters,
+            (ParameterValues{{"engine", "kinematic"}, {"frames", "70"}}));
   editor.undo();
   EXPECT_EQ(editor.scene().parameters.at("sight"), "5");
 }
@@ -272,7 +273,7 @@ class Monkey {
         return editor.setWorld({{number(), -20, -20, 0}, {number(), 20, 20, 0}});
       case 14:
         return editor.setParameters(
-            {{"frames", std::to_string(any(5))}, {"engine", any(2) == 0 ? "ode" : "boids"}});
+            {{"frames", std::to_string(any(5))}, {"engine", any(2) == 0 ? "kinematic" : "boids"}});
       default:
         return editor.move(vector());
     }

@@ -12,6 +12,8 @@ std::filesystem::path source(const std::string& path);
 std::string program();
 /// A plug-in with algorithms that are wrong on purpose.
 std::string faultyPlugin();
+/// A plug-in with an algorithm that crashes, hangs or fails otherwise when asked to.
+std::string unrulyPlugin();
 /// A plug-in that belongs to another version.
 std::string foreignPlugin();
 

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 
@@ -43,6 +45,12 @@ Program::~Program() {
   if (pid_ <= 0) return;
   ::kill(pid_, SIGKILL);
   ::waitpid(pid_, nullptr, 0);
+}
+
+std::vector<pid_t> Program::children() const {
+  std::ifstream list("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) +
+                     "/children");
+  return {std::istream_iterator<pid_t>(list), {}};
 }
 
 bool Program::runs() {

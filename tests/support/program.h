@@ -43,6 +43,8 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  /// The processes that its main thread has started.
+  [[nodiscard]] std::vector<pid_t> children() const;
 
   /// Whether it has not ended yet.
   [[nodiscard]] bool runs();

@@ -1,0 +1,46 @@
+#include "inspector/run_inspector.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "inspector/inspect.h"
+#include "inspector/session.h"
+#include "plan.h"
+#include "session_options.h"
+
+namespace broadmark {
+
+int runInspector(Plan plan, const SessionOptions& options) {
+  std::vector<Algorithm> algorithms = plan.algorithms;
+  // std::function wants to be copied, and a plan cannot be.
+  const auto shared = std::make_shared<Plan>(std::move(plan));
+  const InspectOptions inspect{
+      .algorithms = std::move(algorithms),
+      .begin =
+          [shared, make_host = hostMaker(options.hosts)](Session& session) {
+            session.make_host = make_host;
+            session.open(std::move(*shared));
+          },
+      .script = options.script,
+      .screenshot = options.screenshot,
+      .width = options.picture.width,
+      .height = options.picture.height,
+      .gl = options.picture.gl};
+  try {
+    if (options.headless) {
+      inspectOffscreen(inspect);
+    } else {
+      inspectInWindow(inspect);
+    }
+  } catch (const RenderError& error) {
+    throw InputError(options.headless
+                         ? error.what()
+                         : fmt::format("{} (--headless runs without a window)", error.what()));
+  }
+  return 0;
+}
+
+}  // namespace broadmark

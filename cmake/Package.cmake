@@ -1,0 +1,34 @@
+# `cpack` in the build folder makes a Debian package of what is installed.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(CPACK_PACKAGE_CONTACT "Broadmark developers <broadmark@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION "Broadmark generates physics scenes, records them, runs broad-phase \
+algorithms on exactly the same boxes, checks every answer and measures every phase. The package holds \
+the program, and libraries with which to measure a broad phase of one's own.")
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to
+
+# What it loads at run time, if there; and what others need to build with the libraries, or to have
+# an OpenCL device without a GPU.
+set(recommended "")
+set(suggested cmake g++ make libbullet-dev)
+if(BROADMARK_RENDER)
+  list(APPEND recommended libegl1 libosmesa6)
+endif()
+if(BROADMARK_INSPECTOR)
+  list(APPEND recommended libgl1)
+endif()
+if(BROADMARK_ODE)
+  list(APPEND suggested libode-dev)
+endif()
+if(BROADMARK_OPENCL)
+  list(APPEND suggested ocl-icd-opencl-dev pocl-opencl-icd)
+endif()
+list(JOIN recommended ", " CPACK_DEBIAN_PACKAGE_RECOMMENDS)
+list(JOIN suggested ", " CPACK_DEBIAN_PACKAGE_SUGGESTS)
+
+include(CPack)

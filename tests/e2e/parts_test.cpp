@@ -1,0 +1,64 @@
+// Parts that can be left out of a build: help and lists show those that are there, and one line
+// says which is not.
+
+#include "parts.h"
+
+#include "e2e/end_to_end.h"
+
+namespace broadmark::testing {
+namespace {
+
+using Parts = EndToEnd;
+
+TEST_F(Parts, AreShownWhereTheyAreIncluded) {
+  struct Shown {
+    Part part;
+    Arguments call;
+    std::vector<std::string> words;
+  };
+  const Shown all[] = {
+      {parts::kRenderer, {"--help"}, {"--screenshot", "--frame ", "--size", "--gl"}},
+      {parts::kRenderer, {"bake", "--help"}, {"--movie ", "--movie-every", "--size", "--gl"}},
+      {parts::kInspector, {"--help"}, {"--ui", "--script", "inspector"}},
+      {parts::kOpenCl, {"--help"}, {"--device", ", devices,"}},
+      {parts::kOpenCl, {"list"}, {"Compute devices", "gpu-", "b3-"}},
+      {parts::kCgal, {"list"}, {"cgal: "}},
+      {parts::kOde, {"list"}, {"  ode: "}}};
+  for (const Shown& shown : all) {
+    const Ended ended = run(shown.call);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    for (const std::string& word : shown.words) {
+      EXPECT_EQ(ended.out.find(word) != std::string::npos, shown.part.included) << word;
+    }
+  }
+}
+
+TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
+  struct Refused {
+    Part part;
+    Arguments call;
+    std::string word;
+  };
+  const Arguments scene = {"--headless", "freefall", "--objects", "5", "--quiet"};
+  const auto with = [&](const std::string& option, const std::string& value) {
+    Arguments call = scene;
+    call.insert(call.end(), {option, value});
+    return call;
+  };
+  const Refused all[] = {
+      {parts::kRenderer, with("--screenshot", "s.png"), "BROADMARK_RENDER"},
+      {parts::kRenderer, {"bake", "--output", "out", "--movie", "film"}, "BROADMARK_RENDER"},
+      {parts::kInspector, {"freefall"}, "BROADMARK_INSPECTOR"},
+      {parts::kInspector, {"--headless", "--ui"}, "BROADMARK_INSPECTOR"},
+      {parts::kOpenCl, with("--device", "0"), "BROADMARK_OPENCL"},
+      {parts::kOpenCl, with("--algorithm", "gpu-grid"), "'gpu-grid'"},
+      {parts::kOpenCl, {"list", "devices"}, "'devices'"},
+      {parts::kCgal, with("--algorithm", "cgal"), "'cgal'"},
+      {parts::kOde, with("--engine", "ode"), "'ode'"}};
+  for (const Refused& refused : all) {
+    if (!refused.part.included) expectRefusal(refused.call, {refused.word});
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::testing
