@@ -1,5 +1,6 @@
 // The program in a real window, under Xvfb, with somebody at its mouse and keyboard (xdotool). What
 // comes of it is asserted by a script that runs in the program meanwhile.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
