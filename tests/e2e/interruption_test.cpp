@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <sys/mount.h>
 
+#include <thread>
+
 #include "e2e/end_to_end.h"
 
 namespace broadmark::testing {

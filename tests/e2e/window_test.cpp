@@ -3,8 +3,14 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <sstream>
+#include <stdexcept>
+#include <thread>
 
 #include "e2e/end_to_end.h"
 
