@@ -81,8 +81,9 @@ class EntryRun {
       for (std::size_t i = 0; i < cases_.size(); ++i) {
         progress.detail(cases_[i].algorithm.id);
         if (!runOnce(i, recording, oracle, hooks, pass >= options_.warmup)) return false;
-        // Its threads and device are not needed any more.
-        if (pass + 1 == passes || results_[i].status != Status::ok) runs_[i].reset();
+        // Its process is not needed any more, or would be one of too many.
+        const bool ended = pass + 1 == passes || results_[i].status != Status::ok;
+        if (ended || cases_.size() > kMostHeld) runs_[i].reset();
         progress.update(steps += scene.frames);
       }
     }
@@ -98,6 +99,9 @@ class EntryRun {
   }
 
  private:
+  /// Of more cases than these none keeps its process, with threads and device, between two passes.
+  static constexpr std::size_t kMostHeld = 64;
+
   /// One repetition of one case, unless it has failed already. Returns false when interrupted.
   bool runOnce(std::size_t i, Recording& recording, Oracle& oracle, const RunHooks& hooks,
                bool measured) {

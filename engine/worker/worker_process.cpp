@@ -20,8 +20,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
-/// How long a process may take to end once it is asked to.
-constexpr std::chrono::seconds kPatience{5};
+/// How long a process may take to begin: no part of the algorithm's time.
+constexpr std::chrono::seconds kTimeToBegin{60};
+/// How long it may take to end once it is asked to.
+constexpr std::chrono::seconds kTimeToEnd{5};
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
 
@@ -81,7 +83,7 @@ class ChildProcess {
   }
   /// Waits for its end, and brings that about when patience is over. Returns how it ended.
   int wait() {
-    const auto end = Clock::now() + kPatience;
+    const auto end = Clock::now() + kTimeToEnd;
     int status = 0;
     while (::waitpid(pid_, &status, WNOHANG) == 0) {
       if (Clock::now() > end) ::kill(pid_, SIGKILL);
@@ -113,9 +115,20 @@ class WorkerProcess::Link {
 
   [[nodiscard]] bool alive() const { return !process_.ended(); }
 
-  /// Introduces both sides.
+  /// Introduces both sides, and names the case.
+  void begin(const Json& case_message) {
+    greet();
+    call(case_message, kTimeToBegin);
+  }
+
+  /// The answer to a call into the algorithm. Throws what that threw, and as CaseHost says.
+  Json call(const Json& message) { return call(message, options_.hard_limit); }
+
+ private:
+  using Seconds = std::chrono::duration<double>;
+
   void greet() {
-    const std::optional<Json> hello = receive();
+    const std::optional<Json> hello = receive(kTimeToBegin);
     const int version = hello ? hello->value("protocol", 0) : 0;
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
@@ -127,10 +140,9 @@ class WorkerProcess::Link {
                                  program, version, worker::kProtocolVersion));
   }
 
-  /// The answer to a call. Throws what the algorithm threw, and as CaseHost says.
-  Json call(const Json& message) {
+  Json call(const Json& message, Seconds limit) {
     if (!channel_->send(message)) fail();
-    std::optional<Json> answer = receive();
+    std::optional<Json> answer = receive(limit);
     if (!answer) fail();
     if (!answer->contains("error")) return std::move(*answer);
     const auto text = answer->at("error").get<std::string>();
@@ -140,7 +152,6 @@ class WorkerProcess::Link {
     throw std::runtime_error(text);
   }
 
- private:
   Link(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
         process_(spawn(ends.there.get())),
@@ -173,8 +184,8 @@ class WorkerProcess::Link {
   }
 
   /// The next message; nothing once the process has hung up.
-  std::optional<Json> receive() {
-    const auto end = Clock::now() + options_.hard_limit;
+  std::optional<Json> receive(Seconds limit) {
+    const auto end = Clock::now() + limit;
     while (!channel_->wait(kPollMilliseconds)) {
       if (options_.cancelled && options_.cancelled()) {
         process_.kill();
@@ -183,7 +194,7 @@ class WorkerProcess::Link {
       if (Clock::now() < end) continue;
       process_.kill();
       throw HardLimitError(
-          fmt::format("no answer within the hard limit of {:.3g} s", options_.hard_limit.count()));
+          fmt::format("no answer within the hard limit of {:.3g} s", limit.count()));
     }
     try {
       return channel_->receive();
@@ -225,11 +236,10 @@ void WorkerProcess::open() {
   if (link_) return;
   link_ = std::make_unique<Link>(options_);
   talk([&](Link& link) {
-    link.greet();
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
-    return link.call(message);
+    link.begin(message);
   });
 }
 

@@ -102,8 +102,9 @@ TEST(WorkerProcess, TakesScenesOfAnySize) {
 /// What is said of a program that does `script`.
 std::string complaint(const std::string& script) {
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
-  WorkerProcess host(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
-                     {.command = {"/bin/sh", "-c", script}});
+  WorkerProcess host(
+      makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
+      {.command = {"/bin/sh", "-c", script}, .hard_limit = std::chrono::milliseconds(300)});
   return inputErrorOf([&] { host.start(sceneOf({boxes, boxes}), {0, boxes}); });
 }
 
@@ -111,6 +112,9 @@ TEST(WorkerProcess, ADifferentProgramIsNamed) {
   EXPECT_THAT(complaint("exit 7"), AllOf(HasSubstr("/bin/sh"), HasSubstr("status 7")));
   EXPECT_THAT(complaint("printf '{\"protocol\": 99}' >&3; cat <&3 >/dev/null"),
               AllOf(HasSubstr("/bin/sh"), HasSubstr("99"), HasSubstr("version")));
+  EXPECT_THAT(complaint("sleep 0.5; printf '{\"protocol\": 99}' >&3; cat <&3 >/dev/null"),
+              HasSubstr("99"))
+      << "the hard limit is not on the start of a process";
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
   WorkerProcess missing(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
                         {.command = {"/no/such/program"}});
