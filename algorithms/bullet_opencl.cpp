@@ -14,7 +14,7 @@
 //   but a CPU the right answer on a known scene is asked for first.
 //
 // The grid's kernels are global variables of the library. Each grid keeps its own and puts them in
-// place before every search and before it is destroyed (opencl/bullet_library.h); CaseRun lets no
+// place before every search and before it is destroyed (opencl/bullet_library.h); the host lets no
 // other call in meanwhile (traits.exclusive). So any number of grids may live at the same time.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Broadmark", Computer Graphics Forum, 2019; T. Karras,

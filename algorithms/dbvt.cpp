@@ -11,8 +11,8 @@
 // ones: here all of them are looked through, or they would pile up.
 //
 // Bullet's margin is a global variable. An instance sets it for the length of a call and puts the
-// former value back, and CaseRun lets nobody else use it meanwhile (traits.exclusive): so instances
-// with different margins may live at the same time.
+// former value back, and the host lets nobody else use it meanwhile (traits.exclusive): so
+// instances with different margins may live at the same time.
 //
 // Paper: the trees follow N. Presson's in Bullet; for the idea see G. van den Bergen, "Efficient
 // Collision Detection of Complex Deformable Models using AABB Trees", 1997. Library: Bullet 3.

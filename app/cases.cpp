@@ -49,6 +49,11 @@ const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorith
   return found == known.end() ? nullptr : &*found;
 }
 
+const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known) {
+  if (const Algorithm* found = findAlgorithm(id, known)) return *found;
+  throw InputError(unknownName("algorithm", id, algorithmIds(known)));
+}
+
 std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known) {
   std::vector<std::string> ids;
   for (const Algorithm& algorithm : known) ids.push_back(algorithm.id);

@@ -31,6 +31,8 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
 
 /// The algorithm of this id, or null.
 const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
+/// The same; throws InputError if there is none.
+const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
 /// All ids, for messages.
 std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known);
 

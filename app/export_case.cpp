@@ -95,7 +95,8 @@ int runExportCase(Plan plan, const SessionOptions& options) {
              progress.detail(extentText(now.bodies, now.frames));
              progress.update(size - std::min<std::uint64_t>(size, now.bodies * now.frames));
            },
-       .cancelled = InterruptGuard::requested});
+       .cancelled = InterruptGuard::requested,
+       .make_host = hostMaker(options.hosts)});
   if (shrunk.trials == 0) throw InputError("interrupted");
   if (shrunk.minimal) progress.update(size);
 

@@ -58,7 +58,11 @@ class EntryRun {
  public:
   /// All arguments outlive this.
   EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted)
-      : cases_(entry.cases), options_(options), exhausted_(exhausted), runs_(cases_.size()) {
+      : cases_(entry.cases),
+        options_(options),
+        make_host_(hostMaker(options.hosts)),
+        exhausted_(exhausted),
+        runs_(cases_.size()) {
     for (const Case& run : cases_) results_.push_back(beginCase(run, entry.source.reference));
   }
 
@@ -85,13 +89,6 @@ class EntryRun {
     return true;
   }
 
-  void measureMemory(Recording& recording) {
-    for (std::size_t i = 0; i < cases_.size(); ++i) {
-      if (results_[i].status != Status::ok || InterruptGuard::requested()) continue;
-      results_[i].peak_bytes = measurePeakBytes(cases_[i], recording);
-    }
-  }
-
   /// Of the cases that have been run.
   std::vector<CaseResult> takeResults() {
     std::erase_if(results_, [](const CaseResult& result) {
@@ -106,7 +103,10 @@ class EntryRun {
                bool measured) {
     CaseResult& result = results_[i];
     if (result.status != Status::ok || exhausted_.skip(result, cases_[i])) return true;
-    if (!runs_[i]) runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy);
+    if (!runs_[i]) {
+      runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy, make_host_,
+                                           InterruptGuard::requested);
+    }
     if (!runRepetition(result, *runs_[i], recording, oracle, hooks, measured)) return false;
     exhausted_.note(result, cases_[i]);
     return true;
@@ -114,6 +114,7 @@ class EntryRun {
 
   const std::vector<Case>& cases_;
   const SessionOptions& options_;
+  HostMaker make_host_;
   Exhausted& exhausted_;
   // In the order of the cases.
   std::vector<CaseResult> results_;
@@ -178,7 +179,6 @@ class PlanRun {
     Oracle oracle;
     EntryRun run(entry, options_, exhausted_);
     interrupted_ = !run.run(*recording, oracle);
-    if (!interrupted_ && options_.memory) run.measureMemory(*recording);
     report(entry, run.takeResults());
     if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
   }

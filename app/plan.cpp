@@ -25,7 +25,7 @@ void addSource(Plan& plan, const std::string& name, const SessionOptions& option
                                           .algorithms = plan.algorithms});
   if (opened.results) {
     if (!options.inspector()) throw missingCase(*opened.results, name);
-    plan.results = name;
+    plan.unchosen_case = {.file = name, .results = std::move(*opened.results)};
   }
   for (PlanEntry& entry : opened.entries) {
     if (!options.case_id.empty() && !entry.known) {

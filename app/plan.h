@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,11 @@ struct Plan {
   /// In the order of the command line. The parameters of all cases have been checked.
   std::vector<PlanEntry> entries;
   /// A results file without a chosen case, for the inspector: then there are no entries.
-  std::filesystem::path results;
+  struct UnchosenCase {
+    std::filesystem::path file;
+    Results results;
+  };
+  std::optional<UnchosenCase> unchosen_case;
   /// Cases for the inspector that was given no source: then there are no entries.
   std::vector<Case> cases;
 };

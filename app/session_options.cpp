@@ -72,6 +72,7 @@ struct SessionParser::Parts {
   void addInspector();
   void addCases();
   void addRun();
+  void addHosts();
   void addOutput();
   void addPictures();
   void addScene();
@@ -151,11 +152,31 @@ void SessionParser::Parts::addRun() {
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
-  tag(app.add_flag("--memory", options.memory,
-                   "measure each case's memory in a separate untimed process (not on OpenCL "
-                   "devices)"),
-      kExport | kInspector);
+  addHosts();
   tag(addQuiet(app, options.quiet), kNone);
+}
+
+void SessionParser::Parts::addHosts() {
+  HostOptions& hosts = options.hosts;
+  const auto number = [this](const char* name, const char* type, auto& target, const char* doc,
+                             const std::string& shown) {
+    return addValue(
+        app, name, type,
+        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
+        doc, shown);
+  };
+  CLI::Option* in_process =
+      app.add_flag("--in-process", hosts.in_process,
+                   "run all cases in this process, for debuggers and profilers, instead of each in "
+                   "a worker process of its own: a crash or a hang then ends everything, and "
+                   "memory is not measured");
+  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+         "limit on a single call into an algorithm: its process is then ended",
+         fmt::format("{}", hosts.hard_limit_seconds))
+      ->excludes(in_process);
+  number("--memory-limit", "GIB", hosts.memory_limit_gib,
+         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
+      ->excludes(in_process);
 }
 
 void SessionParser::Parts::addOutput() {

@@ -11,6 +11,7 @@
 
 #include "broadmark/case_run.h"
 #include "cases.h"
+#include "hosts.h"
 #include "picture_options.h"
 #include "scene_options.h"
 
@@ -37,7 +38,7 @@ struct SessionOptions {
   int repetitions = 1;
   int warmup = 0;
   RunPolicy policy;
-  bool memory = false;
+  HostOptions hosts;
   std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
   std::filesystem::path record;                          ///< "": keep no recordings
   std::filesystem::path screenshot;                      ///< "": none

@@ -3,14 +3,8 @@
 #include "broadmark/runner.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-
-#include "broadmark/files.h"
 
 namespace broadmark {
 namespace {
@@ -30,13 +24,12 @@ void addToMean(double& mean, std::uint64_t value, std::uint64_t count_before) {
 }
 
 /// Counts of pairs and of work, of the first repetition: the others do the same.
-void countFrame(CaseResult& result, const BroadPhase& algorithm, std::uint64_t frames_before) {
-  const std::uint64_t pairs = pairCount(algorithm.overlaps());
-  addToMean(result.pairs_mean, pairs, frames_before);
-  result.pairs_max = std::max(result.pairs_max, pairs);
-  algorithm.visitCounters([&](std::string_view name, std::uint64_t count) {
-    addToMean(result.counters[std::string(name)], count, frames_before);
-  });
+void countFrame(CaseResult& result, CaseRun& run, std::uint64_t frames_before) {
+  addToMean(result.pairs_mean, run.pairs(), frames_before);
+  result.pairs_max = std::max(result.pairs_max, run.pairs());
+  for (const auto& [name, count] : run.counters()) {
+    addToMean(result.counters[name], count, frames_before);
+  }
 }
 
 /// All frames of one pass; false when cancelled.
@@ -55,10 +48,29 @@ bool runFrames(CaseResult& result, Repetition& repetition, CaseRun& run, FrameSo
       difference->repetition = number;
       addDifference(result, std::move(*difference));
     }
-    if (is_first) countFrame(result, run.algorithm(), repetition.frames.size() - 1);
+    if (is_first && run.answered()) countFrame(result, run, repetition.frames.size() - 1);
     if (hooks.progress) hooks.progress(frame->index);
   }
   return true;
+}
+
+/// What came of one pass.
+struct Pass {
+  bool finished = false;  ///< not cancelled
+  bool whole = false;     ///< its instance was not lost on the way
+  Repetition repetition;
+};
+Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
+             const RunHooks& hooks) {
+  Pass pass;
+  pass.repetition.frames.reserve(source.scene().frames);
+  const Frame first = source.rewind();
+  if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
+  pass.repetition.initialize_ns = run.initializeNanoseconds();
+  pass.finished = runFrames(result, pass.repetition, run, source, oracle, hooks);
+  pass.whole = run.hasInstance();
+  run.stop();
+  return pass;
 }
 
 }  // namespace
@@ -88,21 +100,16 @@ CaseResult beginCase(const Case& run, const RecordingReference& recording) {
 bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
                    const RunHooks& hooks, bool measured) {
   result.checked = run.checks();
-  Repetition repetition;
-  repetition.frames.reserve(source.scene().frames);
-  const Frame first = source.rewind();
-  if (run.start(source.scene(), first) && result.setup.empty()) {
-    run.algorithm().visitSetup(
-        [&](std::string_view name, std::uint64_t count) { result.setup.emplace(name, count); });
+  try {
+    Pass pass = runPass(result, run, source, oracle, hooks);
+    if (!pass.finished) return false;
+    if (measured && pass.whole) result.repetitions.push_back(std::move(pass.repetition));
+  } catch (const Cancelled&) {
+    return false;
   }
-  repetition.initialize_ns = run.initializeNanoseconds();
-  const bool finished = runFrames(result, repetition, run, source, oracle, hooks);
-  const bool broken = !run.hasInstance();
-  run.stop();
-  if (!finished) return false;
   result.status = run.status();
   result.reason = run.reason();
-  if (measured && !broken) result.repetitions.push_back(std::move(repetition));
+  result.peak_bytes = run.peakBytes();
   return true;
 }
 
@@ -114,48 +121,6 @@ CaseResult runCase(const Case& run, FrameSource& source, const RunPolicy& policy
     runRepetition(result, case_run, source, oracle);
   }
   return result;
-}
-
-std::optional<std::uint64_t> measurePeakBytes(const Case& run, FrameSource& source) {
-  // The threads of a device's driver do not live on in a child, which would wait for them.
-  if (run.algorithm.traits.on_device) return std::nullopt;
-  int channel[2];
-  if (::pipe(channel) != 0) return std::nullopt;
-  // Free memory that the child inherits is within its peak from the start, and would hide what the
-  // algorithm takes.
-  ::malloc_trim(0);
-  const pid_t child = ::fork();
-  if (child < 0) return std::nullopt;
-  if (child == 0) {
-    const auto peak_kib = [] {
-      rusage usage{};
-      ::getrusage(RUSAGE_SELF, &usage);
-      return static_cast<std::uint64_t>(usage.ru_maxrss);
-    };
-    std::uint64_t growth = 0;
-    try {
-      const Frame first = source.rewind();
-      const std::uint64_t before = peak_kib();
-      CaseRun child_run(run, RunPolicy::unlimited(CheckMode::off));
-      child_run.start(source.scene(), first);
-      while (const auto frame = child_run.running() ? source.next() : std::nullopt) {
-        child_run.step(*frame);
-      }
-      if (child_run.status() != Status::ok) ::_exit(1);
-      growth = (peak_kib() - before) * 1024;
-      if (::write(channel[1], &growth, sizeof growth) != sizeof growth) ::_exit(1);
-    } catch (...) {
-      ::_exit(1);
-    }
-    ::_exit(0);
-  }
-  const FileDescriptor read_end(channel[0]);
-  { const FileDescriptor write_end(channel[1]); }
-  std::uint64_t growth = 0;
-  const bool complete = ::read(read_end.get(), &growth, sizeof growth) == sizeof growth;
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return complete ? std::optional(growth) : std::nullopt;
 }
 
 }  // namespace broadmark

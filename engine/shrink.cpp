@@ -101,14 +101,11 @@ std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
   return bodies;
 }
 
-/// Thrown when the user cancels.
-struct Cancelled {};
-
 class Shrinker {
  public:
   Shrinker(const Case& run, IndexedFrames& source, const FrameDifference& known,
            const ShrinkOptions& options)
-      : run_(run, RunPolicy::unlimited(CheckMode::full)),
+      : run_(run, RunPolicy::unlimited(CheckMode::full), options.make_host, options.cancelled),
         options_(options),
         whole_(source),
         known_(known) {

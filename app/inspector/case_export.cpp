@@ -6,18 +6,19 @@
 namespace broadmark {
 
 void CaseExport::start(const Case& run, std::unique_ptr<IndexedFrames> source,
-                       FrameDifference known, std::filesystem::path file) {
+                       FrameDifference known, std::filesystem::path file,
+                       const HostMaker& make_host) {
   Report first;
   first.run = run;
   first.file = std::move(file);
   first.whole_bodies = first.bodies = source->scene().objects;
   first.whole_frames = first.frames = known.frame;
-  task_.begin(std::move(first), [this, source = std::move(source), known = std::move(known)] {
-    return shrinkAndWrite(*source, known);
-  });
+  task_.begin(std::move(first), [this, source = std::move(source), known = std::move(known),
+                                 make_host] { return shrinkAndWrite(*source, known, make_host); });
 }
 
-bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& known) {
+bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& known,
+                                const HostMaker& make_host) {
   const Report begun = report();
   const auto note = [this](const ShrinkProgress& now) {
     task_.update([&](Report& report) {
@@ -26,9 +27,10 @@ bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& kn
       report.frames = now.frames;
     });
   };
-  const ShrunkCase shrunk =
-      shrinkCase(begun.run, source, known,
-                 {.progress = note, .cancelled = [this] { return task_.cancelled(); }});
+  const ShrunkCase shrunk = shrinkCase(begun.run, source, known,
+                                       {.progress = note,
+                                        .cancelled = [this] { return task_.cancelled(); },
+                                        .make_host = make_host});
   if (!shrunk.minimal) return false;
   writePart(begun.file, source, shrunk.part);
   note({.trials = shrunk.trials,

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "broadmark/case.h"
+#include "broadmark/case_host.h"
 #include "broadmark/frame.h"
 #include "broadmark/oracle.h"
 #include "inspector/background_task.h"
@@ -31,7 +31,7 @@ class CaseExport {
   /// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
   /// while another export is running.
   void start(const Case& run, std::unique_ptr<IndexedFrames> source, FrameDifference known,
-             std::filesystem::path file);
+             std::filesystem::path file, const HostMaker& make_host = makeLocalHost);
   /// Ends it soon; nothing is written then.
   void cancel() { task_.cancel(); }
   [[nodiscard]] bool running() const { return task_.running(); }
@@ -41,7 +41,8 @@ class CaseExport {
 
  private:
   /// Returns whether it was written: not when cancelled.
-  bool shrinkAndWrite(IndexedFrames& source, const FrameDifference& known);
+  bool shrinkAndWrite(IndexedFrames& source, const FrameDifference& known,
+                      const HostMaker& make_host);
 
   BackgroundTask<Report> task_{"exporting a case"};
 };

@@ -8,12 +8,6 @@ namespace {
 constexpr RunPolicy kPolicy{.check = CheckMode::hash,
                             .frame_limit_seconds = Lane::kFrameLimitSeconds};
 
-/// Collects what a visit shows.
-CounterVisitor into(std::map<std::string, std::uint64_t>& counters) {
-  counters.clear();
-  return [&counters](std::string_view name, std::uint64_t count) { counters.emplace(name, count); };
-}
-
 }  // namespace
 
 template <class Call>
@@ -23,6 +17,8 @@ void Lane::attempt(Call&& call) {
     report_.status = run_->status();
     report_.reason = run_->reason();
     report_.ended = !run_->running();
+  } catch (const Cancelled&) {
+    throw;
   } catch (const std::exception& error) {
     report_.status = Status::error;
     report_.reason = error.what();
@@ -33,13 +29,12 @@ void Lane::attempt(Call&& call) {
 void Lane::restart(const SceneInfo& scene, const Frame& first) {
   report_.frame = 0;
   attempt([&] {
-    if (!run_) run_.emplace(spec().run, kPolicy);
-    run_->start(scene, first);
+    if (!run_) run_.emplace(spec().run, kPolicy, make_host_, cancelled_);
+    if (run_->start(scene, first)) report_.setup = run_->setup();
   });
   if (report_.ended) return;
   report_.margin = run_->margin();
   report_.initialize_ns = run_->initializeNanoseconds();
-  algorithm().visitSetup(into(report_.setup));
 }
 
 FrameRecord& Lane::recordOf(std::uint32_t index) {
@@ -55,10 +50,10 @@ void Lane::advance(const Frame& frame, DrawGate& gate) {
   if (!run_->answered()) return;
   record.run = true;
   record.times = run_->times();
-  record.pairs = pairCount(algorithm().overlaps());
+  record.pairs = run_->pairs();
   recordOf(frame.index) = record;
   report_.frame = frame.index;
-  algorithm().visitCounters(into(report_.counters));
+  attempt([&] { report_.counters = run_->counters(); });
 }
 
 std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
@@ -73,6 +68,22 @@ std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
   record.invalid_count = difference->invalid_count;
   record.mismatch = difference->isMismatch();
   return difference;
+}
+
+std::vector<Pair> Lane::answer() {
+  std::vector<Pair> pairs;
+  attempt([&] {
+    const PairRuns runs = run_->answer();
+    pairs.reserve(pairCount(runs));
+    for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
+  });
+  return pairs;
+}
+
+RecordedDrawing Lane::structure() {
+  RecordedDrawing drawing;
+  attempt([&] { drawing = run_->structure(); });
+  return drawing;
 }
 
 std::string formatFrameTable(const std::vector<LaneReport>& lanes) {

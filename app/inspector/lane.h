@@ -66,7 +66,11 @@ class Lane {
   /// A frame that takes longer, on average, ends the lane.
   static constexpr double kFrameLimitSeconds = 10;
 
-  explicit Lane(LaneSpec spec) { report_.spec = std::move(spec); }
+  /// `cancelled` ends what it waits for; the call then throws Cancelled.
+  explicit Lane(LaneSpec spec, HostMaker make_host = makeLocalHost, CancelQuery cancelled = {})
+      : make_host_(std::move(make_host)), cancelled_(std::move(cancelled)) {
+    report_.spec = std::move(spec);
+  }
 
   [[nodiscard]] const LaneReport& report() const { return report_; }
   [[nodiscard]] const LaneSpec& spec() const { return report_.spec; }
@@ -76,7 +80,7 @@ class Lane {
     return run_ && (run_->running() || run_->answered()) && report_.frame == index;
   }
 
-  // These throw nothing: what goes wrong becomes the status.
+  // These throw nothing but Cancelled: what goes wrong becomes the status.
   /// A fresh instance, at the initial pose. What was recorded of later frames stays until they are
   /// run again. Not once it has ended.
   void restart(const SceneInfo& scene, const Frame& first);
@@ -85,8 +89,9 @@ class Lane {
   /// Compares the present answer with the right one; nothing when the algorithm is not checked.
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
 
-  /// Only while standsAt() some frame.
-  [[nodiscard]] const BroadPhase& algorithm() const { return std::as_const(*run_).algorithm(); }
+  // Only while standsAt() some frame.
+  std::vector<Pair> answer();
+  RecordedDrawing structure();
 
  private:
   [[nodiscard]] FrameRecord& recordOf(std::uint32_t index);
@@ -95,6 +100,8 @@ class Lane {
   void attempt(Call&& call);
 
   LaneReport report_;
+  HostMaker make_host_;
+  CancelQuery cancelled_;
   std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
 };
 

@@ -4,8 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "broadmark/error.h"
-#include "broadmark/names.h"
+#include "cases.h"
 
 namespace broadmark {
 
@@ -17,13 +16,7 @@ LaneSpec LaneEdit::spec() const {
 }
 
 LaneEdit& Lanes::add(const std::string& algorithm_id) {
-  const auto found = std::ranges::find(algorithms_, algorithm_id, &Algorithm::id);
-  if (found == algorithms_.end()) {
-    std::vector<std::string> ids;
-    for (const Algorithm& algorithm : algorithms_) ids.push_back(algorithm.id);
-    throw InputError(unknownName("algorithm", algorithm_id, ids));
-  }
-  LaneEdit& added = append(*found);
+  LaneEdit& added = append(requireAlgorithm(algorithm_id, algorithms_));
   changed();
   return added;
 }

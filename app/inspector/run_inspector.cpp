@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "hosts.h"
 #include "inspector/inspect.h"
 #include "inspector/session.h"
 #include "plan.h"
@@ -19,7 +20,11 @@ int runInspector(Plan plan, const SessionOptions& options) {
   const auto shared = std::make_shared<Plan>(std::move(plan));
   const InspectOptions inspect{
       .algorithms = std::move(algorithms),
-      .begin = [shared](Session& session) { session.open(std::move(*shared)); },
+      .begin =
+          [shared, make_host = hostMaker(options.hosts)](Session& session) {
+            session.make_host = make_host;
+            session.open(std::move(*shared));
+          },
       .script = options.script,
       .screenshot = options.screenshot,
       .width = options.picture.width,

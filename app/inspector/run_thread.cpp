@@ -13,13 +13,6 @@ namespace {
 /// How many frames of a tracked body are looked back at.
 constexpr std::uint32_t kTrackFrames = 60;
 
-std::vector<Pair> joined(PairRuns runs) {
-  std::vector<Pair> pairs;
-  pairs.reserve(pairCount(runs));
-  for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
-  return pairs;
-}
-
 /// Whether one wish's snapshot also serves the other.
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
@@ -112,6 +105,8 @@ void RunThread::loop() {
     bool more = false;
     try {
       more = step();
+    } catch (const Cancelled&) {
+      more = true;  // another wish has come
     } catch (const std::exception& error) {
       fail(error.what());
     }
@@ -140,6 +135,12 @@ bool RunThread::step() {
 void RunThread::fail(std::string reason) {
   const std::lock_guard lock(mutex_);
   progress_.failure = std::move(reason);
+}
+
+bool RunThread::isUnwanted(const LaneSpec& spec) {
+  const std::lock_guard lock(mutex_);
+  const auto is_same = [&](const LaneSpec& wished) { return wished.same(spec); };
+  return stopping_ || wished_.footage != opened_ || std::ranges::none_of(wished_.lanes, is_same);
 }
 
 void RunThread::tell(std::string doing, float fraction) {
@@ -184,7 +185,10 @@ bool RunThread::reconcileLanes() {
   for (const LaneSpec& spec : current_.lanes) {
     const auto found = std::ranges::find_if(
         kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
-    lanes_.push_back(found != kept.end() ? std::move(*found) : std::make_unique<Lane>(spec));
+    lanes_.push_back(found != kept.end()
+                         ? std::move(*found)
+                         : std::make_unique<Lane>(spec, current_.make_host,
+                                                  [this, spec] { return isUnwanted(spec); }));
   }
   kept.clear();
   shown_ = false;
@@ -323,19 +327,22 @@ void RunThread::show() {
   if (index > 0) snapshot->boxes_before = copy(index - 1);
   snapshot->boxes = copy(index);
   const Frame frame{index, *snapshot->boxes};
-  if (Lane* lane = shownLane()) {
+  Lane* const lane = shownLane();
+  if (lane != nullptr) {
     snapshot->lane = lane->spec().number;
-    snapshot->pairs = joined(lane->algorithm().overlaps());
-    if (current_.check) {
+    snapshot->pairs = lane->answer();
+    if (current_.check && lane->standsAt(index)) {
       if (std::optional<FrameDifference> difference = lane->check(frame, oracle_)) {
         snapshot->checked = true;
         snapshot->difference = std::move(*difference);
       }
     }
-    if (current_.structure) {
-      auto structure = std::make_shared<RecordedDrawing>();
-      lane->algorithm().drawStructure(*structure);
-      snapshot->structure = std::move(structure);
+    if (current_.structure && lane->standsAt(index)) {
+      snapshot->structure = std::make_shared<RecordedDrawing>(lane->structure());
+    }
+    if (!lane->standsAt(index)) {  // lost on the way: shown without it
+      report(*lane);
+      return;
     }
   } else {
     const std::span<const Pair> pairs = oracle_.pairs(frame.boxes);

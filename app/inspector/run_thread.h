@@ -40,6 +40,7 @@ struct FootageRequest {
 struct Wish {
   std::shared_ptr<const FootageRequest> footage;
   std::vector<LaneSpec> lanes;
+  HostMaker make_host = makeLocalHost;  ///< where new lanes run
   std::uint32_t frame = 0;
   bool check = true;  ///< compare every answer with the oracle's
   /// Stop at the first frame in which an algorithm is wrong…
@@ -96,7 +97,7 @@ struct RunProgress {
 class RunThread {
  public:
   RunThread();
-  /// Ends after the frame that is being run.
+  /// Ends soon: waits for the frame that is being run only where its host cannot be cancelled.
   ~RunThread();
   RunThread(const RunThread&) = delete;
   RunThread& operator=(const RunThread&) = delete;
@@ -125,6 +126,8 @@ class RunThread {
   void tell(std::string doing, float fraction);
   void report(const Lane& lane);
   void fail(std::string reason);
+  /// Whether to give up what a lane of this spec is at.
+  [[nodiscard]] bool isUnwanted(const LaneSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
   [[nodiscard]] Lane* shownLane() const;
   [[nodiscard]] std::vector<Track> tracks(std::uint32_t frame);

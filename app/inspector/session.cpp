@@ -64,6 +64,7 @@ bool Session::busy() {
 Wish Session::wish() const {
   Wish wish{.footage = playback.footage(),
             .lanes = lanes.specs(),
+            .make_host = make_host,
             .frame = playback.frame(),
             .check = mismatches.check,
             .stop_at_mismatch = mismatches.stop_at_mismatch,
@@ -152,7 +153,10 @@ void Session::openCase(const fs::path& results, const std::string& id) {
 
 void Session::open(Plan plan) {
   for (const Case& run : plan.cases) lanes.add(run);
-  if (!plan.results.empty()) open(plan.results);
+  if (const auto& choice = plan.unchosen_case) {
+    offerCases(choice->file, choice->results);
+    tellOfFile(choice->file);
+  }
   if (!plan.entries.empty()) openEntry(std::move(plan.entries.front()), Opened::in_motion);
 }
 
@@ -242,7 +246,7 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
       });
     }
     if (!source) throw InputError("exporting a case: another scene has been opened");
-    case_export.start(run, std::move(source), snapshot->difference, file);
+    case_export.start(run, std::move(source), snapshot->difference, file, make_host);
   });
 }
 

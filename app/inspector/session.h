@@ -81,8 +81,8 @@ class Session {
   /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
   /// error.
   void openCase(const std::filesystem::path& results, const std::string& id);
-  /// Opens the first entry with its cases as lanes, or the results; without either there are only
-  /// lanes. Throws InputError.
+  /// Opens the first entry with its cases as lanes, or offers those of results; without either
+  /// there are only lanes. Throws InputError.
   void open(Plan plan);
 
   /// Plays or pauses; a document at rest begins to move.
@@ -96,7 +96,8 @@ class Session {
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
-  std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
+  std::unique_ptr<Simulation> draft;    ///< the scene that simulate() starts
+  HostMaker make_host = makeLocalHost;  ///< where algorithms run; set before any do
   ViewOptions view;
   std::optional<CaseChoice> case_choice;  ///< to be made by the user
   /// Called when a file has been opened or saved.

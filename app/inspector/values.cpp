@@ -27,6 +27,7 @@ void addLanes(Values& values, const RunProgress& progress) {
   for (const LaneReport& lane : progress.lanes) {
     const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
     values[name + "status"] = statusName(lane.status);
+    values[name + "reason"] = lane.reason;
     values[name + "frame"] = std::to_string(lane.frame);
     FrameRecord sum;
     for (const FrameRecord& record : lane.frames) {

@@ -60,7 +60,7 @@ const Algorithm& algorithmOf(const CaseResult& result, const std::vector<Algorit
         fmt::format("algorithm '{}' is in a library that is not loaded: add --plugin {}",
                     result.algorithm, result.plugin));
   }
-  throw InputError(unknownName("algorithm", result.algorithm, algorithmIds(known)));
+  return requireAlgorithm(result.algorithm, known);
 }
 
 /// The simulation that a case ran on, again.

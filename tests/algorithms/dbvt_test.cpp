@@ -105,7 +105,7 @@ TEST_P(Dbvt, InstancesThatTakeTurnsKeepTheirMargins) {
   EXPECT_LT(of_wide, of_exact / 2);
 }
 
-// For ThreadSanitizer: CaseRun lets only one of them use the margin at a time.
+// For ThreadSanitizer: the host lets only one of them use the margin at a time.
 TEST_P(Dbvt, RunsOnTwoThreadsKeepTheirMargins) {
   const auto frames = framesOf({"drifting", inputs::drifting}, 200, 30);
   const auto follow = [&](const char* margin) {

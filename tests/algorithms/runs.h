@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case_run.h"
+#include "broadmark/case_host.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
@@ -135,42 +135,37 @@ inline RecordedDrawing drawingOf(const BroadPhase& algorithm) {
   return drawing;
 }
 
-/// A CaseRun on boxes in memory, without limits or checks. What would become its status is thrown.
+/// An algorithm on boxes in memory, without limits or checks. Throws what it throws.
 class TestRun {
  public:
   explicit TestRun(const Algorithm& algorithm, const Configuration& way = {},
                    const ParameterValues& parameters = {})
-      : run_(std::make_unique<CaseRun>(caseOf(algorithm, way, parameters),
-                                       RunPolicy::unlimited(CheckMode::off))) {}
+      : run_(caseOf(algorithm, way, parameters)), host_(std::make_unique<LocalHost>(run_)) {}
 
   /// Begins a pass. Throws UnsupportedError.
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
     index_ = 0;
-    require(run_->start(scene, {0, first}));
+    host_->start(scene, {0, first});
     return *this;
   }
   TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
   /// Runs the four phases on the next frame.
   PairRuns step(const std::vector<Aabb>& boxes) {
-    require(run_->step({++index_, boxes}));
+    times_ = host_->step({++index_, boxes}).times;
     return broadPhase().overlaps();
   }
 
   /// The instance: between start() and the next one.
-  BroadPhase& broadPhase() { return run_->algorithm(); }
+  BroadPhase& broadPhase() { return host_->instance(); }
   /// Of the last frame.
-  [[nodiscard]] const FrameTimes& times() const { return run_->times(); }
-  [[nodiscard]] float margin() const { return run_->margin(); }
+  [[nodiscard]] const FrameTimes& times() const { return times_; }
+  [[nodiscard]] float margin() const { return makeInstance(run_)->margin(); }
 
  private:
-  void require(bool running) const {
-    if (running) return;
-    if (run_->status() == Status::unsupported) throw UnsupportedError(run_->reason());
-    throw std::runtime_error(run_->reason());
-  }
-
-  std::unique_ptr<CaseRun> run_;
+  Case run_;
+  std::unique_ptr<LocalHost> host_;
+  FrameTimes times_;
   std::uint32_t index_ = 0;
 };
 

@@ -90,13 +90,43 @@ TEST(Session, ParametersKeepTheirCommas) {
 }
 
 TEST(Session, ValuesAreUnderstood) {
-  const SessionOptions options =
-      session({"--repetitions", "5",     "--warmup", "2",      "--time-limit", "1e-3",
-               "--check",       "hash",  "--frame",  "0",      "--size",       "16x9",
-               "--gl",          "egl",   "--shard",  "1/4",    "--json",       "r",
-               "--csv",         "c",     "--filter", "x.*",    "--device",     "pocl",
-               "--plugin",      "p",     "--plugin", "q",      "--record",     "dir",
-               "--screenshot",  "s.png", "--memory", "--quiet"});
+  const SessionOptions options = session({"--repetitions",
+                                          "5",
+                                          "--warmup",
+                                          "2",
+                                          "--time-limit",
+                                          "1e-3",
+                                          "--check",
+                                          "hash",
+                                          "--frame",
+                                          "0",
+                                          "--size",
+                                          "16x9",
+                                          "--gl",
+                                          "egl",
+                                          "--shard",
+                                          "1/4",
+                                          "--json",
+                                          "r",
+                                          "--csv",
+                                          "c",
+                                          "--filter",
+                                          "x.*",
+                                          "--device",
+                                          "pocl",
+                                          "--plugin",
+                                          "p",
+                                          "--plugin",
+                                          "q",
+                                          "--record",
+                                          "dir",
+                                          "--screenshot",
+                                          "s.png",
+                                          "--quiet",
+                                          "--hard-limit",
+                                          "2.5",
+                                          "--memory-limit",
+                                          "0.5"});
   EXPECT_EQ(options.repetitions, 5);
   EXPECT_EQ(options.warmup, 2);
   EXPECT_EQ(options.policy.frame_limit_seconds, 1e-3);
@@ -112,7 +142,9 @@ TEST(Session, ValuesAreUnderstood) {
   EXPECT_EQ(options.filter, "x.*");
   EXPECT_EQ(options.cases.device, "pocl");
   EXPECT_THAT(options.plugins, ElementsAre("p", "q"));
-  EXPECT_TRUE(options.memory);
+  EXPECT_FALSE(options.hosts.in_process);
+  EXPECT_EQ(options.hosts.hard_limit_seconds, 2.5);
+  EXPECT_EQ(options.hosts.memory_limit_gib, 0.5);
   EXPECT_TRUE(options.quiet);
 }
 
@@ -200,8 +232,7 @@ TEST(Session, ExportingACaseWritesNothingElse) {
   EXPECT_EQ(parseSession(exporting).export_case, "a.aabbs");
   for (const Arguments& lost :
        {Arguments{"--json", "j"}, Arguments{"--csv", "c"}, Arguments{"--csv-frames", "c"},
-        Arguments{"--record", "d"}, Arguments{"--screenshot", "s"}, Arguments{"--list"},
-        Arguments{"--memory"}}) {
+        Arguments{"--record", "d"}, Arguments{"--screenshot", "s"}, Arguments{"--list"}}) {
     Arguments arguments = exporting;
     arguments.insert(arguments.end(), lost.begin(), lost.end());
     expectRefused(arguments, {"--export-case", lost[0]});
@@ -213,10 +244,10 @@ TEST(Session, ExportingACaseWritesNothingElse) {
 TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
   for (const Arguments& lost :
        {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--check", "off"},
-        Arguments{"--time-limit", "1"}, Arguments{"--memory"}, Arguments{"--record", "d"},
-        Arguments{"--shard", "0/2"}, Arguments{"--filter", "x"}, Arguments{"--list"},
-        Arguments{"--frame", "1"}, Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"},
-        Arguments{"--csv", "c"}, Arguments{"--csv-frames", "c"}}) {
+        Arguments{"--time-limit", "1"}, Arguments{"--record", "d"}, Arguments{"--shard", "0/2"},
+        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--frame", "1"},
+        Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
+        Arguments{"--csv-frames", "c"}}) {
     Arguments window = {"freefall"};
     window.insert(window.end(), lost.begin(), lost.end());
     expectRefused(window, {lost[0], "--headless"});

@@ -187,7 +187,8 @@ TEST_F(PlanOfResults, NeedsAChosenCase) {
 TEST_F(PlanOfResults, InTheInspectorTheCaseIsChosenLater) {
   asked_.headless = false;
   const Plan plan = makePlan(asked_);
-  EXPECT_EQ(plan.results, asked_.sources.front());
+  ASSERT_TRUE(plan.unchosen_case);
+  EXPECT_EQ(plan.unchosen_case->file, asked_.sources.front());
   EXPECT_THAT(plan.entries, IsEmpty());
 }
 

@@ -159,7 +159,7 @@ std::vector<Candidate> candidates(const std::vector<std::string>& names) {
 
 /// Whether the last frame's answers agree, the candidate's margin granted.
 bool sameAnswer(const Contestant& candidate, const Contestant& cgal) {
-  if (candidate.run->margin() > 0) return pairCount(candidate.answer()) >= pairCount(cgal.answer());
+  if (candidate.margin > 0) return pairCount(candidate.answer()) >= pairCount(cgal.answer());
   return digest(candidate.answer()) == digest(cgal.answer());
 }
 

@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <random>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -16,8 +18,7 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case_run.h"
-#include "broadmark/error.h"
+#include "broadmark/case_host.h"
 #include "broadmark/statistics.h"
 
 namespace broadmark::benchmarks {
@@ -32,12 +33,13 @@ inline std::optional<Algorithm> findAlgorithm(std::string_view id) {
 /// A case on the contest's scene, with the times of its frames so far.
 struct Contestant {
   std::string name;
-  std::unique_ptr<CaseRun> run;
-  std::vector<double> milliseconds;
+  std::unique_ptr<CaseHost> host;
+  float margin = 0;
+  std::vector<double> milliseconds = {};
 
   [[nodiscard]] double median() const { return quantile(milliseconds, 0.5); }
   /// Of the last frame.
-  [[nodiscard]] PairRuns answer() const { return run->algorithm().overlaps(); }
+  [[nodiscard]] PairRuns answer() const { return host->answer(); }
 };
 
 /// Contestants on the same frames, which are gone through to and fro, so that all motion is smooth.
@@ -55,24 +57,25 @@ class Contest {
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
 
   /// Throws InputError (parameters) and UnsupportedError.
-  void add(std::string name, Case entered) {
-    Contestant added = {
-        std::move(name),
-        std::make_unique<CaseRun>(std::move(entered), RunPolicy::unlimited(CheckMode::off)),
-        {}};
-    added.run->start(scene_, {0, frames_[0]});
-    requireRunning(added);
+  void add(std::string name, const Case& entered, const HostMaker& make_host = makeLocalHost) {
+    Contestant added = {std::move(name), make_host(entered, {}), makeInstance(entered)->margin()};
+    added.host->start(scene_, {0, frames_[0]});
     contestants_.push_back(std::move(added));
   }
 
   void run(int rounds) {
+    std::vector<std::size_t> order(contestants_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::mt19937 random;
     for (int round = -1; round < rounds; ++round) {  // the first one warms up
       const auto index = static_cast<std::uint32_t>(round + 2);
-      for (Contestant& contestant : contestants_) {
-        contestant.run->step({index, boxesOf(index)});
-        requireRunning(contestant);
+      // Nobody always comes first.
+      std::ranges::shuffle(order, random);
+      for (const std::size_t turn : order) {
+        Contestant& contestant = contestants_[turn];
+        const FrameRun run = contestant.host->step({index, boxesOf(index)});
         if (round < 0) continue;
-        const std::int64_t ns = contestant.run->times()[Phase::total];
+        const std::int64_t ns = run.times[Phase::total];
         contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
       }
     }
@@ -82,23 +85,20 @@ class Contest {
     return *std::ranges::find(contestants_, name, &Contestant::name);
   }
 
-  /// Time of `a` / time of `b`: the median of the rounds' ratios.
-  [[nodiscard]] double ratio(std::string_view a, std::string_view b) const {
+  /// Time of `a` / time of `b`, in each round.
+  [[nodiscard]] std::vector<double> ratios(std::string_view a, std::string_view b) const {
     const std::vector<double>& of_a = find(a).milliseconds;
     const std::vector<double>& of_b = find(b).milliseconds;
     std::vector<double> ratios;
     for (std::size_t i = 0; i < of_a.size(); ++i) ratios.push_back(of_a[i] / of_b[i]);
-    return quantile(ratios, 0.5);
+    return ratios;
+  }
+  /// Their median.
+  [[nodiscard]] double ratio(std::string_view a, std::string_view b) const {
+    return quantile(ratios(a, b), 0.5);
   }
 
  private:
-  static void requireRunning(const Contestant& contestant) {
-    const CaseRun& run = *contestant.run;
-    if (run.running()) return;
-    if (run.status() == Status::unsupported) throw UnsupportedError(run.reason());
-    throw std::runtime_error(contestant.name + ": " + run.reason());
-  }
-
   [[nodiscard]] std::span<const Aabb> boxesOf(std::uint32_t index) const {
     const std::size_t last = frames_.size() - 1;
     if (last == 0) return frames_[0];

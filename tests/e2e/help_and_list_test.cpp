@@ -21,11 +21,11 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                                             "--density", "--engine",      "--param"};
   const Ended help = run({"--help"});
   expectWords(help, session);
-  expectWords(help, {"Usage: broadmark ", "--headless", "--algorithm", "--plugin",      "--case",
-                     "--export-case",     "--threads",  "--isa",       "--repetitions", "--warmup",
-                     "--time-limit",      "--check",    "--memory",    "--json",        "--csv ",
-                     "--csv-frames",      "--record",   "--shard",     "--filter",      "--list",
-                     "--quiet",           "--version",  "bake",        "list ",         "verify",
+  expectWords(help, {"Usage: broadmark ", "--headless", "--algorithm",  "--plugin",      "--case",
+                     "--export-case",     "--threads",  "--isa",        "--repetitions", "--warmup",
+                     "--time-limit",      "--check",    "--in-process", "--json",        "--csv ",
+                     "--csv-frames",      "--record",   "--shard",      "--filter",      "--list",
+                     "--quiet",           "--version",  "bake",         "list ",         "verify",
                      "compare",           "Exit status"});
   expectWords(run({"bake", "--help"}), session);
   expectWords(run({"bake", "--help"}),

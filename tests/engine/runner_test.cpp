@@ -6,9 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <functional>
-#include <numeric>
 
 #include "engine/spoilt_cases.h"
 
@@ -240,36 +238,6 @@ TEST(Runner, CaseNamesAndIds) {
   run.parameters.clear();
   EXPECT_EQ(beginCase(run, recording).parameters, (ParameterValues{{"cells", "2"}}))
       << "defaults included";
-}
-
-TEST(PeakMemory, IsWhatTheAlgorithmTakes) {
-  if (kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
-  constexpr std::size_t kBytes = 64 << 20;
-  const auto take = [] {
-    const std::unique_ptr<char[]> memory(new char[kBytes]);
-    std::memset(memory.get(), 1, kBytes);
-    EXPECT_EQ(std::accumulate(memory.get(), memory.get() + 9, 0), 9);  // so that it is not left out
-  };
-  ChainSource source;
-  // The parent has just freed twice as much, in pieces below one that is still held, so that the
-  // heap does not shrink: that must not hide what the child takes.
-  std::vector<std::vector<char>> pieces(2 * kBytes / 4096, std::vector<char>(4096, 1));
-  const std::vector<char> held = std::move(pieces.back());
-  pieces.clear();
-  const auto peak = measurePeakBytes(caseOf({.on_initialize = take}), source);
-  ASSERT_TRUE(peak);
-  EXPECT_GE(*peak, kBytes * 95 / 100);
-  EXPECT_LE(*peak, kBytes + (16 << 20));
-
-  const auto idle = measurePeakBytes(caseOf(), source);
-  ASSERT_TRUE(idle);
-  EXPECT_LE(*idle, std::uint64_t{8} << 20);
-}
-
-TEST(PeakMemory, IsUnknownWhenTheRunFails) {
-  ChainSource source;
-  const Case failing = caseOf({.on_initialize = [] { throw std::runtime_error("no"); }});
-  EXPECT_FALSE(measurePeakBytes(failing, source));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 # Plays a script in the inspector, off-screen, in a fresh directory of its own. Comments of the
 # script may tell what belongs to it; STATUS is what a command has to end with, PLUGIN in its
-# environment is the library of the faulty algorithms:
+# environment is the library of the faulty algorithms (UNRULY: the one that crashes when asked to):
 #   # before STATUS: COMMAND
 #   # arguments: further ones of the program
 #   # after STATUS: COMMAND
@@ -29,6 +29,7 @@ file(STRINGS ${SCRIPT} arguments REGEX "^# arguments: ")
 string(REPLACE "# arguments: " "" arguments "${arguments}")
 separate_arguments(arguments UNIX_COMMAND "${arguments}")
 execute_process(
-  COMMAND ${PROGRAM} --headless --ui ${arguments} --plugin ${PLUGIN} --script ${SCRIPT} --gl auto
+  COMMAND ${PROGRAM} --headless --ui ${arguments} --plugin ${PLUGIN}
+    --plugin ${UNRULY} --script ${SCRIPT} --gl auto
   WORKING_DIRECTORY ${WORK_DIR} COMMAND_ERROR_IS_FATAL ANY)
 run_commands(after)

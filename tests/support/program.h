@@ -12,6 +12,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -63,6 +65,12 @@ class Program {
   Program& operator=(const Program&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  /// The processes that its main thread has started.
+  [[nodiscard]] std::vector<pid_t> children() const {
+    std::ifstream list("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) +
+                       "/children");
+    return {std::istream_iterator<pid_t>(list), {}};
+  }
 
   /// Whether it has not ended yet.
   [[nodiscard]] bool runs() {

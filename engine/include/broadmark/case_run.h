@@ -1,4 +1,4 @@
-// A case being run, frame by frame: the one place where time is taken and answers are judged.
+// A case being run, frame by frame: the one place where limits are kept and answers are judged.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "broadmark/case.h"
+#include "broadmark/case_host.h"
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
 #include "broadmark/status.h"
@@ -35,20 +36,17 @@ struct RunPolicy {
   }
 };
 
-/// Runs one case, as often as wanted, each pass with a fresh instance. All passes share one
-/// Execution: threads, a device's context and its kernels are made once.
+/// Runs one case, as often as wanted, each pass with a fresh instance in the same host.
 ///
-/// Every call into the algorithm holds its traits' exclusive use, so that any number of runs may
-/// live at the same time, on one thread or on several; waiting is not timed. What an algorithm
-/// throws becomes the status, and ends the pass; only an InputError goes on to the caller.
+/// What an algorithm throws becomes the status, and ends the pass; only InputError and Cancelled go
+/// on to the caller. So does the end of the host's process: the next start() has a new one. Any
+/// number of runs may live at the same time, on one thread or on several.
 class CaseRun {
  public:
-  /// Sets the parameters; threads and structures are made by start(). Throws InputError for a bad
-  /// parameter.
-  explicit CaseRun(Case run, RunPolicy policy = {});
-  ~CaseRun();
-  CaseRun(const CaseRun&) = delete;
-  CaseRun& operator=(const CaseRun&) = delete;
+  /// Checks the parameters; threads and structures are made by start(). `cancelled` ends what the
+  /// host would wait for. Throws InputError for a bad parameter.
+  explicit CaseRun(Case run, RunPolicy policy = {}, const HostMaker& make_host = makeLocalHost,
+                   CancelQuery cancelled = {});
 
   [[nodiscard]] const Case& description() const { return case_; }
   /// As BroadPhase::margin().
@@ -74,40 +72,46 @@ class CaseRun {
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] const std::string& reason() const { return reason_; }
   /// Whether step() may be called.
-  [[nodiscard]] bool running() const { return hasInstance() && !ended_; }
+  [[nodiscard]] bool running() const { return has_instance_ && !ended_; }
   /// Whether there is an answer: a frame has been run, and its instance is still there.
-  [[nodiscard]] bool answered() const { return hasInstance() && frames_ > 0; }
+  [[nodiscard]] bool answered() const { return has_instance_ && frames_ > 0; }
   /// False before start(), after stop(), and after a failure inside the algorithm.
-  [[nodiscard]] bool hasInstance() const { return instance_ != nullptr; }
+  [[nodiscard]] bool hasInstance() const { return has_instance_; }
 
   // Of the present pass, or the last one.
   [[nodiscard]] std::int64_t initializeNanoseconds() const { return initialize_ns_; }
   /// Of the last frame.
-  [[nodiscard]] const FrameTimes& times() const { return times_; }
-  /// The instance: to ask for its answer, counters and structure. Only between start() and stop().
-  [[nodiscard]] const BroadPhase& algorithm() const { return *instance_; }
-  /// To call its phases one by one, as tests do; then nothing is timed or judged.
-  BroadPhase& algorithm() { return *instance_; }
+  [[nodiscard]] const FrameTimes& times() const { return last_.times; }
+  [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
+  /// As CaseHost::peakBytes().
+  [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
+
+  // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
+  // while hasInstance().
+  PairRuns answer();
+  Counts counters();
+  Counts setup();
+  RecordedDrawing structure();
 
  private:
-  /// Calls into the algorithm for this frame; what that throws becomes the status. Whether all went
-  /// well.
+  /// Calls the host; what that throws becomes the status. Whether all went well.
   template <class Call>
-  bool attempt(std::uint32_t frame, Call&& call);
+  bool attempt(Call&& call);
   void fail(Status status, std::string reason);
+  [[nodiscard]] std::string atFrame(const char* what) const;
 
   Case case_;
   RunPolicy policy_;
-  std::optional<Execution> execution_;    ///< from the first start() on
-  std::unique_ptr<BroadPhase> next_;      ///< made to check the parameters; the first pass uses it
-  std::unique_ptr<BroadPhase> instance_;  ///< of the present pass
   float margin_ = 0;
+  std::unique_ptr<CaseHost> host_;
+  bool has_instance_ = false;
   bool ended_ = false;        ///< the present pass, by a time limit: its instance is still there
   bool ended_early_ = false;  ///< some pass, by a failure or a limit: reason_ says which
   Status status_ = Status::ok;
   std::string reason_;
+  std::uint32_t frame_ = 0;  ///< that was begun last
   std::int64_t initialize_ns_ = 0;
-  FrameTimes times_;
+  FrameRun last_;
   std::int64_t total_ns_ = 0;  ///< of all frames in this pass
   std::uint32_t frames_ = 0;   ///< in this pass
 };

@@ -1,4 +1,5 @@
-// The two kinds of failure: somebody's input is wrong, or this case cannot run here.
+// The kinds of failure: somebody's input is wrong, this case cannot run here, or the process that
+// ran it is gone; and the user's wish that long work ends.
 #pragma once
 
 #include <stdexcept>
@@ -18,5 +19,22 @@ class UnsupportedError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The process that ran a case crashed or ended by itself; the message says how. The case's status
+/// becomes `error`.
+class HostError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A single call into an algorithm took longer than the hard limit, and was ended with its process.
+/// The case's status becomes `timeout`.
+class HardLimitError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Thrown out of long work that the user ended. No error, so that nobody takes it for one.
+struct Cancelled {};
 
 }  // namespace broadmark

@@ -1,7 +1,7 @@
 // Libraries with process-wide state: who may use it when.
 //
 // Each such state has a name. Code that changes it, even for the length of a call, holds an
-// ExclusiveUse; code that only depends on it holds a SharedUse. CaseRun holds an ExclusiveUse
+// ExclusiveUse; code that only depends on it holds a SharedUse. LocalHost holds an ExclusiveUse
 // around every call into an algorithm whose traits name a state, so algorithms need not do it
 // themselves.
 #pragma once

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "broadmark/debug_draw.h"
@@ -23,6 +24,11 @@ class RecordedDrawing final : public DebugDraw {
     std::array<float, 3> to{};
     Rgb colour = 0;
   };
+
+  RecordedDrawing() = default;
+  /// One that was kept elsewhere.
+  RecordedDrawing(std::vector<Box> boxes, std::vector<Line> lines, std::size_t left_out)
+      : boxes_(std::move(boxes)), lines_(std::move(lines)), left_out_(left_out) {}
 
   void box(const Aabb& box, Rgb colour, int level) override { keep(boxes_, {box, colour, level}); }
   void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {

@@ -34,8 +34,4 @@ bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle
 /// Runs a few repetitions of one case: the short way for programs of your own.
 CaseResult runCase(const Case&, FrameSource&, const RunPolicy& = {}, int repetitions = 1);
 
-/// Growth of the process's peak memory over one untimed pass in a child process, in bytes; nothing
-/// if it cannot be had, as for algorithms on a compute device: a child has no part in its driver.
-std::optional<std::uint64_t> measurePeakBytes(const Case&, FrameSource&);
-
 }  // namespace broadmark

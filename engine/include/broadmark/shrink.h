@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "broadmark/case.h"
+#include "broadmark/case_host.h"
 #include "broadmark/oracle.h"
 #include "broadmark/sub_recording.h"
 
@@ -19,10 +19,11 @@ struct ShrinkProgress {
 
 struct ShrinkOptions {
   std::function<void(const ShrinkProgress&)> progress;  ///< told after each trial
-  std::function<bool()> cancelled;                      ///< asked between frames; true ends it
+  CancelQuery cancelled;
   /// A part of the recording that takes no more than this is held in memory; a larger one is read
   /// again for each trial.
   std::size_t memory_bytes = std::size_t{256} << 20;
+  HostMaker make_host = makeLocalHost;  ///< where the trials run
 };
 
 /// A part of a recording on which a case fails in the last frame.

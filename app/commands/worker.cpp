@@ -1,0 +1,31 @@
+// broadmark worker: runs a case for the process that started it.
+
+#include "broadmark/worker_process.h"
+
+#include "cases.h"
+#include "commands/command.h"
+#include "plugins.h"
+
+namespace broadmark::commands::worker {
+namespace {
+
+Algorithm find(const std::string& id, const std::string& plugin) {
+  const std::vector<Algorithm> known =
+      availableAlgorithms(plugin.empty() ? std::vector<std::string>() : std::vector{plugin});
+  return requireAlgorithm(id, known);
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "worker",
+          .summary = "Run a case for the broadmark that starts this one (not to be called by hand)",
+          .add = [](CLI::App&) -> std::function<int()> {
+            return [] {
+              serveCase(find);
+              return 0;
+            };
+          }};
+}
+
+}  // namespace broadmark::commands::worker

@@ -1,0 +1,39 @@
+// Worker processes of this program: `broadmark worker`.
+
+#include "hosts.h"
+
+#include <unistd.h>
+
+#include <memory>
+
+#include "broadmark/worker_process.h"
+
+namespace broadmark {
+namespace {
+
+std::uint64_t memoryLimit(const HostOptions& options) {
+  constexpr double kGibibyte = 1 << 30;
+  if (options.memory_limit_gib) {
+    return static_cast<std::uint64_t>(*options.memory_limit_gib * kGibibyte);
+  }
+  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
+         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+HostMaker hostMaker(const HostOptions& options) {
+  if (options.in_process) return makeLocalHost;
+  const WorkerOptions worker{
+      // This very program, even if another has taken its name meanwhile.
+      .command = {"/proc/self/exe", "worker"},
+      .hard_limit = std::chrono::duration<double>(options.hard_limit_seconds),
+      .memory_limit_bytes = memoryLimit(options)};
+  return [worker](const Case& run, CancelQuery cancelled) {
+    WorkerOptions own = worker;
+    own.cancelled = std::move(cancelled);
+    return std::make_unique<WorkerProcess>(run, std::move(own));
+  };
+}
+
+}  // namespace broadmark

@@ -1,0 +1,18 @@
+// Where the cases of a run live: in worker processes, which are this program again, or in this one.
+#pragma once
+
+#include <optional>
+
+#include "broadmark/case_host.h"
+
+namespace broadmark {
+
+struct HostOptions {
+  bool in_process = false;
+  double hard_limit_seconds = 60;
+  std::optional<double> memory_limit_gib;  ///< nothing: as much as the machine has
+};
+
+HostMaker hostMaker(const HostOptions&);
+
+}  // namespace broadmark

@@ -1,0 +1,115 @@
+// The clock, and the calls into an algorithm.
+
+#include "broadmark/case_host.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "broadmark/exclusive_use.h"
+
+namespace broadmark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Runs the four phases and times them. Nothing else happens inside the clock.
+FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
+  FrameTimes times;
+  const auto start = Clock::now();
+  algorithm.updateObjects(frame);
+  const auto updated = Clock::now();
+  algorithm.cleanCache();
+  const auto cleaned = Clock::now();
+  algorithm.updateStructures();
+  const auto structured = Clock::now();
+  algorithm.searchOverlaps();
+  const auto end = Clock::now();
+  times[Phase::update_objects] = nanoseconds(updated - start);
+  times[Phase::clean_cache] = nanoseconds(cleaned - updated);
+  times[Phase::update_structures] = nanoseconds(structured - cleaned);
+  times[Phase::search_overlaps] = nanoseconds(end - structured);
+  const TransferTimes transfers = algorithm.transfers();
+  times[Phase::upload] = transfers.upload_ns;
+  times[Phase::download] = transfers.download_ns;
+  times[Phase::total] = nanoseconds(end - start);
+  return times;
+}
+
+void requireRunnable(const Case& run, const SceneInfo& scene) {
+  const AlgorithmTraits& traits = run.algorithm.traits;
+  if (traits.vectorised && !isaSupported(run.isa)) {
+    throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
+  }
+  if (scene.objects > traits.max_objects) {
+    throw UnsupportedError(
+        fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
+  }
+}
+
+CounterVisitor into(Counts& counts) {
+  return [&counts](std::string_view name, std::uint64_t count) { counts.emplace(name, count); };
+}
+
+}  // namespace
+
+LocalHost::~LocalHost() {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  instance_.reset();
+  execution_.reset();
+}
+
+std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
+  stop();
+  requireRunnable(case_, scene);
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
+  instance_ = makeInstance(case_);
+  const auto start = Clock::now();
+  instance_->initialize(scene, first, *execution_);
+  return nanoseconds(Clock::now() - start);
+}
+
+FrameRun LocalHost::step(const Frame& frame) {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  FrameRun run{.times = runPhases(*instance_, frame)};
+  // Asked once: whoever looks at the answer sees the same one.
+  answer_ = instance_->overlaps();
+  run.pairs = pairCount(answer_);
+  return run;
+}
+
+void LocalHost::stop() {
+  answer_ = {};
+  if (instance_ == nullptr) return;
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  instance_.reset();
+}
+
+Counts LocalHost::counters() {
+  Counts counts;
+  instance_->visitCounters(into(counts));
+  return counts;
+}
+
+Counts LocalHost::setup() {
+  Counts counts;
+  instance_->visitSetup(into(counts));
+  return counts;
+}
+
+RecordedDrawing LocalHost::structure() {
+  RecordedDrawing drawing;
+  instance_->drawStructure(drawing);
+  return drawing;
+}
+
+std::unique_ptr<CaseHost> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
+  return std::make_unique<LocalHost>(run);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,99 @@
+// Where a case's instance lives, is called and is timed: in this process, or in a worker process
+// (worker_process.h). CaseRun judges what comes of it, and does not know which.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "broadmark/case.h"
+#include "broadmark/error.h"
+#include "broadmark/frame_times.h"
+#include "broadmark/oracle.h"
+#include "broadmark/recorded_drawing.h"
+
+namespace broadmark {
+
+/// What an algorithm counted, by name.
+using Counts = std::map<std::string, std::uint64_t>;
+
+/// What running one frame gave.
+struct FrameRun {
+  FrameTimes times;
+  std::uint64_t pairs = 0;  ///< in the answer, duplicates included
+};
+
+/// Holds at most one instance of a case's algorithm, and calls it.
+///
+/// Every call throws what the algorithm throws. A host outside this process also throws HostError
+/// when that ended, HardLimitError when a call took too long, and Cancelled; then the instance is
+/// gone.
+class CaseHost {
+ public:
+  virtual ~CaseHost() = default;
+
+  /// Makes a fresh instance at the initial pose. Returns how long it took to initialise, in
+  /// nanoseconds. Throws UnsupportedError for what the processor or the number of bodies forbids,
+  /// and InputError for a device that does not exist.
+  virtual std::int64_t start(const SceneInfo& scene, const Frame& first) = 0;
+  /// Runs the four phases on the next frame.
+  virtual FrameRun step(const Frame& frame) = 0;
+  /// Frees the instance, if there is one.
+  virtual void stop() = 0;
+
+  // Of the frame that was run last. Only between start() and stop().
+  virtual PairDigest digest() = 0;
+  /// Valid until the next call.
+  virtual PairRuns answer() = 0;
+  virtual Counts counters() = 0;
+  virtual Counts setup() = 0;
+  virtual RecordedDrawing structure() = 0;
+
+  /// By how much the first pass made the peak of the process's memory grow; nothing where others
+  /// share that memory, and before the first stop().
+  [[nodiscard]] virtual std::optional<std::uint64_t> peakBytes() const { return std::nullopt; }
+};
+
+/// A host in this process. All passes share one Execution: threads, a device's context and its
+/// kernels are made once. Every call into the algorithm holds its traits' exclusive use; waiting
+/// for that is not timed.
+class LocalHost final : public CaseHost {
+ public:
+  explicit LocalHost(Case run) : case_(std::move(run)) {}
+  ~LocalHost() override;
+  LocalHost(const LocalHost&) = delete;
+  LocalHost& operator=(const LocalHost&) = delete;
+
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override;
+  FrameRun step(const Frame& frame) override;
+  void stop() override;
+  PairDigest digest() override { return broadmark::digest(answer_); }
+  PairRuns answer() override { return answer_; }
+  Counts counters() override;
+  Counts setup() override;
+  RecordedDrawing structure() override;
+
+  /// The instance: to call its phases one by one, as tests do. Only between start() and stop().
+  BroadPhase& instance() { return *instance_; }
+
+ private:
+  Case case_;
+  std::optional<Execution> execution_;  ///< from the first start() on
+  std::unique_ptr<BroadPhase> instance_;
+  PairRuns answer_;
+};
+
+/// Asked now and then during long work; true ends it.
+using CancelQuery = std::function<bool()>;
+
+/// Makes the host of a case. A host that may wait for long gives up, and throws Cancelled, soon
+/// after `cancelled` is true.
+using HostMaker = std::function<std::unique_ptr<CaseHost>(const Case&, CancelQuery cancelled)>;
+
+/// Hosts in this process, which cannot be cancelled.
+std::unique_ptr<CaseHost> makeLocalHost(const Case&, CancelQuery);
+
+}  // namespace broadmark

@@ -1,0 +1,166 @@
+// Packets, shared memory, and values as JSON.
+
+#include "worker/protocol.h"
+
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <type_traits>
+
+namespace broadmark::worker {
+namespace {
+
+// What lies in shared memory as it is.
+static_assert(sizeof(Aabb) == 32 && sizeof(Pair) == 8 && sizeof(RecordedDrawing::Box) == 48 &&
+              sizeof(RecordedDrawing::Line) == 28);
+static_assert(std::is_trivially_copyable_v<Aabb> && std::is_trivially_copyable_v<Pair> &&
+              std::is_trivially_copyable_v<RecordedDrawing::Box> &&
+              std::is_trivially_copyable_v<RecordedDrawing::Line>);
+
+/// More than any message takes; a longer one would be cut.
+constexpr std::size_t kLongestMessage = std::size_t{1} << 17;
+
+std::runtime_error systemError(const char* what) {
+  return std::runtime_error(fmt::format("{}: {}", what, std::strerror(errno)));
+}
+
+}  // namespace
+
+ChannelEnds openChannel() {
+  int ends[2];
+  // Packets keep messages apart.
+  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+    throw systemError("no channel to a worker process");
+  }
+  return {FileDescriptor(ends[0]), FileDescriptor(ends[1])};
+}
+
+bool Channel::send(const Json& message) const {
+  const std::string text = formatJson(message, -1);
+  if (text.size() > kLongestMessage) {
+    throw std::runtime_error(fmt::format("a message of {} bytes is too long", text.size()));
+  }
+  ssize_t sent = -1;
+  do {
+    sent = ::send(socket_.get(), text.data(), text.size(), MSG_NOSIGNAL);
+  } while (sent < 0 && errno == EINTR);
+  return sent >= 0;
+}
+
+bool Channel::wait(int milliseconds) const {
+  pollfd waiting{.fd = socket_.get(), .events = POLLIN, .revents = 0};
+  return ::poll(&waiting, 1, milliseconds) > 0;
+}
+
+std::optional<Json> Channel::receive() {
+  buffer_.resize(kLongestMessage);
+  ssize_t got = -1;
+  do {
+    got = ::recv(socket_.get(), buffer_.data(), buffer_.size(), 0);
+  } while (got < 0 && errno == EINTR);
+  if (got <= 0) return std::nullopt;
+  try {
+    return parseJson({buffer_.data(), static_cast<std::size_t>(got)}, "message");
+  } catch (const InputError& error) {
+    throw HostError(error.what());
+  }
+}
+
+SharedMemory::SharedMemory() : file_(::memfd_create("broadmark", MFD_CLOEXEC)) {
+  if (file_.get() < 0) throw systemError("no shared memory");
+}
+
+void SharedMemory::clear() const {
+  if (::ftruncate(file_.get(), 0) != 0) throw systemError("cannot clear shared memory");
+}
+
+void SharedMemory::writeBytes(std::span<const std::byte> bytes, std::uint64_t offset) const {
+  while (!bytes.empty()) {
+    const ssize_t written =
+        ::pwrite(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) throw systemError("no shared memory left");
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+}
+
+void SharedMemory::readBytes(std::span<std::byte> bytes, std::uint64_t offset) const {
+  while (!bytes.empty()) {
+    const ssize_t got =
+        ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) throw systemError("cannot read shared memory");
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+    offset += static_cast<std::uint64_t>(got);
+  }
+}
+
+void SharedMemory::requireHeld(std::uint64_t offset, std::uint64_t count,
+                               std::size_t item_bytes) const {
+  struct stat status {};
+  if (::fstat(file_.get(), &status) != 0) throw systemError("cannot read shared memory");
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (offset > size || count > (size - offset) / item_bytes) {
+    throw HostError(fmt::format("{} items are claimed, {} bytes are shared", count, size));
+  }
+}
+
+Json toJson(const Case& run) {
+  return {{"algorithm", run.algorithm.id}, {"plugin", run.algorithm.plugin},
+          {"isa", isaName(run.isa)},       {"threads", run.threads},
+          {"device", run.device},          {"parameters", run.parameters}};
+}
+
+Case caseFrom(const Json& json,
+              const std::function<Algorithm(const std::string&, const std::string&)>& find) {
+  const auto isa = json.at("isa").get<std::string>();
+  Case run{.algorithm =
+               find(json.at("algorithm").get<std::string>(), json.at("plugin").get<std::string>()),
+           .threads = json.at("threads").get<int>(),
+           .device = json.at("device").get<std::string>(),
+           .parameters = json.at("parameters").get<ParameterValues>()};
+  const auto known = kIsas.find(isa);
+  if (!known) throw UnsupportedError("there is no instruction set " + isa);
+  run.isa = *known;
+  return run;
+}
+
+Json toJson(const SceneInfo& scene) {
+  return {{"name", scene.name},
+          {"object_type", scene.object_type},
+          {"objects", scene.objects},
+          {"frames", scene.frames},
+          {"world", {scene.world.min, scene.world.max}}};
+}
+
+SceneInfo sceneFrom(const Json& json) {
+  SceneInfo scene{.name = json.at("name").get<std::string>(),
+                  .object_type = json.at("object_type").get<std::string>(),
+                  .objects = json.at("objects").get<std::uint32_t>(),
+                  .frames = json.at("frames").get<std::uint32_t>()};
+  json.at("world").at(0).get_to(scene.world.min);
+  json.at("world").at(1).get_to(scene.world.max);
+  return scene;
+}
+
+Json toJson(const FrameTimes& times) {
+  Json json = Json::object();
+  for (const auto& [phase, name] : kPhases.entries) json[std::string(name)] = times[phase];
+  return json;
+}
+
+FrameTimes timesFrom(const Json& json) {
+  FrameTimes times;
+  for (const auto& [phase, name] : kPhases.entries) {
+    times[phase] = json.at(std::string(name)).get<std::int64_t>();
+  }
+  return times;
+}
+
+}  // namespace broadmark::worker

@@ -1,0 +1,180 @@
+// The worker's side: a LocalHost whose calls come by messages.
+
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <string>
+
+#include "broadmark/error.h"
+#include "broadmark/headers_hash.h"
+#include "broadmark/worker_process.h"
+#include "worker/protocol.h"
+
+namespace broadmark {
+namespace {
+
+using worker::SharedMemory;
+
+/// A line of /proc/self/status in bytes; nothing if there is no such line.
+std::optional<std::uint64_t> statusBytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with(key + ":")) return std::stoull(line.substr(key.size() + 1)) * 1024;
+  }
+  return std::nullopt;
+}
+
+/// The peak of the memory that this process has had resident.
+std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
+
+/// Should memory run out nonetheless, this process is to go, not the one that waits for it.
+void beFirstToGo() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
+
+void limitMemory(std::uint64_t bytes) {
+  // Sanitizers hold terabytes from the start, of which they use little.
+  if (bytes == 0 || statusBytes("VmData").value_or(0) > bytes) return;
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_DATA, &limit);
+}
+
+class Server {
+ public:
+  explicit Server(const AlgorithmFinder& find) : find_(find) {}
+
+  /// The answer to a call.
+  Json answer(const Json& message) {
+    try {
+      const auto call = calls().find(message.at("call").get<std::string>());
+      if (call == calls().end()) throw std::runtime_error("unknown call");
+      return (this->*call->second)(message);
+    } catch (const InputError& error) {
+      return failure("input", error.what());
+    } catch (const UnsupportedError& error) {
+      return failure("unsupported", error.what());
+    } catch (const std::bad_alloc&) {
+      return failure("error", "out of memory");
+    } catch (const std::exception& error) {
+      return failure("error", error.what());
+    } catch (...) {
+      return failure("error", "threw something that is no std::exception");
+    }
+  }
+
+ private:
+  using Call = Json (Server::*)(const Json&);
+  static const std::map<std::string, Call>& calls() {
+    static const std::map<std::string, Call> all = {
+        {"case", &Server::takeCase}, {"start", &Server::start},
+        {"step", &Server::step},     {"digest", &Server::digest},
+        {"answer", &Server::pairs},  {"counters", &Server::counters},
+        {"setup", &Server::setup},   {"structure", &Server::structure},
+        {"stop", &Server::stop}};
+    return all;
+  }
+
+  static Json failure(const char* kind, std::string text) {
+    constexpr std::size_t kLongest = 10'000;
+    text.resize(std::min(text.size(), kLongest));
+    return {{"error", text}, {"kind", kind}};
+  }
+
+  Json takeCase(const Json& message) {
+    host_.emplace(worker::caseFrom(message, find_));
+    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>());
+    return Json::object();
+  }
+
+  LocalHost& host() {
+    if (!host_) throw std::runtime_error("no case has been named");
+    return *host_;
+  }
+
+  /// The boxes in shared memory, as a frame in this process's own.
+  Frame takeFrame(const Json& message, std::uint32_t index) {
+    frames_.read(boxes_, message.at("bodies").get<std::size_t>());
+    return {index, boxes_};
+  }
+
+  Json start(const Json& message) {
+    const Frame first = takeFrame(message, 0);
+    if (!measured_) peak_before_ = peakBytes();
+    return {{"initialize_ns", host().start(worker::sceneFrom(message.at("scene")), first)}};
+  }
+
+  Json step(const Json& message) {
+    const Frame frame = takeFrame(message, message.at("frame").get<std::uint32_t>());
+    const FrameRun run = host().step(frame);
+    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
+  }
+
+  Json digest(const Json& /*message*/) {
+    const PairDigest digest = host().digest();
+    return {{"count", digest.count}, {"hash", digest.hash}};
+  }
+
+  Json pairs(const Json& /*message*/) {
+    std::uint64_t offset = 0;
+    const PairRuns runs = host().answer();
+    for (const PairRun run : runs) offset = answers_.write(run, offset);
+    return {{"pairs", pairCount(runs)}};
+  }
+
+  Json counters(const Json& /*message*/) { return {{"counts", host().counters()}}; }
+  Json setup(const Json& /*message*/) { return {{"counts", host().setup()}}; }
+
+  Json structure(const Json& /*message*/) {
+    const RecordedDrawing drawing = host().structure();
+    const std::uint64_t end = answers_.write(std::span(drawing.boxes()));
+    answers_.write(std::span(drawing.lines()), end);
+    return {{"boxes", drawing.boxes().size()},
+            {"lines", drawing.lines().size()},
+            {"left_out", drawing.leftOut()}};
+  }
+
+  Json stop(const Json& /*message*/) {
+    if (!measured_) measure();
+    host().stop();
+    std::vector<Aabb>().swap(boxes_);  // others run while this waits for its next pass
+    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)}};
+  }
+
+  /// Only the first pass tells: later ones use memory again that the first has freed.
+  void measure() {
+    measured_ = true;
+    const auto peak = peakBytes();
+    if (peak && peak_before_) growth_ = *peak - *peak_before_;
+  }
+
+  const AlgorithmFinder& find_;
+  SharedMemory frames_{FileDescriptor(worker::kFramesDescriptor)};
+  SharedMemory answers_{FileDescriptor(worker::kAnswersDescriptor)};
+  std::vector<Aabb> boxes_;
+  std::optional<LocalHost> host_;
+  bool measured_ = false;
+  std::optional<std::uint64_t> peak_before_;
+  std::optional<std::uint64_t> growth_;
+};
+
+}  // namespace
+
+void serveCase(const AlgorithmFinder& find) {
+  // Ctrl-C is for the process that started this one. When that is gone, so is the reason to go on.
+  std::signal(SIGINT, SIG_IGN);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  beFirstToGo();
+  worker::Channel channel{FileDescriptor(worker::kChannelDescriptor)};
+  if (!channel.send(
+          {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {
+    throw InputError("nobody to work for: only Broadmark itself starts a worker process");
+  }
+  Server server(find);
+  while (const std::optional<Json> message = channel.receive()) {
+    if (!channel.send(server.answer(*message))) return;
+  }
+}
+
+}  // namespace broadmark

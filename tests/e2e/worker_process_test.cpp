@@ -1,0 +1,146 @@
+// The host in another process against the one in this: the same answers, and what is said when the
+// other process is no worker.
+
+#include "broadmark/worker_process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "algorithms/runs.h"
+#include "broadmark/algorithms.h"
+#include "broadmark/case_run.h"
+#include "engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+WorkerOptions thisProgram() { return {.command = {BROADMARK_PROGRAM, "worker"}}; }
+
+std::vector<Pair> sortedAnswer(CaseHost& host) { return sorted(host.answer()); }
+
+std::vector<std::vector<Aabb>> movingClusters() {
+  std::vector<std::vector<Aabb>> frames;
+  for (std::uint32_t frame = 0; frame < 4; ++frame)
+    frames.push_back(inputs::clustered(300, frame, 1));
+  return frames;
+}
+
+class WorkerHost : public ::testing::TestWithParam<Algorithm> {};
+
+TEST_P(WorkerHost, AnswersAsInThisProcess) {
+  const Case run = makeCase(GetParam(), bestIsa(), 2, "", {});
+  LocalHost here(run);
+  WorkerProcess there(run, thisProgram());
+  const std::vector<std::vector<Aabb>> frames = movingClusters();
+  const SceneInfo scene = sceneOf(frames);
+  for (int pass = 0; pass < 2; ++pass) {
+    try {
+      here.start(scene, {0, frames[0]});
+    } catch (const UnsupportedError&) {
+      GTEST_SKIP() << "cannot run here";
+    }
+    EXPECT_GE(there.start(scene, {0, frames[0]}), 0);
+    for (std::uint32_t index = 1; index < frames.size(); ++index) {
+      const Frame frame{index, frames[index]};
+      const FrameRun run_here = here.step(frame);
+      const FrameRun run_there = there.step(frame);
+      EXPECT_EQ(run_there.pairs, run_here.pairs);
+      EXPECT_GT(run_there.times[Phase::total], 0);
+      EXPECT_EQ(there.digest(), here.digest());
+      EXPECT_EQ(sortedAnswer(there), sortedAnswer(here));
+      EXPECT_EQ(there.counters().size(), here.counters().size());
+    }
+    EXPECT_EQ(there.setup().size(), here.setup().size());
+    const RecordedDrawing drawn = there.structure();
+    const RecordedDrawing expected = here.structure();
+    EXPECT_EQ(drawn.leftOut(), expected.leftOut());
+    ASSERT_EQ(drawn.boxes().size(), expected.boxes().size());
+    ASSERT_EQ(drawn.lines().size(), expected.lines().size());
+    for (std::size_t i = 0; i < drawn.boxes().size(); ++i) {
+      EXPECT_EQ(drawn.boxes()[i].box, expected.boxes()[i].box);
+      EXPECT_EQ(drawn.boxes()[i].level, expected.boxes()[i].level);
+    }
+    there.stop();
+    here.stop();
+  }
+}
+
+std::vector<Algorithm> algorithmsWithPairs() {
+  std::vector<Algorithm> all = builtinAlgorithms();
+  std::erase_if(all, [](const Algorithm& algorithm) { return !algorithm.traits.finds_pairs; });
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, WorkerHost, ::testing::ValuesIn(algorithmsWithPairs()),
+                         [](const auto& tested) {
+                           std::string name = tested.param.id;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST(WorkerProcess, TakesScenesOfAnySize) {
+  WorkerProcess host(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), thisProgram());
+  for (const std::size_t bodies : {0, 1, 2, 3000, 3}) {
+    std::vector<Aabb> boxes;  // none overlaps another
+    for (std::size_t i = 0; i < bodies; ++i) {
+      const auto x = static_cast<float>(2 * i);
+      boxes.push_back({{x, 0, 0, 0}, {x + 1, 1, 1, 0}});
+    }
+    host.start(sceneOf({boxes, boxes}), {0, boxes});
+    EXPECT_EQ(host.step({1, boxes}).pairs, 0U);
+    EXPECT_TRUE(sorted(host.answer()).empty());
+    host.stop();
+  }
+}
+
+/// What is said of a program that does `script`.
+std::string complaint(const std::string& script) {
+  const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
+  WorkerProcess host(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
+                     {.command = {"/bin/sh", "-c", script}});
+  return inputErrorOf([&] { host.start(sceneOf({boxes, boxes}), {0, boxes}); });
+}
+
+TEST(WorkerProcess, ADifferentProgramIsNamed) {
+  EXPECT_THAT(complaint("exit 7"), AllOf(HasSubstr("/bin/sh"), HasSubstr("status 7")));
+  EXPECT_THAT(complaint("printf '{\"protocol\": 99}' >&3; cat <&3 >/dev/null"),
+              AllOf(HasSubstr("/bin/sh"), HasSubstr("99"), HasSubstr("version")));
+  const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
+  WorkerProcess missing(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
+                        {.command = {"/no/such/program"}});
+  EXPECT_THAT(inputErrorOf([&] {
+                missing.start(sceneOf({boxes, boxes}), {0, boxes});
+              }),
+              HasSubstr("/no/such/program"));
+}
+
+/// How a run ends on a program that greets well and then does `script`.
+std::string ending(const std::string& script) {
+  const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
+  CaseRun run(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), {},
+              [&](const Case& one, CancelQuery) {
+                return std::make_unique<WorkerProcess>(
+                    one, WorkerOptions{.command = {"/bin/sh", "-c",
+                                                   "printf '{\"protocol\": 1}' >&3; " + script},
+                                       .hard_limit = std::chrono::milliseconds(300)});
+              });
+  EXPECT_FALSE(run.start(sceneOf({boxes, boxes}), {0, boxes}));
+  EXPECT_NE(run.status(), Status::ok);
+  return run.reason();
+}
+
+TEST(WorkerProcess, WhatDoesNotKeepToTheProtocolIsAnError) {
+  EXPECT_THAT(ending("printf 'no JSON' >&3; cat <&3 >/dev/null"), HasSubstr("JSON"));
+  EXPECT_THAT(ending("printf '{}' >&3; printf '{}' >&3; cat <&3 >/dev/null"),
+              HasSubstr("initialize_ns"));
+  EXPECT_THAT(ending("cat <&3 >/dev/null"), HasSubstr("hard limit"));
+  EXPECT_THAT(ending("kill -9 $$"), HasSubstr("SIGKILL"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,166 @@
+// Each case in a process of its own: whatever an algorithm does, it has its status, the others
+// theirs, and the run its exit status.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+
+#include "e2e/end_to_end.h"
+#include "engine/helpers.h"
+
+namespace broadmark::testing {
+namespace {
+
+using std::chrono::steady_clock;
+using ::testing::AllOf;
+
+class Worker : public EndToEnd {
+ protected:
+  /// A small run of the unruly algorithm, and of bf behind it.
+  [[nodiscard]] static Arguments call(const std::vector<std::string>& parameters,
+                                      const Arguments& more = {}) {
+    Arguments call = {"--headless", "brownian", "--objects",   "20",          "--frames",
+                      "4",          "--plugin", UNRULY_PLUGIN, "--algorithm", "unruly,bf",
+                      "--quiet",    "--json",   "r.json"};
+    for (const std::string& parameter : parameters) {
+      call.insert(call.end(), {"--param", parameter});
+    }
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
+  }
+
+  struct Outcome {
+    Ended ended;
+    Json unruly;
+    Json other;
+  };
+  [[nodiscard]] Outcome outcomeOf(const std::vector<std::string>& parameters,
+                                  const Arguments& more = {}) const {
+    Outcome outcome{.ended = run(call(parameters, more))};
+    for (const Json& one : readJson(file("r.json")).at("cases")) {
+      (one.at("algorithm") == "unruly" ? outcome.unruly : outcome.other) = one;
+    }
+    return outcome;
+  }
+
+  /// A deed that costs the case, and nothing else.
+  void expectFailure(const std::vector<std::string>& parameters, const std::string& status,
+                     const std::vector<std::string>& words, const Arguments& more = {}) const {
+    SCOPED_TRACE(fmt::format("{}", parameters.front()));
+    const Outcome outcome = outcomeOf(parameters, more);
+    EXPECT_EQ(outcome.ended.status, 1) << outcome.ended.err;
+    EXPECT_EQ(outcome.unruly.at("status"), status);
+    for (const std::string& word : words) {
+      EXPECT_THAT(outcome.unruly.at("reason").get<std::string>(), HasSubstr(word));
+    }
+    EXPECT_EQ(outcome.other.at("status"), "ok") << "the others go on";
+    EXPECT_EQ(outcome.other.at("frames").at("total").at(0).size(), 4U);
+  }
+};
+
+TEST_F(Worker, ACrashIsAnErrorWithSignalAndFrame) {
+  expectFailure({"deed=crash"}, "error", {"frame 2", "SIGSEGV"});
+  expectFailure({"deed=crash", "call=initialize"}, "error", {"frame 0", "SIGSEGV"});
+  expectFailure({"deed=crash", "call=counters"}, "error", {"frame 2", "SIGSEGV"});
+  expectFailure({"deed=crash", "call=destroy"}, "error", {"frame 4", "SIGSEGV"});
+}
+
+TEST_F(Worker, AHangEndsAtTheHardLimit) {
+  const auto begin = steady_clock::now();
+  expectFailure({"deed=hang"}, "timeout", {"frame 2", "hard limit of 0.5 s"},
+                {"--hard-limit", "0.5"});
+  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+TEST_F(Worker, WhatIsThrownIsAnError) {
+  expectFailure({"deed=throw"}, "error", {"frame 2", "thrown on purpose"});
+  expectFailure({"deed=throw-number"}, "error", {"frame 2"});
+  expectFailure({"deed=throw"}, "error", {"frame 2", "thrown on purpose"}, {"--in-process"});
+}
+
+TEST_F(Worker, AnExitIsAnError) {
+  expectFailure({"deed=exit"}, "error", {"frame 2", "by itself", "status 3"});
+}
+
+TEST_F(Worker, WhoClosesTheChannelIsAnError) {
+  expectFailure({"deed=close"}, "error", {"frame 2"});
+}
+
+TEST_F(Worker, OutOfMemoryIsAnError) {
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+  expectFailure({"deed=allocate"}, "error", {"frame 2", "out of memory"},
+                {"--memory-limit", "0.25"});
+}
+
+TEST_F(Worker, WhatItPrintsIsNotAmongTheResults) {
+  const Outcome outcome = outcomeOf({"deed=print"});
+  EXPECT_EQ(outcome.ended.status, 0);
+  EXPECT_EQ(outcome.unruly.at("status"), "ok");
+  EXPECT_THAT(outcome.ended.out, Not(HasSubstr("printed on purpose")));
+  EXPECT_THAT(outcome.ended.err, HasSubstr("printed on purpose"));
+}
+
+TEST_F(Worker, AnotherCountEachTimeIsAMismatch) {
+  for (const char* check : {"full", "hash"}) {
+    expectFailure({"deed=count"}, "mismatch", {"frame 2"},
+                  {"--check", check, "--repetitions", "2"});
+  }
+}
+
+TEST_F(Worker, AFailureEndsTheRepetitionsOfItsCase) {
+  const Outcome outcome = outcomeOf({"deed=crash"}, {"--repetitions", "3"});
+  EXPECT_TRUE(outcome.unruly.at("frames").at("total").empty());
+  EXPECT_EQ(outcome.other.at("frames").at("total").size(), 3U);
+}
+
+TEST_F(Worker, ItsMemoryIsWhatTheAlgorithmTakes) {
+  if (tests::kSanitized) GTEST_SKIP() << "sanitizers take memory of their own";
+  const Outcome outcome = outcomeOf({"mebibytes=64"});
+  const auto peak = outcome.unruly.at("peak_bytes").get<std::uint64_t>();
+  EXPECT_GE(peak, 62U << 20);
+  EXPECT_LE(peak, 72U << 20);
+  EXPECT_LE(outcome.other.at("peak_bytes").get<std::uint64_t>(), 8U << 20);
+}
+
+TEST_F(Worker, InThisProcessMemoryIsNotKnown) {
+  const Outcome outcome = outcomeOf({}, {"--in-process"});
+  EXPECT_EQ(outcome.ended.status, 0);
+  EXPECT_TRUE(outcome.unruly.at("peak_bytes").is_null());
+  for (const char* option : {"--hard-limit", "--memory-limit"}) {
+    expectRefusal(call({}, {"--in-process", option, "1"}), {option, "--in-process"});
+  }
+}
+
+TEST_F(Worker, CtrlCEndsAHangAtOnce) {
+  Program program(directory_, call({"deed=hang"}));
+  ASSERT_TRUE(program.waitUntil([&] { return !program.children().empty(); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const std::vector<pid_t> workers = program.children();
+  program.signal(SIGINT);
+  const Ended ended = program.wait();
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("interrupted"));
+  for (const pid_t worker : workers) EXPECT_NE(::kill(worker, 0), 0) << "no process is left";
+}
+
+TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
+  Program program(directory_, call({"deed=hang"}));
+  ASSERT_TRUE(program.waitUntil([&] { return !program.children().empty(); }));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  const std::vector<pid_t> workers = program.children();
+  program.signal(SIGKILL);
+  program.wait();
+  const auto end = steady_clock::now() + std::chrono::seconds(10);
+  for (const pid_t worker : workers) {
+    while (::kill(worker, 0) == 0 && steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_NE(::kill(worker, 0), 0);
+  }
+}
+
+TEST_F(Worker, IsNotToBeCalledByHand) { expectRefusal({"worker"}, {"nobody to work for"}); }
+
+}  // namespace
+}  // namespace broadmark::testing
