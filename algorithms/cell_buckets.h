@@ -1,8 +1,6 @@
 // The axis along which the boxes of one cell are swept, and the buckets that they are sorted into.
 #pragma once
 
-#include <emmintrin.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -11,6 +9,7 @@
 #include <span>
 
 #include "broadmark/aabb.h"
+#include "corner.h"
 
 namespace broadmark {
 
@@ -22,30 +21,23 @@ class CellBuckets {
   /// As many buckets as boxes, on the axis on which the range of lower bounds is the longest
   /// compared with the boxes.
   explicit CellBuckets(std::span<const Aabb> boxes) {
-    const auto load = [](const std::array<float, 4>& corner) { return _mm_load_ps(corner.data()); };
-    __m128 least = load(boxes.front().min);
-    __m128 most = least;
-    __m128 sum = _mm_setzero_ps();
+    Corner least = cornerOf(boxes.front().min);
+    Corner most = least;
+    Corner edges{};  // the sum of them
     for (const Aabb& box : boxes) {
-      const __m128 min = load(box.min);
-      least = _mm_min_ps(least, min);
-      most = _mm_max_ps(most, min);
-      sum = _mm_add_ps(sum, _mm_sub_ps(load(box.max), min));
+      const Corner min = cornerOf(box.min);
+      least = smaller(least, min);
+      most = larger(most, min);
+      edges += cornerOf(box.max) - min;
     }
-    alignas(16) std::array<float, 4> low;
-    alignas(16) std::array<float, 4> high;
-    alignas(16) std::array<float, 4> edges;
-    _mm_store_ps(low.data(), least);
-    _mm_store_ps(high.data(), most);
-    _mm_store_ps(edges.data(), sum);
     float widest = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const float range = high[axis] - low[axis];
+      const float range = most[axis] - least[axis];
       const float width = range / edges[axis];
       if (!(width > widest)) continue;  // also when it is 0/0
       widest = width;
       axis_ = axis;
-      low_ = low[axis];
+      low_ = least[axis];
       last_ = static_cast<float>(std::min<std::size_t>(boxes.size() - 1, kMostBuckets));
       scale_ = std::min(last_ / range, std::numeric_limits<float>::max());
     }

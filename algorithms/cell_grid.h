@@ -2,14 +2,13 @@
 // several shared cells answers for a pair.
 #pragma once
 
-#include <emmintrin.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "broadmark/aabb.h"
+#include "corner.h"
 #include "marked_body.h"
 
 namespace broadmark {
@@ -78,17 +77,12 @@ class CellGrid {
   [[nodiscard]] Aabb cell(std::size_t index, const Aabb& bounds) const;
 
  private:
-  /// The cells that a box's corner lies in. All axes at once, in SSE2, which every x86-64 has: this
-  /// is done to each box twice a frame.
+  /// The cells that a box's corner lies in. All axes at once: this is done to each box twice a
+  /// frame.
   [[nodiscard]] std::array<std::int32_t, 4> cellsOf(const std::array<float, 4>& corner) const {
-    const __m128 cell = _mm_mul_ps(_mm_sub_ps(_mm_load_ps(corner.data()), _mm_load_ps(low_.data())),
-                                   _mm_load_ps(scale_.data()));
+    const Corner cell = (cornerOf(corner) - cornerOf(low_)) * cornerOf(scale_);
     // What overflows ends in an outermost cell, and NaN (infinity · 0), the first operand, in 0.
-    const __m128 clamped =
-        _mm_min_ps(_mm_max_ps(cell, _mm_setzero_ps()), _mm_load_ps(last_.data()));
-    alignas(16) std::array<std::int32_t, 4> cells;
-    _mm_store_si128(reinterpret_cast<__m128i*>(cells.data()), _mm_cvttps_epi32(clamped));
-    return cells;
+    return truncated(smaller(larger(cell, Corner{}), cornerOf(last_)));
   }
 
   alignas(16) std::array<float, 4> low_{};

@@ -163,8 +163,7 @@ void showWith(const Part& part, const std::vector<CLI::Option*>& options) {
 
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {
   return addRepeatable(app, "--plugin", "FILE", plugins,
-                       "shared library with more algorithms, which runs as part of the program "
-                       "(repeatable)");
+                       "shared library with more algorithms (repeatable)");
 }
 
 CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {

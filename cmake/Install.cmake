@@ -3,8 +3,11 @@
 # to link to.
 include(CMakePackageConfigHelpers)
 
-install(TARGETS broadmark broadmark_engine broadmark_algorithms broadmark_scenes
-  EXPORT broadmark_targets
+set(installed broadmark_engine broadmark_algorithms)
+if(BROADMARK_APP)
+  list(APPEND installed broadmark_scenes broadmark)
+endif()
+install(TARGETS ${installed} EXPORT broadmark_targets
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})

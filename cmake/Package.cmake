@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to
 # What it loads at run time, if there; and what others need to build with the libraries, or to have
 # an OpenCL device without a GPU.
 set(recommended "")
-set(suggested cmake g++ make libbullet-dev)
+set(suggested cmake g++ make libbullet-dev libfmt-dev)
 if(BROADMARK_RENDER)
   list(APPEND recommended libegl1 libosmesa6)
 endif()

@@ -4,6 +4,9 @@
 # that no include climbs out of its room.
 function(broadmark_check_room room)
   set(target broadmark_${room})
+  if(NOT TARGET ${target})  # left out of this build
+    return()
+  endif()
   get_target_property(libraries ${target} LINK_LIBRARIES)
   foreach(other IN ITEMS engine algorithms scenes render app)
     if("broadmark_${other}" IN_LIST libraries AND NOT other IN_LIST ARGN)

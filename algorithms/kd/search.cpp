@@ -22,20 +22,6 @@ namespace {
 /// Vector tests that cost as much as to sort a box and find its window.
 constexpr std::size_t kVectorsPerSorted = 16;
 
-std::size_t lanes(Isa isa) {
-  switch (isa) {
-    case Isa::scalar:
-      return 1;
-    case Isa::sse2:
-      return 4;
-    case Isa::avx2:
-      return 8;
-    case Isa::avx512:
-      return 16;
-  }
-  return 1;
-}
-
 void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box) {
   for (int axis = 0; axis < 3; ++axis) {
     boxes.min(axis)[i] = box.min[axis];
@@ -55,7 +41,7 @@ void resize(BoxArrays& boxes, std::size_t& capacity, std::size_t count) {
 }  // namespace
 
 Searcher::Searcher(Isa isa)
-    : kernels_(&overlapKernels(isa)), tests_per_sorted_(kVectorsPerSorted * lanes(isa)) {}
+    : kernels_(&overlapKernels(isa)), tests_per_sorted_(kVectorsPerSorted * kernels_->lanes) {}
 
 void Searcher::search(const Scene& scene, int part, int parts, PairBuffer& pairs) {
   scene_ = &scene;

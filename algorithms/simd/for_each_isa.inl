@@ -1,5 +1,6 @@
 // Compiles the file named by BROADMARK_KERNELS once for each instruction set, in the namespaces
-// broadmark::simd::scalar, sse2, avx2 and avx512, each with its own Vector (vector_*.inl).
+// broadmark::simd::scalar, sse2, avx2 and avx512 (on ARM scalar and neon), each with its own Vector
+// (vector_*.inl).
 //
 // Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
 // copies of shared inline functions behind, of which the linker might keep one for everybody. So
@@ -47,6 +48,13 @@ namespace avx512 {
 #include BROADMARK_KERNELS
 }  // namespace avx512
 BROADMARK_TARGET_END
+
+#elif defined(__aarch64__)
+
+namespace neon {  // part of every such processor: no target to set
+#include "simd/vector_neon.inl"
+#include BROADMARK_KERNELS
+}  // namespace neon
 
 #endif
 

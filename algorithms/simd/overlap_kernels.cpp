@@ -2,6 +2,8 @@
 
 #if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 #if defined(__GNUC__) && !defined(__clang__)
@@ -23,6 +25,9 @@ const OverlapKernels& overlapKernels(Isa isa) {
       return simd::avx2::kKernels;
     case Isa::avx512:
       return simd::avx512::kKernels;
+#elif defined(__aarch64__)
+    case Isa::neon:
+      return simd::neon::kKernels;
 #endif
     default:
       return simd::scalar::kKernels;

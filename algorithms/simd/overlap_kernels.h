@@ -13,6 +13,8 @@
 namespace broadmark {
 
 struct OverlapKernels {
+  std::size_t lanes;  ///< boxes in a vector
+
   /// Adds every overlapping pair (i, j) with i in `rows`, j in `columns` and i < j.
   void (*test_tile)(const BoxArrays& boxes, Range rows, Range columns, PairBuffer& pairs);
 

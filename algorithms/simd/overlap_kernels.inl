@@ -158,4 +158,4 @@ void testRow(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range col
   testRows<0, 1>(boxes, row, columns, CellRow{body, columns.end, bodies}, pairs);
 }
 
-inline constexpr OverlapKernels kKernels = {testTile, sweep, sweepCells, testRow};
+inline constexpr OverlapKernels kKernels = {kLanes, testTile, sweep, sweepCells, testRow};

@@ -83,6 +83,8 @@ class BackgroundTask {
     std::string failure;
     try {
       end = work() ? TaskState::done : TaskState::cancelled;
+    } catch (const Cancelled&) {
+      end = TaskState::cancelled;
     } catch (const std::bad_alloc&) {
       failure = name_ + ": out of memory";
     } catch (const std::exception& error) {

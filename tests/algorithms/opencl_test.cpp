@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/runs.h"
+#include "broadmark/case_run.h"
 #include "broadmark/compute_devices.h"
 
 namespace broadmark::tests {

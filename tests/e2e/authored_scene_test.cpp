@@ -1,6 +1,7 @@
 // Authored scenes as sources: run, baked, baked anew when they change, refused when they are wrong.
 
 #include "e2e/end_to_end.h"
+#include "support/places.h"
 
 namespace broadmark::testing {
 namespace {
@@ -148,7 +149,7 @@ TEST_F(AuthoredScenes, BadOnesAreRefused) {
 }
 
 TEST_F(AuthoredScenes, TheExampleRuns) {
-  const fs::path example = fs::path(BROADMARK_SOURCE_DIR) / "assets/scenes/dominoes.json";
+  const fs::path example = places::source("assets/scenes/dominoes.json");
   const Ended ended = runQuietly(
       {"--headless", example.string(), "--frames", "10", "--algorithm", "sap-simd,grid-bf"});
   EXPECT_THAT(ended.out, StartsWith("Dominoes Assorted, 41 bodies, 10 frames\n"));

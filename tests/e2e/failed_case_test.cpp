@@ -8,6 +8,7 @@
 
 #include "broadmark/recording.h"
 #include "e2e/end_to_end.h"
+#include "support/places.h"
 
 namespace broadmark::testing {
 namespace {
@@ -16,7 +17,7 @@ class FailedCase : public EndToEnd {
  protected:
   /// Runs the faulty algorithms of the plug-in on a source.
   void runFaulty(const std::string& source, const Arguments& more = {}) const {
-    Arguments call = {"--headless",  source,    "--plugin",    FAULTY_PLUGIN,
+    Arguments call = {"--headless",  source,    "--plugin",    places::faultyPlugin(),
                       "--algorithm", "faulty*", "--param",     "fat_margin=0.5",
                       "--quiet",     "--json",  "results.json"};
     call.insert(call.end(), more.begin(), more.end());
@@ -43,8 +44,8 @@ class FailedCase : public EndToEnd {
 
   /// Arguments about one case of results.json.
   [[nodiscard]] Arguments aboutCase(const std::string& id, const Arguments& more = {}) const {
-    Arguments call = {"--headless", "results.json", "--case", id,
-                      "--plugin",   FAULTY_PLUGIN,  "--quiet"};
+    Arguments call = {"--headless", "results.json",         "--case", id,
+                      "--plugin",   places::faultyPlugin(), "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
     return call;
   }
@@ -52,7 +53,7 @@ class FailedCase : public EndToEnd {
   /// Runs a command line in a shell, with the program in the path. Returns its exit status.
   [[nodiscard]] int shell(const std::string& command) const {
     writeFile(file("command.sh"), "cd '" + directory_.string() + "' && PATH='" +
-                                      fs::path(BROADMARK_PROGRAM).parent_path().string() +
+                                      fs::path(places::program()).parent_path().string() +
                                       "':$PATH && " + command + " > shell.out 2>&1\n");
     const int status = std::system(("sh '" + file("command.sh").string() + "'").c_str());
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -151,7 +152,7 @@ TEST_F(FailedCase, BadCallsAreRefused) {
   expectRefusal({"--headless", "results.json", "--case", id},
                 {"'faulty'", "--plugin", "libfaulty"});
   expectRefusal({"--headless", "brownian", "--case", id}, {"--case", "brownian"});
-  expectRefusal({"--headless", FAULTY_PLUGIN, "--case", id}, {FAULTY_PLUGIN});
+  expectRefusal({"--headless", places::faultyPlugin(), "--case", id}, {places::faultyPlugin()});
   expectRefusal(aboutCase(id, {"--algorithm", "sap"}), {"--case", "--algorithm"});
   expectRefusal(aboutCase(id, {"--export-case", "a.posrot"}), {"a.posrot", ".aabbs"});
   expectRefusal(aboutCase(id, {"--export-case", "no/a.aabbs"}), {"no/a.aabbs", "No such file"});

@@ -1,13 +1,14 @@
 // Algorithms loaded from shared libraries.
 
 #include "e2e/end_to_end.h"
+#include "support/places.h"
 
 namespace broadmark::testing {
 namespace {
 
 class Plugin : public EndToEnd {
  protected:
-  Plugin() { fs::copy_file(FAULTY_PLUGIN, file(plugin_)); }
+  Plugin() { fs::copy_file(places::faultyPlugin(), file(plugin_)); }
 
   /// A small run with more arguments.
   [[nodiscard]] Arguments runWith(const Arguments& more) const {
@@ -59,7 +60,7 @@ TEST_F(Plugin, BadFilesAreRefused) {
   expect_refused("missing.so", {"missing.so", "No such file"});
   expect_refused("folder.so", {"folder.so", "not a regular file"});
   expect_refused("text.so", {"--plugin", "text.so"});
-  expect_refused(FOREIGN_PLUGIN, {"libforeign_plugin.so", "9.9.9"});
+  expect_refused(places::foreignPlugin(), {"libforeign_plugin.so", "9.9.9"});
   expectRefusal({"list", "--plugin", plugin_, "--plugin", plugin_}, {plugin_, "'faulty'", "taken"});
   expectRefusal(runWith({"--algorithm", "faulty"}), {"--algorithm", "'faulty'"});
   expectRefusal({"--plugin", plugin_, "list"}, {"--plugin", "'list'"});

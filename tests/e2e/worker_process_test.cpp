@@ -12,6 +12,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/case_run.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-WorkerOptions thisProgram() { return {.command = {BROADMARK_PROGRAM, "worker"}}; }
+WorkerOptions thisProgram() { return {.command = {places::program(), "worker"}}; }
 
 std::vector<Pair> sortedAnswer(CaseHost& host) { return sorted(host.answer()); }
 

@@ -8,6 +8,7 @@
 
 #include "e2e/end_to_end.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::testing {
 namespace {
@@ -20,9 +21,10 @@ class Worker : public EndToEnd {
   /// A small run of the unruly algorithm, and of bf behind it.
   [[nodiscard]] static Arguments call(const std::vector<std::string>& parameters,
                                       const Arguments& more = {}) {
-    Arguments call = {"--headless", "brownian", "--objects",   "20",          "--frames",
-                      "4",          "--plugin", UNRULY_PLUGIN, "--algorithm", "unruly,bf",
-                      "--quiet",    "--json",   "r.json"};
+    Arguments call = {"--headless",  "brownian",  "--objects", "20",
+                      "--frames",    "4",         "--plugin",  places::unrulyPlugin(),
+                      "--algorithm", "unruly,bf", "--quiet",   "--json",
+                      "r.json"};
     for (const std::string& parameter : parameters) {
       call.insert(call.end(), {"--param", parameter});
     }
@@ -38,7 +40,8 @@ class Worker : public EndToEnd {
   [[nodiscard]] Outcome outcomeOf(const std::vector<std::string>& parameters,
                                   const Arguments& more = {}) const {
     Outcome outcome{.ended = run(call(parameters, more))};
-    for (const Json& one : readJson(file("r.json")).at("cases")) {
+    const Json results = readJson(file("r.json"));
+    for (const Json& one : results.at("cases")) {
       (one.at("algorithm") == "unruly" ? outcome.unruly : outcome.other) = one;
     }
     return outcome;

@@ -61,9 +61,8 @@ TEST(CaseRun, WhatCannotRunHereIsUnsupported) {
 }
 
 TEST(CaseRun, AnInstructionSetThatIsMissingIsUnsupported) {
-  if (isaSupported(Isa::avx512)) GTEST_SKIP() << "this processor has all instruction sets";
   Case vectorised = caseOf();
-  vectorised.isa = Isa::avx512;
+  vectorised.isa = isaSupported(Isa::neon) ? Isa::avx512 : Isa::neon;  // no processor has both
   EXPECT_EQ(runOnChain(vectorised).status, Status::ok) << "heeds no instruction set";
   vectorised.algorithm.traits.vectorised = true;
   EXPECT_EQ(runOnChain(vectorised).status, Status::unsupported);

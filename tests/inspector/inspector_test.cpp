@@ -14,6 +14,7 @@
 #include "broadmark/render/framebuffer.h"
 #include "engine/helpers.h"
 #include "support/pictures.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -145,8 +146,8 @@ TEST_F(InspectorTest, LooksAsItDid) {
   settle();
   const Framebuffer target(gl, width, height, 1);
   inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
-  EXPECT_TRUE(looksLikeGolden(target.read(), std::filesystem::path(BROADMARK_SOURCE_DIR) /
-                                                 "tests/inspector/golden/inspector.png"));
+  EXPECT_TRUE(
+      looksLikeGolden(target.read(), places::source("tests/inspector/golden/inspector.png")));
 }
 
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {

@@ -5,6 +5,7 @@
 
 #include "broadmark/files.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -28,8 +29,7 @@ TEST(Script, WrongLinesAreNamed) {
 }
 
 TEST(Script, EveryVerbIsDocumented) {
-  const std::string text =
-      readTextFile(std::filesystem::path(BROADMARK_SOURCE_DIR) / "docs/inspector.md");
+  const std::string text = readTextFile(places::source("docs/inspector.md"));
   for (const ScriptVerb& verb : scriptVerbs()) {
     const std::string row =
         "| `" + std::string(verb.name) + " " + verb.arguments + "` | " + verb.doc + " |\n";

@@ -14,6 +14,7 @@
 #include "broadmark/render/offscreen_context.h"
 #include "support/drawing.h"
 #include "support/pictures.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -106,9 +107,8 @@ TEST_P(EachSource, SaysWhatItIs) {
 }
 
 TEST_P(EachSource, DrawsTheGoldenPicture) {
-  EXPECT_TRUE(looksLikeGolden(
-      TestScene(120).draw(context()),
-      std::filesystem::path(BROADMARK_SOURCE_DIR) / "tests/render/golden/boxes.png"));
+  EXPECT_TRUE(looksLikeGolden(TestScene(120).draw(context()),
+                              places::source("tests/render/golden/boxes.png")));
 }
 
 TEST_P(EachSource, ColoursWhatOverlaps) {

@@ -11,6 +11,7 @@
 #include "broadmark/render/offscreen_context.h"
 #include "support/drawing.h"
 #include "support/pictures.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -96,8 +97,8 @@ TEST_P(SceneViewTest, DrawsTheGoldenPictures) {
   content.wire_boxes = wire_boxes;
   content.shows_axes = true;
   const auto view = makeView();
-  const auto golden = [](const char* name) {
-    return std::filesystem::path(BROADMARK_SOURCE_DIR) / "tests/render/golden" / name;
+  const auto golden = [](const std::string& name) {
+    return places::source("tests/render/golden/" + name);
   };
   view->draw(content, wholeWorld());
   EXPECT_TRUE(looksLikeGolden(view->read(), golden("scene-light.png")));

@@ -10,6 +10,7 @@
 #include "broadmark/scenes/scene_editor.h"
 #include "entries.h"
 #include "scenes/scene_runs.h"
+#include "support/places.h"
 
 namespace broadmark::scenes {
 namespace {
@@ -58,8 +59,7 @@ AuthoredScene dominoes() {
   return editor.scene();
 }
 
-const std::filesystem::path kFile =
-    std::filesystem::path(BROADMARK_SOURCE_DIR) / "assets/scenes/dominoes.json";
+const std::filesystem::path kFile = places::source("assets/scenes/dominoes.json");
 
 TEST(ExampleScene, IsWhatTheEditorMakes) {
   if (std::getenv("BROADMARK_UPDATE_GOLDEN") != nullptr) {

@@ -17,10 +17,11 @@
 
 namespace broadmark {
 
-enum class Isa { scalar, sse2, avx2, avx512 };
+enum class Isa { scalar, sse2, neon, avx2, avx512 };
 /// All of them, the narrowest first.
 inline constexpr NameTable kIsas{{NamedValue{Isa::scalar, "scalar"},
                                   {Isa::sse2, "sse2"},
+                                  {Isa::neon, "neon"},
                                   {Isa::avx2, "avx2"},
                                   {Isa::avx512, "avx512"}}};
 constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }

@@ -1,0 +1,13 @@
+#include "support/places.h"
+
+namespace broadmark::places {
+
+std::filesystem::path source(const std::string& path) {
+  return std::filesystem::path(SOURCE_FOLDER) / path;
+}
+std::string program() { return PROGRAM; }
+std::string faultyPlugin() { return FAULTY_PLUGIN; }
+std::string unrulyPlugin() { return UNRULY_PLUGIN; }
+std::string foreignPlugin() { return FOREIGN_PLUGIN; }
+
+}  // namespace broadmark::places

@@ -1,0 +1,98 @@
+#include "support/program.h"
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <thread>
+
+#include "support/places.h"
+
+namespace broadmark::testing {
+namespace {
+
+std::string contents(std::FILE* file) {
+  std::string text;
+  std::array<char, 4096> part{};
+  std::rewind(file);
+  while (const std::size_t got = std::fread(part.data(), 1, part.size(), file)) {
+    text.append(part.data(), got);
+  }
+  return text;
+}
+
+}  // namespace
+
+Program::Program(const std::filesystem::path& directory, const Arguments& arguments,
+                 const Surroundings& around)
+    : patience_(around.patience) {
+  std::string program = places::program();
+  std::vector<char*> argv = {program.data()};
+  Arguments copies = arguments;
+  for (std::string& argument : copies) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("cannot fork");
+  if (pid_ == 0) enter(directory, around, argv.data());
+}
+
+Program::~Program() {
+  if (pid_ <= 0) return;
+  ::kill(pid_, SIGKILL);
+  ::waitpid(pid_, nullptr, 0);
+}
+
+std::vector<pid_t> Program::children() const {
+  std::ifstream list("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) +
+                     "/children");
+  return {std::istream_iterator<pid_t>(list), {}};
+}
+
+bool Program::runs() {
+  if (pid_ > 0 && ::waitpid(pid_, &wait_status_, WNOHANG) == pid_) pid_ = 0;
+  return pid_ > 0;
+}
+
+bool Program::waitUntil(const std::function<bool()>& condition) {
+  const auto end = std::chrono::steady_clock::now() + patience_;
+  while (!condition()) {
+    if (!runs() || std::chrono::steady_clock::now() > end) return condition();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+Ended Program::wait() {
+  if (!waitUntil([&] { return !runs(); })) {
+    signal(SIGKILL);
+    ::waitpid(pid_, &wait_status_, 0);
+    pid_ = 0;
+  }
+  const int status =
+      WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
+  return {status, contents(out_.get()), contents(err_.get())};
+}
+
+void Program::enter(const std::filesystem::path& directory, const Surroundings& around,
+                    char** argv) const {
+  for (const auto& [name, value] : around.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  if (around.largest_file) {
+    const rlimit limit{*around.largest_file, *around.largest_file};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
+  int out = ::fileno(out_.get());
+  if (!around.standard_output.empty()) out = ::open(around.standard_output.c_str(), O_WRONLY);
+  ::dup2(out, 1);
+  ::dup2(::fileno(err_.get()), 2);
+  if (::chdir(directory.c_str()) == 0) ::execv(argv[0], argv);
+  std::perror(argv[0]);
+  ::_exit(127);
+}
+
+}  // namespace broadmark::testing
