@@ -2,6 +2,7 @@
 // is written.
 
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <limits>

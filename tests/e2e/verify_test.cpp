@@ -1,5 +1,7 @@
 // verify: what was baked is as it was, and what it is like.
 
+#include <sstream>
+
 #include "e2e/end_to_end.h"
 
 namespace broadmark::testing {

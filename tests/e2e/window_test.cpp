@@ -1,9 +1,16 @@
 // The program in a real window, under Xvfb, with somebody at its mouse and keyboard (xdotool). What
 // comes of it is asserted by a script that runs in the program meanwhile.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
+#include <cstdlib>
 #include <sstream>
+#include <stdexcept>
+#include <thread>
 
 #include "e2e/end_to_end.h"
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <thread>
 
 #include "e2e/end_to_end.h"
 #include "engine/helpers.h"

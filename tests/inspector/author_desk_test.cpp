@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
