@@ -5,9 +5,11 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_PACKAGE_CONTACT "Broadmark developers <broadmark@localhost>")
-set(CPACK_PACKAGE_DESCRIPTION "Broadmark generates physics scenes, records them, runs broad-phase \
-algorithms on exactly the same boxes, checks every answer and measures every phase. The package holds \
-the program, and libraries with which to measure a broad phase of one's own.")
+set(CPACK_PACKAGE_DESCRIPTION "\
+Broadmark generates physics scenes, records them, runs broad-phase algorithms
+on exactly the same boxes, checks every answer and measures every phase. The
+package holds the program, and libraries with which to measure a broad phase
+of one's own.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "hosts.h"
 #include "inspector/inspect.h"
 #include "inspector/session.h"
 #include "plan.h"
