@@ -60,7 +60,8 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
   }
   const Ended ended = run(short_run_, {.environment = {{"POCL_CACHE_DIR", "/proc/nonexistent"}}});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  for (const Json& result : readJson(file("r.json")).at("cases")) {
+  const Json results = readJson(file("r.json"));
+  for (const Json& result : results.at("cases")) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");
     if (on_device) {
