@@ -17,8 +17,6 @@ void Lane::attempt(Call&& call) {
     report_.status = run_->status();
     report_.reason = run_->reason();
     report_.ended = !run_->running();
-  } catch (const Cancelled&) {
-    throw;
   } catch (const std::exception& error) {
     report_.status = Status::error;
     report_.reason = error.what();
