@@ -21,10 +21,6 @@ namespace {
 /// FreeFall, 29 kB in Gravity at density 0.5.
 constexpr std::uint64_t kBytesPerBody = 32'000;
 
-double seconds(std::chrono::steady_clock::duration d) {
-  return std::chrono::duration<double>(d).count();
-}
-
 }  // namespace
 
 /// A job with its progress.
@@ -91,7 +87,7 @@ BatchState BakeBatch::state() {
   const std::lock_guard lock(mutex_);
   BatchState state;
   const auto now = Clock::now();
-  double busy = 0;
+  std::chrono::duration<double> busy{};
   std::uint64_t longest = 0;
   for (const auto& each : runs_) {
     const Run& run = *each;
@@ -99,16 +95,16 @@ BatchState BakeBatch::state() {
     state.total += run.work();
     state.done += done;
     longest = std::max(longest, run.work() - done);
-    if (run.phase == Run::Phase::ended) busy += seconds(run.end - run.begin);
+    if (run.phase == Run::Phase::ended) busy += run.end - run.begin;
     if (run.phase != Run::Phase::running) continue;
-    busy += seconds(now - run.begin);
+    busy += now - run.begin;
     const SceneInfo& scene = run.job.scene;
     state.running +=
         fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
                     scene.object_type, scene.objects, run.frame.load(), scene.frames);
   }
   // At the pace so far: all threads share what is left, but a recording has one thread.
-  const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy;
+  const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy.count();
   const double shared = static_cast<double>(state.total - state.done) /
                         static_cast<double>(std::max<std::size_t>(active_threads_, 1));
   state.seconds_left = std::max(shared, static_cast<double>(longest)) / pace;

@@ -14,6 +14,7 @@
 #include "broadmark/names.h"
 #include "commands/command.h"
 #include "commands/session.h"
+#include "option_types.h"
 #include "parts.h"
 #include "sources/source.h"
 
@@ -28,7 +29,7 @@ namespace broadmark {
 
 namespace {
 
-constexpr const char* kWindow =
+constexpr const char* kWithoutHeadless =
     "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
 constexpr const char* kFooter =
     "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
@@ -47,7 +48,8 @@ std::vector<Command> allCommands() {
 std::string unexpected(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
   std::vector<std::string> known;
-  for (const CLI::Option* option : app.get_options()) known.push_back(option->get_name());
+  const auto shown = [](const CLI::Option* option) { return !option->get_group().empty(); };
+  for (const CLI::Option* option : app.get_options(shown)) known.push_back(option->get_name());
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearestName(name, known);
   return fmt::format("unknown option '{}'{}", name,
@@ -69,7 +71,7 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.footer(parts::kInspector.included ? std::string(kWindow) + kFooter : kFooter);
+    app_.footer(parts::kInspector.included ? std::string(kWithoutHeadless) + kFooter : kFooter);
     app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     app_.set_version_flag("--version", thisEnvironment().version);
     app_.get_formatter()->column_width(34);
@@ -119,7 +121,7 @@ class CommandLine {
     for (const CLI::Option* option : app_.get_options()) {
       if (option->count() == 0) continue;
       throw InputError(fmt::format("{}: not an option of '{}' (see 'broadmark {} --help')",
-                                   option->get_name(), command, command));
+                                   nameOf(*option), command, command));
     }
   }
 

@@ -148,17 +148,22 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::st
   return app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
 }
 
-std::string leftOut(const Part& part) {
+std::string leftOut(const BuildPart& part) {
   return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
 }
 
-void requirePart(const Part& part, std::string_view option) {
+void requirePart(const BuildPart& part, std::string_view option) {
   if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
 }
 
-void showWith(const Part& part, const std::vector<CLI::Option*>& options) {
+void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {
   if (part.included) return;
   for (CLI::Option* option : options) option->group("");  // which CLI11 does not print
+}
+
+std::string nameOf(const CLI::Option& option) {
+  // CLI11 itself has no name for hidden options.
+  return option.get_group().empty() ? "--" + option.get_lnames().front() : option.get_name();
 }
 
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {

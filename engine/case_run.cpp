@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <exception>
 #include <utility>
 
 #include "broadmark/error.h"
@@ -35,7 +34,7 @@ void CaseRun::fail(Status status, std::string reason) {
   ended_early_ |= status != Status::mismatch;
 }
 
-std::string CaseRun::atFrame(const char* what) const {
+std::string CaseRun::atFrame(std::string_view what) const {
   return fmt::format("frame {}: {}", frame_, what);
 }
 
@@ -54,12 +53,8 @@ bool CaseRun::attempt(Call&& call) {
     fail(Status::unsupported, unsupported.what());
   } catch (const HardLimitError& limit) {
     fail(Status::timeout, atFrame(limit.what()));
-  } catch (const std::bad_alloc&) {
-    fail(Status::error, atFrame("out of memory"));
-  } catch (const std::exception& error) {
-    fail(Status::error, atFrame(error.what()));
   } catch (...) {
-    fail(Status::error, atFrame("threw something that is no std::exception"));
+    fail(Status::error, atFrame(currentErrorText()));
   }
   stop();
   return false;
@@ -104,7 +99,7 @@ std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle
   if (!attempt([&] { answer = host_->answer(); })) return std::nullopt;
   FrameDifference difference = findDifference(answer, oracle.pairs(frame.boxes), frame, margin_);
   if (difference.isMismatch()) {
-    fail(Status::mismatch, atFrame(mismatchText(difference).c_str()));
+    fail(Status::mismatch, atFrame(mismatchText(difference)));
   }
   return difference;
 }
@@ -115,28 +110,16 @@ void CaseRun::stop() {
   attempt([&] { host_->stop(); });
 }
 
-PairRuns CaseRun::answer() {
-  PairRuns answer;
-  attempt([&] { answer = host_->answer(); });
+template <class Answer>
+Answer CaseRun::ask(Answer (CaseHost::*question)()) {
+  Answer answer;
+  attempt([&] { answer = (host_.get()->*question)(); });
   return answer;
 }
 
-Counts CaseRun::counters() {
-  Counts counts;
-  attempt([&] { counts = host_->counters(); });
-  return counts;
-}
-
-Counts CaseRun::setup() {
-  Counts counts;
-  attempt([&] { counts = host_->setup(); });
-  return counts;
-}
-
-RecordedDrawing CaseRun::structure() {
-  RecordedDrawing drawing;
-  attempt([&] { drawing = host_->structure(); });
-  return drawing;
-}
+PairRuns CaseRun::answer() { return ask(&CaseHost::answer); }
+Counts CaseRun::counters() { return ask(&CaseHost::counters); }
+Counts CaseRun::setup() { return ask(&CaseHost::setup); }
+RecordedDrawing CaseRun::structure() { return ask(&CaseHost::structure); }
 
 }  // namespace broadmark

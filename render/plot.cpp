@@ -122,39 +122,41 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
   }
 }
 
-struct Palette {
+struct PlotColours {
   ImU32 background, grid, text, marker;
 };
 
-Palette paletteOf(bool dark) {
-  return dark ? Palette{packed(0x17191D), packed(0xFFFFFF, 22), packed(0x8D96A3), packed(0x3D8BFD)}
-              : Palette{packed(0xFFFFFF), packed(0x000000, 22), packed(0x66707C), packed(0x1F6FEB)};
+PlotColours plotColours(bool dark) {
+  return dark ? PlotColours{packed(0x17191D), packed(0xFFFFFF, 22), packed(0x8D96A3),
+                            packed(0x3D8BFD)}
+              : PlotColours{packed(0xFFFFFF), packed(0x000000, 22), packed(0x66707C),
+                            packed(0x1F6FEB)};
 }
 
-void drawAxes(ImDrawList& draw, const Axes& axes, const Palette& palette, const char* unit) {
+void drawAxes(ImDrawList& draw, const Axes& axes, const PlotColours& colours, const char* unit) {
   const float line = ImGui::GetTextLineHeight();
   const int rows = std::max(2, static_cast<int>((axes.max.y - axes.min.y) / (2.2F * line)));
   for (const double value : axisTicks(axes.low, axes.high, rows, axes.logarithmic)) {
     const float y = axes.y(value);
-    draw.AddLine({axes.min.x, y}, {axes.max.x, y}, palette.grid);
+    draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colours.grid);
     const std::string text = withPrefix(value, unit);
-    draw.AddText({axes.min.x - ImGui::CalcTextSize(text.c_str()).x - 5, y - line / 2}, palette.text,
+    draw.AddText({axes.min.x - ImGui::CalcTextSize(text.c_str()).x - 5, y - line / 2}, colours.text,
                  text.c_str());
   }
   const int columns = std::max(2, static_cast<int>((axes.max.x - axes.min.x) / (6 * line)));
   for (const double frame : axisTicks(axes.first, axes.last, columns, false)) {
     if (frame != std::floor(frame)) continue;
     const float x = axes.x(frame);
-    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.grid);
+    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.grid);
     const std::string text = fmt::format("{:.0f}", frame);
-    draw.AddText({x - ImGui::CalcTextSize(text.c_str()).x / 2, axes.max.y + 2}, palette.text,
+    draw.AddText({x - ImGui::CalcTextSize(text.c_str()).x / 2, axes.max.y + 2}, colours.text,
                  text.c_str());
   }
 }
 
 /// Draws the legend in the upper right corner. Returns the entry under the mouse.
 std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
-                                      const Axes& axes, const Palette& palette) {
+                                      const Axes& axes, const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
   float width = 0;
   for (const PlotCurve& curve : curves) {
@@ -167,7 +169,7 @@ std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCu
   ImVec2 at{axes.max.x - width, axes.min.y + line / 4};
   const auto rows = static_cast<float>(std::min(curves.size(), fitting));
   draw.AddRectFilled({at.x, at.y - line / 8}, {axes.max.x, at.y + rows * line},
-                     (palette.background & ~IM_COL32_A_MASK) | (ImU32{215} << IM_COL32_A_SHIFT), 3);
+                     (colours.background & ~IM_COL32_A_MASK) | (ImU32{215} << IM_COL32_A_SHIFT), 3);
   for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
     const PlotCurve& curve = curves[i];
     if (ImGui::IsMouseHoveringRect(at, {axes.max.x, at.y + line})) hovered = i;
@@ -175,19 +177,19 @@ std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCu
     draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
                        {at.x + line * 0.8F, at.y + line * 0.75F}, packed(curve.colour, alpha), 3);
     draw.AddText({at.x + line, at.y},
-                 (palette.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT),
+                 (colours.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT),
                  curve.label.c_str());
   }
   return hovered;
 }
 
 void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
-                   const PlotOptions& options, const Palette& palette) {
+                   const PlotOptions& options, const PlotColours& colours) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   const double frame = std::round(axes.frameAt(mouse.x));
   const float x = axes.x(frame);
-  draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.text);
-  draw.AddLine({axes.min.x, mouse.y}, {axes.max.x, mouse.y}, palette.grid);
+  draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.text);
+  draw.AddLine({axes.min.x, mouse.y}, {axes.max.x, mouse.y}, colours.grid);
   ImGui::BeginTooltip();
   ImGui::Text("frame %.0f, %s", frame, withPrefix(axes.valueAt(mouse.y), options.unit).c_str());
   for (const PlotCurve& curve : curves) {
@@ -271,19 +273,19 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
                   .logarithmic = options.logarithmic};
   if (axes.max.x < axes.min.x + line || axes.max.y < axes.min.y + line) return result;
 
-  const Palette palette = paletteOf(options.dark);
+  const PlotColours colours = plotColours(options.dark);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  draw.AddRectFilled(axes.min, axes.max, palette.background, 3);
-  drawAxes(draw, axes, palette, options.unit);
+  draw.AddRectFilled(axes.min, axes.max, colours.background, 3);
+  drawAxes(draw, axes, colours, options.unit);
   draw.PushClipRect(axes.min, axes.max, true);
   for (const PlotCurve& curve : curves) {
     if (!curve.hidden) drawCurve(draw, curve, axes, line / 15);
   }
   if (options.marked_frame >= 0) {
     const float x = axes.x(options.marked_frame);
-    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, palette.marker, line / 10);
+    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.marker, line / 10);
   }
-  result.hovered = drawLegend(draw, curves, axes, palette);
+  result.hovered = drawLegend(draw, curves, axes, colours);
   draw.PopClipRect();
 
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -295,7 +297,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   } else if (held && !result.hovered && ImGui::IsMouseDown(0)) {
     result.clicked_frame = axes.frameAt(mouse.x);
   }
-  if (hovered && inside && !result.hovered) drawCrosshair(draw, curves, axes, options, palette);
+  if (hovered && inside && !result.hovered) drawCrosshair(draw, curves, axes, options, colours);
   if (hovered && ImGui::GetIO().MouseWheel != 0) {
     result.zoom = static_cast<double>(ImGui::GetIO().MouseWheel);
     result.zoom_at = axes.frameAt(mouse.x);

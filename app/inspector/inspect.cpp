@@ -83,7 +83,7 @@ void inspectInWindow(const InspectOptions& options) {
   const Gl gl{[](const char* name) { return Window::function(name); }};
   std::optional<ScriptPlayer> script = scriptOf(options.script);
   {
-    Inspector inspector(gl, options.algorithms, preferences, window.scale());
+    Inspector inspector(gl, options.algorithms, preferences, window.scale(), options.make_host);
     linkClipboard(window);
     if (options.begin) options.begin(inspector.session());
     Movie movie;
@@ -128,7 +128,8 @@ void inspectOffscreen(const InspectOptions& options) {
   const auto context = makeOffscreenContext(options.gl);
   const Gl gl(*context);
   std::optional<ScriptPlayer> script = scriptOf(options.script);
-  Inspector inspector(gl, options.algorithms, {}, static_cast<float>(options.scale));
+  Inspector inspector(gl, options.algorithms, {}, static_cast<float>(options.scale),
+                      options.make_host);
   if (options.begin) options.begin(inspector.session());
   InputQueue input;
   Movie movie;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/case_host.h"
 #include "broadmark/render/picture.h"
 
 namespace broadmark {
@@ -16,6 +17,7 @@ class Session;
 /// What the inspector starts with.
 struct InspectOptions {
   std::vector<Algorithm> algorithms;    ///< that can be chosen
+  HostMaker make_host = makeLocalHost;  ///< where these run
   std::function<void(Session&)> begin;  ///< opens the source, adds algorithms
   std::filesystem::path script;         ///< "": none
   std::filesystem::path screenshot;     ///< of the end, off-screen; "": none

@@ -40,12 +40,12 @@ void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flag
 }  // namespace
 
 Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences,
-                     float scale)
+                     float scale, HostMaker make_host)
     : preferences_(std::move(preferences)),
       context_(ImGui::CreateContext()),
       renderer_(gl),
       gl_(&gl),
-      session_(std::move(algorithms)),
+      session_(std::move(algorithms), std::move(make_host)),
       view_(gl),
       panels_(makePanels()) {
   ImGuiIO& io = ImGui::GetIO();

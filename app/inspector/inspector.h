@@ -36,7 +36,8 @@ class Inspector {
  public:
   /// `scale`: pixels per unit. Needs its context current from construction to destruction; at most
   /// one lives at a time.
-  Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale);
+  Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale,
+            HostMaker make_host = makeLocalHost);
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;

@@ -1,8 +1,8 @@
 #include "inspector/notices.h"
 
-#include <exception>
-#include <new>
 #include <utility>
+
+#include "broadmark/error.h"
 
 namespace broadmark {
 
@@ -17,10 +17,8 @@ bool Notices::attempt(const std::function<void()>& act) {
   try {
     act();
     return true;
-  } catch (const std::bad_alloc&) {
-    complain("out of memory");
-  } catch (const std::exception& error) {
-    complain(error.what());
+  } catch (...) {
+    complain(currentErrorText());
   }
   return false;
 }

@@ -8,7 +8,6 @@
 namespace broadmark {
 namespace {
 
-constexpr std::array kAxes = {"x", "y", "z"};
 constexpr Rgb kFirst = 0x4C9BE8;   // of the two bodies
 constexpr Rgb kSecond = 0xB583E0;  // likewise
 

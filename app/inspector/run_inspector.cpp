@@ -20,11 +20,8 @@ int runInspector(Plan plan, const SessionOptions& options) {
   const auto shared = std::make_shared<Plan>(std::move(plan));
   const InspectOptions inspect{
       .algorithms = std::move(algorithms),
-      .begin =
-          [shared, make_host = hostMaker(options.hosts)](Session& session) {
-            session.make_host = make_host;
-            session.open(std::move(*shared));
-          },
+      .make_host = hostMaker(options.hosts),
+      .begin = [shared](Session& session) { session.open(std::move(*shared)); },
       .script = options.script,
       .screenshot = options.screenshot,
       .width = options.picture.width,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <utility>
 
 #include "broadmark/pair.h"
 
@@ -25,7 +26,8 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 
 }  // namespace
 
-RunThread::RunThread() : thread_([this] { loop(); }) {}
+RunThread::RunThread(HostMaker make_host)
+    : make_host_(std::move(make_host)), thread_([this] { loop(); }) {}
 
 RunThread::~RunThread() {
   {
@@ -185,10 +187,10 @@ bool RunThread::reconcileLanes() {
   for (const LaneSpec& spec : current_.lanes) {
     const auto found = std::ranges::find_if(
         kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
-    lanes_.push_back(found != kept.end()
-                         ? std::move(*found)
-                         : std::make_unique<Lane>(spec, current_.make_host,
-                                                  [this, spec] { return isUnwanted(spec); }));
+    lanes_.push_back(found != kept.end() ? std::move(*found)
+                                         : std::make_unique<Lane>(spec, make_host_, [this, spec] {
+                                             return isUnwanted(spec);
+                                           }));
   }
   kept.clear();
   shown_ = false;

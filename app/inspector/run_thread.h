@@ -40,7 +40,6 @@ struct FootageRequest {
 struct Wish {
   std::shared_ptr<const FootageRequest> footage;
   std::vector<LaneSpec> lanes;
-  HostMaker make_host = makeLocalHost;  ///< where new lanes run
   std::uint32_t frame = 0;
   bool check = true;  ///< compare every answer with the oracle's
   /// Stop at the first frame in which an algorithm is wrong…
@@ -96,7 +95,8 @@ struct RunProgress {
 
 class RunThread {
  public:
-  RunThread();
+  /// `make_host`: where algorithms run.
+  explicit RunThread(HostMaker make_host);
   /// Ends soon: waits for the frame that is being run only where its host cannot be cancelled.
   ~RunThread();
   RunThread(const RunThread&) = delete;
@@ -132,6 +132,7 @@ class RunThread {
   [[nodiscard]] Lane* shownLane() const;
   [[nodiscard]] std::vector<Track> tracks(std::uint32_t frame);
 
+  const HostMaker make_host_;
   DrawGate gate_;
 
   // Used by the thread alone.

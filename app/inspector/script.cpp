@@ -330,8 +330,8 @@ void ScriptPlayer::wait(const Words& words, Inspector&) {
 
 void ScriptPlayer::expect(const Words& words, Inspector&) {
   const std::string& relation = words[1];
-  constexpr const char* kRelations[] = {"=", "!=", "<", ">", "<=", ">=", "~"};
-  if (std::ranges::find(kRelations, relation) == std::end(kRelations)) {
+  constexpr const char* kComparisons[] = {"=", "!=", "<", ">", "<=", ">=", "~"};
+  if (std::ranges::find(kComparisons, relation) == std::end(kComparisons)) {
     fail(fmt::format("unknown relation '{}' (one of: = != < > <= >= ~)", relation));
   }
   const auto start = std::chrono::steady_clock::now();

@@ -29,8 +29,11 @@ constexpr std::size_t kMostTracked = 2;
 
 }  // namespace
 
-Session::Session(std::vector<Algorithm> algorithms)
-    : draft(makeSimulation("freefall")), lanes(std::move(algorithms)) {
+Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
+    : draft(makeSimulation("freefall")),
+      lanes(std::move(algorithms)),
+      runs(make_host),
+      make_host_(std::move(make_host)) {
   playback.on_show = [this] {
     selection.follow({});
     mismatches.reset();
@@ -64,7 +67,6 @@ bool Session::busy() {
 Wish Session::wish() const {
   Wish wish{.footage = playback.footage(),
             .lanes = lanes.specs(),
-            .make_host = make_host,
             .frame = playback.frame(),
             .check = mismatches.check,
             .stop_at_mismatch = mismatches.stop_at_mismatch,
@@ -246,7 +248,7 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
       });
     }
     if (!source) throw InputError("exporting a case: another scene has been opened");
-    case_export.start(run, std::move(source), snapshot->difference, file, make_host);
+    case_export.start(run, std::move(source), snapshot->difference, file, make_host_);
   });
 }
 

@@ -55,8 +55,8 @@ struct CaseChoice {
 
 class Session {
  public:
-  /// Algorithms that can be chosen.
-  explicit Session(std::vector<Algorithm> algorithms);
+  /// Algorithms that can be chosen, and where they run.
+  explicit Session(std::vector<Algorithm> algorithms, HostMaker make_host = makeLocalHost);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -96,8 +96,7 @@ class Session {
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
-  std::unique_ptr<Simulation> draft;    ///< the scene that simulate() starts
-  HostMaker make_host = makeLocalHost;  ///< where algorithms run; set before any do
+  std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
   ViewOptions view;
   std::optional<CaseChoice> case_choice;  ///< to be made by the user
   /// Called when a file has been opened or saved.
@@ -130,6 +129,7 @@ class Session {
     if (on_file) on_file(path);
   }
 
+  const HostMaker make_host_;
   std::string noticed_failure_;
   std::vector<std::function<void()>> put_off_;
   Wish committed_;

@@ -181,7 +181,7 @@ bool Ui::number(const char* label, double& value, double min, double max, const 
 
 bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
                 const char* tip) {
-  constexpr const char* kAxes[] = {"x", "y", "z"};
+  constexpr const char* kComponents[] = {"x", "y", "z"};
   const float gap = ImGui::GetStyle().ItemInnerSpacing.x / 2;
   // Three numbers need more room than one; they end where other inputs do not.
   const float width = std::floor((ImGui::GetContentRegionAvail().x * kVectorShare - 2 * gap) / 3);
@@ -190,8 +190,9 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
   for (std::size_t axis = 0; axis < value.size(); ++axis) {
     if (axis > 0) ImGui::SameLine(0, gap);
     ImGui::SetNextItemWidth(std::max(width, 1.0F));
-    changed |= enterNumber(fmt::format("##{}", kAxes[axis]).c_str(),
-                           fmt::format("{} {}", label, kAxes[axis]), value[axis], min, max, tip);
+    changed |=
+        enterNumber(fmt::format("##{}", kComponents[axis]).c_str(),
+                    fmt::format("{} {}", label, kComponents[axis]), value[axis], min, max, tip);
   }
   ImGui::PopID();
   ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);

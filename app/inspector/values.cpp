@@ -114,7 +114,6 @@ void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   if (!chosen || !snapshot || bodies[1] >= snapshot->boxes->size()) return;
   const Aabb& a = (*snapshot->boxes)[bodies[0]];
   const Aabb& b = (*snapshot->boxes)[bodies[1]];
-  constexpr std::string_view kAxes = "xyz";
   for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
     const AxisRelation relation = relationOn(axis, a, b);
     values[fmt::format("pair.gap.{}", kAxes[axis])] = fmt::format("{}", relation.gap);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,6 +32,8 @@ std::string pairName(Pair pair);
 
 /// All that are listed, kind by kind in the order above.
 std::vector<WrongPair> wrongPairs(const FrameDifference& difference);
+
+inline constexpr std::array kAxes = {"x", "y", "z"};
 
 /// How two boxes lie on one axis.
 struct AxisRelation {

@@ -55,12 +55,8 @@ class Server {
       return failure("input", error.what());
     } catch (const UnsupportedError& error) {
       return failure("unsupported", error.what());
-    } catch (const std::bad_alloc&) {
-      return failure("error", "out of memory");
-    } catch (const std::exception& error) {
-      return failure("error", error.what());
     } catch (...) {
-      return failure("error", "threw something that is no std::exception");
+      return failure("error", currentErrorText());
     }
   }
 

@@ -2,16 +2,12 @@
 
 #include "broadmark/worker_process.h"
 
-#include <fcntl.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
-#include <csignal>
-#include <cstring>
-#include <thread>
+#include <chrono>
 
 #include "broadmark/error.h"
+#include "worker/child_process.h"
 #include "worker/protocol.h"
 
 namespace broadmark {
@@ -22,80 +18,8 @@ using worker::SharedMemory;
 
 /// How long a process may take to begin: no part of the algorithm's time.
 constexpr std::chrono::seconds kTimeToBegin{60};
-/// How long it may take to end once it is asked to.
-constexpr std::chrono::seconds kTimeToEnd{5};
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
-
-/// "crashed with SIGSEGV (Segmentation fault)"
-std::string endText(int wait_status) {
-  if (WIFEXITED(wait_status)) {
-    return fmt::format("ended its process by itself, with status {}", WEXITSTATUS(wait_status));
-  }
-  const int signal = WTERMSIG(wait_status);
-  const char* name = ::sigabbrev_np(signal);
-  const std::string what =
-      fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
-  if (signal == SIGKILL) return "killed with " + what + ", perhaps as memory ran out";
-  return "crashed with " + what;
-}
-
-/// A copy of a descriptor beyond those that a worker process is given.
-FileDescriptor movedUp(int descriptor) {
-  constexpr int kBeyond = 16;
-  return FileDescriptor(::fcntl(descriptor, F_DUPFD_CLOEXEC, kBeyond));
-}
-
-/// What a new process does with its descriptors.
-class DescriptorPlan {
- public:
-  DescriptorPlan() { ::posix_spawn_file_actions_init(&actions_); }
-  ~DescriptorPlan() { ::posix_spawn_file_actions_destroy(&actions_); }
-  DescriptorPlan(const DescriptorPlan&) = delete;
-  DescriptorPlan& operator=(const DescriptorPlan&) = delete;
-
-  void hand(int from, int to) { ::posix_spawn_file_actions_adddup2(&actions_, from, to); }
-  void open(int descriptor, const char* path, int flags) {
-    ::posix_spawn_file_actions_addopen(&actions_, descriptor, path, flags, 0);
-  }
-  void closeFrom(int first) { ::posix_spawn_file_actions_addclosefrom_np(&actions_, first); }
-  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
-
-/// A process of ours. It is killed when this goes.
-class ChildProcess {
- public:
-  explicit ChildProcess(pid_t pid) : pid_(pid) {}
-  ~ChildProcess() {
-    if (pid_ > 0) kill();
-  }
-  ChildProcess(const ChildProcess&) = delete;
-  ChildProcess& operator=(const ChildProcess&) = delete;
-
-  [[nodiscard]] bool ended() const { return pid_ == 0; }
-
-  void kill() {
-    ::kill(pid_, SIGKILL);
-    wait();
-  }
-  /// Waits for its end, and brings that about when patience is over. Returns how it ended.
-  int wait() {
-    const auto end = Clock::now() + kTimeToEnd;
-    int status = 0;
-    while (::waitpid(pid_, &status, WNOHANG) == 0) {
-      if (Clock::now() > end) ::kill(pid_, SIGKILL);
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    pid_ = 0;
-    return status;
-  }
-
- private:
-  pid_t pid_;
-};
 
 }  // namespace
 
@@ -134,7 +58,7 @@ class WorkerProcess::Link {
     const std::string& program = options_.command.front();
     if (!hello) {
       throw InputError(
-          fmt::format("{}: not fit as a worker process: {}", program, endText(process_.wait())));
+          fmt::format("{}: not fit as a worker process: {}", program, process_.wait()));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -154,34 +78,8 @@ class WorkerProcess::Link {
 
   Link(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
-        process_(spawn(ends.there.get())),
+        process_(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()}),
         channel_(std::in_place, std::move(ends.here)) {}
-
-  [[nodiscard]] pid_t spawn(int channel) const {
-    std::vector<std::string> command = options_.command;
-    std::vector<char*> arguments;
-    for (std::string& word : command) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    const FileDescriptor there = movedUp(channel);
-    const FileDescriptor frames_there = movedUp(frames.descriptor());
-    const FileDescriptor answers_there = movedUp(answers.descriptor());
-    DescriptorPlan plan;
-    plan.open(0, "/dev/null", O_RDONLY);
-    // What a plug-in prints is not to stand among our results.
-    plan.hand(2, 1);
-    plan.hand(there.get(), worker::kChannelDescriptor);
-    plan.hand(frames_there.get(), worker::kFramesDescriptor);
-    plan.hand(answers_there.get(), worker::kAnswersDescriptor);
-    plan.closeFrom(worker::kAnswersDescriptor + 1);
-    pid_t pid = 0;
-    const int error =
-        ::posix_spawn(&pid, arguments.front(), plan.get(), nullptr, arguments.data(), environ);
-    if (error != 0) {
-      throw InputError(fmt::format("{}: cannot be started as a worker process: {}",
-                                   options_.command.front(), std::strerror(error)));
-    }
-    return pid;
-  }
 
   /// The next message; nothing once the process has hung up.
   std::optional<Json> receive(Seconds limit) {
@@ -205,10 +103,10 @@ class WorkerProcess::Link {
   }
 
   /// The process has hung up.
-  [[noreturn]] void fail() { throw HostError(endText(process_.wait())); }
+  [[noreturn]] void fail() { throw HostError(process_.wait()); }
 
   const WorkerOptions& options_;
-  ChildProcess process_;
+  worker::ChildProcess process_;
   std::optional<worker::Channel> channel_;
 };
 

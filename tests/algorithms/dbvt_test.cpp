@@ -28,7 +28,7 @@ class Dbvt : public testing::TestWithParam<std::string> {
 };
 
 /// A unit cube that begins at x.
-Aabb cubeAt(float x) { return inputs::boxAt({x, 0, 0}, {1, 1, 1}); }
+Aabb unitCubeAt(float x) { return inputs::boxAt({x, 0, 0}, {1, 1, 1}); }
 
 constexpr Pair kPair = {0, 1};
 
@@ -37,7 +37,7 @@ TEST_P(Dbvt, DropsStalePairsAtOnce) {
   std::vector<Aabb> boxes = inputs::clustered(500, 0, 1);
   TestRun dbvt = start(boxes);
   EXPECT_EQ(step(dbvt, boxes), bruteForcePairs(boxes));
-  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = cubeAt(static_cast<float>(10 * i));
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = unitCubeAt(static_cast<float>(10 * i));
   EXPECT_TRUE(step(dbvt, boxes).empty());
 }
 
@@ -58,18 +58,18 @@ TEST_P(Dbvt, StalePairsDoNotPileUp) {
 // Forth, which enlarges the leaf, and back to the other end of it.
 TEST_P(Dbvt, ReachesAsFarAsItDeclaresAndNoFarther) {
   for (const auto& [gap, found] : {std::pair{0.085F, true}, std::pair{0.105F, false}}) {
-    const Aabb other = cubeAt(0.995F + gap);
-    TestRun dbvt = start({cubeAt(0), other});
+    const Aabb other = unitCubeAt(0.995F + gap);
+    TestRun dbvt = start({unitCubeAt(0), other});
     EXPECT_FLOAT_EQ(dbvt.margin(), 0.1F);
-    step(dbvt, {cubeAt(0.04F), other});
-    EXPECT_EQ(step(dbvt, {cubeAt(-0.005F), other}),
+    step(dbvt, {unitCubeAt(0.04F), other});
+    EXPECT_EQ(step(dbvt, {unitCubeAt(-0.005F), other}),
               found ? std::vector{kPair} : std::vector<Pair>());
   }
 }
 
 TEST_P(Dbvt, TakesItsMarginFromTheParameter) {
-  const std::vector<Aabb> first = {cubeAt(0), cubeAt(1.5F)};
-  const std::vector<Aabb> next = {cubeAt(0.1F), cubeAt(1.5F)};
+  const std::vector<Aabb> first = {unitCubeAt(0), unitCubeAt(1.5F)};
+  const std::vector<Aabb> next = {unitCubeAt(0.1F), unitCubeAt(1.5F)};
   TestRun wide = start(first, {{"margin", "1"}});
   EXPECT_EQ(wide.margin(), 2);
   EXPECT_EQ(step(wide, next), std::vector{kPair});
@@ -136,10 +136,10 @@ TEST_P(Dbvt, IsExactWithoutAMargin) {
 
 // Bullet keeps a leaf as long as it holds the box, however small that has become.
 TEST_P(Dbvt, LeavesShrinkWithTheirBoxes) {
-  const Aabb other = cubeAt(3);
+  const Aabb other = unitCubeAt(3);
   TestRun dbvt = start({inputs::boxAt({0, 0, 0}, {4, 4, 4}), other});
   EXPECT_EQ(step(dbvt, {inputs::boxAt({0, 0, 0}, {3.5F, 4, 4}), other}), std::vector{kPair});
-  EXPECT_TRUE(step(dbvt, {cubeAt(0), other}).empty());
+  EXPECT_TRUE(step(dbvt, {unitCubeAt(0), other}).empty());
 }
 
 TEST_P(Dbvt, WorksOnlyForWhatMoves) {
@@ -151,7 +151,7 @@ TEST_P(Dbvt, WorksOnlyForWhatMoves) {
     EXPECT_EQ(countersOf(dbvt.broadPhase()).at("reinsertions"), 0U);
   }
   const auto move_one = [&](float x) {
-    boxes[5] = cubeAt(x);
+    boxes[5] = unitCubeAt(x);
     step(dbvt, boxes);
     EXPECT_EQ(countersOf(dbvt.broadPhase()).at("moves"), 1U);
     return countersOf(dbvt.broadPhase()).at("reinsertions");

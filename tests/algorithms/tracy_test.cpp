@@ -39,7 +39,7 @@ class Checked {
   std::uint32_t index_ = 0;
 };
 
-Aabb cube(float low, float high) { return {{low, low, low, 0}, {high, high, high, 0}}; }
+Aabb cubeFrom(float low, float high) { return {{low, low, low, 0}, {high, high, high, 0}}; }
 
 void moveBy(Aabb& box, const inputs::Vec3& way) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,7 +54,7 @@ inputs::Vec3 anyWay(inputs::Random& random, float most) {
 
 TEST(Tracy, DoesNothingWhenNothingMoves) {
   const std::vector<Aabb> boxes = inputs::assorted(2000, 0, 5);
-  Checked run("tracy", 1, 20, cube(0, 30), boxes);
+  Checked run("tracy", 1, 20, cubeFrom(0, 30), boxes);
   run.step(boxes);
   for (const auto& [name, count] : run.counters()) EXPECT_EQ(count, 0U) << name;
 
@@ -70,7 +70,7 @@ TEST(Tracy, DoesNothingWhenNothingMoves) {
 TEST(Tracy, HoldsOverAThousandFramesOfSmallMoves) {
   for (const char* id : {"tracy", "tracy-mt"}) {
     std::vector<Aabb> boxes = inputs::clustered(400, 0, 9);
-    Checked run(id, id == std::string("tracy") ? 1 : 3, 25, cube(-6, 6), boxes);
+    Checked run(id, id == std::string("tracy") ? 1 : 3, 25, cubeFrom(-6, 6), boxes);
     Counters sum;
     for (std::uint32_t frame = 1; frame <= 1000; ++frame) {
       inputs::Random random(4, frame);
@@ -94,8 +94,8 @@ TEST(Tracy, HoldsOverAThousandFramesOfSmallMoves) {
 TEST(Tracy, HoldsForManyBodies) {
   constexpr std::size_t kCount = 20'000;
   std::vector<Aabb> boxes = inputs::assorted(kCount, 0, 2);
-  Checked one("tracy", 1, 200, cube(0, 58.5F), boxes);
-  Checked several("tracy-mt", 4, 200, cube(0, 58.5F), boxes);
+  Checked one("tracy", 1, 200, cubeFrom(0, 58.5F), boxes);
+  Checked several("tracy-mt", 4, 200, cubeFrom(0, 58.5F), boxes);
   for (std::uint32_t frame = 1; frame <= 5; ++frame) {
     inputs::Random random(8, frame);
     for (Aabb& box : boxes) moveBy(box, anyWay(random, 0.4F));
@@ -108,29 +108,29 @@ TEST(Tracy, HoldsForManyBodies) {
 // The listed algorithm is tested with its usual cells; here everything happens at their borders.
 TEST(Tracy, HoldsWithCellsOfAFewBodies) {
   constexpr std::size_t kCount = 257;
-  constexpr std::uint32_t kFrames = 4;
+  constexpr std::uint32_t kSteps = 4;
   for (const int objects_per_cell : {1, 4}) {
     std::vector<std::vector<Aabb>> unrelated;
     for (const inputs::Input& input : inputs::kAll) {
       SCOPED_TRACE(input.name);
-      const auto frames = framesOf(input, kCount, kFrames);
+      const auto frames = framesOf(input, kCount, kSteps);
       Checked run("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
-      for (std::uint32_t i = 1; i < kFrames; ++i) run.step(frames[i]);
+      for (std::uint32_t i = 1; i < kSteps; ++i) run.step(frames[i]);
       unrelated.push_back(frames[1]);
       if (HasFailure()) return;
     }
-    Checked run("tracy", 1, objects_per_cell, cube(-10, 20), unrelated[0]);
+    Checked run("tracy", 1, objects_per_cell, cubeFrom(-10, 20), unrelated[0]);
     for (const std::vector<Aabb>& boxes : unrelated) run.step(boxes);
   }
 }
 
 // The intersection moves from cell to cell, but the pair neither begins nor ends.
 TEST(Tracy, KeepsPairsThatChangeCells) {
-  std::vector<Aabb> boxes(8, cube(0, 0.4F));
+  std::vector<Aabb> boxes(8, cubeFrom(0, 0.4F));
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) moveBy(boxes[i], {static_cast<float>(i) * 0.02F, 0, 0});
   }
-  Checked run("tracy", 1, 1, cube(0, 4), boxes);
+  Checked run("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::uint64_t cell_changes = 0;
   for (int frame = 0; frame < 100; ++frame) {
     const float way = frame < 50 ? 0.09F : -0.09F;
@@ -146,8 +146,8 @@ TEST(Tracy, KeepsPairsThatChangeCells) {
 // One body moves past another of the same size, both in the same direction: their endpoints are
 // swapped to and fro within a frame.
 TEST(Tracy, TellsNothingOfWhatIsUndoneWithinAFrame) {
-  std::vector<Aabb> boxes = {cube(0, 1), cube(1.5F, 2.5F)};
-  Checked run("tracy", 1, 200, cube(0, 100), boxes);
+  std::vector<Aabb> boxes = {cubeFrom(0, 1), cubeFrom(1.5F, 2.5F)};
+  Checked run("tracy", 1, 200, cubeFrom(0, 100), boxes);
   for (int frame = 0; frame < 40; ++frame) {
     for (Aabb& box : boxes) moveBy(box, {2, 2, 2});
     run.step(boxes);
@@ -157,7 +157,7 @@ TEST(Tracy, TellsNothingOfWhatIsUndoneWithinAFrame) {
 
 TEST(Tracy, SetsDownAnewWhatGoesFarWithinACell) {
   std::vector<Aabb> boxes = inputs::uniform(600, 0, 6);
-  Checked run("tracy", 1, 1'000'000, cube(0, 18), boxes);
+  Checked run("tracy", 1, 1'000'000, cubeFrom(0, 18), boxes);
   const std::vector<Aabb> elsewhere = inputs::uniform(600, 1, 6);
   std::copy_n(elsewhere.begin(), 300, boxes.begin());
   run.step(boxes);
@@ -169,7 +169,7 @@ TEST(Tracy, SetsDownAnewWhatGoesFarWithinACell) {
 
 TEST(Tracy, HoldsOutsideOfTheWorld) {
   std::vector<Aabb> boxes = inputs::clustered(500, 0, 3);
-  Checked run("tracy-mt", 2, 20, cube(-4, 4), boxes);
+  Checked run("tracy-mt", 2, 20, cubeFrom(-4, 4), boxes);
   for (std::uint32_t frame = 1; frame <= 60; ++frame) {
     inputs::Random random(5, frame);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -185,7 +185,7 @@ TEST(Tracy, HoldsOutsideOfTheWorld) {
 
 // All numbers in the header are zero, or the world is no larger than a point.
 TEST(Tracy, HoldsInAWorldOfNoSize) {
-  for (const Aabb& world : {cube(0, 0), cube(3, 3), Aabb{{0, 0, 0, 0}, {10, 10, 0, 0}}}) {
+  for (const Aabb& world : {cubeFrom(0, 0), cubeFrom(3, 3), Aabb{{0, 0, 0, 0}, {10, 10, 0, 0}}}) {
     Checked run("tracy", 1, 5, world, inputs::uniform(300, 0, 1));
     for (std::uint32_t frame = 1; frame < 4; ++frame) run.step(inputs::uniform(300, frame, 1));
   }
@@ -194,8 +194,8 @@ TEST(Tracy, HoldsInAWorldOfNoSize) {
 // Values that no recording holds: differences overflow in floats.
 TEST(Tracy, SurvivesTheLimitsOfFloats) {
   const std::vector<Aabb> first = inputs::limits(300, 0, 1);
-  for (const Aabb& world :
-       {cube(-1, 1), cube(-std::numeric_limits<float>::max(), std::numeric_limits<float>::max())}) {
+  for (const Aabb& world : {cubeFrom(-1, 1), cubeFrom(-std::numeric_limits<float>::max(),
+                                                      std::numeric_limits<float>::max())}) {
     Checked run("tracy", 1, 5, world, first);
     for (std::uint32_t frame = 1; frame < 5; ++frame) run.step(inputs::limits(300, frame, 1));
   }
@@ -212,7 +212,7 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
     large[i].max[(i + 1) % 3] = 30;
   }
   for (const char* id : {"tracy", "tracy-mt"}) {
-    Checked run(id, id == std::string("tracy") ? 1 : 3, 1, cube(0, 21.5F), small);
+    Checked run(id, id == std::string("tracy") ? 1 : 3, 1, cubeFrom(0, 21.5F), small);
     run.step(large);
     EXPECT_EQ(run.counters()["grid rebuilds"], 1U);
     run.step(large);
@@ -227,7 +227,7 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
     }
     EXPECT_GE(rebuilds, 2U);
     EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
-    Checked fresh(id, 1, 1, cube(0, 21.5F), small);
+    Checked fresh(id, 1, 1, cubeFrom(0, 21.5F), small);
     fresh.step(boxes);
     run.step(boxes);
   }
@@ -236,25 +236,25 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
 // A floor and four walls among small bodies are no reason to give up the grid.
 TEST(Tracy, KeepsTheGridForAFewLargeBodies) {
   std::vector<Aabb> boxes = inputs::uniform(2000, 0, 4);
-  for (std::size_t i = 0; i < 5; ++i) boxes[i] = cube(-1, 30);
-  Checked run("tracy", 1, 10, cube(0, 28), boxes);
+  for (std::size_t i = 0; i < 5; ++i) boxes[i] = cubeFrom(-1, 30);
+  Checked run("tracy", 1, 10, cubeFrom(0, 28), boxes);
   for (Aabb& box : boxes) moveBy(box, {0.1F, 0.2F, 0});
   run.step(boxes);
   EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
 }
 
 TEST(Tracy, DrawsOccupiedCellsAndTheirSegments) {
-  std::vector<Aabb> boxes(100, cube(0.1F, 0.2F));
-  for (std::size_t i = 0; i < 50; ++i) boxes[i] = cube(3.5F, 3.6F);
-  Checked run("tracy", 1, 1, cube(0, 4), boxes);
+  std::vector<Aabb> boxes(100, cubeFrom(0.1F, 0.2F));
+  for (std::size_t i = 0; i < 50; ++i) boxes[i] = cubeFrom(3.5F, 3.6F);
+  Checked run("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::map<int, std::vector<Aabb>> levels;
   const RecordedDrawing drawing = drawingOf(run.broadPhase());
   for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
     levels[drawn.level].push_back(drawn.box);
   }
   ASSERT_EQ(levels[0].size(), 2U);
-  EXPECT_EQ(levels[0][0].min, cube(0, 0).min);
-  EXPECT_EQ(levels[0][1].max, cube(4, 4).max);
+  EXPECT_EQ(levels[0][0].min, cubeFrom(0, 0).min);
+  EXPECT_EQ(levels[0][1].max, cubeFrom(4, 4).max);
   // 100 endpoints in each of the cells: three chunks, the first from the first endpoint on.
   for (const Aabb& cell : levels[0]) {
     float covered = 0;

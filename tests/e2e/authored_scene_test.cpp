@@ -3,7 +3,7 @@
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class AuthoredScenes : public EndToEnd {
@@ -156,4 +156,4 @@ TEST_F(AuthoredScenes, TheExampleRuns) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -10,7 +10,7 @@
 #include "e2e/end_to_end.h"
 #include "parts.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class BadInput : public EndToEnd {
@@ -203,4 +203,4 @@ TEST_F(BadInput, OneFileForTwoThings) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

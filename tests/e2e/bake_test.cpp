@@ -5,7 +5,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using Bake = EndToEnd;
@@ -282,4 +282,4 @@ TEST_F(Bake, VerifyNamesEveryBrokenFileAndPassesTheRest) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

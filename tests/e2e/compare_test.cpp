@@ -2,7 +2,7 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class Compare : public EndToEnd {
@@ -135,4 +135,4 @@ TEST_F(Compare, DamagedResultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

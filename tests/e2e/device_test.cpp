@@ -3,7 +3,7 @@
 #include "broadmark/compute_devices.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class Device : public EndToEnd {
@@ -89,4 +89,4 @@ TEST_F(Device, TransfersAreInTheResults) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

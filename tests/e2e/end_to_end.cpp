@@ -6,7 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 
 std::string readFile(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -119,4 +119,4 @@ void EndToEnd::bakeRecording(const std::string& name, const std::string& objects
   fs::remove_all(file("baked"));
 }
 
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -13,7 +13,7 @@
 #include "broadmark/aabb.h"
 #include "support/program.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
@@ -78,4 +78,4 @@ class EndToEnd : public ::testing::Test {
   fs::path directory_;
 };
 
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

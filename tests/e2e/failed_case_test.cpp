@@ -10,7 +10,7 @@
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class FailedCase : public EndToEnd {
@@ -172,4 +172,4 @@ TEST_F(FailedCase, TheRecordingItselfIsNotWrittenOver) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -4,7 +4,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using Help = EndToEnd;
@@ -74,4 +74,4 @@ TEST_F(List, WhatCannotBePrintedIsAnError) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -7,7 +7,7 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 /// So many frames that no bake of them ends before it is interrupted.
@@ -199,4 +199,4 @@ TEST_F(FullDisc, AsASmallFileSystem) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -5,7 +5,7 @@
 #include "broadmark/render/picture.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class Movie : public EndToEnd {
@@ -83,4 +83,4 @@ TEST_F(Movie, BadOptions) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

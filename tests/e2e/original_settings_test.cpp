@@ -2,7 +2,7 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class OriginalSettings : public EndToEnd {
@@ -144,4 +144,4 @@ TEST_F(OriginalSettings, FaultsAreNamed) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

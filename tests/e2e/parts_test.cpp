@@ -5,14 +5,14 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using Parts = EndToEnd;
 
 TEST_F(Parts, AreShownWhereTheyAreIncluded) {
   struct Shown {
-    Part part;
+    BuildPart part;
     Arguments call;
     std::vector<std::string> words;
   };
@@ -35,7 +35,7 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
 
 TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
   struct Refused {
-    Part part;
+    BuildPart part;
     Arguments call;
     std::string word;
   };
@@ -61,4 +61,4 @@ TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -3,7 +3,7 @@
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class Plugin : public EndToEnd {
@@ -67,4 +67,4 @@ TEST_F(Plugin, BadFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

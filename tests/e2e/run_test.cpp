@@ -10,7 +10,7 @@
 #include "broadmark/execution.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class Run : public EndToEnd {
@@ -268,4 +268,4 @@ TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

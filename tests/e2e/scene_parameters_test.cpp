@@ -2,7 +2,7 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 class SceneParameters : public EndToEnd {
@@ -113,4 +113,4 @@ TEST_F(SceneParameters, BadFilesAreRefused) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -3,7 +3,7 @@
 #include "broadmark/render/picture.h"
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using Screenshot = EndToEnd;
@@ -83,4 +83,4 @@ TEST_F(Screenshot, WithoutGlThereIsNoPictureButEverythingElse) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

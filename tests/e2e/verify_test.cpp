@@ -4,7 +4,7 @@
 
 #include "e2e/end_to_end.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using Verify = EndToEnd;
@@ -95,4 +95,4 @@ TEST_F(Verify, BadOptions) {
 }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -11,7 +11,7 @@
 #include "engine/helpers.h"
 #include "support/places.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 using std::chrono::steady_clock;
@@ -167,4 +167,4 @@ TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
 TEST_F(Worker, IsNotToBeCalledByHand) { expectRefusal({"worker"}, {"nobody to work for"}); }
 
 }  // namespace
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -23,13 +23,13 @@ TEST(CaseRun, AConservativeAnswerIsCheckedAgainstItsMargin) {
     const CaseResult within =
         runOnChain(caseOf({.on_answer = spoil, .margin = 0.5F}), {.check = check});
     EXPECT_EQ(within.status, Status::ok);
-    EXPECT_EQ(within.allowed_extra_count, kFrames) << "allowed, but counted";
+    EXPECT_EQ(within.allowed_extra_count, kChainFrames) << "allowed, but counted";
     EXPECT_TRUE(within.differences.empty());
 
     const CaseResult beyond =
         runOnChain(caseOf({.on_answer = spoil, .margin = 0.4F}), {.check = check});
     EXPECT_EQ(beyond.status, Status::mismatch);
-    EXPECT_EQ(beyond.differences.size(), kFrames);
+    EXPECT_EQ(beyond.differences.size(), kChainFrames);
   }
 }
 
@@ -242,7 +242,7 @@ TEST(CaseRun, ExclusiveAlgorithmsTakeTurnsOnOneThread) {
   ChainSource source;
   a.start(source.scene(), source.rewind());
   b.start(source.scene(), source.rewind());
-  for (std::uint32_t index = 1; index <= kFrames; ++index) {
+  for (std::uint32_t index = 1; index <= kChainFrames; ++index) {
     EXPECT_TRUE(a.step(source.at(index)));
     EXPECT_TRUE(b.step(source.at(index)));
   }

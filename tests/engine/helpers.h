@@ -67,6 +67,15 @@ inline Aabb unitBox(float x, float y = 0, float z = 0) {
   return {{x, y, z, 0}, {x + 1, y + 1, z + 1, 0}};
 }
 
+inline void expectNear(const Aabb& box, const Aabb& expected, float tolerance) {
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(box.min[axis], expected.min[axis], tolerance) << "axis " << axis;
+    EXPECT_NEAR(box.max[axis], expected.max[axis], tolerance) << "axis " << axis;
+  }
+  EXPECT_EQ(box.min[3], 0);
+  EXPECT_EQ(box.max[3], 0);
+}
+
 /// `n` unit boxes along x, each of which touches its neighbours only: n - 1 pairs.
 inline std::vector<Aabb> chain(std::size_t n) {
   std::vector<Aabb> boxes;

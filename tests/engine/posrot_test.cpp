@@ -22,13 +22,13 @@ using testing::StartsWith;
 
 constexpr float kHalfRoot = 0.70710678F;
 
-SceneInfo sceneOf(std::uint32_t objects, std::uint32_t frames, const char* type = "Cubes") {
+SceneInfo posrotScene(std::uint32_t objects, std::uint32_t frames, const char* type = "Cubes") {
   return {"FreeFall", type, objects, frames, {{-8, -8, -8, 0}, {8, 8, 8, 0}}};
 }
 
 /// Two bodies and two frames, spelled out: a bar of 4 × 1 × 2 around (2, 0, 0), turned by 0 and by
 /// 90 degrees about z, and a unit cube around (0, 5, 0) that never turns.
-Bytes handMade(const char* type = "Cubes") {
+Bytes handMadePosrot(const char* type = "Cubes") {
   Bytes bytes(256);
   std::memcpy(bytes.data(), "FreeFall", 8);
   std::memcpy(bytes.data() + 128, type, std::strlen(type));
@@ -47,20 +47,11 @@ std::vector<Aabb> handMadeBoxes() {
   return {{{0, -0.5F, -1, 0}, {4, 0.5F, 1, 0}}, {{-0.5F, 4.5F, -0.5F, 0}, {0.5F, 5.5F, 0.5F, 0}}};
 }
 
-PosrotReader readerOf(const Bytes& bytes) {
+PosrotReader posrotOf(const Bytes& bytes) {
   return tests::readerOf<PosrotReader>(bytes, "test.posrot");
 }
-std::string faultOf(const Bytes& bytes) {
+std::string posrotFault(const Bytes& bytes) {
   return tests::faultOf<PosrotReader>(bytes, "test.posrot");
-}
-
-void expectNear(const Aabb& box, const Aabb& expected, float tolerance) {
-  for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(box.min[axis], expected.min[axis], tolerance) << "axis " << axis;
-    EXPECT_NEAR(box.max[axis], expected.max[axis], tolerance) << "axis " << axis;
-  }
-  EXPECT_EQ(box.min[3], 0);
-  EXPECT_EQ(box.max[3], 0);
 }
 
 /// `v` turned by `q`, by the formula q v q*, in double.
@@ -93,9 +84,9 @@ Aabb boxByCorners(const Vec3& half, const Pose& pose) {
   return box;
 }
 
-class Bodies {
+class Movers {
  public:
-  explicit Bodies(unsigned seed) : random_(seed) {}
+  explicit Movers(unsigned seed) : random_(seed) {}
   float uniform(float low, float high) {
     return std::uniform_real_distribution<float>(low, high)(random_);
   }
@@ -119,8 +110,8 @@ class Bodies {
 };
 
 TEST(Posrot, IsReadByteForByte) {
-  PosrotReader reader = readerOf(handMade());
-  EXPECT_EQ(reader.scene(), sceneOf(2, 2));
+  PosrotReader reader = posrotOf(handMadePosrot());
+  EXPECT_EQ(reader.scene(), posrotScene(2, 2));
   EXPECT_THAT(reader.rewind().boxes, ElementsAreArray(handMadeBoxes()));
   EXPECT_THAT(reader.unturnedBoxes(), ElementsAreArray(handMadeBoxes()));
   EXPECT_THAT(reader.halfExtents(), ElementsAreArray<Vec3>({{2, 0.5F, 1}, {0.5F, 0.5F, 0.5F}}));
@@ -142,9 +133,9 @@ TEST(Posrot, IsReadByteForByte) {
 
 TEST(Posrot, IsWrittenByteForByte) {
   const TemporaryDirectory directory;
-  PosrotWriter writer(directory / "a.posrot", sceneOf(2, 2));
+  PosrotWriter writer(directory / "a.posrot", posrotScene(2, 2));
   writer.writeBoxes(handMadeBoxes());
-  PosrotReader reader = readerOf(handMade());
+  PosrotReader reader = posrotOf(handMadePosrot());
   for (const std::uint32_t frame : {1U, 2U}) {
     reader.at(frame);
     writer.write(reader.poses());
@@ -152,7 +143,7 @@ TEST(Posrot, IsWrittenByteForByte) {
   const std::string hash = writer.finish();
   EXPECT_EQ(hash, reader.hash());
   std::ifstream file(directory / "a.posrot", std::ios::binary);
-  EXPECT_EQ(Bytes(std::istreambuf_iterator<char>(file), {}), handMade());
+  EXPECT_EQ(Bytes(std::istreambuf_iterator<char>(file), {}), handMadePosrot());
 }
 
 TEST(Posrot, WhateverLiesInAPosesPaddingIsNotWritten) {
@@ -162,27 +153,27 @@ TEST(Posrot, WhateverLiesInAPosesPaddingIsNotWritten) {
   poses[0].position = {2, 1, 0};
   poses[1].position = {0, 4, 0};
   poses[0].rotation = poses[1].rotation = {0, 0, 0, 1};
-  PosrotWriter writer(directory / "a.posrot", sceneOf(2, 1));
+  PosrotWriter writer(directory / "a.posrot", posrotScene(2, 1));
   writer.writeBoxes(handMadeBoxes());
   writer.write(poses);
   writer.finish();
   std::ifstream file(directory / "a.posrot", std::ios::binary);
   const Bytes bytes(std::istreambuf_iterator<char>(file), {});
-  const Bytes expected = handMade();
+  const Bytes expected = handMadePosrot();
   EXPECT_TRUE(std::equal(bytes.begin() + 304, bytes.end(), expected.begin() + 304));
 }
 
 TEST(Posrot, BoxesAreThoseAroundTheEightTurnedCorners) {
   constexpr std::uint32_t kBodies = 500;
   const TemporaryDirectory directory;
-  Bodies random(3);
+  Movers random(3);
   std::vector<Aabb> unturned;
   std::vector<Vec3> halves;
   for (std::uint32_t i = 0; i < kBodies; ++i) {
     halves.push_back({random.uniform(0, 3), random.uniform(0, 3), random.uniform(0, 0.1F)});
     unturned.push_back(boxAround({}, halves.back()));
   }
-  PosrotWriter writer(directory / "a.posrot", sceneOf(kBodies, 4, "Assorted"));
+  PosrotWriter writer(directory / "a.posrot", posrotScene(kBodies, 4, "Assorted"));
   writer.writeBoxes(unturned);
   std::vector<std::vector<Pose>> frames(5);
   for (std::size_t f = 1; f < frames.size(); ++f) {
@@ -202,14 +193,14 @@ TEST(Posrot, BoxesAreThoseAroundTheEightTurnedCorners) {
 }
 
 TEST(Posrot, BoxesOfSpheresDoNotDependOnTheRotation) {
-  PosrotReader reader = readerOf(handMade("Spheres"));
+  PosrotReader reader = posrotOf(handMadePosrot("Spheres"));
   const Frame frame = reader.at(2);
   EXPECT_EQ(frame.boxes[0], (Aabb{{0, 0.5F, -1, 0}, {4, 1.5F, 1, 0}}));
 }
 
 // Initial corners are rounded to multiples of 2^-19 or so there; a cube is a cube nevertheless.
 TEST(Posrot, UsualSizesAreFoundExactlyFarFromTheOrigin) {
-  Bodies random(5);
+  Movers random(5);
   std::vector<Aabb> unturned;
   std::vector<Vec3> halves;
   for (const float size : {0.5F, 0.95F, 7.6F, 0.2F, 1.9F, 0.05F, 0.125F}) {
@@ -220,7 +211,7 @@ TEST(Posrot, UsualSizesAreFoundExactlyFarFromTheOrigin) {
   }
   const TemporaryDirectory directory;
   PosrotWriter writer(directory / "a.posrot",
-                      sceneOf(static_cast<std::uint32_t>(unturned.size()), 0));
+                      posrotScene(static_cast<std::uint32_t>(unturned.size()), 0));
   writer.writeBoxes(unturned);
   writer.finish();
   PosrotReader reader(directory / "a.posrot");
@@ -229,7 +220,7 @@ TEST(Posrot, UsualSizesAreFoundExactlyFarFromTheOrigin) {
 }
 
 TEST(Posrot, UnusualSizesAreFoundUpToTheRoundingOfTheCorners) {
-  Bodies random(6);
+  Movers random(6);
   std::vector<Aabb> unturned;
   std::vector<float> halves;
   for (int i = 0; i < 2000; ++i) {
@@ -238,7 +229,7 @@ TEST(Posrot, UnusualSizesAreFoundUpToTheRoundingOfTheCorners) {
         boxAround(random.pose(100).position, {halves.back(), halves.back(), halves.back()}));
   }
   const TemporaryDirectory directory;
-  PosrotWriter writer(directory / "a.posrot", sceneOf(2000, 0));
+  PosrotWriter writer(directory / "a.posrot", posrotScene(2000, 0));
   writer.writeBoxes(unturned);
   writer.finish();
   PosrotReader reader(directory / "a.posrot");
@@ -252,7 +243,7 @@ TEST(Posrot, UnusualSizesAreFoundUpToTheRoundingOfTheCorners) {
 }
 
 TEST(Posrot, ReadingAnywhereGoesOnFromThere) {
-  PosrotReader reader = readerOf(handMade());
+  PosrotReader reader = posrotOf(handMadePosrot());
   EXPECT_EQ(reader.at(1).index, 1U);
   reader.hash();
   EXPECT_EQ(reader.next()->index, 2U);
@@ -263,7 +254,7 @@ TEST(Posrot, ReadingAnywhereGoesOnFromThere) {
 TEST(Posrot, NoBodiesOrNoFrames) {
   for (const auto& [objects, frames] : {std::pair{0U, 0U}, {0U, 3U}, {3U, 0U}}) {
     const TemporaryDirectory directory;
-    PosrotWriter writer(directory / "a.posrot", sceneOf(objects, frames));
+    PosrotWriter writer(directory / "a.posrot", posrotScene(objects, frames));
     writer.writeBoxes(chain(objects));
     for (std::uint32_t f = 0; f < frames; ++f) writer.write({});
     writer.finish();
@@ -277,7 +268,7 @@ TEST(Posrot, NoBodiesOrNoFrames) {
 
 TEST(Posrot, TheExtensionTellsTheKind) {
   const TemporaryDirectory directory;
-  const Bytes bytes = handMade();
+  const Bytes bytes = handMadePosrot();
   for (const char* name : {"a.posrot", "a.aabbs", "a"}) {
     std::ofstream(directory / name, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()),
@@ -294,7 +285,7 @@ TEST(Posrot, TheExtensionTellsTheKind) {
 TEST(PosrotWriter, LeavesNothingUnlessWhole) {
   const TemporaryDirectory directory;
   {
-    PosrotWriter writer(directory / "a.posrot", sceneOf(2, 1));
+    PosrotWriter writer(directory / "a.posrot", posrotScene(2, 1));
     EXPECT_THROW(writer.writeBoxes(chain(3)), std::logic_error);
     writer.writeBoxes(chain(2));
     EXPECT_THROW(writer.write(std::vector<Pose>(1)), std::logic_error);
@@ -305,7 +296,7 @@ TEST(PosrotWriter, LeavesNothingUnlessWhole) {
 
 TEST(PosrotWriter, RefusesWhatNoReaderWouldTake) {
   const TemporaryDirectory directory;
-  PosrotWriter writer(directory / "a.posrot", sceneOf(2, 1));
+  PosrotWriter writer(directory / "a.posrot", posrotScene(2, 1));
   std::vector<Aabb> boxes = chain(2);
   boxes[1].max[0] = -9;
   EXPECT_THAT(inputErrorOf([&] { writer.writeBoxes(boxes); }),
@@ -341,34 +332,34 @@ TEST(BadPosrot, BrokenRecordsAreNamedWithTheirPlace) {
       {460, kMax, "frame 2, body 0 (byte 432): the pose has a quaternion of length"},
       {272, kNan, "byte 272: the world box is not a number"}};
   for (const Fault& fault : faults) {
-    Bytes bytes = handMade();
+    Bytes bytes = handMadePosrot();
     putFloat(bytes, fault.offset, fault.value);
-    EXPECT_THAT(faultOf(bytes), AllOf(StartsWith("test.posrot: "), HasSubstr(fault.text)));
+    EXPECT_THAT(posrotFault(bytes), AllOf(StartsWith("test.posrot: "), HasSubstr(fault.text)));
   }
 }
 
 TEST(BadPosrot, QuaternionsMayBeOffByATolerance) {
-  Bytes bytes = handMade();
+  Bytes bytes = handMadePosrot();
   putFloat(bytes, 428, 1 + kRotationTolerance / 3);
-  EXPECT_EQ(readerOf(bytes).at(1).boxes.size(), 2U);
+  EXPECT_EQ(posrotOf(bytes).at(1).boxes.size(), 2U);
   putFloat(bytes, 428, 1 + kRotationTolerance);
-  EXPECT_THAT(faultOf(bytes), HasSubstr("quaternion"));
+  EXPECT_THAT(posrotFault(bytes), HasSubstr("quaternion"));
 }
 
 TEST(BadPosrot, WrongLengthsAndCounts) {
-  const Bytes whole = handMade();
-  EXPECT_THAT(faultOf({}), HasSubstr("too short"));
+  const Bytes whole = handMadePosrot();
+  EXPECT_THAT(posrotFault({}), HasSubstr("too short"));
   for (const std::size_t size : {303, 304, 367, 400, 495}) {
-    EXPECT_THAT(faultOf(Bytes(whole.begin(), whole.begin() + size)), HasSubstr("too short"));
+    EXPECT_THAT(posrotFault(Bytes(whole.begin(), whole.begin() + size)), HasSubstr("too short"));
   }
   Bytes longer = whole;
   longer.push_back(0);
-  EXPECT_THAT(faultOf(longer), HasSubstr("497 bytes is too long"));
+  EXPECT_THAT(posrotFault(longer), HasSubstr("497 bytes is too long"));
   Bytes lying = whole;
   lying[259] = 0x40;  // 2^30 + 2 objects
-  EXPECT_THAT(faultOf(lying), HasSubstr("too short"));
+  EXPECT_THAT(posrotFault(lying), HasSubstr("too short"));
   lying[259] = 0xFF;
-  EXPECT_THAT(faultOf(lying), HasSubstr("byte 256: negative number of objects"));
+  EXPECT_THAT(posrotFault(lying), HasSubstr("byte 256: negative number of objects"));
 }
 
 }  // namespace

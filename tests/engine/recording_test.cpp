@@ -25,7 +25,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 /// A recording of two bodies, one frame and a world from -8 to 8, spelled out.
-Bytes handMade() {
+Bytes handMadeRecording() {
   Bytes bytes(304);
   std::memcpy(bytes.data(), "FreeFall", 8);
   std::memcpy(bytes.data() + 128, "Cubes", 5);
@@ -56,10 +56,10 @@ SceneInfo handMadeScene() { return {"FreeFall", "Cubes", 2, 1, {{-8, -8, -8, 0},
 
 Aabb handMadeBox(float low) { return {{low, 0, 0, 0}, {2, 2, 2, 0}}; }
 
-RecordingReader readerOf(const Bytes& bytes) {
+RecordingReader recordingOf(const Bytes& bytes) {
   return tests::readerOf<RecordingReader>(bytes, "test.aabbs");
 }
-std::string faultOf(const Bytes& bytes) {
+std::string recordingFault(const Bytes& bytes) {
   return tests::faultOf<RecordingReader>(bytes, "test.aabbs");
 }
 
@@ -69,11 +69,11 @@ TEST(Recording, IsWrittenByteForByte) {
   writer.write(std::vector{handMadeBox(0), handMadeBox(1)});
   writer.write(std::vector{handMadeBox(0.5F), handMadeBox(1.5F)});
   writer.finish();
-  EXPECT_EQ(bytesOf(directory / "a.aabbs"), handMade());
+  EXPECT_EQ(bytesOf(directory / "a.aabbs"), handMadeRecording());
 }
 
 TEST(Recording, IsReadByteForByte) {
-  RecordingReader reader = readerOf(handMade());
+  RecordingReader reader = recordingOf(handMadeRecording());
   EXPECT_EQ(reader.scene(), handMadeScene());
   const Frame first = reader.rewind();
   EXPECT_EQ(first.index, 0U);
@@ -148,11 +148,11 @@ TEST(Recording, NoBodiesOrNoFrames) {
 }
 
 TEST(Recording, TheHashTellsFilesApart) {
-  Bytes bytes = handMade();
-  const std::string hash = readerOf(bytes).hash();
-  EXPECT_EQ(readerOf(bytes).hash(), hash);
+  Bytes bytes = handMadeRecording();
+  const std::string hash = recordingOf(bytes).hash();
+  EXPECT_EQ(recordingOf(bytes).hash(), hash);
   putFloat(bytes, bytes.size() - 8, 2.5F);
-  EXPECT_NE(readerOf(bytes).hash(), hash);
+  EXPECT_NE(recordingOf(bytes).hash(), hash);
 }
 
 TEST(RecordingWriter, LeavesNothingUnlessFinished) {
@@ -255,7 +255,7 @@ TEST(RecordingWriter, SaysWhereItCannotWrite) {
 
 TEST(RecordAll, CopiesASourceUnlessStopped) {
   const TemporaryDirectory directory;
-  RecordingReader source = readerOf(handMade());
+  RecordingReader source = recordingOf(handMadeRecording());
   source.at(1);  // it starts over, wherever the source is
   RecordingWriter copy(directory / "copy.aabbs", source.scene());
   std::vector<std::uint32_t> told;
@@ -272,19 +272,19 @@ TEST(RecordAll, CopiesASourceUnlessStopped) {
 }
 
 TEST(BadRecording, TooShortOrTooLong) {
-  const Bytes whole = handMade();
+  const Bytes whole = handMadeRecording();
   for (const std::size_t size : {0, 1, 128, 303}) {
-    EXPECT_THAT(faultOf(Bytes(whole.begin(), whole.begin() + size)),
+    EXPECT_THAT(recordingFault(Bytes(whole.begin(), whole.begin() + size)),
                 AllOf(StartsWith("test.aabbs: "), HasSubstr("too short")));
   }
   for (const std::size_t size : {304, 336, 431}) {
-    EXPECT_THAT(faultOf(Bytes(whole.begin(), whole.begin() + size)),
+    EXPECT_THAT(recordingFault(Bytes(whole.begin(), whole.begin() + size)),
                 AllOf(HasSubstr(std::to_string(size) + " bytes is too short"),
                       HasSubstr("2 objects and 1 frames"), HasSubstr("= 432 bytes")));
   }
   Bytes longer = whole;
   longer.push_back(0);
-  EXPECT_THAT(faultOf(longer), HasSubstr("433 bytes is too long"));
+  EXPECT_THAT(recordingFault(longer), HasSubstr("433 bytes is too long"));
 }
 
 TEST(BadRecording, NegativeAndAbsurdCounts) {
@@ -302,21 +302,21 @@ TEST(BadRecording, NegativeAndAbsurdCounts) {
                         {2, 0, "too long"},
                         {1, 1, "too long"}};
   for (const Counts& counts : all) {
-    Bytes bytes = handMade();
+    Bytes bytes = handMadeRecording();
     putInt(bytes, 256, counts.objects);
     putInt(bytes, 260, counts.frames);
-    EXPECT_THAT(faultOf(bytes), HasSubstr(counts.fault));
+    EXPECT_THAT(recordingFault(bytes), HasSubstr(counts.fault));
   }
 }
 
 // 2^30 objects in 2^29 sets take 2^64 bytes, which is 0 in 64 bits: the size would look right, and
 // a frame would take 32 GiB.
 TEST(BadRecording, CountsThatWrapAround) {
-  Bytes bytes = handMade();
+  Bytes bytes = handMadeRecording();
   bytes.resize(304);
   putInt(bytes, 256, 1 << 30);
   putInt(bytes, 260, (1 << 29) - 1);
-  EXPECT_THAT(faultOf(bytes), HasSubstr("too short"));
+  EXPECT_THAT(recordingFault(bytes), HasSubstr("too short"));
 }
 
 TEST(BadRecording, BrokenBoxesAreNamedWithTheirPlace) {
@@ -338,27 +338,27 @@ TEST(BadRecording, BrokenBoxesAreNamedWithTheirPlace) {
                           {272, kNan, "byte 272: the world box is not a number"},
                           {276, 9, "byte 272: the world box is inverted"}};
   for (const Fault& fault : faults) {
-    Bytes bytes = handMade();
+    Bytes bytes = handMadeRecording();
     putFloat(bytes, fault.offset, fault.value);
-    EXPECT_THAT(faultOf(bytes), AllOf(StartsWith("test.aabbs: "), HasSubstr(fault.text)));
+    EXPECT_THAT(recordingFault(bytes), AllOf(StartsWith("test.aabbs: "), HasSubstr(fault.text)));
   }
 }
 
 TEST(BadRecording, UnprintableNames) {
   for (const unsigned char c : Bytes{0x01, 0x0A, 0x7F, 0xC3, 0xFF}) {
-    Bytes bytes = handMade();
+    Bytes bytes = handMadeRecording();
     bytes[3] = c;
-    EXPECT_THAT(faultOf(bytes), HasSubstr("byte 0: the scene name is not printable"));
+    EXPECT_THAT(recordingFault(bytes), HasSubstr("byte 0: the scene name is not printable"));
   }
-  Bytes endless = handMade();
+  Bytes endless = handMadeRecording();
   std::fill_n(endless.begin() + 128, 128, 'x');
-  EXPECT_THAT(faultOf(endless), HasSubstr("byte 128: the object type is not printable"));
+  EXPECT_THAT(recordingFault(endless), HasSubstr("byte 128: the object type is not printable"));
 }
 
 TEST(BadRecording, CutWhileItIsRead) {
   const TemporaryDirectory directory;
   const std::filesystem::path path = directory / "a.aabbs";
-  const Bytes bytes = handMade();
+  const Bytes bytes = handMadeRecording();
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()),
              static_cast<std::streamsize>(bytes.size()));

@@ -30,7 +30,7 @@ TEST(Runner, ARightAnswerIsOk) {
     EXPECT_EQ(result.pairs_max, 3U);
     ASSERT_EQ(result.repetitions.size(), 3U);
     for (const Repetition& repetition : result.repetitions) {
-      EXPECT_EQ(repetition.frames.size(), kFrames);
+      EXPECT_EQ(repetition.frames.size(), kChainFrames);
     }
   }
 }
@@ -109,7 +109,8 @@ TEST_P(FaultyAnswer, IsAMismatchWithTheFrameAndThePair) {
     EXPECT_EQ(result.differences[0].frame, kFaultyFrame);
     EXPECT_EQ(result.differences[0].repetition, 1);
     EXPECT_THAT(fault.listed(result.differences[0]), ElementsAre(fault.pair));
-    EXPECT_EQ(result.repetitions.at(0).frames.size(), kFrames) << "times are kept, with the status";
+    EXPECT_EQ(result.repetitions.at(0).frames.size(), kChainFrames)
+        << "times are kept, with the status";
   }
 }
 
@@ -129,9 +130,9 @@ TEST(Runner, UncheckedFaultsAreNotClaimedToBeRight) {
 TEST(Runner, EveryWrongFrameIsListedAndTheFirstIsTheReason) {
   const Case wrong = caseOf({.on_answer = [](std::uint32_t, auto& answer) { answer.clear(); }});
   const CaseResult result = runOnChain(wrong);
-  EXPECT_EQ(result.missed_count, 3U * kFrames);
-  ASSERT_EQ(result.differences.size(), kFrames);
-  for (std::uint32_t i = 0; i < kFrames; ++i) EXPECT_EQ(result.differences[i].frame, i + 1);
+  EXPECT_EQ(result.missed_count, 3U * kChainFrames);
+  ASSERT_EQ(result.differences.size(), kChainFrames);
+  for (std::uint32_t i = 0; i < kChainFrames; ++i) EXPECT_EQ(result.differences[i].frame, i + 1);
   EXPECT_THAT(result.reason, StartsWith("frame 1: 3 missed"));
 }
 

@@ -14,7 +14,7 @@
 
 namespace broadmark::tests {
 
-inline constexpr std::uint32_t kFrames = 6;
+inline constexpr std::uint32_t kChainFrames = 6;
 inline constexpr std::uint32_t kFaultyFrame = 3;
 
 inline void wait(double seconds) {
@@ -24,7 +24,7 @@ inline void wait(double seconds) {
 /// A chain of bodies that moves as a whole.
 class ChainSource final : public IndexedFrames {
  public:
-  explicit ChainSource(std::uint32_t objects = 4, std::uint32_t frames = kFrames)
+  explicit ChainSource(std::uint32_t objects = 4, std::uint32_t frames = kChainFrames)
       : scene_{"Chain", "Cubes", objects, frames, {{0, 0, 0, 0}, {100, 100, 100, 0}}} {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }

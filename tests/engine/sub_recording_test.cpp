@@ -15,7 +15,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-std::vector<Aabb> boxesOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
+std::vector<Aabb> copyOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
 
 std::unique_ptr<RecordingReader> recorded(FrameSource& source) {
   RecordingWriter writer(source.scene());
@@ -30,18 +30,18 @@ TEST(IndexedFrames, GiveTheirFramesInAnyOrder) {
   FrameList list(live);
   std::vector<std::vector<Aabb>> all;
   WanderingBoxes third(5, 9, 1);
-  recordAll(third, [&](const Frame& frame) { all.push_back(boxesOf(frame)); });
+  recordAll(third, [&](const Frame& frame) { all.push_back(copyOf(frame)); });
   for (const std::uint32_t index : {3U, 9U, 0U, 0U, 4U, 5U, 2U, 9U}) {
     for (IndexedFrames* frames : std::initializer_list<IndexedFrames*>{&list, recording.get()}) {
       const Frame frame = frames->at(index);
       EXPECT_EQ(frame.index, index);
-      EXPECT_EQ(boxesOf(frame), all[index]);
+      EXPECT_EQ(copyOf(frame), all[index]);
     }
   }
   EXPECT_THAT(inputErrorOf([&] { list.at(10); }), HasSubstr("no frame 10"));
   EXPECT_THAT(inputErrorOf([&] { recording->at(10); }), HasSubstr("no frame 10"));
-  EXPECT_EQ(boxesOf(list.at(1)), all[1]);
-  EXPECT_EQ(boxesOf(*list.next()), all[2]) << "next() goes on from there";
+  EXPECT_EQ(copyOf(list.at(1)), all[1]);
+  EXPECT_EQ(copyOf(*list.next()), all[2]) << "next() goes on from there";
 }
 
 TEST(SubRecording, IsTheSelectedPart) {
@@ -59,8 +59,8 @@ TEST(SubRecording, IsTheSelectedPart) {
     std::uint32_t index = 0;
     for (std::optional<Frame> frame = part.rewind(); frame; frame = part.next()) {
       EXPECT_EQ(frame->index, index);
-      const std::vector<Aabb> all = boxesOf(check.at(selected.frames.at(index)));
-      EXPECT_THAT(boxesOf(*frame), ElementsAre(all[1], all[4], all[5]));
+      const std::vector<Aabb> all = copyOf(check.at(selected.frames.at(index)));
+      EXPECT_THAT(copyOf(*frame), ElementsAre(all[1], all[4], all[5]));
       ++index;
     }
     EXPECT_EQ(index, 3U);

@@ -8,9 +8,9 @@
 namespace broadmark::tests {
 namespace {
 
-constexpr float kHuge = std::numeric_limits<float>::max();
+constexpr float kLargest = std::numeric_limits<float>::max();
 
-Aabb cube(float centre, float side) {
+Aabb cubeAt(float centre, float side) {
   const float low = centre - side / 2;
   const float high = centre + side / 2;
   return {{low, low, low}, {high, high, high}};
@@ -42,12 +42,12 @@ TEST(ViewSpace, KeepsItsPrecisionFarFromTheOrigin) {
 }
 
 TEST(ViewSpace, IsFiniteForEveryFiniteBox) {
-  for (const Aabb& box :
-       {Aabb{}, cube(7, 0), cube(0, kHuge), cube(0, 1e-38F),
-        Aabb{{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}}, Aabb{{5, 5, 5}, {-5, -5, -5}}}) {
+  for (const Aabb& box : {Aabb{}, cubeAt(7, 0), cubeAt(0, kLargest), cubeAt(0, 1e-38F),
+                          Aabb{{-kLargest, -kLargest, -kLargest}, {kLargest, kLargest, kLargest}},
+                          Aabb{{5, 5, 5}, {-5, -5, -5}}}) {
     const ViewSpace space = viewSpaceOf(box);
     EXPECT_GT(space.side, 0);
-    for (const float extreme : {-kHuge, 0.0F, kHuge}) {
+    for (const float extreme : {-kLargest, 0.0F, kLargest}) {
       for (const float value : space.toView(std::array{extreme, extreme, extreme, 0.0F})) {
         EXPECT_LE(std::abs(value), ViewSpace::kLimit);
       }
@@ -56,21 +56,21 @@ TEST(ViewSpace, IsFiniteForEveryFiniteBox) {
 }
 
 TEST(ShownBox, IsTheWorldWhenBodiesAreInIt) {
-  const Aabb world = cube(0, 10);
-  const std::vector<Aabb> boxes = {cube(0, 1), cube(4.9F, 1), cube(1000, 1)};
+  const Aabb world = cubeAt(0, 10);
+  const std::vector<Aabb> boxes = {cubeAt(0, 1), cubeAt(4.9F, 1), cubeAt(1000, 1)};
   EXPECT_EQ(shownBox(world, boxes), world);
   EXPECT_EQ(shownBox(world, {}), world);
 }
 
 TEST(ShownBox, HoldsTheBodiesWhenTheWorldDoesNot) {
-  const std::vector<Aabb> boxes = {cube(20, 2), cube(30, 2), cube(0, 1)};
-  EXPECT_EQ(shownBox(cube(0, 10), boxes), merged(cube(0, 10), boxes[1]));
+  const std::vector<Aabb> boxes = {cubeAt(20, 2), cubeAt(30, 2), cubeAt(0, 1)};
+  EXPECT_EQ(shownBox(cubeAt(0, 10), boxes), merged(cubeAt(0, 10), boxes[1]));
   // A world without extent, here far away, says nothing.
-  EXPECT_EQ(shownBox(cube(-500, 0), boxes), merged(boxes[2], boxes[1]));
+  EXPECT_EQ(shownBox(cubeAt(-500, 0), boxes), merged(boxes[2], boxes[1]));
 }
 
 TEST(FigureCamera, StandsWhereThePaperHasIt) {
-  const Camera camera = figureCamera(cube(0, 1), 1.5);
+  const Camera camera = figureCamera(cubeAt(0, 1), 1.5);
   EXPECT_FLOAT_EQ(camera.eye[0], 1.71F);
   EXPECT_FLOAT_EQ(camera.eye[1], 0.6F);
   EXPECT_FLOAT_EQ(camera.eye[2], 1.8F);
@@ -79,7 +79,7 @@ TEST(FigureCamera, StandsWhereThePaperHasIt) {
 
 TEST(FigureCamera, ShowsAllOfTheBoxAndFillsThePicture) {
   for (const double aspect : {0.05, 0.5, 1.0, 16.0 / 9, 20.0}) {
-    for (const Aabb& box : {cube(0, 1), Aabb{{-0.5F, -0.01F, -0.5F}, {0.5F, 0.01F, 0.5F}},
+    for (const Aabb& box : {cubeAt(0, 1), Aabb{{-0.5F, -0.01F, -0.5F}, {0.5F, 0.01F, 0.5F}},
                             Aabb{{-0.01F, -0.5F, -0.01F}, {0.01F, 0.5F, 0.01F}}}) {
       SCOPED_TRACE(aspect);
       float widest = 0;
@@ -94,7 +94,7 @@ TEST(FigureCamera, ShowsAllOfTheBoxAndFillsThePicture) {
 
 TEST(FigureCamera, KeepsProportionsForEveryAspect) {
   for (const double aspect : {0.5, 1.0, 3.0}) {
-    const Camera camera = figureCamera(cube(0, 1), aspect);
+    const Camera camera = figureCamera(cubeAt(0, 1), aspect);
     const float width = camera.window_max[0] - camera.window_min[0];
     const float height = camera.window_max[1] - camera.window_min[1];
     EXPECT_NEAR(width / height, aspect, 1e-4);
@@ -102,7 +102,7 @@ TEST(FigureCamera, KeepsProportionsForEveryAspect) {
 }
 
 TEST(FigureCamera, IsFiniteForAPoint) {
-  for (const float value : viewProjection(figureCamera(cube(0, 0), 1.5))) {
+  for (const float value : viewProjection(figureCamera(cubeAt(0, 0), 1.5))) {
     EXPECT_TRUE(std::isfinite(value));
   }
 }

@@ -20,7 +20,7 @@ Aabb boxOf(float low, float side) {
   return {{low, low, low, 0}, {low + side, low + side, low + side, 0}};
 }
 
-std::vector<Aabb> boxesOf(std::size_t count) {
+std::vector<Aabb> someBoxes(std::size_t count) {
   std::vector<Aabb> boxes;
   for (std::size_t i = 0; i < count; ++i) boxes.push_back(boxOf(static_cast<float>(i), 1));
   return boxes;
@@ -62,7 +62,7 @@ double luminance(Rgb colour) {
 TEST(Colouring, BeginsWithWhatOverlaps) {
   ASSERT_FALSE(colourModes().empty());
   EXPECT_EQ(colourModes()[0].id, "overlapping");
-  const std::vector<Aabb> boxes = boxesOf(3);
+  const std::vector<Aabb> boxes = someBoxes(3);
   const std::vector<std::uint32_t> overlaps = {0, 2, 1};
   ColouringInput input;
   input.boxes = boxes;
@@ -75,7 +75,7 @@ TEST(Colouring, BeginsWithWhatOverlaps) {
 
 TEST(Colouring, CountsAreShownInDoublingSteps) {
   const std::vector<std::uint32_t> overlaps = {0, 1, 2, 3, 4, 7, 8, 15, 16, 31, 32, 4'000'000'000};
-  const std::vector<Aabb> boxes = boxesOf(overlaps.size());
+  const std::vector<Aabb> boxes = someBoxes(overlaps.size());
   ColouringInput input;
   input.boxes = boxes;
   input.overlaps = overlaps;
@@ -85,7 +85,7 @@ TEST(Colouring, CountsAreShownInDoublingSteps) {
 }
 
 TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
-  const std::vector<Aabb> boxes = boxesOf(6);
+  const std::vector<Aabb> boxes = someBoxes(6);
   const std::vector<std::uint32_t> overlaps = {0, 1, 1, 1, 1, 0};
   const std::vector<Pair> missed = {{0, 1}, {2, 77}};
   const std::vector<Pair> false_pairs = {{1, 3}, {88, 99}};
@@ -99,7 +99,7 @@ TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
 }
 
 TEST(Colouring, MotionIsSeenAgainstThePreviousFrame) {
-  const std::vector<Aabb> boxes = boxesOf(3);
+  const std::vector<Aabb> boxes = someBoxes(3);
   std::vector<Aabb> previous = boxes;
   previous[1].max[2] += 1e-3F;
   ColouringInput input;
@@ -124,7 +124,7 @@ TEST(Colouring, EveryModeColoursOddInput) {
   const std::vector<Aabb> odd = {{{-kHuge, -kHuge, -kHuge}, {kHuge, kHuge, kHuge}},
                                  {{0, 0, 0}, {0, 0, 0}},
                                  {{1, 1, 1}, {-1, -1, -1}}};
-  const std::vector<Aabb> same = boxesOf(4);
+  const std::vector<Aabb> same = someBoxes(4);
   const std::vector<Pair> pairs = {{0, 1}, {5, 700}};
   for (const ColourMode& mode : colourModes()) {
     Colouring colouring;
@@ -151,7 +151,7 @@ TEST(Colouring, ModesAreNamedOnce) {
 }
 
 TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
-  std::vector<Aabb> boxes = boxesOf(7);
+  std::vector<Aabb> boxes = someBoxes(7);
   for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = boxOf(0, std::pow(2.0F, float(i)));
   const std::vector<std::uint32_t> overlaps = {0, 1, 2, 4, 8, 16, 32};
   for (const bool dark : {false, true}) {

@@ -23,14 +23,14 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kPictureWidth = 320;
+constexpr int kPictureHeight = 240;
 
 bool isInstalled(const std::string& library) {
   return dlopen(library.c_str(), RTLD_LAZY | RTLD_NODELETE) != nullptr;
 }
 
-SceneInfo sceneOf(std::size_t objects, float side) {
+SceneInfo sceneWithSide(std::size_t objects, float side) {
   return {"FreeFall", "Cubes", static_cast<std::uint32_t>(objects), 100, cube({0, 0, 0}, side)};
 }
 
@@ -45,8 +45,8 @@ struct TestScene {
   }
   Picture draw(OffscreenContext& context, std::size_t max_batch = 1U << 30U) const {
     const PairRun run = pairs;
-    return drawFrame(context, sceneOf(boxes.size(), 10), {60, boxes}, {&run, 1}, kWidth, kHeight,
-                     max_batch);
+    return drawFrame(context, sceneWithSide(boxes.size(), 10), {60, boxes}, {&run, 1},
+                     kPictureWidth, kPictureHeight, max_batch);
   }
 
   std::vector<Aabb> boxes;
@@ -56,7 +56,7 @@ struct TestScene {
 Picture drawBoxes(OffscreenContext& context, const SceneInfo& scene, const std::vector<Aabb>& boxes,
                   const std::vector<Pair>& pairs = {}) {
   const PairRun run = pairs;
-  return drawFrame(context, scene, {1, boxes}, {&run, 1}, kWidth, kHeight);
+  return drawFrame(context, scene, {1, boxes}, {&run, 1}, kPictureWidth, kPictureHeight);
 }
 
 std::array<int, 3> colourAt(const Picture& picture, const SceneInfo& scene,
@@ -112,7 +112,7 @@ TEST_P(EachSource, DrawsTheGoldenPicture) {
 }
 
 TEST_P(EachSource, ColoursWhatOverlaps) {
-  const SceneInfo scene = sceneOf(3, 10);
+  const SceneInfo scene = sceneWithSide(3, 10);
   const std::vector<Aabb> boxes = {cube({-3, 0, 3}, 2), cube({3, 0, -3}, 2), cube({0, 3, 0}, 2)};
   const Picture picture = drawBoxes(context(), scene, boxes, {{0, 1}});
   // A little above the middle of the face that looks along z.
@@ -126,7 +126,7 @@ TEST_P(EachSource, ColoursWhatOverlaps) {
 }
 
 TEST_P(EachSource, DrawsTheNearerBoxInFront) {
-  const SceneInfo scene = sceneOf(2, 10);
+  const SceneInfo scene = sceneWithSide(2, 10);
   const std::vector<Aabb> boxes = {cube({1.14F, 0.4F, 1.2F}, 2), cube({-2.28F, -0.8F, -2.4F}, 2)};
   for (const bool reversed : {false, true}) {
     auto ordered = boxes;
@@ -160,17 +160,17 @@ TEST_P(EachSource, EmptyAndOddScenesAreDrawn) {
   for (const Aabb& world : {cube({0, 0, 0}, 10), Aabb{}, everything, cube({1e6F, 0, 0}, 0),
                             Aabb{{-5, 0, -5}, {5, 0, 5}}, Aabb{{1, 1, 1}, {-1, -1, -1}}}) {
     for (const std::vector<Aabb>& boxes : cases) {
-      SceneInfo scene = sceneOf(boxes.size(), 1);
+      SceneInfo scene = sceneWithSide(boxes.size(), 1);
       scene.world = world;
       const Picture picture = drawBoxes(context(), scene, boxes, {{0, 5}, {7, 9}});
-      EXPECT_EQ(picture.rgba.size(), std::size_t{4} * kWidth * kHeight);
+      EXPECT_EQ(picture.rgba.size(), std::size_t{4} * kPictureWidth * kPictureHeight);
       EXPECT_EQ(picture.rgba[3], 255);
     }
   }
 }
 
 TEST_P(EachSource, BodiesOutsideTheWorldAreSeen) {
-  SceneInfo scene = sceneOf(1, 0);
+  SceneInfo scene = sceneWithSide(1, 0);
   const std::vector<Aabb> boxes = {cube({500, 500, 500}, 3)};
   const Picture picture = drawBoxes(context(), scene, boxes);
   scene.world = boxes[0];  // what the camera looks at
@@ -179,7 +179,7 @@ TEST_P(EachSource, BodiesOutsideTheWorldAreSeen) {
 
 TEST_P(EachSource, SizesAreObeyedOrRefused) {
   const std::vector<Aabb> boxes = {cube({0, 0, 0}, 1)};
-  const SceneInfo scene = sceneOf(1, 4);
+  const SceneInfo scene = sceneWithSide(1, 4);
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 200}, {501, 7}}) {
     const Picture picture = drawFrame(context(), scene, {1, boxes}, {}, width, height);
     EXPECT_EQ(picture.width, width);

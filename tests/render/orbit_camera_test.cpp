@@ -10,7 +10,7 @@
 namespace broadmark::tests {
 namespace {
 
-constexpr double kAspect = 16.0 / 9;
+constexpr double kWideAspect = 16.0 / 9;
 const Aabb kUnit{{-0.5F, -0.5F, -0.5F}, {0.5F, 0.5F, 0.5F}};
 
 OrbitCamera tilted() {
@@ -23,27 +23,28 @@ OrbitCamera tilted() {
 
 /// x and y in [-1, 1].
 std::array<float, 2> seenAt(const OrbitCamera& camera, const std::array<float, 3>& point) {
-  const auto at = project(toCamera(camera, kAspect, kUnit), point);
+  const auto at = project(toCamera(camera, kWideAspect, kUnit), point);
   EXPECT_TRUE(at.has_value());
   return at ? std::array{(*at)[0], (*at)[1]} : std::array{9.0F, 9.0F};
 }
 
-void expectNear(const std::array<float, 2>& a, const std::array<float, 2>& b, float tolerance) {
+void expectNearPoint(const std::array<float, 2>& a, const std::array<float, 2>& b,
+                     float tolerance) {
   EXPECT_NEAR(a[0], b[0], tolerance);
   EXPECT_NEAR(a[1], b[1], tolerance);
 }
 
 TEST(OrbitCamera, LooksAtThePivotFromTheDistance) {
   const OrbitCamera orbit = tilted();
-  const Camera camera = toCamera(orbit, kAspect, kUnit);
+  const Camera camera = toCamera(orbit, kWideAspect, kUnit);
   EXPECT_EQ(camera.target, orbit.pivot);
   EXPECT_NEAR(focus(camera), orbit.distance, 1e-5F);
-  expectNear(seenAt(orbit, orbit.pivot), {0, 0}, 1e-5F);
+  expectNearPoint(seenAt(orbit, orbit.pivot), {0, 0}, 1e-5F);
 }
 
 TEST(OrbitCamera, DirectionsShowTheAxesTheyPromise) {
   const auto axes = [](Direction direction) {
-    return axesOf(toCamera(lookedFrom({}, direction), kAspect, kUnit));
+    return axesOf(toCamera(lookedFrom({}, direction), kWideAspect, kUnit));
   };
   EXPECT_NEAR(axes(Direction::front).right[0], 1, 1e-5F);
   EXPECT_NEAR(axes(Direction::front).back[2], 1, 1e-5F);
@@ -55,7 +56,7 @@ TEST(OrbitCamera, DirectionsShowTheAxesTheyPromise) {
   EXPECT_NEAR(axes(Direction::top).right[0], 1, 1e-3F);
   EXPECT_NEAR(axes(Direction::top).up[2], -1, 1e-3F);
   EXPECT_NEAR(axes(Direction::bottom).back[1], -1, 1e-3F);
-  const CameraAxes figure = axesOf(figureCamera(kUnit, kAspect));
+  const CameraAxes figure = axesOf(figureCamera(kUnit, kWideAspect));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(axes(Direction::figure).back[i], figure.back[i], 1e-4F);
   }
@@ -74,17 +75,18 @@ TEST(OrbitCamera, PanningKeepsThePivotUnderThePointer) {
   const OrbitCamera camera = tilted();
   // A part of the height is twice that much of a picture from -1 to 1.
   const OrbitCamera moved = panned(camera, 0.2F, -0.1F);
-  expectNear(seenAt(moved, camera.pivot), {0.4F / static_cast<float>(kAspect), -0.2F}, 1e-4F);
+  expectNearPoint(seenAt(moved, camera.pivot), {0.4F / static_cast<float>(kWideAspect), -0.2F},
+                  1e-4F);
 }
 
 TEST(OrbitCamera, ZoomingKeepsThePointUnderThePointer) {
   const OrbitCamera camera = tilted();
-  const std::array point = pointUnder(camera, kAspect, 0.6F, -0.3F);
-  expectNear(seenAt(camera, point), {0.6F, -0.3F}, 1e-4F);
+  const std::array point = pointUnder(camera, kWideAspect, 0.6F, -0.3F);
+  expectNearPoint(seenAt(camera, point), {0.6F, -0.3F}, 1e-4F);
   for (const float factor : {0.01F, 0.5F, 3.0F}) {
     const OrbitCamera near = zoomed(camera, factor, point);
     EXPECT_NEAR(near.distance, factor * camera.distance, 1e-5F);
-    expectNear(seenAt(near, point), {0.6F, -0.3F}, 1e-3F);
+    expectNearPoint(seenAt(near, point), {0.6F, -0.3F}, 1e-3F);
   }
 }
 
@@ -99,7 +101,7 @@ TEST(OrbitCamera, ZoomEndsAtItsLimits) {
 
 TEST(OrbitCamera, FliesAlongTheAxesOfThePicture) {
   const OrbitCamera camera = tilted();
-  const CameraAxes axes = axesOf(toCamera(camera, kAspect, kUnit));
+  const CameraAxes axes = axesOf(toCamera(camera, kWideAspect, kUnit));
   const OrbitCamera flying = flown(camera, 0.5F, 0.25F, -0.125F);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(
@@ -140,7 +142,7 @@ TEST(OrbitCamera, FocusOnAPointKeepsItsNeighbourhood) {
 TEST(OrbitCamera, TheWayBetweenViewsBeginsAndEndsWithThem) {
   const OrbitCamera from = lookedFrom({}, Direction::figure);
   const OrbitCamera to = focusedOn(lookedFrom({}, Direction::left),
-                                   {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kAspect);
+                                   {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kWideAspect);
   EXPECT_EQ(between(from, to, 0), from);
   EXPECT_EQ(between(from, to, 1), to);
   EXPECT_EQ(between(from, to, 7), to);
@@ -148,8 +150,9 @@ TEST(OrbitCamera, TheWayBetweenViewsBeginsAndEndsWithThem) {
 }
 
 TEST(OrbitCamera, TheAimStaysInThePictureOnTheWay) {
-  const OrbitCamera from = focusedOn(lookedFrom({}, Direction::figure), kUnit, kAspect);
-  const OrbitCamera to = focusedOn(from, {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kAspect);
+  const OrbitCamera from = focusedOn(lookedFrom({}, Direction::figure), kUnit, kWideAspect);
+  const OrbitCamera to =
+      focusedOn(from, {{0.4F, 0.4F, 0.4F}, {0.401F, 0.401F, 0.401F}}, kWideAspect);
   for (float t = 0; t <= 1; t += 0.05F) {
     const auto at = seenAt(between(from, to, t), to.pivot);
     EXPECT_LT(std::abs(at[0]), 1) << t;
@@ -168,7 +171,7 @@ TEST(OrbitCamera, TurnsTheShortWayRound) {
 
 TEST(OrbitCamera, DepthSuitsTheWholeWorldAndASingleBody) {
   const auto depthSteps = [](const OrbitCamera& orbit, float size) {
-    const Camera camera = toCamera(orbit, kAspect, kUnit);
+    const Camera camera = toCamera(orbit, kWideAspect, kUnit);
     EXPECT_LT(camera.near, orbit.distance / 2);
     // All of the world is before the far plane.
     EXPECT_GT(camera.far, orbit.distance);
@@ -180,14 +183,15 @@ TEST(OrbitCamera, DepthSuitsTheWholeWorldAndASingleBody) {
            float{1 << 23};
   };
   // A hundredth of what is looked at is many steps of a 24-bit depth buffer.
-  EXPECT_GT(depthSteps(focusedOn({}, kUnit, kAspect), 0.01F), 1000);
-  EXPECT_GT(depthSteps(focusedOn({}, {{0, 0, 0}, {0.001F, 0.001F, 0.001F}}, kAspect), 1e-5F), 100);
+  EXPECT_GT(depthSteps(focusedOn({}, kUnit, kWideAspect), 0.01F), 1000);
+  EXPECT_GT(depthSteps(focusedOn({}, {{0, 0, 0}, {0.001F, 0.001F, 0.001F}}, kWideAspect), 1e-5F),
+            100);
 }
 
 TEST(OrbitCamera, CuttingAwayBringsTheNearPlaneBeforeTheBox) {
   const Aabb box{{0.1F, 0.1F, 0.1F}, {0.2F, 0.2F, 0.2F}};
-  const OrbitCamera orbit = cutAway(focusedOn(tilted(), box, kAspect), box);
-  const Camera camera = toCamera(orbit, kAspect, kUnit);
+  const OrbitCamera orbit = cutAway(focusedOn(tilted(), box, kWideAspect), box);
+  const Camera camera = toCamera(orbit, kWideAspect, kUnit);
   EXPECT_GT(camera.near, orbit.distance / 3);
   for (unsigned i = 0; i < 8; ++i) {
     const auto at =

@@ -14,21 +14,22 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-constexpr int kWidth = 400;
-constexpr int kHeight = 300;
+constexpr int kScreenWidth = 400;
+constexpr int kScreenHeight = 300;
 
 /// A world of side 100 around (1000, 0, 0): world space and view space differ.
-const Aabb kWorld = cube({1000, 0, 0}, 100);
+const Aabb kFarWorld = cube({1000, 0, 0}, 100);
 
 Viewpoint viewpointFrom(Direction direction) {
-  const ViewSpace space = viewSpaceOf(kWorld);
-  const double aspect = static_cast<double>(kWidth) / kHeight;
-  const OrbitCamera orbit = focusedOn(lookedFrom({}, direction), space.toView(kWorld), aspect);
-  return {toCamera(orbit, aspect, space.toView(kWorld)), kWidth, kHeight, 0};
+  const ViewSpace space = viewSpaceOf(kFarWorld);
+  const double aspect = static_cast<double>(kScreenWidth) / kScreenHeight;
+  const OrbitCamera orbit = focusedOn(lookedFrom({}, direction), space.toView(kFarWorld), aspect);
+  return {toCamera(orbit, aspect, space.toView(kFarWorld)), kScreenWidth, kScreenHeight, 0};
 }
 
-std::array<float, 2> pixelOf(const Viewpoint& viewpoint, const std::array<float, 4>& world_point) {
-  return tests::pixelOf(viewpoint, viewSpaceOf(kWorld).toView(world_point));
+std::array<float, 2> screenPixelOf(const Viewpoint& viewpoint,
+                                   const std::array<float, 4>& world_point) {
+  return tests::pixelOf(viewpoint, viewSpaceOf(kFarWorld).toView(world_point));
 }
 
 std::array<float, 4> middle(const Aabb& box) {
@@ -40,7 +41,7 @@ std::optional<std::uint32_t> pick(const std::vector<Aabb>& boxes, const Viewpoin
                                   const std::array<float, 2>& pixel, BodyMask mask = {},
                                   float smallest = 2) {
   const auto hit =
-      pickBody(boxes, viewSpaceOf(kWorld), viewpoint, pixel[0], pixel[1], mask, smallest);
+      pickBody(boxes, viewSpaceOf(kFarWorld), viewpoint, pixel[0], pixel[1], mask, smallest);
   return hit ? std::optional(hit->body) : std::nullopt;
 }
 
@@ -61,7 +62,7 @@ TEST(Picking, FindsEachBodyUnderItsMiddle) {
     SCOPED_TRACE(name);
     const Viewpoint viewpoint = viewpointFrom(direction);
     for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-      EXPECT_EQ(pick(boxes, viewpoint, pixelOf(viewpoint, middle(boxes[body]))), body);
+      EXPECT_EQ(pick(boxes, viewpoint, screenPixelOf(viewpoint, middle(boxes[body]))), body);
     }
     EXPECT_EQ(pick(boxes, viewpoint, {2, 2}), std::nullopt);
   }
@@ -78,7 +79,7 @@ TEST(Picking, TakesTheForemostInAnyOrder) {
 TEST(Picking, DepthIsThatOfThePointHit) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   const std::vector<Aabb> boxes = {cube({1000, 0, 20}, 10)};
-  const auto hit = pickBody(boxes, viewSpaceOf(kWorld), viewpoint, 200, 150).value();
+  const auto hit = pickBody(boxes, viewSpaceOf(kFarWorld), viewpoint, 200, 150).value();
   EXPECT_NEAR(rayThrough(viewpoint, 200, 150).at(hit.depth)[2], 0.25F, 1e-4F);
 }
 
@@ -103,13 +104,13 @@ TEST(Picking, FlatAndTinyBodiesCanBeHit) {
   const Aabb speck = cube({980, 20, 0}, 0.001F);
   const std::vector<Aabb> boxes = {point, plate, speck};
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-    const std::array at = pixelOf(viewpoint, middle(boxes[body]));
+    const std::array at = screenPixelOf(viewpoint, middle(boxes[body]));
     EXPECT_EQ(pick(boxes, viewpoint, at), body);
     EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 1.8F}), body);
     EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 4}), std::nullopt);
     EXPECT_EQ(pick(boxes, viewpoint, {at[0], at[1] + 1.8F}, {}, 0.5F), std::nullopt);
   }
-  EXPECT_EQ(pick(boxes, viewpoint, pixelOf(viewpoint, {1009, 0, 0, 0})), 1U);
+  EXPECT_EQ(pick(boxes, viewpoint, screenPixelOf(viewpoint, {1009, 0, 0, 0})), 1U);
 }
 
 TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
@@ -121,7 +122,7 @@ TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
   std::vector<std::uint32_t> expected;
   std::vector<std::uint32_t> expected_whole;
   const auto is_within = [&](const std::array<float, 4>& point) {
-    const auto [x, y] = pixelOf(viewpoint, point);
+    const auto [x, y] = screenPixelOf(viewpoint, point);
     return x >= 120 && x <= 230 && y >= 90 && y <= 200;
   };
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
@@ -137,7 +138,7 @@ TEST(Selecting, TakesTheBodiesWhoseMiddleIsInTheRectangle) {
   }
   ASSERT_GT(expected.size(), 20U);
   ASSERT_GT(expected_whole.size(), 10U);
-  const ViewSpace space = viewSpaceOf(kWorld);
+  const ViewSpace space = viewSpaceOf(kFarWorld);
   EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{120, 90}, {230, 200}}), expected);
   EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{230, 90}, {120, 200}}), expected);
   EXPECT_EQ(bodiesWithin(boxes, space, viewpoint, {{120, 90}, {230, 200}}, {}, SelectBy::whole),
@@ -148,8 +149,8 @@ TEST(Selecting, LeavesOutBodiesMaskedOrBehindTheEye) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   const std::vector<Aabb> boxes = {cube({1000, 0, 0}, 2), cube({1000, 0, 9}, 2),
                                    cube({1000, 0, 5000}, 2)};
-  const ViewSpace space = viewSpaceOf(kWorld);
-  const ScreenRectangle all{{0, 0}, {kWidth, kHeight}};
+  const ViewSpace space = viewSpaceOf(kFarWorld);
+  const ScreenRectangle all{{0, 0}, {kScreenWidth, kScreenHeight}};
   EXPECT_THAT(bodiesWithin(boxes, space, viewpoint, all), ElementsAre(0, 1));
   const std::vector<std::uint8_t> mask = {0, 1, 1};
   EXPECT_THAT(bodiesWithin(boxes, space, viewpoint, all, mask), ElementsAre(1));

@@ -11,7 +11,6 @@ namespace {
 
 using scenes::PhysicsBody;
 using scenes::PhysicsEngine;
-using scenes::Random;
 
 const scenes::BoxShape kUnitCube{{0.5F, 0.5F, 0.5F}};
 
@@ -42,7 +41,7 @@ Point point(const Vec3& v) { return {v[0], v[1], v[2]}; }
 /// Bodies spread in a ball, flying in all directions at the same speed.
 std::vector<PhysicsBody*> addCrowd(PhysicsEngine& engine, std::size_t count, double radius,
                                    double speed) {
-  Random random(7);
+  scenes::Random random(7);
   std::vector<PhysicsBody*> bodies;
   while (bodies.size() < count) {
     Vec3 velocity = random.inBall(1);

@@ -69,12 +69,6 @@ struct Statistics {
   double moving_20 = 0;  ///< share in frame 20 that differ from frame 19
 };
 
-double meanHeight(const std::vector<Aabb>& boxes) {
-  double sum = 0;
-  for (const Aabb& box : boxes) sum += centreOf(box)[1];
-  return sum / static_cast<double>(boxes.size());
-}
-
 double spread(const std::vector<Aabb>& boxes) {
   double sum = 0;
   for (const Aabb& box : boxes) {

@@ -34,13 +34,6 @@ double volume(const Aabb& box) {
   return product;
 }
 
-void expectNear(const Aabb& a, const Aabb& b, float tolerance) {
-  for (int axis = 0; axis < 3; ++axis) {
-    ASSERT_NEAR(a.min[axis], b.min[axis], tolerance);
-    ASSERT_NEAR(a.max[axis], b.max[axis], tolerance);
-  }
-}
-
 /// The recording of poses beside one of boxes.
 fs::path posrotOf(const fs::path& aabbs) {
   return aabbs.parent_path().parent_path() / "Recordings_PositionRotation" /

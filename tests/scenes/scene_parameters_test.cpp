@@ -11,7 +11,7 @@ namespace broadmark::tests {
 namespace {
 
 using ::testing::HasSubstr;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json fileOf(const std::string& scene, const Json& parameters) {
   return {{"schema", "broadmark-scene-parameters/1"}, {"scene", scene}, {"parameters", parameters}};

@@ -45,6 +45,12 @@ inline Point centreOf(const Aabb& box) {
           (double{box.min[2]} + box.max[2]) / 2};
 }
 
+inline double meanHeight(std::span<const Aabb> boxes) {
+  double sum = 0;
+  for (const Aabb& box : boxes) sum += centreOf(box)[1];
+  return sum / static_cast<double>(boxes.size());
+}
+
 inline Point minus(const Point& a, const Point& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }

@@ -16,12 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-double meanHeight(std::span<const Aabb> boxes) {
-  double sum = 0;
-  for (const Aabb& box : boxes) sum += centreOf(box)[1];
-  return sum / static_cast<double>(boxes.size());
-}
-
 class EveryScene : public testing::TestWithParam<SceneListing> {};
 
 TEST_P(EveryScene, DescribesItselfByItsParameters) {

@@ -13,7 +13,7 @@
 
 #include "support/places.h"
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 namespace {
 
 std::string contents(std::FILE* file) {
@@ -95,4 +95,4 @@ void Program::enter(const std::filesystem::path& directory, const Surroundings& 
   ::_exit(127);
 }
 
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace broadmark::testing {
+namespace broadmark::tests {
 
 /// What a program left when it ended.
 struct Ended {
@@ -71,4 +71,4 @@ class Program {
   int wait_status_ = 0;
 };
 
-}  // namespace broadmark::testing
+}  // namespace broadmark::tests

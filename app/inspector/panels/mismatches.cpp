@@ -256,7 +256,6 @@ class MismatchesPanel final : public Panel {
 
   /// "they overlap, least on y".
   static std::string sentenceOn(const BoxPair& pair) {
-    constexpr std::string_view kAxes = "xyz";
     const std::size_t axis = decidingAxis(pair.a, pair.b);
     const AxisRelation relation = relationOn(axis, pair.a, pair.b);
     constexpr NameTable kSentences{

@@ -6,13 +6,13 @@
 
 #include "broadmark/scene_statistics.h"
 #include "inspector/panel.h"
+#include "inspector/wrong_pair.h"
 
 namespace broadmark::panels::selection {
 namespace {
 
 constexpr std::size_t kListedBodies = 200;
 constexpr std::size_t kListedPartners = 200;
-constexpr const char* kAxes[] = {"x", "y", "z"};
 
 class SelectionPanel final : public Panel {
  public:

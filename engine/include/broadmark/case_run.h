@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "broadmark/case.h"
 #include "broadmark/case_host.h"
@@ -97,8 +98,11 @@ class CaseRun {
   /// Calls the host; what that throws becomes the status. Whether all went well.
   template <class Call>
   bool attempt(Call&& call);
+  /// What the host answers; empty when that fails.
+  template <class Answer>
+  Answer ask(Answer (CaseHost::*question)());
   void fail(Status status, std::string reason);
-  [[nodiscard]] std::string atFrame(const char* what) const;
+  [[nodiscard]] std::string atFrame(std::string_view what) const;
 
   Case case_;
   RunPolicy policy_;

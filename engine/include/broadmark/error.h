@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace broadmark {
 
@@ -36,5 +37,8 @@ class HardLimitError : public std::runtime_error {
 
 /// Thrown out of long work that the user ended. No error, so that nobody takes it for one.
 struct Cancelled {};
+
+/// What the exception that is being handled says. Only inside a catch.
+std::string currentErrorText();
 
 }  // namespace broadmark
