@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <memory>
 #include <sstream>
 
 #include "broadmark/environment.h"
@@ -14,7 +15,6 @@
 #include "broadmark/names.h"
 #include "commands/command.h"
 #include "commands/session.h"
-#include "option_types.h"
 #include "parts.h"
 #include "sources/source.h"
 
@@ -44,11 +44,21 @@ std::vector<Command> allCommands() {
   };
 }
 
+/// Whether help shows it: CLI11's own way to hide an option takes its name away, which complaints
+/// need.
+bool isShown(const CLI::Option& option) { return !option.get_description().empty(); }
+
+class HelpFormatter final : public CLI::Formatter {
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return isShown(*option) ? Formatter::make_option(option, is_positional) : "";
+  }
+};
+
 /// An argument that `app` does not know, with the nearest of its options.
 std::string unexpected(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
   std::vector<std::string> known;
-  const auto shown = [](const CLI::Option* option) { return !option->get_group().empty(); };
+  const auto shown = [](const CLI::Option* option) { return isShown(*option); };
   for (const CLI::Option* option : app.get_options(shown)) known.push_back(option->get_name());
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearestName(name, known);
@@ -74,6 +84,7 @@ class CommandLine {
     app_.footer(parts::kInspector.included ? std::string(kWithoutHeadless) + kFooter : kFooter);
     app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     app_.set_version_flag("--version", thisEnvironment().version);
+    app_.formatter(std::make_shared<HelpFormatter>());
     app_.get_formatter()->column_width(34);
     app_.require_subcommand(0, 1);
     for (const Command& command : allCommands()) {
@@ -121,7 +132,7 @@ class CommandLine {
     for (const CLI::Option* option : app_.get_options()) {
       if (option->count() == 0) continue;
       throw InputError(fmt::format("{}: not an option of '{}' (see 'broadmark {} --help')",
-                                   nameOf(*option), command, command));
+                                   option->get_name(), command, command));
     }
   }
 

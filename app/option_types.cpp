@@ -158,12 +158,7 @@ void requirePart(const BuildPart& part, std::string_view option) {
 
 void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {
   if (part.included) return;
-  for (CLI::Option* option : options) option->group("");  // which CLI11 does not print
-}
-
-std::string nameOf(const CLI::Option& option) {
-  // CLI11 itself has no name for hidden options.
-  return option.get_group().empty() ? "--" + option.get_lnames().front() : option.get_name();
+  for (CLI::Option* option : options) option->description("");
 }
 
 CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {

@@ -82,11 +82,9 @@ CLI::Option* addRepeatable(CLI::App&, const std::string& name, const std::string
 std::string leftOut(const BuildPart&);
 /// Throws InputError if a part that `option` needs has been left out of this build.
 void requirePart(const BuildPart&, std::string_view option);
-/// Hides options from help if the part that they need has been left out of this build.
+/// Hides options from help if the part that they need has been left out of this build: they then
+/// have no description.
 void showWith(const BuildPart&, const std::vector<CLI::Option*>& options);
-
-/// How users write the option, also where it is hidden.
-std::string nameOf(const CLI::Option&);
 
 /// --plugin
 CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);

@@ -244,7 +244,7 @@ void SessionParser::Parts::requireNoConflict() const {
     if (!rule.applies) continue;
     for (const auto& [option, conflicts] : tagged) {
       if (option->count() == 0 || (conflicts & rule.conflict) == 0) continue;
-      throw InputError(fmt::format("{}: {}", nameOf(*option), rule.why));
+      throw InputError(fmt::format("{}: {}", option->get_name(), rule.why));
     }
   }
 }
