@@ -1,4 +1,5 @@
-# Quick builds: headers compiled once for many files, and ccache where it is installed.
+# Quick builds: headers compiled once for many files, and ccache where it is installed. (The presets
+# also make CMake compile several files as one: CMAKE_UNITY_BUILD.)
 #
 # Sources include what they use all the same: every file compiles without this, too
 # (CMAKE_DISABLE_PRECOMPILE_HEADERS; `./check --lint` does so).
