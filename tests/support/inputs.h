@@ -72,9 +72,10 @@ inline std::vector<Aabb> assorted(std::size_t n, std::uint32_t frame, std::uint6
   const float side = cubeRoot(10.0 * static_cast<double>(n));
   return generate(n, frame, seed, [&](Random& random, std::size_t i) {
     const float scale = i % 50 == 7 ? 5 : 1;
-    return boxAt(random.inCube(side),
-                 {random.uniform(0.1F, 1.9F) * scale, random.uniform(0.1F, 1.9F) * scale,
-                  random.uniform(0.1F, 1.9F) * scale});
+    // One after the other: compilers differ in the order of a call's arguments.
+    Vec3 edges;
+    for (float& edge : edges) edge = random.uniform(0.1F, 1.9F) * scale;
+    return boxAt(random.inCube(side), edges);
   });
 }
 
