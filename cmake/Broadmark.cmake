@@ -13,7 +13,7 @@ function(broadmark_configure target)
     target_compile_options(${target} PUBLIC -fsanitize=${BROADMARK_SANITIZE}
       -fno-omit-frame-pointer -fno-sanitize-recover=all)
     # GCC 12 sees uninitialised values in the standard library's own code when it is instrumented.
-    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(${target} PUBLIC -fsanitize=${BROADMARK_SANITIZE})
   endif()
 endfunction()
