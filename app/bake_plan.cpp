@@ -110,7 +110,17 @@ std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress&
         continue;
       }
       if (progress && !progress(path, ++number, total)) return {};
-      (isBaked(path, *job.simulation) ? plan.kept : missing).push_back(path);
+      if (isBaked(path, *job.simulation)) {
+        plan.kept.push_back(path);
+        continue;
+      }
+      if (isIntact(path)) {
+        throw InputError(fmt::format(
+            "{}: baked before with other parameters (see its .json): --force replaces it, another "
+            "--output keeps it",
+            path.string()));
+      }
+      missing.push_back(path);
     }
     job.paths = std::move(missing);
     if (!job.paths.empty()) plan.pending.push_back(std::move(job));

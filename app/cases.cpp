@@ -2,6 +2,9 @@
 
 #include "cases.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -9,6 +12,7 @@
 #include "broadmark/names.h"
 #include "option_types.h"
 #include "original/ids.h"
+#include "plugins.h"
 
 namespace broadmark {
 namespace {
@@ -41,6 +45,27 @@ class CaseList {
  private:
   std::vector<Case> cases_;
 };
+
+/// Takes over a part of a case's name: "avx2", "t4", "margin=0.1". Throws InputError.
+void takeCasePart(Case& made, const std::string& part, const std::string& name) {
+  const AlgorithmTraits& traits = made.algorithm.traits;
+  const auto isa = kIsas.find(part);
+  const std::size_t equals = part.find('=');
+  if (isa && traits.vectorised) {
+    made.isa = *isa;
+  } else if (equals != std::string::npos && equals > 0) {
+    made.parameters[part.substr(0, equals)] = part.substr(equals + 1);
+  } else if (part.size() > 1 && part[0] == 't' && part[1] >= '0' && part[1] <= '9' &&
+             traits.parallel) {
+    made.threads = parseThreadCount(part.substr(1));
+  } else {
+    throw InputError(fmt::format(
+        "'{}': '{}' is not {}{}KEY=VALUE", name, part,
+        traits.vectorised ? fmt::format("an instruction set ({}), ", fmt::join(kIsas.names(), ", "))
+                          : "",
+        traits.parallel ? "a number of threads (t4), " : ""));
+  }
+}
 
 }  // namespace
 
@@ -111,6 +136,26 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
     }
   }
   return cases.take();
+}
+
+Case caseNamed(const std::string& name, const std::string& device) {
+  constexpr std::string_view kLibraryEnd = ".so:";
+  const auto library = name.find(kLibraryEnd);
+  const std::size_t begin = library == std::string::npos ? 0 : library + kLibraryEnd.size();
+  std::vector<std::string> plugins;
+  if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
+  const std::size_t end = std::min(name.find('/', begin), name.size());
+  const Algorithm algorithm =
+      requireAlgorithm(name.substr(begin, end - begin), availableAlgorithms(plugins));
+
+  Case made = makeCase(algorithm, bestIsa(), allCores(), device, {});
+  for (std::size_t from = end + 1; from < name.size();) {
+    const std::size_t to = std::min(name.find('/', from), name.size());
+    takeCasePart(made, name.substr(from, to - from), name);
+    from = to + 1;
+  }
+  makeInstance(made);  // throws for bad parameters
+  return made;
 }
 
 void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known) {

@@ -29,6 +29,11 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 
+/// The case of this name, as caseName() writes it: "kd-mt/avx2/t4/margin=0.1"; an algorithm of a
+/// plug-in has the library's file in front: "libmine.so:my-sweep". What is left out is as wide as
+/// the processor. Throws InputError.
+Case caseNamed(const std::string& name, const std::string& device);
+
 /// The algorithm of this id, or null.
 const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
 /// The same; throws InputError if there is none.

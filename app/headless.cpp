@@ -233,6 +233,13 @@ std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions&
   return files;
 }
 
+/// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
+fs::path oneName(const fs::path& path) {
+  std::error_code failed;
+  fs::path name = fs::weakly_canonical(path, failed);
+  return failed ? path : name;
+}
+
 /// Fails now rather than after a long run: a file cannot be written, or would overwrite a source or
 /// another file of this run.
 void requireWritable(const SessionOptions& options, const Plan& plan) {
@@ -241,10 +248,10 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
     const Source& source = entry.source;
     const fs::path file =
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);
-    if (!file.empty()) taken[fs::weakly_canonical(file)] = "a source";
+    if (!file.empty()) taken[oneName(file)] = "a source";
   }
   for (const auto& [option, path] : plannedFiles(options, plan)) {
-    const auto [other, free] = taken.emplace(fs::weakly_canonical(path), option);
+    const auto [other, free] = taken.emplace(oneName(path), option);
     if (!free) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
                                    path.string(), other->second));

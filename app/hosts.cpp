@@ -11,6 +11,8 @@
 namespace broadmark {
 namespace {
 
+namespace fs = std::filesystem;
+
 std::uint64_t memoryLimit(const HostOptions& options) {
   constexpr double kGibibyte = 1 << 30;
   if (options.memory_limit_gib) {
@@ -23,10 +25,11 @@ std::uint64_t memoryLimit(const HostOptions& options) {
 }  // namespace
 
 HostMaker hostMaker(const HostOptions& options) {
-  if (options.in_process) return makeLocalHost;
+  const bool other = !options.program.empty();
+  if (options.in_process && !other) return makeLocalHost;
   const WorkerOptions worker{
       // This very program, even if another has taken its name meanwhile.
-      .command = {"/proc/self/exe", "worker"},
+      .command = {other ? fs::absolute(options.program).string() : "/proc/self/exe", "worker"},
       .hard_limit = std::chrono::duration<double>(options.hard_limit_seconds),
       .memory_limit_bytes = memoryLimit(options)};
   return [worker](const Case& run, CancelQuery cancelled) {

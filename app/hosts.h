@@ -1,6 +1,7 @@
 // Where the cases of a run live: in worker processes, which are this program again, or in this one.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 
 #include "broadmark/case_host.h"
@@ -9,6 +10,7 @@ namespace broadmark {
 
 struct HostOptions {
   bool in_process = false;
+  std::filesystem::path program;  ///< another build of this program, for the workers; "": this one
   double hard_limit_seconds = 60;
   std::optional<double> memory_limit_gib;  ///< nothing: as much as the machine has
 };

@@ -58,7 +58,10 @@ ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
     if (split == std::string::npos || split == 0) {
       throw InputError(fmt::format("--param: '{}' is not of the form KEY=VALUE", text));
     }
-    values[text.substr(0, split)] = text.substr(split + 1);
+    const std::string key = text.substr(0, split);
+    if (!values.emplace(key, text.substr(split + 1)).second) {
+      throw InputError(fmt::format("--param: '{}' is given twice", key));
+    }
   }
   return values;
 }
@@ -135,8 +138,10 @@ CLI::Option* addPath(CLI::App& app, const std::string& name, const std::string& 
 CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& type,
                      std::function<void(const std::vector<std::string>&)> set,
                      const std::string& doc) {
-  const auto split = [set = std::move(set)](const std::vector<std::string>& texts) {
-    if (const auto parts = splitList(texts); !parts.empty()) set(parts);
+  const auto split = [set = std::move(set), name](const std::vector<std::string>& texts) {
+    const std::vector<std::string> parts = splitList(texts);
+    if (parts.empty()) throw InputError(fmt::format("{}: '{}' names nothing", name, texts.front()));
+    set(parts);
   };
   return app.add_option_function<std::vector<std::string>>(name, split, doc)
       ->type_name(type)
@@ -202,6 +207,37 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& optio
       fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
   showWith(parts::kRenderer, {size, gl});
   return {size, gl};
+}
+
+CLI::Option* addDevice(CLI::App& app, std::string& device) {
+  CLI::Option* option = app.add_option(
+      "--device", device,
+      "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
+      "first, GPUs before CPUs)");
+  showWith(parts::kOpenCl, {option->type_name("NAME")});
+  return option;
+}
+
+void addHosts(CLI::App& app, HostOptions& hosts) {
+  const auto number = [&app](const char* name, const char* type, auto& target, const char* doc,
+                             const std::string& shown) {
+    return addValue(
+        app, name, type,
+        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
+        doc, shown);
+  };
+  CLI::Option* in_process =
+      app.add_flag("--in-process", hosts.in_process,
+                   "run all cases in this process, for debuggers and profilers, instead of each in "
+                   "a worker process of its own: a crash or a hang then ends everything, and "
+                   "memory is not measured");
+  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+         "limit on a single call into an algorithm: its process is then ended",
+         fmt::format("{}", hosts.hard_limit_seconds))
+      ->excludes(in_process);
+  number("--memory-limit", "GIB", hosts.memory_limit_gib,
+         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
+      ->excludes(in_process);
 }
 
 std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) {

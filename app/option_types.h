@@ -11,6 +11,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "hosts.h"
 #include "parts.h"
 #include "picture_options.h"
 #include "scene_options.h"
@@ -96,6 +97,10 @@ CLI::Option* addQuiet(CLI::App&, bool& quiet);
 CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
 /// --size and --gl. Help shows them only if there is a renderer.
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
+/// --device. Help shows it only if there is OpenCL.
+CLI::Option* addDevice(CLI::App&, std::string& device);
+/// Where cases run: --in-process, --hard-limit, --memory-limit
+void addHosts(CLI::App&, HostOptions&);
 /// What a scene is like: --objects, --object-type, --frames, …
 std::vector<CLI::Option*> addSceneOptions(CLI::App&, SceneOptions&);
 

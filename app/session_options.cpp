@@ -72,7 +72,6 @@ struct SessionParser::Parts {
   void addInspector();
   void addCases();
   void addRun();
-  void addHosts();
   void addOutput();
   void addPictures();
   void addScene();
@@ -115,12 +114,7 @@ void SessionParser::Parts::addCases() {
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
-  CLI::Option* device = app.add_option(
-      "--device", cases.device,
-      "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
-      "first, GPUs before CPUs)");
-  showWith(parts::kOpenCl, {device->type_name("NAME")});
-  tag(device, kCase);
+  tag(addDevice(app, cases.device), kCase);
   tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
           ->type_name("REGEX"),
       kCase | kInspector);
@@ -152,31 +146,8 @@ void SessionParser::Parts::addRun() {
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
-  addHosts();
+  addHosts(app, options.hosts);
   tag(addQuiet(app, options.quiet), kNone);
-}
-
-void SessionParser::Parts::addHosts() {
-  HostOptions& hosts = options.hosts;
-  const auto number = [this](const char* name, const char* type, auto& target, const char* doc,
-                             const std::string& shown) {
-    return addValue(
-        app, name, type,
-        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
-        doc, shown);
-  };
-  CLI::Option* in_process =
-      app.add_flag("--in-process", hosts.in_process,
-                   "run all cases in this process, for debuggers and profilers, instead of each in "
-                   "a worker process of its own: a crash or a hang then ends everything, and "
-                   "memory is not measured");
-  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
-         "limit on a single call into an algorithm: its process is then ended",
-         fmt::format("{}", hosts.hard_limit_seconds))
-      ->excludes(in_process);
-  number("--memory-limit", "GIB", hosts.memory_limit_gib,
-         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
-      ->excludes(in_process);
 }
 
 void SessionParser::Parts::addOutput() {
@@ -258,6 +229,10 @@ SessionOptions SessionParser::options() const {
   parts_->requireNoConflict();
   SessionOptions options = parts_->options;
   std::erase_if(options.outputs, [](const auto& output) { return output.second.empty(); });
+  if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
+    throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: name one .png",
+                                 options.screenshot.string()));
+  }
   if (!options.case_id.empty() && options.sources.size() != 1) {
     throw InputError("--case: the source must be one results file");
   }

@@ -9,6 +9,8 @@
 #include <limits>
 #include <tuple>
 
+#include "words.h"
+
 namespace broadmark {
 namespace {
 
@@ -16,20 +18,6 @@ namespace {
 std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-/// Three significant digits and a unit: "1.23 ms".
-std::string duration(double seconds) {
-  struct Unit {
-    double seconds;
-    const char* name;
-  };
-  for (const Unit unit : {Unit{1, "s"}, Unit{1e-3, "ms"}, Unit{1e-6, "µs"}}) {
-    if (seconds < unit.seconds) continue;
-    const double value = seconds / unit.seconds;
-    return fmt::format("{:.{}f} {}", value, value < 10 ? 2 : value < 100 ? 1 : 0, unit.name);
-  }
-  return fmt::format("{:.0f} ns", seconds * 1e9);
 }
 
 /// A result with its summary, computed once.
@@ -59,7 +47,7 @@ std::vector<Row> sortedRows(std::span<const CaseResult> results) {
 
 std::vector<std::string> cells(const Row& row, bool fastest) {
   const CaseResult& result = *row.result;
-  const auto time = [&](double seconds) { return row.timed() ? duration(seconds) : "–"; };
+  const auto time = [&](double seconds) { return row.timed() ? durationText(seconds) : "–"; };
   const auto count = [&](std::uint64_t n) {
     return result.checked && row.timed() ? fmt::format("{}", n) : "–";
   };

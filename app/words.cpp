@@ -19,6 +19,19 @@ std::string extentText(std::size_t bodies, std::size_t frames) {
                      frames == 1 ? "frame" : "frames");
 }
 
+std::string durationText(double seconds) {
+  struct Unit {
+    double seconds;
+    const char* name;
+  };
+  for (const Unit unit : {Unit{1, "s"}, Unit{1e-3, "ms"}, Unit{1e-6, "µs"}}) {
+    if (seconds < unit.seconds) continue;
+    const double value = seconds / unit.seconds;
+    return fmt::format("{:.{}f} {}", value, value < 10 ? 2 : value < 100 ? 1 : 0, unit.name);
+  }
+  return fmt::format("{:.0f} ns", seconds * 1e9);
+}
+
 std::string waitingTime(double seconds) {
   const auto whole = static_cast<long>(seconds + 0.5);
   if (whole < 60) return fmt::format("{} s", whole);

@@ -13,6 +13,9 @@ std::string bytesText(std::uint64_t bytes);
 /// "3 bodies, 1 frame"
 std::string extentText(std::size_t bodies, std::size_t frames);
 
+/// A measured time, with three significant digits: "1.23 ms".
+std::string durationText(double seconds);
+
 /// A waiting time: "2 min 05 s".
 std::string waitingTime(double seconds);
 

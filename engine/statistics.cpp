@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <vector>
 
 namespace broadmark {
@@ -34,6 +35,41 @@ std::vector<double> logarithms(std::span<const double> values) {
   std::vector<double> logs(values.size());
   std::ranges::transform(values, logs.begin(), [](double v) { return std::log(v); });
   return logs;
+}
+
+/// Autocovariance of values around `centre` at this lag.
+double autocovariance(std::span<const double> values, double centre, std::size_t lag) {
+  double sum = 0;
+  for (std::size_t i = lag; i < values.size(); ++i) {
+    sum += (values[i] - centre) * (values[i - lag] - centre);
+  }
+  return sum / static_cast<double>(values.size());
+}
+
+/// The lag from which on autocorrelations are noise: those of the next few are all small.
+std::size_t lastTellingLag(const std::vector<double>& covariances, std::size_t count) {
+  const auto n = static_cast<double>(count);
+  const double noise = 2 * std::sqrt(std::log10(n) / n) * covariances[0];
+  const auto run = std::max<std::size_t>(5, static_cast<std::size_t>(std::sqrt(std::log10(n))));
+  std::size_t quiet = 0;
+  for (std::size_t lag = 1; lag < covariances.size(); ++lag) {
+    quiet = std::abs(covariances[lag]) < noise ? quiet + 1 : 0;
+    if (quiet == run) return lag - run;
+  }
+  return covariances.size() - 1;
+}
+
+std::size_t shortestBlock(std::size_t count) {
+  return static_cast<std::size_t>(std::ceil(2 * std::cbrt(static_cast<double>(count))));
+}
+
+/// One at each value above the median, minus one below: what decides how sure the median is.
+std::vector<double> sidesOfMedian(std::span<const double> values, double median) {
+  std::vector<double> sides(values.size());
+  std::ranges::transform(values, sides.begin(), [median](double value) {
+    return static_cast<double>(value > median) - static_cast<double>(value < median);
+  });
+  return sides;
 }
 
 }  // namespace
@@ -78,6 +114,61 @@ double studentT975(double degrees) {
     return std::lerp(t0, t1, (1 / d0 - 1 / degrees) / (1 / d0 - 1 / d1));
   }
   return std::lerp(kNormal, kTable.back().t, kTable.back().degrees / degrees);
+}
+
+std::size_t blockLength(std::span<const double> values) {
+  constexpr std::size_t kFew = 8;
+  if (values.size() < kFew) return 1;
+  const auto n = static_cast<double>(values.size());
+  const double centre = mean(values);
+  std::vector<double> covariances;
+  const auto lags = std::min(values.size() / 2, static_cast<std::size_t>(10 * std::cbrt(n)) + 5);
+  for (std::size_t lag = 0; lag <= lags; ++lag) {
+    covariances.push_back(autocovariance(values, centre, lag));
+  }
+  if (covariances[0] == 0) return 1;
+  const auto window = std::min(2 * lastTellingLag(covariances, values.size()), lags);
+  double density = covariances[0];
+  double curvature = 0;
+  for (std::size_t lag = 1; lag <= window; ++lag) {
+    const double share = static_cast<double>(lag) / static_cast<double>(window);
+    const double weight = share <= 0.5 ? 1 : 2 * (1 - share);  // a trapezoid
+    density += 2 * weight * covariances[lag];
+    curvature += 2 * weight * static_cast<double>(lag) * covariances[lag];
+  }
+  if (density <= 0) return 1;
+  const double length = std::cbrt(1.5 * curvature * curvature / (density * density) * n);
+  return static_cast<std::size_t>(std::clamp(std::ceil(length), 1.0, std::ceil(n / 4)));
+}
+
+Estimate medianOfSeries(std::span<const double> values) {
+  constexpr int kResamples = 500;
+  const double median = quantile(values, 0.5);
+  // Never short: in short series likeness hides in the noise.
+  const std::size_t block =
+      std::max(blockLength(sidesOfMedian(values, median)), shortestBlock(values.size()));
+  std::mt19937_64 random;
+  std::uniform_int_distribution<std::size_t> starts(0, values.size() - 1);
+  std::vector<double> medians(kResamples);
+  std::vector<double> sample(values.size());
+  for (double& resampled : medians) {
+    for (std::size_t i = 0; i < sample.size();) {
+      std::size_t from = starts(random);
+      for (std::size_t k = 0; k < block && i < sample.size(); ++k, ++i, ++from) {
+        sample[i] = values[from % values.size()];
+      }
+    }
+    const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+    std::ranges::nth_element(sample, middle);
+    resampled = *middle;
+  }
+  std::ranges::sort(medians);
+  // A few blocks know less than resampling them says, as a few values do (Student).
+  const double blocks = static_cast<double>(values.size()) / static_cast<double>(block);
+  const double widen = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
+  return {median,
+          {median + widen * (sortedQuantile(medians, 0.025) - median),
+           median + widen * (sortedQuantile(medians, 0.975) - median)}};
 }
 
 std::optional<Interval> confidence95(std::span<const double> values) {

@@ -10,6 +10,7 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/scenes/simulation.h"
+#include "cases.h"
 #include "commands/command.h"
 #include "option_types.h"
 #include "original/ids.h"
@@ -21,6 +22,7 @@ namespace {
 
 struct Options {
   std::string what = "all";
+  std::vector<std::string> names;  ///< of algorithms; empty: all
   std::vector<std::string> plugins;
 };
 
@@ -126,7 +128,10 @@ struct Section {
 std::vector<Section> sections() {
   std::vector<Section> all = {
       {"algorithms",
-       [](const Options& options) { listAlgorithms(availableAlgorithms(options.plugins)); }},
+       [](const Options& options) {
+         const std::vector<Algorithm> known = availableAlgorithms(options.plugins);
+         listAlgorithms(options.names.empty() ? known : selectAlgorithms(options.names, known));
+       }},
       {"scenes", [](const Options&) { listScenes(); }},
       {"engines", [](const Options&) { listEngines(); }},
       {"recorders", [](const Options&) { listRecorders(); }}};
@@ -153,6 +158,10 @@ int run(const Options& options) {
   if (std::ranges::find(known, options.what) == known.end()) {
     throw InputError("list: " + unknownName("kind", options.what, known));
   }
+  if (!options.names.empty() && options.what != "algorithms") {
+    throw InputError(fmt::format("list: '{}': names are of algorithms: list algorithms {}",
+                                 options.names.front(), options.names.front()));
+  }
   bool first = true;
   for (const Section& section : sections()) {
     if (options.what != section.name && options.what != "all") continue;
@@ -166,6 +175,9 @@ std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("what", options->what, fmt::format("{}", fmt::join(choices(), ", ")))
       ->capture_default_str();
+  app.add_option("names", options->names,
+                 "only these algorithms: ids, families, patterns such as 'sap*'")
+      ->type_name("NAME");
   addPlugins(app, options->plugins);
   return [options] { return run(*options); };
 }

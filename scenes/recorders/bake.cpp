@@ -71,6 +71,15 @@ bool isBaked(const fs::path& path, Simulation& simulation) {
   }
 }
 
+bool isIntact(const fs::path& path) {
+  try {
+    const std::optional<std::string> hash = bakedHash(path);
+    return hash && openRecordingFile(path)->hash() == *hash;
+  } catch (const InputError&) {
+    return false;  // missing or damaged
+  }
+}
+
 std::optional<std::string> bakedHash(const fs::path& recording) {
   const fs::path path = sidecarPath(recording);
   if (!fs::exists(path)) return std::nullopt;

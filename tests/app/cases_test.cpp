@@ -166,5 +166,26 @@ TEST(OriginalCase, HasTheSettingsThreadsAndParameters) {
               AllOf(HasSubstr("m_algorithm"), HasSubstr("'BF_SS'"), HasSubstr("BF_SSE")));
 }
 
+TEST(CaseNamed, IsTheInverseOfCaseName) {
+  for (const char* name : {"sap", "kd-mt/avx2/t3", "kd-mt/avx2/t3/margin=0.5/objects_per_leaf=20",
+                           "time-validator/phase_us=7"}) {
+    EXPECT_EQ(caseName(caseNamed(name, "")), name);
+  }
+  EXPECT_EQ(caseNamed("kd/scalar", "").isa, Isa::scalar);
+  EXPECT_EQ(caseNamed("kd", "").isa, bestIsa());
+  EXPECT_EQ(caseNamed("sap", "0").device, "0");
+}
+
+TEST(CaseNamed, RefusesWhatTheAlgorithmDoesNotHeed) {
+  const auto refusalOf = [](const std::string& name) {
+    return inputErrorOf([&] { caseNamed(name, ""); });
+  };
+  EXPECT_THAT(refusalOf("sap/avx2"), AllOf(HasSubstr("'avx2'"), HasSubstr("KEY=VALUE")));
+  EXPECT_THAT(refusalOf("kd/t2"), AllOf(HasSubstr("'t2'"), HasSubstr("instruction set")));
+  EXPECT_THAT(refusalOf("kd-mt/two"), AllOf(HasSubstr("'two'"), HasSubstr("t4")));
+  EXPECT_THAT(refusalOf("kd/margin=x"), HasSubstr("margin"));
+  EXPECT_THAT(refusalOf(""), HasSubstr("algorithm"));
+}
+
 }  // namespace
 }  // namespace broadmark::tests

@@ -188,6 +188,10 @@ TEST(Session, UnknownNamesAreSuggested) {
   expectSessionRefused({"--recorder", "posrat"}, {"--recorder", "'posrat'", "'posrot'"});
   expectSessionRefused({"--param", "friction"}, {"--param", "'friction'", "KEY=VALUE"});
   expectSessionRefused({"--param", "=5"}, {"--param", "'=5'"});
+  expectSessionRefused({"--param", "a=1", "--param", "a=2"}, {"--param", "'a'", "twice"});
+  expectSessionRefused({"--objects", ""}, {"--objects", "names nothing"});
+  expectSessionRefused({"--algorithm", ","}, {"--algorithm", "','"});
+  expectSessionRefused({"--screenshot", "a.txt"}, {"--screenshot", "'a.txt'", ".png"});
   expectRefused({"bake", "--thread", "2", "--output", "o"}, {"bake", "'--threads'"});
   expectRefused({"verify", "--descrbe", "a"}, {"verify", "'--describe'"});
   expectRefused({"compare", "a", "b", "--fail-abov", "1"}, {"compare", "'--fail-above'"});
@@ -232,7 +236,7 @@ TEST(Session, ExportingACaseWritesNothingElse) {
   EXPECT_EQ(parseSession(exporting).export_case, "a.aabbs");
   for (const Arguments& lost :
        {Arguments{"--json", "j"}, Arguments{"--csv", "c"}, Arguments{"--csv-frames", "c"},
-        Arguments{"--record", "d"}, Arguments{"--screenshot", "s"}, Arguments{"--list"}}) {
+        Arguments{"--record", "d"}, Arguments{"--screenshot", "s.png"}, Arguments{"--list"}}) {
     Arguments arguments = exporting;
     arguments.insert(arguments.end(), lost.begin(), lost.end());
     expectRefused(arguments, {"--export-case", lost[0]});
@@ -255,7 +259,7 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
     expectRefused(window, {lost[0], "--ui"});
   }
   for (const Arguments& lost :
-       {Arguments{"--screenshot", "s"}, Arguments{"--size", "2x2"}, Arguments{"--gl", "egl"}}) {
+       {Arguments{"--screenshot", "s.png"}, Arguments{"--size", "2x2"}, Arguments{"--gl", "egl"}}) {
     expectRefused({"freefall", lost[0], lost[1]}, {lost[0], "--headless"});
     EXPECT_TRUE(parseSession({"freefall", lost[0], lost[1], "--headless", "--ui"}).inspector());
   }

@@ -169,8 +169,8 @@ TEST_F(BadInput, RecordingsWithUnprintableNames) {
 
 TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
   writeFile(file("plain"), "");
-  fs::create_directory(file("folder"));
-  ASSERT_EQ(::mkfifo(file("fifo").c_str(), 0600), 0);
+  fs::create_directory(file("folder.png"));
+  ASSERT_EQ(::mkfifo(file("fifo.png").c_str(), 0600), 0);
   // As large and long as this is, only an early complaint comes in time.
   const auto refused = [&](const Arguments& more, const std::vector<std::string>& words) {
     Arguments call = {"--headless", "gravity", "--objects", "100000",
@@ -181,12 +181,12 @@ TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
   std::vector<std::string> options = {"--json", "--csv", "--csv-frames"};
   if (parts::kRenderer.included) options.emplace_back("--screenshot");
   for (const std::string& option : options) {
-    refused({option, "missing/file"}, {"missing/file", "No such file or directory"});
-    refused({option, "plain/file"}, {"plain/file"});
-    refused({option, "folder"}, {"folder", "cannot write"});
-    refused({option, "fifo"}, {"fifo", "cannot write"});
+    refused({option, "missing/file.png"}, {"missing/file.png", "No such file or directory"});
+    refused({option, "plain/file.png"}, {"plain/file.png"});
+    refused({option, "folder.png"}, {"folder.png", "cannot write"});
+    refused({option, "fifo.png"}, {"fifo.png", "cannot write"});
   }
-  EXPECT_TRUE(fs::is_fifo(file("fifo")));
+  EXPECT_TRUE(fs::is_fifo(file("fifo.png")));
   refused({"--record", "plain/folder"}, {"plain/folder", "directory"});
   refused({"--record", "recordings", "--json", "missing/file"}, {"missing/file"});
   expectRefusal({"bake", "--output", "plain/folder"}, {"plain/folder", "directory"});

@@ -136,14 +136,20 @@ TEST_F(Bake, WhatIsThereIsKeptUnlessForced) {
   EXPECT_EQ(readFile(file(kBaked)), bytes);
 }
 
-TEST_F(Bake, WhatIsOtherOrDamagedIsBakedAnew) {
+TEST_F(Bake, AnotherRecordingIsReplacedOnlyWhenForced) {
   runQuietly(bakeCall());
   const std::string bytes = readFile(file(kBaked));
-  runQuietly(bakeCall({"--seed", "2"}));
-  EXPECT_NE(readFile(file(kBaked)), bytes);
-  runQuietly(bakeCall());
+  const Ended refused = run(bakeCall({"--seed", "2"}));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr(kBaked), HasSubstr("--force")));
   EXPECT_EQ(readFile(file(kBaked)), bytes);
+  runQuietly(bakeCall({"--seed", "2", "--force"}));
+  EXPECT_NE(readFile(file(kBaked)), bytes);
+}
 
+TEST_F(Bake, ADamagedRecordingIsBakedAnew) {
+  runQuietly(bakeCall());
+  const std::string bytes = readFile(file(kBaked));
   std::string damaged = bytes;
   damaged[400] ^= 1;
   writeFile(file(kBaked), damaged);
@@ -154,7 +160,7 @@ TEST_F(Bake, WhatIsOtherOrDamagedIsBakedAnew) {
 TEST_F(Bake, ParametersOfTheSceneCount) {
   runQuietly(bakeCall());
   const std::string bytes = readFile(file(kBaked));
-  runQuietly(bakeCall({"--density", "0.02", "--param", "friction=0.1"}));
+  runQuietly(bakeCall({"--density", "0.02", "--param", "friction=0.1", "--force"}));
   EXPECT_NE(readFile(file(kBaked)), bytes);
   const Json sidecar = readJson(file("out dir/Recordings_AABBs/FreeFall Cubes N40 F8frames.json"));
   EXPECT_EQ(sidecar.at("parameters").at("friction"), 0.1);

@@ -62,6 +62,15 @@ TEST_F(List, NamesEverything) {
   }
 }
 
+TEST_F(List, OfSomeAlgorithms) {
+  const Ended ended = run({"list", "algorithms", "kd", "sap*"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* word : {"kd: ", "sap-simd: "}) EXPECT_THAT(ended.out, HasSubstr(word));
+  EXPECT_THAT(ended.out, Not(HasSubstr("tracy")));
+  expectRefusal({"list", "algorithms", "kdd"}, {"'kdd'", "'kd'"});
+  expectRefusal({"list", "scenes", "city"}, {"'city'", "algorithms"});
+}
+
 TEST_F(List, WhatCannotBePrintedIsAnError) {
   for (const Arguments& call :
        {Arguments{"list"}, Arguments{"--help"}, Arguments{"--version"},

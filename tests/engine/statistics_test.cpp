@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <vector>
 
 namespace broadmark::tests {
@@ -166,6 +167,55 @@ TEST(Ratio, OfSingleValuesHasNoInterval) {
   const RatioEstimate estimate = ratioOfMeans(a, b);
   EXPECT_DOUBLE_EQ(estimate.ratio, 1.5);
   EXPECT_FALSE(estimate.ci95.has_value());
+}
+
+/// A series in which each value is `likeness` times the one before, plus noise.
+Values seriesOf(std::size_t count, double likeness, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  Values series;
+  double value = 0;
+  for (std::size_t i = 0; i < count; ++i)
+    series.push_back(value = likeness * value + noise(random));
+  return series;
+}
+
+TEST(MedianOfSeries, OfOneValueIsThatValue) {
+  const Values one = {3};
+  const Estimate estimate = medianOfSeries(one);
+  EXPECT_EQ(estimate.value, 3);
+  EXPECT_EQ(estimate.ci95.low, 3);
+  EXPECT_EQ(estimate.ci95.high, 3);
+}
+
+TEST(MedianOfSeries, HoldsTheTrueMedianAsOftenAsItSays) {
+  constexpr int kSeries = 200;
+  for (const double likeness : {0.0, 0.6}) {
+    int misses = 0;
+    for (unsigned seed = 0; seed < kSeries; ++seed) {
+      const Interval interval = medianOfSeries(seriesOf(300, likeness, seed)).ci95;
+      misses += interval.low > 0 || interval.high < 0 ? 1 : 0;
+    }
+    // 5 %, and three standard errors of that share.
+    EXPECT_LE(misses, kSeries / 10) << likeness;
+  }
+}
+
+TEST(MedianOfSeries, IsLessSureWhereNeighboursAreAlike) {
+  const auto width = [](double likeness) {
+    const Interval interval = medianOfSeries(seriesOf(1000, likeness, 5)).ci95;
+    return (interval.high - interval.low) * (1 - likeness);  // of what does not repeat
+  };
+  EXPECT_GT(width(0.9), 0.7 * width(0));
+}
+
+TEST(BlockLength, GrowsWithLikeness) {
+  EXPECT_EQ(blockLength(Values{1, 2}), 1U);
+  EXPECT_EQ(blockLength(Values(50, 1.0)), 1U);
+  const Values alike = seriesOf(2000, 0.9, 1);
+  EXPECT_LE(blockLength(seriesOf(2000, 0, 1)), 4U);
+  EXPECT_GE(blockLength(alike), 20U);
+  EXPECT_LE(blockLength(alike), 500U);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Statistics of timings, as pure functions.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -21,6 +22,21 @@ struct Interval {
   double low = 0;
   double high = 0;
 };
+
+/// An estimate and its 95 % confidence interval.
+struct Estimate {
+  double value = 0;
+  Interval ci95;
+};
+
+/// The median of a series in the order of time, whose neighbours may resemble each other, as the
+/// frames of a run do. The interval is a percentile bootstrap of circular blocks (Politis and
+/// Romano, 1992), as long as blockLength() says; the same values give the same interval. Not empty.
+Estimate medianOfSeries(std::span<const double> values);
+/// How many neighbours are to stay together when a series is resampled for its mean: the rule of
+/// Politis and White (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of
+/// the series.
+std::size_t blockLength(std::span<const double> values);
 
 /// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
 std::optional<Interval> confidence95(std::span<const double> values);

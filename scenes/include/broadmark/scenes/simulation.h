@@ -107,6 +107,9 @@ std::string formatSceneParameters(Simulation&);
 /// Whether `path` is a complete recording baked with exactly these parameters and from an input
 /// with the present inputHash(): its sidecar says so, and the recording has the stated hash.
 bool isBaked(const std::filesystem::path& path, Simulation& simulation);
+/// Whether `path` is a recording that was baked, whatever it was baked from: it has the hash that
+/// its sidecar states.
+bool isIntact(const std::filesystem::path& path);
 
 /// The hash that a recording's sidecar states; nothing without a sidecar, or if the file there is
 /// another kind of file. Throws InputError when a sidecar states no hash.

@@ -1,0 +1,156 @@
+// broadmark duel: which of several variants is faster, and by how much.
+
+#include "broadmark/duel.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "broadmark/error.h"
+#include "cases.h"
+#include "commands/command.h"
+#include "duel_report.h"
+#include "hosts.h"
+#include "interrupt.h"
+#include "option_types.h"
+#include "progress.h"
+#include "recordings.h"
+#include "sources/source.h"
+
+namespace broadmark::commands::duel {
+namespace {
+
+struct Options {
+  std::string source;
+  std::vector<std::string> variants;
+  std::filesystem::path program;  ///< another build of this program; "": none
+  std::string device;
+  SceneOptions scene;
+  ParameterValues parameters;
+  DuelOptions duel;
+  HostOptions hosts;
+  std::filesystem::path json;  ///< "": none
+  bool quiet = false;
+};
+
+/// The one recording that is meant. Throws InputError; null when interrupted.
+std::unique_ptr<Recording> open(const Options& options) {
+  OpenedSource opened =
+      openSource(options.source, {.scene = options.scene, .parameters = options.parameters});
+  if (opened.entries.size() != 1) {
+    throw InputError(fmt::format("duel: {} stands for {} recordings; a duel is on one",
+                                 options.source, opened.entries.size()));
+  }
+  Source& source = opened.entries.front().source;
+  requireKnownParameters(options.parameters, source.simulation ? parameterNames(*source.simulation)
+                                                               : std::vector<std::string>());
+  return openRecording(source, {}, {}, options.quiet);
+}
+
+std::vector<DuelSide> sidesOf(const Options& options) {
+  std::vector<DuelSide> sides;
+  const auto add = [&](const HostOptions& hosts, const std::string& where) {
+    for (const std::string& variant : options.variants) {
+      sides.push_back({variant + where, caseNamed(variant, options.device), hostMaker(hosts)});
+    }
+  };
+  add(options.hosts, "");
+  if (!options.program.empty()) {
+    HostOptions there = options.hosts;
+    there.program = options.program;
+    add(there, fmt::format(" ({})", options.program.string()));
+  }
+  if (sides.size() < 2) {
+    throw InputError(
+        "duel: one variant alone: name another, or another build of this program (--with)");
+  }
+  return sides;
+}
+
+int run(Options options) {
+  if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
+  const InterruptGuard guard;
+  const std::vector<DuelSide> sides = sidesOf(options);
+  const std::unique_ptr<Recording> recording = open(options);
+  if (!recording) throw InputError("interrupted");
+  if (recording->scene().frames == 0) {
+    throw InputError(fmt::format("duel: {} has no frame to run", options.source));
+  }
+  constexpr double kTicks = 1000;
+  Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
+  options.duel.cancelled = InterruptGuard::requested;
+  options.duel.progress = [&](const DuelProgress& now) {
+    const double left = std::max(options.duel.most_seconds - now.seconds, 0.0);
+    progress.detail(fmt::format("{} rounds", now.rounds));
+    progress.update(
+        static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.most_seconds)),
+        left);
+  };
+  const DuelResult result = [&] {
+    try {
+      return runDuel(sides, *recording, options.duel);
+    } catch (const Cancelled&) {
+      throw InputError("interrupted");
+    }
+  }();
+  progress.update(static_cast<std::uint64_t>(kTicks));
+  // An interval that misses 1 by little is no news: one in twenty does.
+  const double margin = 2 * options.duel.precision;
+  progress.print(formatDuel(result, recording->scene(), margin));
+  if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording, margin));
+  return result.ok() ? 0 : 1;
+}
+
+/// "1%" or "0.01".
+double parseShare(const std::string& text, std::string_view option) {
+  if (!text.ends_with('%')) return parseNumber(text, option, 0, true);
+  return parseNumber(text.substr(0, text.size() - 1), option, 0, true) / 100;
+}
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("source", options->source,
+                 fmt::format("what to run on, one recording: {}", sourceKindsText()))
+      ->type_name("SOURCE")
+      ->required();
+  app.add_option("variants", options->variants,
+                 "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
+                 "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID…")
+      ->type_name("VARIANT")
+      ->required();
+  addPath(app, "--with", "PROGRAM", options->program,
+          "another build of broadmark, which runs every variant, too");
+  const auto set_precision = [options = options.get()](const std::string& text) {
+    options->duel.precision = parseShare(text, "--precision");
+  };
+  addValue(app, "--precision", "SHARE", set_precision,
+           "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "
+           "same",
+           "1%");
+  const auto set_time = [options = options.get()](const std::string& text) {
+    options->duel.most_seconds = parseNumber(text, "--seconds", 0, true);
+  };
+  addValue(app, "--seconds", "S", set_time, "ends the duel, whatever is known then",
+           fmt::format("{}", options->duel.most_seconds));
+  addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
+           "answers of the first pass: full: as exact pair sets; hash: counts and hashes; off");
+  addDevice(app, options->device);
+  addSceneOptions(app, options->scene);
+  addParameters(app, options->parameters);
+  addHosts(app, options->hosts);
+  addPath(app, "--json", "FILE", options->json, "write all times and the verdict as JSON");
+  addQuiet(app, options->quiet);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "duel",
+          .summary = "Tells which of several variants is faster: turn by turn on the same frames.",
+          .add = add};
+}
+
+}  // namespace broadmark::commands::duel
