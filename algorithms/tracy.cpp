@@ -283,15 +283,15 @@ class Tracy final : public BroadPhase {
         bodies[--ends[cell]] = body;
       });
     }
-    const auto bodiesIn = [&](std::size_t cell) {
+    const auto bodies_in = [&](std::size_t cell) {
       return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);
     };
     shares_.shareOut(
-        cells_.size(), [&](std::size_t cell) { return 1 + bodiesIn(cell).size(); },
+        cells_.size(), [&](std::size_t cell) { return 1 + bodies_in(cell).size(); },
         cells_.size() + bodies.size());
     team_->run([&](int worker) {
       shares_.forEachCell(worker, [&](std::size_t cell) {
-        cells_[cell].build(grid_.position(cell), bodiesIn(cell), bodies_, workerOf(worker).work);
+        cells_[cell].build(grid_.position(cell), bodies_in(cell), bodies_, workerOf(worker).work);
       });
     });
   }
@@ -355,7 +355,7 @@ std::string Tracy::validate() const {
   std::vector<std::uint64_t> cells_of_body(bodies_.boxes[kNow].size(), 0);
   std::vector<std::size_t> last_cell(cells_of_body.size(), cells_.size());
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    if (const std::string fault = cells_[cell].validate(bodies_); !fault.empty()) return fault;
+    if (std::string fault = cells_[cell].validate(bodies_); !fault.empty()) return fault;
     bool twice = false;
     cells_[cell].forEachBody([&](std::uint32_t body) {
       twice = twice || std::exchange(last_cell[body], cell) == cell;

@@ -11,7 +11,8 @@ function(broadmark_embed target header)
     get_filename_component(file_name ${path} NAME)
     string(MAKE_C_IDENTIFIER ${file_name} name)
     list(APPEND paths ${path})
-    string(APPEND declarations "std::string_view ${name}();\n")
+    string(APPEND declarations
+      "std::string_view ${name}();  // NOLINT(readability-identifier-naming): the file's name\n")
     # The assembler takes a file of any kind and size at once; a C++ literal is slow to compile and
     # limited in length.
     string(APPEND definitions "

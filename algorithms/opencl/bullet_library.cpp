@@ -11,6 +11,7 @@
 #include "broadmark/error.h"
 
 // Exported by the library, declared in none of its headers.
+// NOLINTBEGIN(readability-identifier-naming)
 int b3OpenCLUtils_clewInit();
 extern bool gDebugSkipLoadingBinary;
 extern cl_kernel kCalcHashAABB;
@@ -19,6 +20,7 @@ extern cl_kernel kFindCellStart;
 extern cl_kernel kFindOverlappingPairs;
 extern cl_kernel m_copyAabbsKernel;
 extern cl_kernel m_sap2Kernel;
+// NOLINTEND(readability-identifier-naming)
 
 namespace broadmark::opencl {
 namespace {

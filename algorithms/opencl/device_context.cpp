@@ -104,10 +104,12 @@ DeviceContext::~DeviceContext() {
   constexpr auto kPatience = std::chrono::seconds(1);  // others may keep references of their own
   if (!on_cpu_ || queue_() == nullptr) return;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (queue_.getInfo<CL_QUEUE_REFERENCE_COUNT>() > 1 &&
-         std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::yield();
-  }
+  const auto is_held = [this] {
+    cl_uint count = 0;  // the C interface, as the other one may throw
+    ::clGetCommandQueueInfo(queue_(), CL_QUEUE_REFERENCE_COUNT, sizeof count, &count, nullptr);
+    return count > 1;
+  };
+  while (is_held() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
 }
 
 cl::Program DeviceContext::build(const std::string& source, const std::string& options) {

@@ -259,7 +259,7 @@ std::string Cell::validate(const Bodies& all) const {
   if (occupied != size_ || occupied + free_.size() != bodies_.size()) return "slots lost";
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (size_ == 0) continue;
-    if (const std::string fault = lists_[axis].validate(); !fault.empty()) return fault;
+    if (std::string fault = lists_[axis].validate(); !fault.empty()) return fault;
     const std::vector<Endpoint> endpoints = lists_[axis].endpoints();
     if (endpoints.size() != 2 * std::size_t{size_}) return "endpoints lost";
     for (const Endpoint endpoint : endpoints) {

@@ -41,7 +41,7 @@ void SegmentedList::build(std::span<const Endpoint> sorted, std::uint32_t capaci
   first_ = addChunkAfter(kNone);
   if (keeps_open_) std::fill_n(open(first_), open_words_, 0);
   // Not quite full, or the next insertions would split them all.
-  const std::size_t fill = chunk_size_ / 4 * 3;
+  const std::size_t fill = std::size_t{chunk_size_} / 4 * 3;
   ChunkId id = first_;
   for (std::size_t done = 0; done < sorted.size(); done += fill) {
     if (done > 0) {
@@ -92,13 +92,13 @@ void SegmentedList::insert(Endpoint start, Endpoint end) {
 void SegmentedList::insert(Endpoint endpoint, ChunkId near) {
   ChunkId id = near;
   while (chunks_[id].previous != kNone && endpoint < front(id)) id = chunks_[id].previous;
-  const auto goOn = [&] {
+  const auto go_on = [&] {
     while (chunks_[id].next != kNone && front(chunks_[id].next) < endpoint) id = chunks_[id].next;
   };
-  goOn();
+  go_on();
   if (chunks_[id].count == chunk_size_) {
     split(id);
-    goOn();
+    go_on();
   }
   Endpoint* const place = lowerBound(id, endpoint);
   std::copy_backward(place, end(id), end(id) + 1);

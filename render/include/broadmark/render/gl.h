@@ -40,7 +40,8 @@ struct Gl {
   explicit Gl(const GlLoader& load);
   explicit Gl(const OffscreenContext& context);
 
-#define BROADMARK_GL_MEMBER(name) decltype(&::gl##name) name = nullptr;
+#define BROADMARK_GL_MEMBER(name) \
+  decltype(&::gl##name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): a name
   BROADMARK_GL_FUNCTIONS(BROADMARK_GL_MEMBER)
 #undef BROADMARK_GL_MEMBER
 

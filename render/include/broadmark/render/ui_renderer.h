@@ -34,6 +34,7 @@ class UiRenderer {
 
 /// A GL texture as Dear ImGui names it.
 inline void* uiTexture(GLuint id) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): it is never followed
   return reinterpret_cast<void*>(static_cast<std::uintptr_t>(id));
 }
 
