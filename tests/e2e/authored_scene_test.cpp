@@ -63,7 +63,7 @@ TEST_F(AuthoredScenes, ACaseOfResultsIsRunAgainWhileTheSceneIsTheSame) {
   expectRefusal(again, {before.at("recording").at("hash").get<std::string>()});
 }
 
-TEST_F(AuthoredScenes, BakeAndKeepWhatIsThereUntilTheSceneChanges) {
+TEST_F(AuthoredScenes, BakeAndKeepWhatIsThereUntilForced) {
   EXPECT_THAT(bake("out", {"--recorder", "aabbs,posrot"}).out, HasSubstr("2 baked, 0 kept"));
   const std::string bytes = readFile(file(recordingIn("out", kName)));
   const Json sidecar = readJson(file("out/Recordings_AABBs/" + kName + ".json"));
@@ -76,7 +76,7 @@ TEST_F(AuthoredScenes, BakeAndKeepWhatIsThereUntilTheSceneChanges) {
   EXPECT_THAT(bake("other").out, HasSubstr("1 baked"));
   EXPECT_EQ(readFile(file(recordingIn("other", kName))), bytes) << "same file, same bytes";
   writeScene(0.25);
-  EXPECT_THAT(bake("out").out, HasSubstr("1 baked, 0 kept"));
+  EXPECT_THAT(bake("out", {"--force"}).out, HasSubstr("1 baked, 0 kept"));
   EXPECT_NE(readFile(file(recordingIn("out", kName))), bytes);
 }
 
