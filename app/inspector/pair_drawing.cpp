@@ -116,13 +116,13 @@ void drawIntervals(Ui& ui, const BoxPair& pair) {
     }
     const ImVec2 band_min{low, top - 3 * unit};
     const ImVec2 band_max{high, top + 2 * bar + 5 * unit};
-    const auto drawBar = [&](const Aabb& box, float y, Rgb shade) {
+    const auto draw_bar = [&](const Aabb& box, float y, Rgb shade) {
       plainRect({x(box.min[axis]), y},
                 {std::max(x(box.max[axis]), x(box.min[axis]) + unit), y + bar}, shade, 0.85F,
                 2 * unit);
     };
-    drawBar(pair.a, top, kFirst);
-    drawBar(pair.b, top + bar + 2 * unit, kSecond);
+    draw_bar(pair.a, top, kFirst);
+    draw_bar(pair.b, top + bar + 2 * unit, kSecond);
     plainRect(band_min, band_max, rgb, 0.35F);
     ImGui::GetWindowDrawList()->AddRect(band_min, band_max, colour(rgb));
   }
@@ -172,7 +172,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
                 relationColour(ui.theme, relation.kind), 0.9F);
     }
   }
-  const auto drawMoves = [&](const Track& body, float y, Rgb rgb) {
+  const auto draw_moves = [&](const Track& body, float y, Rgb rgb) {
     const std::string name = fmt::format("{}", body.body);
     labelAt({origin.x, y + strip / 2 - ImGui::GetTextLineHeight() / 2}, rgb, name.c_str());
     for (std::size_t i = 0; i < frames; ++i) {
@@ -180,8 +180,8 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
                 movedAt(body, i) ? 0.9F : 0.15F);
     }
   };
-  drawMoves(track.a, origin.y + moved_top, kFirst);
-  drawMoves(track.b, origin.y + moved_top + strip, kSecond);
+  draw_moves(track.a, origin.y + moved_top, kFirst);
+  draw_moves(track.b, origin.y + moved_top + strip, kSecond);
 
   if (!ImGui::IsItemHovered()) return {};
   const float offset = (ImGui::GetIO().MousePos.x - origin.x - label) / step;

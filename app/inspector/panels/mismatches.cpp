@@ -195,8 +195,8 @@ class MismatchesPanel final : public Panel {
 
   static void drawExport(PanelContext& context) {
     Ui& ui = context.ui;
-    CaseExport& export_ = context.session.case_export;
-    const CaseExport::Report report = export_.report();
+    CaseExport& case_export = context.session.case_export;
+    const CaseExport::Report report = case_export.report();
     if (report.state == TaskState::idle) return;
     const auto scope = ui.scope("export");
     ImGui::PushID("export");
@@ -207,7 +207,7 @@ class MismatchesPanel final : public Panel {
           static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
           fmt::format("{}, {} runs", extentText(report.bodies, report.frames), report.trials)
               .c_str());
-      if (ui.button("Cancel", "Nothing is written then")) export_.cancel();
+      if (ui.button("Cancel", "Nothing is written then")) case_export.cancel();
     } else if (report.state == TaskState::done) {
       drawExported(context, report);
     } else {
