@@ -70,7 +70,7 @@ fs::path MovieMaker::make(const fs::path& path, const PictureProgress& progress)
   const auto opened = openRecordingFile(path);
   Recording& recording = *opened;
   const SceneInfo& scene = recording.scene();
-  const fs::path folder = options_.directory / path.stem();
+  fs::path folder = options_.directory / path.stem();
   const fs::path label_path = folder / "movie.json";
   const std::string text = label(recording, options_);
   makeDirectory(folder);

@@ -83,7 +83,7 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 
 const std::vector<ScriptVerb>& scriptVerbs() {
   using P = ScriptPlayer;
-  static const std::vector<ScriptVerb> kVerbs = {
+  static const std::vector<ScriptVerb> verbs = {
       {"click", "WIDGET", 1, 1, &P::click, "presses a widget, by name: \"Playback/Play\""},
       {"doubleclick", "WIDGET", 1, 1, &P::doubleClick, "presses it twice"},
       {"rightclick", "WIDGET", 1, 1, &P::rightClick, "presses it with the right button"},
@@ -113,7 +113,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
       {"resize", "WIDTHxHEIGHT", 1, 1, &P::resize, "changes the size of the picture"},
       {"screenshot", "FILE", 1, 1, &P::screenshot, "saves what is seen"},
   };
-  return kVerbs;
+  return verbs;
 }
 
 std::vector<ScriptLine> parseScript(std::string_view text, std::string_view name) {
