@@ -50,11 +50,11 @@ double autocovariance(std::span<const double> values, double centre, std::size_t
 std::size_t lastTellingLag(const std::vector<double>& covariances, std::size_t count) {
   const auto n = static_cast<double>(count);
   const double noise = 2 * std::sqrt(std::log10(n) / n) * covariances[0];
-  const auto run = std::max<std::size_t>(5, static_cast<std::size_t>(std::sqrt(std::log10(n))));
+  constexpr std::size_t kRun = 5;
   std::size_t quiet = 0;
   for (std::size_t lag = 1; lag < covariances.size(); ++lag) {
     quiet = std::abs(covariances[lag]) < noise ? quiet + 1 : 0;
-    if (quiet == run) return lag - run;
+    if (quiet == kRun) return lag - kRun;
   }
   return covariances.size() - 1;
 }

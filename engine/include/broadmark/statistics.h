@@ -31,7 +31,9 @@ struct Estimate {
 
 /// The median of a series in the order of time, whose neighbours may resemble each other, as the
 /// frames of a run do. The interval is a percentile bootstrap of circular blocks (Politis and
-/// Romano, 1992), as long as blockLength() says; the same values give the same interval. Not empty.
+/// Romano, 1992), as long as blockLength() says of the values' sides of the median, but not shorter
+/// than 2 n^(1/3); it is widened as Student's t is when there are few blocks. The same values give
+/// the same interval. Not empty.
 Estimate medianOfSeries(std::span<const double> values);
 /// How many neighbours are to stay together when a series is resampled for its mean: the rule of
 /// Politis and White (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of
