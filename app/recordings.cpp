@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 /// Calls record(FrameProgress) and shows how far it is.
 template <class Record>
 bool recordWithProgress(const Simulation& simulation, bool quiet, Record&& record) {
-  const SceneInfo scene = simulation.scene();
+  const SceneInfo& scene = simulation.scene();
   Progress progress(fmt::format("baking {} {} N{}", scene.name, scene.object_type, scene.objects),
                     scene.frames, quiet);
   return record([&](std::uint32_t frame) {
