@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -18,6 +19,7 @@
 #include "interrupt.h"
 #include "progress.h"
 #include "recordings.h"
+#include "result_files.h"
 #include "screenshot.h"
 #include "table.h"
 
@@ -57,13 +59,19 @@ class Exhausted {
 class EntryRun {
  public:
   /// All arguments outlive this.
-  EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted)
+  EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted,
+           ResultFiles& files)
       : cases_(entry.cases),
         options_(options),
         make_host_(hostMaker(options.hosts)),
         exhausted_(exhausted),
-        runs_(cases_.size()) {
-    for (const Case& run : cases_) results_.push_back(beginCase(run, entry.source.reference));
+        files_(files),
+        runs_(cases_.size()),
+        ended_(cases_.size()) {
+    for (const Case& run : cases_) {
+      results_.push_back(beginCase(run, entry.source.reference));
+      results_.back().conditions = conditions();
+    }
   }
 
   /// Runs all repetitions, interleaved. Returns false when interrupted.
@@ -82,8 +90,8 @@ class EntryRun {
         progress.detail(cases_[i].algorithm.id);
         if (!runOnce(i, recording, oracle, hooks, pass >= options_.warmup)) return false;
         // Its process is not needed any more, or would be one of too many.
-        const bool ended = pass + 1 == passes || results_[i].status != Status::ok;
-        if (ended || cases_.size() > kMostHeld) runs_[i].reset();
+        if (pass + 1 == passes || results_[i].status != Status::ok) end(i);
+        if (ended_[i] || cases_.size() > kMostHeld) runs_[i].reset();
         progress.update(steps += scene.frames);
       }
     }
@@ -92,6 +100,9 @@ class EntryRun {
 
   /// Of the cases that have been run.
   std::vector<CaseResult> takeResults() {
+    for (std::size_t i = 0; i < results_.size(); ++i) {
+      if (!results_[i].repetitions.empty()) end(i);  // interrupted, after some of its passes
+    }
     std::erase_if(results_, [](const CaseResult& result) {
       return result.status == Status::ok && result.repetitions.empty();
     });
@@ -111,26 +122,55 @@ class EntryRun {
       runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy, make_host_,
                                            InterruptGuard::requested);
     }
+    const YardstickTimes yardsticks = measured ? yardsticks_.measure() : YardstickTimes();
+    const std::size_t before = result.repetitions.size();
     if (!runRepetition(result, *runs_[i], recording, oracle, hooks, measured)) return false;
+    if (result.repetitions.size() > before) result.repetitions.back().yardsticks = yardsticks;
     exhausted_.note(result, cases_[i]);
     return true;
+  }
+
+  /// Keeps the result of a case that will not be run any more.
+  void end(std::size_t i) {
+    if (!ended_[i]) files_.add(results_[i]);
+    ended_[i] = true;
+  }
+
+  [[nodiscard]] Conditions conditions() const {
+    const auto limit = [](double seconds) {
+      return std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
+    };
+    const HostOptions& hosts = options_.hosts;
+    return {.check = options_.policy.check,
+            .warmup = options_.warmup,
+            .repetitions = options_.repetitions,
+            .frame_limit_seconds = limit(options_.policy.frame_limit_seconds),
+            .initialize_limit_seconds = limit(options_.policy.initialize_limit_seconds),
+            .call_limit_seconds =
+                hosts.in_process ? std::nullopt : std::optional(hosts.hard_limit_seconds),
+            .in_process = hosts.in_process,
+            .load_average = thisEnvironment().load_average};
   }
 
   const std::vector<Case>& cases_;
   const SessionOptions& options_;
   HostMaker make_host_;
   Exhausted& exhausted_;
+  ResultFiles& files_;
+  Yardsticks yardsticks_;
   // In the order of the cases.
   std::vector<CaseResult> results_;
   std::vector<std::unique_ptr<CaseRun>> runs_;  ///< null before the first and after the last pass
+  std::vector<bool> ended_;
 };
 
 /// A whole plan, run entry by entry.
 class PlanRun {
  public:
   PlanRun(const SessionOptions& options, const Plan& plan) : options_(options) {
-    results_.environment = environmentOf(plan.entries.front().cases.front().device);
+    results_.environments = {environmentOf(plan.entries.front().cases.front().device)};
     results_.options = options.command_line;
+    files_.emplace(options.outputs, results_);
   }
 
   void run(Plan& plan) {
@@ -143,6 +183,8 @@ class PlanRun {
   /// Says what has been written. Returns the exit status. Throws InputError when interrupted.
   int finish() {
     if (!options_.record.empty()) written_.push_back(options_.record);
+    results_.complete = !interrupted_;
+    files_->end(results_);
     if (!results_.cases.empty()) {
       for (const auto& [name, path] : options_.outputs) written_.push_back(path);
     }
@@ -181,7 +223,7 @@ class PlanRun {
       return;
     }
     Oracle oracle;
-    EntryRun run(entry, options_, exhausted_);
+    EntryRun run(entry, options_, exhausted_, *files_);
     interrupted_ = !run.run(*recording, oracle);
     report(entry, run.takeResults());
     if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
@@ -196,10 +238,7 @@ class PlanRun {
       written_.push_back(log);
     }
     results_.cases.insert(results_.cases.end(), done.begin(), done.end());
-    for (const ResultWriter& writer : resultWriters()) {
-      const auto output = options_.outputs.find(std::string(writer.name));
-      if (output != options_.outputs.end()) writeTextFile(output->second, writer.format(results_));
-    }
+    files_->rewrite(results_);
   }
 
   void draw(Recording& recording, Oracle& oracle, const fs::path& path) {
@@ -215,6 +254,7 @@ class PlanRun {
 
   const SessionOptions& options_;
   Results results_;
+  std::optional<ResultFiles> files_;
   Exhausted exhausted_;
   bool picture_failed_ = false;
   bool interrupted_ = false;

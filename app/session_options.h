@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +12,7 @@
 #include "cases.h"
 #include "hosts.h"
 #include "picture_options.h"
+#include "result_files.h"
 #include "scene_options.h"
 
 namespace CLI {
@@ -39,10 +39,10 @@ struct SessionOptions {
   int warmup = 0;
   RunPolicy policy;
   HostOptions hosts;
-  std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
-  std::filesystem::path record;                          ///< "": keep no recordings
-  std::filesystem::path screenshot;                      ///< "": none
-  std::optional<std::uint32_t> screenshot_frame;         ///< nothing: the last one
+  ResultPaths outputs;
+  std::filesystem::path record;                   ///< "": keep no recordings
+  std::filesystem::path screenshot;               ///< "": none
+  std::optional<std::uint32_t> screenshot_frame;  ///< nothing: the last one
   PictureOptions picture;
   Shard shard;
   std::string filter;  ///< regular expression

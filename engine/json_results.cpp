@@ -1,4 +1,5 @@
-// Results as JSON ("schema": "broadmark-results/1") and back.
+// Results as JSON ("schema": "broadmark-results/2") and back: as one document, or as lines of which
+// each is whole by itself. Earlier files ("broadmark-results/1") are read, too.
 
 #include <fmt/format.h>
 
@@ -30,6 +31,15 @@ Json toJson(const Environment& e) {
           {"compute_devices", e.compute_devices}};
 }
 
+/// The value that the text at `key` names.
+template <class Table>
+auto named(const JsonFields& json, const char* key, const Table& table) {
+  const std::string text = json.text(key);
+  const auto value = table.find(text);
+  if (!value) throw InputError(fmt::format("{}: unknown value '{}'", json.path(key), text));
+  return *value;
+}
+
 std::vector<std::string> textsFrom(const Json& array, const std::string& name) {
   std::vector<std::string> texts;
   for (const Json& element : array) {
@@ -59,6 +69,39 @@ Environment environmentFrom(const JsonFields& json) {
         textsFrom(json.array("compute_devices"), json.path("compute_devices"));
   }
   return environment;
+}
+
+/// A limit, or null.
+Json toJson(const std::optional<double>& limit) { return limit ? Json(*limit) : Json(nullptr); }
+
+Json toJson(const Conditions& c) {
+  return {{"check", kCheckModes.nameOf(c.check)},
+          {"warmup", c.warmup},
+          {"repetitions", c.repetitions},
+          {"frame_limit_seconds", toJson(c.frame_limit_seconds)},
+          {"initialize_limit_seconds", toJson(c.initialize_limit_seconds)},
+          {"call_limit_seconds", toJson(c.call_limit_seconds)},
+          {"in_process", c.in_process},
+          {"load_average", c.load_average},
+          {"plugin", {{"hash", c.plugin.hash}, {"flags", c.plugin.flags}}},
+          {"warnings", c.warnings}};
+}
+
+Conditions conditionsFrom(const JsonFields& json) {
+  const auto limit = [&](const char* key) {
+    return json.has(key) ? std::optional(json.number(key)) : std::nullopt;
+  };
+  const JsonFields plugin = json.object("plugin");
+  return {.check = named(json, "check", kCheckModes),
+          .warmup = json.integer<int>("warmup", 0),
+          .repetitions = json.integer<int>("repetitions", 0),
+          .frame_limit_seconds = limit("frame_limit_seconds"),
+          .initialize_limit_seconds = limit("initialize_limit_seconds"),
+          .call_limit_seconds = limit("call_limit_seconds"),
+          .in_process = json.boolean("in_process"),
+          .load_average = json.number("load_average"),
+          .plugin = {plugin.text("hash"), plugin.text("flags")},
+          .warnings = textsFrom(json.array("warnings"), json.path("warnings"))};
 }
 
 Json toJson(const ParameterValues& values) {
@@ -254,6 +297,66 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   return repetitions;
 }
 
+/// Of each yardstick one time per repetition; null before a repetition without.
+Json yardsticksToJson(const std::vector<Repetition>& repetitions) {
+  Json json = Json::object();
+  for (const auto& [which, name] : kYardsticks.entries) {
+    Json& times = json[fmt::format("{}_ns", name)] = Json::array();
+    for (const Repetition& repetition : repetitions) {
+      times.push_back(repetition.yardsticks ? Json((*repetition.yardsticks)[which])
+                                            : Json(nullptr));
+    }
+  }
+  return json;
+}
+
+void readYardsticks(const JsonFields& json, std::vector<Repetition>& repetitions) {
+  for (const auto& [which, yardstick] : kYardsticks.entries) {
+    const std::string key = fmt::format("{}_ns", yardstick);
+    const Json& times = json.array(key.c_str());
+    const std::string name = json.path(key.c_str());
+    if (times.size() != repetitions.size()) {
+      throw InputError(name + ": one time per repetition is expected");
+    }
+    for (std::size_t r = 0; r < times.size(); ++r) {
+      if (times[r].is_null()) continue;
+      std::optional<YardstickTimes>& taken = repetitions[r].yardsticks;
+      if (!taken) taken.emplace();
+      (*taken)[which] = JsonFields::integerOf<std::int64_t>(times[r], name, 1);
+    }
+  }
+}
+
+/// One array per kind, those of wrong pairs only where there are any.
+Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
+  Json json = Json::object();
+  for (const auto& [which, name] : kFrameCounts.entries) {
+    const bool always = which == FrameCount::pairs || which == FrameCount::changed_bodies;
+    const auto counted = [which = which](const FrameCounts& frame) { return frame[which] != 0; };
+    if (!always && std::ranges::none_of(frames, counted)) continue;
+    Json& counts = json[std::string(name)] = Json::array();
+    for (const FrameCounts& frame : frames) counts.push_back(frame[which]);
+  }
+  return json;
+}
+
+std::vector<FrameCounts> frameCountsFrom(const JsonFields& json) {
+  std::vector<FrameCounts> frames(json.array("pairs").size());
+  for (const auto& [which, kind] : kFrameCounts.entries) {
+    const std::string key(kind);
+    if (!json.has(key.c_str())) continue;
+    const Json& counts = json.array(key.c_str());
+    const std::string name = json.path(key.c_str());
+    if (counts.size() != frames.size()) {
+      throw InputError(name + ": all counts must have the same number of frames");
+    }
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      frames[f][which] = JsonFields::integerOf<std::uint64_t>(counts[f], name);
+    }
+  }
+  return frames;
+}
+
 Json toJson(const CaseResult& result) {
   Json json = {{"id", result.id},
                {"recording", toJson(result.recording)},
@@ -265,6 +368,8 @@ Json toJson(const CaseResult& result) {
                {"device", result.device},
                {"plugin", result.plugin},
                {"params", toJson(result.parameters)},
+               {"environment", result.environment},
+               {"conditions", toJson(result.conditions)},
                {"status", statusName(result.status)},
                {"reason", result.reason},
                {"pairs", {{"mean", result.pairs_mean}, {"max", result.pairs_max}}},
@@ -279,6 +384,8 @@ Json toJson(const CaseResult& result) {
                {"setup", result.setup},
                {"summary", toJson(result.summary())},
                {"initialize_ns", Json::array()},
+               {"yardsticks", yardsticksToJson(result.repetitions)},
+               {"frame_counts", frameCountsToJson(result.frames)},
                {"frames", framesToJson(result.repetitions)}};
   for (const FrameDifference& difference : result.differences) {
     json["differences"].push_back(toJson(difference));
@@ -288,15 +395,6 @@ Json toJson(const CaseResult& result) {
     json["initialize_ns"].push_back(repetition.initialize_ns);
   }
   return json;
-}
-
-/// The value that the text at `key` names.
-template <class Table>
-auto named(const JsonFields& json, const char* key, const Table& table) {
-  const std::string text = json.text(key);
-  const auto value = table.find(text);
-  if (!value) throw InputError(fmt::format("{}: unknown value '{}'", json.path(key), text));
-  return *value;
 }
 
 CaseResult caseFrom(const JsonFields& json) {
@@ -345,32 +443,142 @@ CaseResult caseFrom(const JsonFields& json) {
   if (json.has("peak_bytes")) result.peak_bytes = json.integer<std::uint64_t>("peak_bytes");
   result.repetitions =
       framesFrom(json.object("frames"), json.array("initialize_ns"), json.path("initialize_ns"));
+  if (json.has("conditions")) {  // since results/2
+    result.environment = json.integer<std::size_t>("environment");
+    result.conditions = conditionsFrom(json.object("conditions"));
+    result.frames = frameCountsFrom(json.object("frame_counts"));
+    readYardsticks(json.object("yardsticks"), result.repetitions);
+  } else {
+    result.conditions.repetitions = static_cast<int>(result.repetitions.size());
+  }
   return result;
+}
+
+constexpr std::string_view kResults1 = "broadmark-results/1";
+
+void requireResults(const JsonFields& file, std::string_view name) {
+  if (file.has("schema") && isResultsSchema(file.text("schema"))) return;
+  throw InputError(
+      fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kResultsSchema));
+}
+
+/// Every case belongs to an environment that is there.
+void requireEnvironments(const Results& results, std::string_view name) {
+  for (const CaseResult& result : results.cases) {
+    if (result.environment < results.environments.size()) continue;
+    throw InputError(fmt::format("{}: case '{}': there is no environment {}", name, result.id,
+                                 result.environment));
+  }
+}
+
+Results documentFrom(const JsonFields& file) {
+  Results results;
+  if (file.text("schema") == kResults1) {
+    results.environments = {environmentFrom(file.object("environment"))};
+    results.complete = true;  // it did not say
+  } else {
+    file.eachObject("environments", [&](const JsonFields& one) {
+      results.environments.push_back(environmentFrom(one));
+    });
+    results.complete = file.boolean("complete");
+  }
+  results.options = textsFrom(file.array("options"), file.path("options"));
+  file.eachObject("cases", [&](const JsonFields& one) { results.cases.push_back(caseFrom(one)); });
+  return results;
+}
+
+/// Takes over one line but the first.
+void takeLine(Results& results, const JsonFields& line) {
+  if (results.complete) throw InputError(line.name() + ": after the line that ends the results");
+  if (line.has("environment")) {
+    results.environments.push_back(environmentFrom(line.object("environment")));
+  } else if (line.has("case")) {
+    results.cases.push_back(caseFrom(line.object("case")));
+  } else if (line.has("end")) {
+    results.complete = line.object("end").boolean("complete");
+  } else {
+    throw InputError(line.name() + ": neither an environment, a case nor the end");
+  }
+}
+
+/// The first line of a text; the text goes on after it.
+std::string_view takeFirstLine(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  return line;
+}
+
+Results linesFrom(const JsonFields& first, std::string_view rest, std::string_view name) {
+  Results results;
+  results.options = textsFrom(first.array("options"), first.path("options"));
+  for (int number = 2; !rest.empty(); ++number) {
+    const bool whole = rest.find('\n') != std::string_view::npos;
+    const std::string_view line = takeFirstLine(rest);
+    if (!whole && !Json::accept(line)) break;  // the run ended while it was written
+    const std::string place = fmt::format("{}: line {}", name, number);
+    const Json json = parseJson(line, place);
+    takeLine(results, JsonFields(json, place));
+  }
+  return results;
+}
+
+/// The first line of JSON Lines, or null for what is no such file.
+Json headOfLines(std::string_view text) {
+  Json head = Json::parse(takeFirstLine(text), nullptr, false);
+  if (head.is_object() && head.contains("schema") && !head.contains("cases")) return head;
+  return nullptr;
+}
+
+std::string lineOf(const Json& json) { return formatJson(json, -1); }
+
+std::string linesBefore(const Results& results) {
+  std::string text = lineOf({{"schema", kResultsSchema}, {"options", results.options}});
+  for (const Environment& environment : results.environments) {
+    text += lineOf({{"environment", toJson(environment)}});
+  }
+  return text;
+}
+
+std::string lineOfCase(const CaseResult& result) { return lineOf({{"case", toJson(result)}}); }
+
+std::string linesAfter(const Results& results) {
+  return lineOf({{"end", {{"complete", results.complete}, {"cases", results.cases.size()}}}});
 }
 
 }  // namespace
 
 std::string formatJsonResults(const Results& results) {
   Json json = {{"schema", kResultsSchema},
-               {"environment", toJson(results.environment)},
                {"options", results.options},
+               {"environments", Json::array()},
+               {"complete", results.complete},
                {"cases", Json::array()}};
+  for (const Environment& one : results.environments) json["environments"].push_back(toJson(one));
   for (const CaseResult& result : results.cases) json["cases"].push_back(toJson(result));
   return formatJson(json);
 }
 
+const ResultWriter::Lines kJsonLines{.before = linesBefore, .one = lineOfCase, .after = linesAfter};
+
+std::string formatJsonLines(const Results& results) {
+  std::string text = linesBefore(results);
+  for (const CaseResult& result : results.cases) text += lineOfCase(result);
+  return text + linesAfter(results);
+}
+
+bool isResultsSchema(std::string_view schema) {
+  return schema == kResultsSchema || schema == kResults1;
+}
+
 Results parseResults(std::string_view text, std::string_view name) {
-  const Json json = parseJson(text, name);
-  const JsonFields fields(json, std::string(name));
-  if (!fields.has("schema") || fields.text("schema") != kResultsSchema) {
-    throw InputError(
-        fmt::format("{}: not a results file: \"schema\" is not \"{}\"", name, kResultsSchema));
-  }
-  Results results;
-  results.environment = environmentFrom(fields.object("environment"));
-  results.options = textsFrom(fields.array("options"), fields.path("options"));
-  fields.eachObject("cases",
-                    [&](const JsonFields& one) { results.cases.push_back(caseFrom(one)); });
+  const Json head = headOfLines(text);
+  const Json json = head.is_null() ? parseJson(text, name) : head;
+  const JsonFields file(json, std::string(name));
+  requireResults(file, name);
+  takeFirstLine(text);
+  Results results = head.is_null() ? documentFrom(file) : linesFrom(file, text, name);
+  requireEnvironments(results, name);
   return results;
 }
 

@@ -8,6 +8,8 @@
 namespace broadmark {
 
 std::string formatJsonResults(const Results&);
+std::string formatJsonLines(const Results&);
+extern const ResultWriter::Lines kJsonLines;
 std::string formatCsvResults(const Results&);
 std::string formatCsvFrames(const Results&);
 

@@ -2,6 +2,8 @@
 
 #include "broadmark/results.h"
 
+#include <utility>
+
 #include "result_writers.h"
 
 namespace broadmark {
@@ -21,9 +23,17 @@ Summary CaseResult::summary() const {
   return summarise(views);
 }
 
+bool CaseResult::isComplete() const {
+  return status != Status::ok || std::cmp_greater_equal(repetitions.size(), conditions.repetitions);
+}
+
 std::vector<ResultWriter> resultWriters() {
   return {
       {"json", "results as JSON: everything, every frame's times included", formatJsonResults},
+      {"jsonl",
+       "the same as JSON Lines, one line a case, written as the run goes: whatever ends it, "
+       "finished cases are kept",
+       formatJsonLines, &kJsonLines},
       {"csv", "results as CSV: one row per case", formatCsvResults},
       {"csv-frames", "times as CSV: one row per frame", formatCsvFrames},
   };

@@ -9,34 +9,79 @@
 namespace broadmark {
 namespace {
 
-/// Adds what the check of one frame found to the case.
-void addDifference(CaseResult& result, FrameDifference difference) {
-  result.missed_count += difference.missed_count;
-  result.false_count += difference.false_count;
-  result.allowed_extra_count += difference.allowed_extra_count;
-  result.invalid_count += difference.invalid_count;
-  if (difference.isMismatch()) result.differences.push_back(std::move(difference));
-}
+/// Counts what happens in the frames of one pass.
+class FrameCounter {
+ public:
+  /// `result` outlives this. `first` is the initial pose.
+  FrameCounter(CaseResult& result, const Frame& first)
+      : result_(result),
+        is_first_pass_(result.repetitions.empty()),
+        number_(static_cast<int>(result.repetitions.size()) + 1),
+        boxes_(first.boxes.begin(), first.boxes.end()) {}
 
-/// Takes one more value into the mean of `count_before`.
-void addToMean(double& mean, std::uint64_t value, std::uint64_t count_before) {
-  mean += (static_cast<double>(value) - mean) / static_cast<double>(count_before + 1);
-}
-
-/// Counts of pairs and of work, of the first repetition: the others do the same.
-void countFrame(CaseResult& result, CaseRun& run, std::uint64_t frames_before) {
-  addToMean(result.pairs_mean, run.pairs(), frames_before);
-  result.pairs_max = std::max(result.pairs_max, run.pairs());
-  for (const auto& [name, count] : run.counters()) {
-    addToMean(result.counters[name], count, frames_before);
+  /// The frame that was run last; the next one counts as another.
+  void count(const Frame& frame, CaseRun& run, Oracle& oracle) {
+    if (passed_ == result_.frames.size()) result_.frames.emplace_back();
+    FrameCounts& counts = result_.frames[passed_++];
+    auto difference = run.check(frame, oracle);
+    if (difference) keepWorst(counts, *difference);
+    if (is_first_pass_ && run.answered()) countWork(counts, frame, run);
+    if (!difference || !difference->isMismatch()) return;
+    difference->repetition = number_;
+    result_.differences.push_back(std::move(*difference));
   }
-}
+
+ private:
+  /// Wrong pairs are counted once, however many passes show them.
+  void keepWorst(FrameCounts& counts, const FrameDifference& difference) {
+    const auto keep = [&](FrameCount which, std::uint64_t found, std::uint64_t& sum) {
+      const std::uint64_t more = found - std::min(found, counts[which]);
+      counts[which] += more;
+      sum += more;
+    };
+    keep(FrameCount::missed, difference.missed_count, result_.missed_count);
+    keep(FrameCount::false_pairs, difference.false_count, result_.false_count);
+    keep(FrameCount::allowed_extra, difference.allowed_extra_count, result_.allowed_extra_count);
+    keep(FrameCount::invalid, difference.invalid_count, result_.invalid_count);
+  }
+
+  /// Counts of pairs and of work, in the first pass: the others do the same.
+  void countWork(FrameCounts& counts, const Frame& frame, CaseRun& run) {
+    counts[FrameCount::pairs] = run.pairs();
+    counts[FrameCount::changed_bodies] = changedSince(frame.boxes);
+    const std::size_t before = passed_ - 1;
+    addToMean(result_.pairs_mean, run.pairs(), before);
+    result_.pairs_max = std::max(result_.pairs_max, run.pairs());
+    for (const auto& [name, count] : run.counters()) {
+      addToMean(result_.counters[name], count, before);
+    }
+  }
+
+  std::uint64_t changedSince(std::span<const Aabb> boxes) {
+    std::uint64_t changed = 0;
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      if (boxes[i] == boxes_[i]) continue;
+      boxes_[i] = boxes[i];
+      ++changed;
+    }
+    return changed;
+  }
+
+  /// Takes one more value into the mean of `count_before`.
+  static void addToMean(double& mean, std::uint64_t value, std::uint64_t count_before) {
+    mean += (static_cast<double>(value) - mean) / static_cast<double>(count_before + 1);
+  }
+
+  CaseResult& result_;
+  bool is_first_pass_;
+  int number_;
+  std::vector<Aabb> boxes_;  ///< of the frame before
+  std::size_t passed_ = 0;   ///< frames
+};
 
 /// All frames of one pass; false when cancelled.
-bool runFrames(CaseResult& result, Repetition& repetition, CaseRun& run, FrameSource& source,
+bool runFrames(Repetition& repetition, FrameCounter& counter, CaseRun& run, FrameSource& source,
                Oracle& oracle, const RunHooks& hooks) {
-  const bool is_first = result.repetitions.empty();
-  const int number = static_cast<int>(result.repetitions.size()) + 1;
   while (run.running()) {
     const std::optional<Frame> frame = source.next();
     if (!frame) return true;
@@ -44,11 +89,7 @@ bool runFrames(CaseResult& result, Repetition& repetition, CaseRun& run, FrameSo
     run.step(*frame);
     if (!run.answered()) return true;
     repetition.frames.push_back(run.times());
-    if (auto difference = run.check(*frame, oracle)) {
-      difference->repetition = number;
-      addDifference(result, std::move(*difference));
-    }
-    if (is_first && run.answered()) countFrame(result, run, repetition.frames.size() - 1);
+    counter.count(*frame, run, oracle);
     if (hooks.progress) hooks.progress(frame->index);
   }
   return true;
@@ -65,9 +106,10 @@ Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& orac
   Pass pass;
   pass.repetition.frames.reserve(source.scene().frames);
   const Frame first = source.rewind();
+  FrameCounter counter(result, first);
   if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
   pass.repetition.initialize_ns = run.initializeNanoseconds();
-  pass.finished = runFrames(result, pass.repetition, run, source, oracle, hooks);
+  pass.finished = runFrames(pass.repetition, counter, run, source, oracle, hooks);
   pass.whole = run.hasInstance();
   run.stop();
   return pass;

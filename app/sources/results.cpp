@@ -120,9 +120,9 @@ OpenedSource open(NamedSource& source, const OpeningOptions& options) {
 
 SourceKind kind() {
   return {
-      .what = fmt::format("results with --case (.json, \"{}\")", kResultsSchema),
+      .what = "results of a run with --case (.json, .jsonl)",
       .recognises =
-          [](NamedSource& source) { return source.isJson() && source.schema() == kResultsSchema; },
+          [](NamedSource& source) { return source.isJson() && isResultsSchema(source.schema()); },
       .open = open};
 }
 

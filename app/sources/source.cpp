@@ -50,7 +50,9 @@ bool NamedSource::isFile() const {
          std::filesystem::exists(path());
 }
 
-bool NamedSource::isJson() const { return isFile() && path().extension() == ".json"; }
+bool NamedSource::isJson() const {
+  return isFile() && (path().extension() == ".json" || path().extension() == ".jsonl");
+}
 
 const std::string& NamedSource::text() {
   if (!text_) text_ = readTextFile(path());

@@ -37,7 +37,7 @@ CaseResult withStatus(CaseResult result, Status status) {
 }
 
 Results resultsOf(std::vector<CaseResult> cases) {
-  return {.environment = {}, .options = {}, .cases = std::move(cases)};
+  return {.environments = {{}}, .options = {}, .cases = std::move(cases)};
 }
 
 /// The verdict on one case in both runs.

@@ -70,7 +70,8 @@ inline CaseResult resultOn(const std::filesystem::path& recording, const std::st
 }
 
 inline void writeResults(const std::filesystem::path& path, const std::vector<CaseResult>& cases) {
-  const Results results{.environment = thisEnvironment(), .options = {}, .cases = cases};
+  const Results results{
+      .environments = {thisEnvironment()}, .options = {}, .cases = cases, .complete = true};
   writeTextFile(path, resultWriters().front().format(results));
 }
 

@@ -42,20 +42,21 @@ constexpr auto kTotal = static_cast<std::int64_t>(Phase::total);
 /// Two cases: one with every field set, one with nothing but its name.
 Results everything() {
   Results results;
-  results.environment = {.cpu = "A \"fast\" one",
-                         .logical_cores = 8,
-                         .physical_cores = 4,
-                         .caches = {"L1 Data 48K", "L2 Unified 2048K"},
-                         .isa = "avx2",
-                         .memory_bytes = std::uint64_t{1} << 40,
-                         .governor = "performance",
-                         .load_average = 0.1,
-                         .os = "Linux",
-                         .compiler = "gcc 12",
-                         .compiler_flags = "-O3",
-                         .build_type = "Release",
-                         .version = "1.2.3",
-                         .started = "2025-01-02T03:04:05Z"};
+  results.environments = {{.cpu = "A \"fast\" one",
+                           .logical_cores = 8,
+                           .physical_cores = 4,
+                           .caches = {"L1 Data 48K", "L2 Unified 2048K"},
+                           .isa = "avx2",
+                           .memory_bytes = std::uint64_t{1} << 40,
+                           .governor = "performance",
+                           .load_average = 0.1,
+                           .os = "Linux",
+                           .compiler = "gcc 12",
+                           .compiler_flags = "-O3",
+                           .build_type = "Release",
+                           .version = "1.2.3",
+                           .started = "2025-01-02T03:04:05Z"}};
+  results.complete = true;
   results.options = {"broadmark", "--headless", "FreeFall"};
 
   CaseResult& full = results.cases.emplace_back();

@@ -1,6 +1,7 @@
 // What a run leaves behind: cases with their times and verdicts, and files to keep them in.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/conditions.h"
 #include "broadmark/environment.h"
 #include "broadmark/execution.h"
 #include "broadmark/frame.h"
@@ -17,6 +19,7 @@
 #include "broadmark/parameters.h"
 #include "broadmark/statistics.h"
 #include "broadmark/status.h"
+#include "broadmark/yardsticks.h"
 
 namespace broadmark {
 
@@ -24,6 +27,26 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
+  std::optional<YardstickTimes> yardsticks = {};  ///< measured just before
+};
+
+/// What is counted in each frame: pairs in the answer, bodies whose boxes are not those of the
+/// frame before, and wrong pairs as in FrameDifference.
+enum class FrameCount { pairs, changed_bodies, missed, false_pairs, allowed_extra, invalid };
+inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
+                                         {FrameCount::changed_bodies, "changed_bodies"},
+                                         {FrameCount::missed, "missed"},
+                                         {FrameCount::false_pairs, "false"},
+                                         {FrameCount::allowed_extra, "allowed_extra"},
+                                         {FrameCount::invalid, "invalid"}}};
+
+struct FrameCounts {
+  std::array<std::uint64_t, kFrameCounts.entries.size()> values{};
+
+  std::uint64_t& operator[](FrameCount which) { return values[static_cast<std::size_t>(which)]; }
+  std::uint64_t operator[](FrameCount which) const {
+    return values[static_cast<std::size_t>(which)];
+  }
 };
 
 /// The recording a case ran on.
@@ -46,6 +69,8 @@ struct CaseResult {
   std::string device;          ///< the compute device asked for, as Execution::device()
   std::string plugin;          ///< the file that the algorithm was loaded from; "": built in
   ParameterValues parameters;  ///< all, defaults included
+  Conditions conditions;
+  std::size_t environment = 0;  ///< where it ran: one of Results::environments
 
   Status status = Status::ok;
   std::string reason;  ///< for every status but ok
@@ -53,7 +78,9 @@ struct CaseResult {
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
   bool checked = false;  ///< when false, the counts of wrong pairs mean nothing
-  // Pairs over all frames and repetitions, as in FrameDifference.
+  /// Of each frame, over all repetitions the most of each kind. Empty in results/1.
+  std::vector<FrameCounts> frames;
+  // Sums of those.
   std::uint64_t missed_count = 0;
   std::uint64_t false_count = 0;
   std::uint64_t allowed_extra_count = 0;
@@ -69,13 +96,17 @@ struct CaseResult {
 
   /// The total times in seconds, per repetition.
   [[nodiscard]] Summary summary() const;
+  /// Whether it ran as often as was asked for, or ended by its status. A run that was interrupted
+  /// leaves cases that did not.
+  [[nodiscard]] bool isComplete() const;
 };
 
-/// A whole run.
+/// A whole run, or several that were merged.
 struct Results {
-  Environment environment;
-  std::vector<std::string> options;  ///< the command line
+  std::vector<Environment> environments;  ///< one, unless merged from several machines
+  std::vector<std::string> options;       ///< the command line
   std::vector<CaseResult> cases;
+  bool complete = false;  ///< the run came to its end
 };
 
 /// One way to write results. The list of all of them is resultWriters().
@@ -83,14 +114,25 @@ struct ResultWriter {
   std::string_view name;  ///< of the command line option, without dashes: "json"
   std::string_view doc;
   std::string (*format)(const Results&);
+  /// Text that can be written as the run goes: what stands before and after the cases, and each
+  /// case, `format` being all of them one after the other. Null where the whole must be written
+  /// anew.
+  struct Lines {
+    std::string (*before)(const Results&);
+    std::string (*one)(const CaseResult&);
+    std::string (*after)(const Results&);
+  };
+  const Lines* lines = nullptr;
 };
 std::vector<ResultWriter> resultWriters();
 
-/// The kind of JSON file, its "schema", that results are.
-inline constexpr std::string_view kResultsSchema = "broadmark-results/1";
+/// The kind of JSON file, its "schema", that results are. docs/results.md describes it.
+inline constexpr std::string_view kResultsSchema = "broadmark-results/2";
+/// Whether a file of this schema can be parsed: of this version or an earlier one.
+bool isResultsSchema(std::string_view schema);
 
-/// Parses a results file. `name` stands for it in messages.
-/// Throws InputError.
-Results parseResults(std::string_view json, std::string_view name);
+/// Parses a results file, either one document or lines (JSON Lines). The last line may be broken:
+/// the run ended while it was written. `name` stands for the file in messages. Throws InputError.
+Results parseResults(std::string_view text, std::string_view name);
 
 }  // namespace broadmark

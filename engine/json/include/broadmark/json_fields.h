@@ -73,6 +73,9 @@ class JsonFields {
     if (!json_.is_object()) throw InputError(name_ + ": a JSON object is expected");
   }
 
+  /// What stands for the object in messages.
+  [[nodiscard]] const std::string& name() const { return name_; }
+
   [[nodiscard]] bool has(const char* key) const {
     return json_.contains(key) && !json_[key].is_null();
   }

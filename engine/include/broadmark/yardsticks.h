@@ -1,0 +1,39 @@
+// Two small fixed pieces of work, timed between repetitions: how fast the machine was just then.
+// Where two runs are compared, what these differ by is not the algorithms' doing.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "broadmark/names.h"
+
+namespace broadmark {
+
+/// What bounds the work: arithmetic in registers, or reads spread over more memory than caches of
+/// one core hold.
+enum class Yardstick { arithmetic, memory };
+inline constexpr NameTable kYardsticks{
+    {NamedValue{Yardstick::arithmetic, "arithmetic"}, {Yardstick::memory, "memory"}}};
+
+/// Nanoseconds of each.
+struct YardstickTimes {
+  std::array<std::int64_t, kYardsticks.entries.size()> ns{};
+
+  std::int64_t& operator[](Yardstick which) { return ns[static_cast<std::size_t>(which)]; }
+  std::int64_t operator[](Yardstick which) const { return ns[static_cast<std::size_t>(which)]; }
+};
+
+class Yardsticks {
+ public:
+  Yardsticks();
+  /// The least of a few times of each; takes about 15 ms.
+  YardstickTimes measure();
+
+ private:
+  std::vector<std::uint32_t> memory_;
+  std::uint64_t sink_ = 0;  ///< what was computed, so that it is
+};
+
+}  // namespace broadmark
