@@ -103,12 +103,6 @@ int run(Options options) {
   return result.ok() ? 0 : 1;
 }
 
-/// "1%" or "0.01".
-double parseShare(const std::string& text, std::string_view option) {
-  if (!text.ends_with('%')) return parseNumber(text, option, 0, true);
-  return parseNumber(text.substr(0, text.size() - 1), option, 0, true) / 100;
-}
-
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("source", options->source,
@@ -123,7 +117,7 @@ std::function<int()> add(CLI::App& app) {
   addPath(app, "--with", "PROGRAM", options->program,
           "another build of broadmark, which runs every variant, too");
   const auto set_precision = [options = options.get()](const std::string& text) {
-    options->duel.precision = parseShare(text, "--precision");
+    options->duel.precision = parseShare(text, "--precision", true);
   };
   addValue(app, "--precision", "SHARE", set_precision,
            "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "

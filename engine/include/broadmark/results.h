@@ -27,7 +27,7 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
-  std::optional<YardstickTimes> yardsticks = {};  ///< measured just before
+  std::optional<YardstickTimes> yardsticks = {};  ///< as they were just before
 };
 
 /// What is counted in each frame: pairs in the answer, bodies whose boxes are not those of the
