@@ -188,6 +188,15 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
       ->allow_extra_args(false);
 }
 
+std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
+  std::vector<CLI::Option*> options;
+  for (const ResultWriter& writer : resultWriters()) {
+    options.push_back(addPath(app, fmt::format("--{}", writer.name), "FILE",
+                              outputs[std::string(writer.name)], std::string(writer.doc)));
+  }
+  return options;
+}
+
 CLI::Option* addQuiet(CLI::App& app, bool& quiet) {
   return app.add_flag("--quiet", quiet, "no progress");
 }

@@ -14,6 +14,7 @@
 #include "hosts.h"
 #include "parts.h"
 #include "picture_options.h"
+#include "result_files.h"
 #include "scene_options.h"
 
 namespace CLI {
@@ -94,6 +95,8 @@ void showWith(const BuildPart&, const std::vector<CLI::Option*>& options);
 CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
+/// Where results go: --json, --csv, … Paths that are not given stay "".
+std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
 /// --quiet
 CLI::Option* addQuiet(CLI::App&, bool& quiet);
 /// --recorder. Sets the default, too.

@@ -151,10 +151,8 @@ void SessionParser::Parts::addRun() {
 }
 
 void SessionParser::Parts::addOutput() {
-  for (const ResultWriter& writer : resultWriters()) {
-    tag(addPath(app, fmt::format("--{}", writer.name), "FILE",
-                options.outputs[std::string(writer.name)], std::string(writer.doc)),
-        kExport | kInspector);
+  for (const CLI::Option* option : addResultOutputs(app, options.outputs)) {
+    tagged.emplace_back(option, kExport | kInspector);
   }
   tag(addPath(app, "--record", "DIR", options.record,
               "keep the simulated recordings in this directory"),

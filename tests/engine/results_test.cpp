@@ -9,7 +9,9 @@
 #include <set>
 #include <sstream>
 
+#include "broadmark/files.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -375,6 +377,42 @@ TEST(ResultsJson, WhatIsNoResultsFile) {
   }
   const std::string deep(100'000, '[');
   EXPECT_THAT(inputErrorOf([&] { parseResults(deep, "a.json"); }), HasSubstr("not valid JSON"));
+}
+
+std::string documentation() { return readTextFile(places::source("docs/results.md")); }
+
+TEST(ResultsDocumentation, ItsExampleIsAResultsFile) {
+  const std::string text = documentation();
+  const std::size_t begin = text.find("```json\n") + 8;
+  const std::string example = text.substr(begin, text.find("```", begin) - begin);
+  const Results results = parseResults(example, "example");
+  EXPECT_TRUE(results.complete);
+  ASSERT_THAT(results.cases, SizeIs(1));
+  EXPECT_TRUE(results.cases[0].isComplete());
+  // As it would be written today, but for the digits of numbers.
+  std::istringstream lines(format(results, "jsonl"));
+  std::istringstream documented(example);
+  for (std::string line, shown; std::getline(lines, line) && std::getline(documented, shown);) {
+    EXPECT_EQ(Json::parse(line), Json::parse(shown));
+  }
+}
+
+/// Calls visit(key) for every key of an object and of what is in it, but for those whose names are
+/// data.
+template <class Visit>
+void eachKey(const Json& json, Visit&& visit) {
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object()) visit(key);
+    if (key != "params" && key != "counters" && key != "setup" && key != "source") {
+      if (value.is_structured()) eachKey(value, visit);
+    }
+  }
+}
+
+TEST(ResultsDocumentation, NamesEveryKey) {
+  const std::string text = documentation();
+  eachKey(Json::parse(format(everything(), "json")),
+          [&](const std::string& key) { EXPECT_THAT(text, HasSubstr('`' + key + '`')); });
 }
 
 /// Splits CSV (RFC 4180) into rows of fields.
