@@ -15,6 +15,7 @@
 #include "broadmark/names.h"
 #include "commands/command.h"
 #include "commands/session.h"
+#include "exit_status.h"
 #include "parts.h"
 #include "sources/source.h"
 
@@ -32,9 +33,17 @@ namespace {
 constexpr const char* kWithoutHeadless =
     "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
 constexpr const char* kFooter =
-    "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
-    "bad input.\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
+    "\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
     "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
+
+std::string footer() {
+  std::string text = parts::kInspector.included ? kWithoutHeadless : "";
+  text += "\nExit status:\n";
+  for (const auto& [status, meaning] : kExitStatuses.entries) {
+    text += fmt::format("  {:<4}{}\n", static_cast<int>(status), meaning);
+  }
+  return text + kFooter;
+}
 
 std::vector<Command> allCommands() {
   return {
@@ -81,7 +90,7 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.footer(parts::kInspector.included ? std::string(kWithoutHeadless) + kFooter : kFooter);
+    app_.footer(footer());
     app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     app_.set_version_flag("--version", thisEnvironment().version);
     app_.formatter(std::make_shared<HelpFormatter>());

@@ -15,6 +15,7 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/runner.h"
+#include "exit_status.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "recordings.h"
@@ -140,23 +141,27 @@ class PlanRun {
     }
   }
 
-  /// Says what has been written. Returns the exit status. Throws InputError when interrupted.
+  /// Says what has been written. Returns the exit status. Throws Interrupted.
   int finish() {
     if (!options_.record.empty()) written_.push_back(options_.record);
     if (!results_.cases.empty()) {
       for (const auto& [name, path] : options_.outputs) written_.push_back(path);
     }
     for (const fs::path& path : written_) fmt::print("written: {}\n", path.string());
-    if (interrupted_) {
-      throw InputError(fmt::format("interrupted: {} finished cases kept", results_.cases.size()));
+    if (interrupted_ || InterruptGuard::requested()) {
+      throw Interrupted(fmt::format("{} finished cases kept", results_.cases.size()));
     }
-    if (picture_failed_) return 2;
-    return std::ranges::any_of(results_.cases, isFailure) ? 1 : 0;
+    const int status = exitStatusOf(judgedStatuses());
+    return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
   }
 
  private:
-  static bool isFailure(const CaseResult& result) {
-    return result.status != Status::ok && result.status != Status::unsupported;
+  /// Those that tell how the run ends.
+  [[nodiscard]] std::vector<Status> judgedStatuses() const {
+    std::vector<Status> statuses;
+    for (const CaseResult& result : results_.cases) statuses.push_back(result.status);
+    if (options_.allow_timeout) std::erase(statuses, Status::timeout);
+    return statuses;
   }
 
   /// The machine, with the compute device that is used before the others.

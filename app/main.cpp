@@ -1,6 +1,5 @@
 // broadmark: generates scenes, runs broad-phase algorithms on them, checks and measures them.
-//
-// Exit status: 0 all well; 1 a case mismatched, timed out or regressed; 2 bad usage or input.
+// How it ends: exit_status.h.
 
 #include <cstdio>
 #include <exception>
@@ -9,6 +8,8 @@
 
 #include "broadmark/error.h"
 #include "command_line.h"
+#include "exit_status.h"
+#include "interrupt.h"
 
 namespace {
 
@@ -26,6 +27,9 @@ int main(int argc, char** argv) {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();
     return status;
+  } catch (const broadmark::Interrupted& end) {
+    std::cerr << "broadmark: " << end.what() << '\n';
+    return broadmark::exit_status::interrupted;
   } catch (const broadmark::InputError& error) {
     std::cerr << "broadmark: " << error.what() << '\n';
   } catch (const std::system_error& error) {
@@ -36,5 +40,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "broadmark: internal error: " << error.what() << '\n';
   }
-  return 2;
+  return broadmark::exit_status::bad_input;
 }

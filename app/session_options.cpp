@@ -143,6 +143,9 @@ void SessionParser::Parts::addRun() {
           "limit on the mean seconds per frame (the paper's cap)",
           fmt::format("{}", policy.frame_limit_seconds)),
       kInspector);
+  tag(app.add_flag("--allow-timeout", options.allow_timeout,
+                   "cases that cross a time limit do not make the run fail"),
+      kInspector);
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);

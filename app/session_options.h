@@ -38,6 +38,7 @@ struct SessionOptions {
   int repetitions = 1;
   int warmup = 0;
   RunPolicy policy;
+  bool allow_timeout = false;  ///< a case that crosses a time limit is no failure of the run
   HostOptions hosts;
   std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
   std::filesystem::path record;                          ///< "": keep no recordings

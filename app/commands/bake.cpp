@@ -15,6 +15,7 @@
 #include "batch.h"
 #include "broadmark/error.h"
 #include "commands/command.h"
+#include "exit_status.h"
 #include "interrupt.h"
 #include "movie.h"
 #include "option_types.h"
@@ -32,11 +33,11 @@ struct Options {
   bool quiet = false;
 };
 
-InputError interruption() {
-  return InputError("interrupted: finished recordings are kept; the same call continues");
+Interrupted interruption() {
+  return Interrupted("finished recordings are kept; the same call continues");
 }
 
-/// The plan, with progress. Throws InputError when interrupted.
+/// The plan, with progress. Throws Interrupted.
 BakePlan makeBakePlan(const Options& options) {
   std::optional<Progress> shown;  // only when there is something to check
   auto plan =
@@ -153,9 +154,9 @@ int run(const Options& options) {
   Tally tally;
   const std::vector<fs::path> whole = performPlan(std::move(plan), options, tally);
   tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  if (tally.unfinished > 0) throw interruption();
+  if (InterruptGuard::requested()) throw interruption();
   if (movie_maker && !makeMovies(*movie_maker, whole, options.quiet)) throw interruption();
-  return tally.failed == 0 ? 0 : 2;
+  return tally.failed == 0 ? exit_status::fine : exit_status::bad_input;
 }
 
 /// The scenes, built-in or in files.

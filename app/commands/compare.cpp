@@ -10,6 +10,7 @@
 #include "broadmark/files.h"
 #include "commands/command.h"
 #include "comparison.h"
+#include "exit_status.h"
 #include "option_types.h"
 
 namespace broadmark::commands::compare {
@@ -34,7 +35,7 @@ int run(const Options& options) {
     throw InputError(fmt::format("{} and {}: no case of both ran on the same recording",
                                  options.before.string(), options.after.string()));
   }
-  return comparison.regressed() ? 1 : 0;
+  return comparison.regressed() ? exit_status::regression : exit_status::fine;
 }
 
 std::function<int()> add(CLI::App& app) {

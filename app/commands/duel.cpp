@@ -12,6 +12,7 @@
 #include "cases.h"
 #include "commands/command.h"
 #include "duel_report.h"
+#include "exit_status.h"
 #include "hosts.h"
 #include "interrupt.h"
 #include "option_types.h"
@@ -69,12 +70,20 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   return sides;
 }
 
+int exitStatusOf(const DuelResult& result) {
+  std::vector<Status> statuses;
+  for (const DuelResult::Side& side : result.sides) statuses.push_back(side.status);
+  const int status = exitStatusOf(statuses);
+  // A side that cannot run here leaves nothing to compare.
+  return status == exit_status::fine && !result.ok() ? exit_status::bad_input : status;
+}
+
 int run(Options options) {
   if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
   const std::unique_ptr<Recording> recording = open(options);
-  if (!recording) throw InputError("interrupted");
+  if (!recording) throw Interrupted();
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.source));
   }
@@ -92,7 +101,7 @@ int run(Options options) {
     try {
       return runDuel(sides, *recording, options.duel);
     } catch (const Cancelled&) {
-      throw InputError("interrupted");
+      throw Interrupted();
     }
   }();
   progress.update(static_cast<std::uint64_t>(kTicks));
@@ -100,7 +109,7 @@ int run(Options options) {
   const double margin = 2 * options.duel.precision;
   progress.print(formatDuel(result, recording->scene(), margin));
   if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording, margin));
-  return result.ok() ? 0 : 1;
+  return exitStatusOf(result);
 }
 
 /// "1%" or "0.01".

@@ -11,6 +11,7 @@
 #include "broadmark/scene_statistics.h"
 #include "broadmark/scenes/simulation.h"
 #include "commands/command.h"
+#include "exit_status.h"
 #include "interrupt.h"
 #include "option_types.h"
 #include "progress.h"
@@ -101,17 +102,16 @@ std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options&
 int run(const Options& options) {
   if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
   const InterruptGuard guard;
-  int status = 0;
+  int status = exit_status::fine;
   std::vector<DescribedRecording> described;
   for (const auto& file : options.files) {
     try {
       auto one = verifyOne(file, options);
-      if (!one) throw InputError("interrupted");
+      if (!one) throw Interrupted();
       described.push_back(std::move(*one));
     } catch (const InputError& error) {
-      if (InterruptGuard::requested()) throw;
       fmt::print(stderr, "broadmark: {}\n", error.what());
-      status = 2;
+      status = exit_status::bad_input;
     }
   }
   if (!options.json.empty()) writeTextFile(options.json, formatDescriptions(described));

@@ -249,9 +249,9 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
   for (const Arguments& lost :
        {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--check", "off"},
         Arguments{"--time-limit", "1"}, Arguments{"--record", "d"}, Arguments{"--shard", "0/2"},
-        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--frame", "1"},
-        Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
-        Arguments{"--csv-frames", "c"}}) {
+        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--allow-timeout"},
+        Arguments{"--frame", "1"}, Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"},
+        Arguments{"--csv", "c"}, Arguments{"--csv-frames", "c"}}) {
     Arguments window = {"freefall"};
     window.insert(window.end(), lost.begin(), lost.end());
     expectRefused(window, {lost[0], "--headless"});

@@ -55,7 +55,7 @@ TEST_F(Compare, ASlowerCaseIsARegression) {
   Json after = results_;
   slowDown(after.at("cases").at(1));
   const Ended slower = compareWith(after);
-  EXPECT_EQ(slower.status, 1);
+  EXPECT_EQ(slower.status, 3);
   const std::string id = after.at("cases").at(1).at("id");
   EXPECT_THAT(lineWith(slower.out, id), HasSubstr("REGRESSED"));
   EXPECT_EQ(slower.out.find("REGRESSED"), slower.out.rfind("REGRESSED")) << slower.out;
@@ -74,7 +74,7 @@ TEST_F(Compare, ACaseThatBecameWrongIsARegression) {
   after.at("cases").at(0).at("status") = "mismatch";
   after.at("cases").at(0).at("reason") = "frame 1: 1 missed";
   const Ended worse = compareWith(after);
-  EXPECT_EQ(worse.status, 1);
+  EXPECT_EQ(worse.status, 3);
   EXPECT_THAT(worse.out, HasSubstr("ok -> mismatch REGRESSED"));
   const Ended better = run({"compare", "after.json", "before.json"});
   EXPECT_EQ(better.status, 0);
