@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <functional>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "broadmark/runner.h"
 #include "exit_status.h"
 #include "interrupt.h"
+#include "output.h"
 #include "progress.h"
 #include "recordings.h"
 #include "screenshot.h"
@@ -141,13 +143,19 @@ class PlanRun {
     }
   }
 
-  /// Says what has been written. Returns the exit status. Throws Interrupted.
+  /// Prints the results that go to standard output, and says what has been written. Returns the
+  /// exit status. Throws Interrupted.
   int finish() {
     if (!options_.record.empty()) written_.push_back(options_.record);
     if (!results_.cases.empty()) {
-      for (const auto& [name, path] : options_.outputs) written_.push_back(path);
+      writeResults(isStandardOutput);
+      for (const auto& [name, path] : options_.outputs) {
+        if (!isStandardOutput(path)) written_.push_back(path);
+      }
     }
-    for (const fs::path& path : written_) fmt::print("written: {}\n", path.string());
+    for (const fs::path& path : written_) {
+      fmt::print(prints_results_ ? stderr : stdout, "written: {}\n", path.string());
+    }
     if (interrupted_ || InterruptGuard::requested()) {
       throw Interrupted(fmt::format("{} finished cases kept", results_.cases.size()));
     }
@@ -194,16 +202,23 @@ class PlanRun {
 
   void report(const PlanEntry& entry, const std::vector<CaseResult>& done) {
     if (done.empty()) return;
-    std::cout << formatTable(done) << std::endl;
+    if (!prints_results_) std::cout << formatTable(done) << std::endl;
     if (entry.original) {
       const fs::path log = entry.original->output_log;
       writeTextFile(log, formatOriginalLog(*entry.original, done.front()));
       written_.push_back(log);
     }
     results_.cases.insert(results_.cases.end(), done.begin(), done.end());
+    // Standard output cannot be rewritten: it waits for all results.
+    writeResults(std::not_fn(isStandardOutput));
+  }
+
+  /// Writes the results to those of their files that are `wanted`.
+  void writeResults(const std::function<bool(const fs::path&)>& wanted) const {
     for (const ResultWriter& writer : resultWriters()) {
       const auto output = options_.outputs.find(std::string(writer.name));
-      if (output != options_.outputs.end()) writeTextFile(output->second, writer.format(results_));
+      if (output == options_.outputs.end() || !wanted(output->second)) continue;
+      writeOutput(output->second, writer.format(results_));
     }
   }
 
@@ -219,6 +234,9 @@ class PlanRun {
   }
 
   const SessionOptions& options_;
+  /// Results go to standard output: then nothing else does.
+  const bool prints_results_ = std::ranges::any_of(
+      options_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   Results results_;
   Exhausted exhausted_;
   bool picture_failed_ = false;
@@ -240,6 +258,7 @@ std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions&
 
 /// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
 fs::path oneName(const fs::path& path) {
+  if (isStandardOutput(path)) return "-";
   std::error_code failed;
   fs::path name = fs::weakly_canonical(path, failed);
   return failed ? path : name;
@@ -261,7 +280,7 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
                                    path.string(), other->second));
     }
-    AtomicFile probe(path);
+    requireOutput(path);
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <system_error>
 
@@ -32,6 +33,8 @@ int main(int argc, char** argv) {
     return broadmark::exit_status::interrupted;
   } catch (const broadmark::InputError& error) {
     std::cerr << "broadmark: " << error.what() << '\n';
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << "broadmark: " << error.path1().string() << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {
     // The system refused something, such as a write or a thread: no internal error.
     std::cerr << "broadmark: " << error.what() << '\n';

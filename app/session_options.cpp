@@ -156,7 +156,8 @@ void SessionParser::Parts::addRun() {
 void SessionParser::Parts::addOutput() {
   for (const ResultWriter& writer : resultWriters()) {
     tag(addPath(app, fmt::format("--{}", writer.name), "FILE",
-                options.outputs[std::string(writer.name)], std::string(writer.doc)),
+                options.outputs[std::string(writer.name)],
+                fmt::format("{}; '-': to standard output, instead of the table", writer.doc)),
         kExport | kInspector);
   }
   tag(addPath(app, "--record", "DIR", options.record,

@@ -16,6 +16,7 @@
 #include "hosts.h"
 #include "interrupt.h"
 #include "option_types.h"
+#include "output.h"
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
@@ -79,7 +80,7 @@ int exitStatusOf(const DuelResult& result) {
 }
 
 int run(Options options) {
-  if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
+  if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
   const std::unique_ptr<Recording> recording = open(options);
@@ -107,8 +108,10 @@ int run(Options options) {
   progress.update(static_cast<std::uint64_t>(kTicks));
   // An interval that misses 1 by little is no news: one in twenty does.
   const double margin = 2 * options.duel.precision;
-  progress.print(formatDuel(result, recording->scene(), margin));
-  if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording, margin));
+  if (!isStandardOutput(options.json)) {
+    progress.print(formatDuel(result, recording->scene(), margin));
+  }
+  if (!options.json.empty()) writeOutput(options.json, duelJson(result, *recording, margin));
   return exitStatusOf(result);
 }
 
@@ -149,7 +152,8 @@ std::function<int()> add(CLI::App& app) {
   addSceneOptions(app, options->scene);
   addParameters(app, options->parameters);
   addHosts(app, options->hosts);
-  addPath(app, "--json", "FILE", options->json, "write all times and the verdict as JSON");
+  addPath(app, "--json", "FILE", options->json,
+          "write all times and the verdict as JSON; '-': to standard output, instead of the table");
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }
