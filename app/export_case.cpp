@@ -37,9 +37,9 @@ std::string pathWord(const fs::path& path) {
 
 /// What is left, in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
-  return fmt::format("{}: {} of {} ({} runs): {}", partName(whole),
+  return fmt::format("{}: {} of {} ({}): {}", partName(whole),
                      extentText(shrunk.part.bodies.size(), shrunk.part.frames.size() - 1),
-                     extentText(whole.objects, whole.frames), shrunk.trials,
+                     extentText(whole.objects, whole.frames), counted(shrunk.trials, "run"),
                      mismatchText(shrunk.difference));
 }
 

@@ -22,7 +22,9 @@
 #include "progress.h"
 #include "recordings.h"
 #include "screenshot.h"
+#include "sweep.h"
 #include "table.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {
@@ -44,14 +46,16 @@ class Exhausted {
     const auto found = smallest_.find(key(result, run));
     if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
     result.status = Status::timeout;
-    result.reason = fmt::format("not run: crossed the time limit with {} bodies", found->second);
+    result.reason = fmt::format("not run: crossed the time limit with {}",
+                                counted(found->second, "body", "bodies"));
     return true;
   }
 
  private:
   static std::string key(const CaseResult& result, const Case& run) {
     const SceneInfo& scene = result.recording.scene;
-    return fmt::format("{}/{}/{}", scene.name, scene.object_type, caseName(run));
+    return fmt::format("{}/{}{}/{}", scene.name, scene.object_type,
+                       sweptText(result.recording.swept), caseName(run));
   }
   std::map<std::string, std::uint32_t> smallest_;
 };
@@ -157,7 +161,7 @@ class PlanRun {
       fmt::print(prints_results_ ? stderr : stdout, "written: {}\n", path.string());
     }
     if (interrupted_ || InterruptGuard::requested()) {
-      throw Interrupted(fmt::format("{} finished cases kept", results_.cases.size()));
+      throw Interrupted(fmt::format("{} kept", counted(results_.cases.size(), "finished case")));
     }
     const int status = exitStatusOf(judgedStatuses());
     return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
@@ -224,8 +228,8 @@ class PlanRun {
 
   void draw(Recording& recording, Oracle& oracle, const fs::path& path) {
     try {
-      takeScreenshot(recording, options_.screenshot_frame.value_or(recording.scene().frames),
-                     oracle, options_.picture, path);
+      takeScreenshot(recording, options_.frame.value_or(recording.scene().frames), oracle,
+                     options_.picture, path);
       written_.push_back(path);
     } catch (const RenderError& error) {
       std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
@@ -284,21 +288,10 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
   }
 }
 
-/// The frame of the screenshot is in every recording.
-void requireFrame(const SessionOptions& options, const Plan& plan) {
-  for (const PlanEntry& entry : plan.entries) {
-    const SceneInfo& scene = entry.source.reference.scene;
-    if (options.screenshot_frame.value_or(0) <= scene.frames) continue;
-    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}",
-                                 *options.screenshot_frame, scene.name, scene.frames));
-  }
-}
-
 }  // namespace
 
 int runHeadless(Plan plan, const SessionOptions& options) {
   if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
-  requireFrame(options, plan);
   requireWritable(options, plan);
   if (!options.record.empty()) makeDirectory(options.record);
   const InterruptGuard guard;

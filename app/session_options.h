@@ -43,7 +43,7 @@ struct SessionOptions {
   std::map<std::string, std::filesystem::path> outputs;  ///< by result writer's name
   std::filesystem::path record;                          ///< "": keep no recordings
   std::filesystem::path screenshot;                      ///< "": none
-  std::optional<std::uint32_t> screenshot_frame;         ///< nothing: the last one
+  std::optional<std::uint32_t> frame;  ///< of the screenshot, or where the inspector opens
   PictureOptions picture;
   Shard shard;
   std::string filter;  ///< regular expression

@@ -20,6 +20,7 @@
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
+#include "words.h"
 
 namespace broadmark::commands::duel {
 namespace {
@@ -42,8 +43,8 @@ std::unique_ptr<Recording> open(const Options& options) {
   OpenedSource opened =
       openSource(options.source, {.scene = options.scene, .parameters = options.parameters});
   if (opened.entries.size() != 1) {
-    throw InputError(fmt::format("duel: {} stands for {} recordings; a duel is on one",
-                                 options.source, opened.entries.size()));
+    throw InputError(fmt::format("duel: {} stands for {}; a duel is on one", options.source,
+                                 counted(opened.entries.size(), "recording")));
   }
   Source& source = opened.entries.front().source;
   requireKnownParameters(options.parameters, source.simulation ? parameterNames(*source.simulation)
@@ -93,7 +94,7 @@ int run(Options options) {
   options.duel.cancelled = InterruptGuard::requested;
   options.duel.progress = [&](const DuelProgress& now) {
     const double left = std::max(options.duel.most_seconds - now.seconds, 0.0);
-    progress.detail(fmt::format("{} rounds", now.rounds));
+    progress.detail(counted(now.rounds, "round"));
     progress.update(
         static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.most_seconds)),
         left);
