@@ -18,6 +18,7 @@
 #include "exit_status.h"
 #include "parts.h"
 #include "sources/source.h"
+#include "usage.h"
 
 namespace broadmark {
 
@@ -52,10 +53,6 @@ std::vector<Command> allCommands() {
 #undef COMMAND
   };
 }
-
-/// Whether help shows it: CLI11's own way to hide an option takes its name away, which complaints
-/// need.
-bool isShown(const CLI::Option& option) { return !option.get_description().empty(); }
 
 class HelpFormatter final : public CLI::Formatter {
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -164,16 +161,16 @@ class CommandLine {
 }  // namespace
 
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
-  CommandLine line;
+  const auto line = std::make_shared<CommandLine>();
   std::string printed;
-  if (!line.parse(arguments, printed)) {
+  if (!line->parse(arguments, printed)) {
     return [printed] {
       std::fputs(printed.c_str(), stdout);
       return 0;
     };
   }
-  if (auto run = line.command()) return run;
-  SessionOptions options = line.session();
+  if (auto run = line->command()) return [line, run = std::move(run)] { return run(); };
+  SessionOptions options = line->session();
   options.command_line = arguments;
   return [options = std::move(options)] { return runSession(options); };
 }
