@@ -2,12 +2,16 @@
 
 #include "usage.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <memory>
 #include <regex>
 #include <set>
 
+#include "broadmark/files.h"
 #include "command_line.h"
 #include "engine/helpers.h"
 
@@ -79,6 +83,33 @@ TEST(Usage, OfTheManual) {
   }
   EXPECT_THAT(manual, HasSubstr(".TP\n130\ninterrupted"));
   EXPECT_THAT(manual, HasSubstr(".TP\n\\fB\\-\\-json\\fR \\fIFILE\\fR\nresults as JSON"));
+}
+
+/// What bash makes of the last of these words.
+std::string completedByBash(const std::filesystem::path& script, const std::string& words) {
+  const auto last = std::ranges::count(words, ' ');
+  const std::string command = fmt::format(
+      "bash -c '. \"$0\"; COMP_WORDS=({}) COMP_CWORD={}; _broadmark; echo ${{COMPREPLY[*]}}' "
+      "\"{}\"",
+      words, last, script.string());
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(command.c_str(), "r"),
+                                                             ::pclose);
+  std::string text;
+  for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
+    text += static_cast<char>(c);
+  }
+  return text;
+}
+
+TEST(Usage, BashCompletes) {
+  const TemporaryDirectory directory;
+  const auto script = directory / "script";
+  writeTextFile(script, printedBy({"completion", "bash"}));
+  EXPECT_EQ(completedByBash(script, "broadmark --csv"), "--csv --csv-frames\n");
+  EXPECT_EQ(completedByBash(script, "broadmark ba"), "bake\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --sce"), "--scenes\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --csv"), "\n") << "no option of bake";
+  EXPECT_EQ(completedByBash(script, "broadmark bake fi"), "\n") << "files are left to bash";
 }
 
 TEST(Usage, OfAnUnknownShell) {
