@@ -40,7 +40,7 @@ std::vector<std::string> commandNames(const std::vector<CommandUsage>& commands)
 
 /// The branches of a `case` over the commands, the main one last, as the pattern *.
 template <class Branch>
-std::string cases(const std::vector<CommandUsage>& commands, Branch&& branch) {
+std::string caseBranches(const std::vector<CommandUsage>& commands, Branch&& branch) {
   std::string text;
   for (std::size_t i = 1; i <= commands.size(); ++i) {
     const CommandUsage& command = commands[i % commands.size()];
@@ -51,7 +51,7 @@ std::string cases(const std::vector<CommandUsage>& commands, Branch&& branch) {
 }
 
 std::string bashScript(const std::vector<CommandUsage>& commands) {
-  const std::string options = cases(commands, [](const CommandUsage& command) {
+  const std::string options = caseBranches(commands, [](const CommandUsage& command) {
     return fmt::format("      options='{}'", fmt::join(optionNames(command), " "));
   });
   return fmt::format(R"(_broadmark() {{
@@ -113,7 +113,7 @@ _broadmark() {{
 }}
 _broadmark "$@"
 )",
-                     names, cases(commands, zshArguments));
+                     names, caseBranches(commands, zshArguments));
 }
 
 std::string fishQuoted(const std::string& text) {
