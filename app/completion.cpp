@@ -83,8 +83,10 @@ std::string zshArguments(const CommandUsage& command) {
     if (option.positional) continue;
     const std::string value =
         option.takes_value ? fmt::format(":{}:_files", escaped(option.type, ":\\")) : "";
+    const char* repeatable = option.takes_value ? "*" : "";
     for (const std::string& name : option.names) {
-      const std::string spec = fmt::format("{}[{}]{}", name, escaped(option.doc, "[]:\\"), value);
+      const std::string spec =
+          fmt::format("{}{}[{}]{}", repeatable, name, escaped(option.doc, "[]:\\"), value);
       fmt::format_to(std::back_inserter(text), " \\\n        {}", zshQuoted(spec));
     }
   }

@@ -16,8 +16,8 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A right result whose frames took these times.
-CaseResult resultOf(const std::string& algorithm, const std::vector<std::int64_t>& milliseconds,
-                    ParameterValues parameters = {}) {
+CaseResult timedResult(const std::string& algorithm, const std::vector<std::int64_t>& milliseconds,
+                       ParameterValues parameters = {}) {
   CaseResult result;
   result.algorithm = algorithm;
   result.recording.scene = {.name = "FreeFall", .object_type = "Cubes", .objects = 1, .frames = 1};
@@ -43,7 +43,8 @@ std::vector<std::string> tableOf(const std::vector<CaseResult>& results) {
 }
 
 TEST(Table, IsRankedByTheMedian) {
-  const auto lines = tableOf({resultOf("even", {4, 4, 4}), resultOf("disturbed", {3, 3, 90})});
+  const auto lines =
+      tableOf({timedResult("even", {4, 4, 4}), timedResult("disturbed", {3, 3, 90})});
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_THAT(lines[1], HasSubstr("mean median p95"));
   EXPECT_THAT(lines[2], HasSubstr("* disturbed 1 – 32.0 ms 3.00 ms"));
@@ -51,22 +52,22 @@ TEST(Table, IsRankedByTheMedian) {
 }
 
 TEST(Table, CountsInTheSingular) {
-  EXPECT_EQ(tableOf({resultOf("a", {1})}).front(), "FreeFall Cubes, 1 body, 1 frame");
+  EXPECT_EQ(tableOf({timedResult("a", {1})}).front(), "FreeFall Cubes, 1 body, 1 frame");
 }
 
 TEST(Table, TellsCasesOfOneAlgorithmApart) {
-  const auto lines = tableOf({resultOf("kd", {1}, {{"leaf", "9"}, {"margin", "0"}}),
-                              resultOf("kd", {2}, {{"leaf", "20"}, {"margin", "0"}}),
-                              resultOf("sap", {3}, {{"leaf", "7"}})});
+  const auto lines = tableOf({timedResult("kd", {1}, {{"leaf", "9"}, {"margin", "0"}}),
+                              timedResult("kd", {2}, {{"leaf", "20"}, {"margin", "0"}}),
+                              timedResult("sap", {3}, {{"leaf", "7"}})});
   EXPECT_THAT(lines[1], HasSubstr("parameters"));
   EXPECT_THAT(lines[2], HasSubstr("kd 1 – leaf=9 1.00 ms"));
   EXPECT_THAT(lines[3], HasSubstr("kd 1 – leaf=20 2.00 ms"));
   EXPECT_THAT(lines[4], HasSubstr("sap 1 – 3.00 ms")) << "there is only one of it";
-  EXPECT_THAT(tableOf({resultOf("kd", {1}, {{"leaf", "9"}})})[1], Not(HasSubstr("parameters")));
+  EXPECT_THAT(tableOf({timedResult("kd", {1}, {{"leaf", "9"}})})[1], Not(HasSubstr("parameters")));
 }
 
 TEST(Table, SaysWhatTellsItsRecordingApart) {
-  CaseResult result = resultOf("a", {1});
+  CaseResult result = timedResult("a", {1});
   result.recording.swept = {{"density", "0.1"}, {"seed", "2"}};
   EXPECT_THAT(tableOf({result}).front(), HasSubstr("1 frame, density=0.1, seed=2"));
 }

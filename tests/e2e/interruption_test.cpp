@@ -42,6 +42,15 @@ TEST_F(Interruption, OfABakeLeavesNothingHalf) {
   }
 }
 
+TEST_F(Interruption, TwoSignalsAtOnceAreOne) {
+  Program bake(directory_, kEndlessBake);
+  ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+  bake.signal(SIGINT);
+  bake.signal(SIGTERM);
+  EXPECT_EQ(bake.wait().status, 130);
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
   // Two threads: the endless one is begun first, the small ones are baked beside it.
   const Arguments call = {"bake", "--scenes", "freefall", "--objects", "2,3,5000", "--frames",
