@@ -144,6 +144,7 @@ Json toJson(const RecordingReference& recording) {
                {"seed", nullptr},
                {"hash", recording.hash}};
   if (recording.seed) json["seed"] = *recording.seed;
+  if (!recording.swept.empty()) json["swept"] = toJson(recording.swept);
   if (recording.path.empty()) {
     json["source"] = toJson(recording.scene_parameters);
   } else {
@@ -163,6 +164,7 @@ RecordingReference recordingFrom(const JsonFields& json) {
   scene.world.min = cornerFrom(world.array("min"), world.path("min"));
   scene.world.max = cornerFrom(world.array("max"), world.path("max"));
   if (json.has("seed")) recording.seed = json.integer<std::uint64_t>("seed");
+  if (json.has("swept")) recording.swept = parametersFrom(json.at("swept"), json.path("swept"));
   recording.hash = json.text("hash");
   if (json.at("source").is_string()) {
     recording.path = json.text("source");
