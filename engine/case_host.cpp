@@ -67,6 +67,9 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   stop();
   requireRunnable(case_, scene);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  processor_counts_ = {};
+  if (!processor_) processor_.emplace();
+  processor_->restart();
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
   instance_ = makeInstance(case_);
   const auto start = Clock::now();
@@ -74,9 +77,14 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   return nanoseconds(Clock::now() - start);
 }
 
+FrameTimes LocalHost::runCounted(const Frame& frame) {
+  const ProcessorCounters::Counting counting(*processor_);
+  return runPhases(*instance_, frame);
+}
+
 FrameRun LocalHost::step(const Frame& frame) {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  FrameRun run{.times = runPhases(*instance_, frame)};
+  FrameRun run{.times = runCounted(frame)};
   // Asked once: whoever looks at the answer sees the same one.
   answer_ = instance_->overlaps();
   run.pairs = pairCount(answer_);
@@ -86,6 +94,7 @@ FrameRun LocalHost::step(const Frame& frame) {
 void LocalHost::stop() {
   answer_ = {};
   if (instance_ == nullptr) return;
+  processor_counts_ = processor_->counts();
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   instance_.reset();
 }

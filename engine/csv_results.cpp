@@ -51,8 +51,12 @@ std::string formatCsvResults(const Results& results) {
       "{},frames,seed,recording_hash,status,reason,repetitions,seconds_per_frame,median,p95,p99,"
       "min,stddev,ci95_low,ci95_high,outliers,pairs_mean,pairs_max,missed,false,"
       "allowed_extra,invalid,"
-      "peak_bytes\n",
+      "peak_bytes",
       kCaseColumns);
+  for (const auto& counter : kProcessorCounters.entries) {
+    csv += fmt::format(",{}_per_frame", counter.name);
+  }
+  csv += '\n';
   for (const CaseResult& result : results.cases) {
     const Summary summary = result.summary();
     const bool timed = !result.repetitions.empty();
@@ -60,8 +64,8 @@ std::string formatCsvResults(const Results& results) {
     const auto found = [&](std::uint64_t n) { return result.checked ? fmt::format("{}", n) : ""; };
     fmt::format_to(
         std::back_inserter(csv),
-        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-        caseColumns(result), result.recording.scene.frames, orEmpty(result.recording.seed),
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", caseColumns(result),
+        result.recording.scene.frames, orEmpty(result.recording.seed),
         csvField(result.recording.hash), statusName(result.status), csvField(result.reason),
         result.repetitions.size(), time(summary.seconds_per_frame), time(summary.median),
         time(summary.p95), time(summary.p99), time(summary.min), time(summary.stddev),
@@ -69,6 +73,10 @@ std::string formatCsvResults(const Results& results) {
         timed ? fmt::format("{}", summary.outliers) : "", result.pairs_mean, result.pairs_max,
         found(result.missed_count), found(result.false_count), found(result.allowed_extra_count),
         found(result.invalid_count), orEmpty(result.peak_bytes));
+    for (const auto& counter : kProcessorCounters.entries) {
+      csv += fmt::format(",{}", orEmpty(result.perFrame(counter.value)));
+    }
+    csv += '\n';
   }
   return csv;
 }

@@ -135,7 +135,8 @@ class Server {
     if (!measured_) measure();
     host().stop();
     std::vector<Aabb>().swap(boxes_);  // others run while this waits for its next pass
-    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)}};
+    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
+            {"processor", worker::toJson(host().processorCounts())}};
   }
 
   /// Only the first pass tells: later ones use memory again that the first has freed.

@@ -142,6 +142,7 @@ void WorkerProcess::open() {
 }
 
 std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
+  processor_counts_ = {};
   open();
   return talk([&](Link& link) {
     link.frames.write(first.boxes);
@@ -168,6 +169,7 @@ void WorkerProcess::stop() {
   if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
     peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
   }
+  processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
   link_->frames.clear();
   link_->answers.clear();
 }

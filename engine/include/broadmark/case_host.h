@@ -13,6 +13,7 @@
 #include "broadmark/error.h"
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
+#include "broadmark/processor_counters.h"
 #include "broadmark/recorded_drawing.h"
 
 namespace broadmark {
@@ -55,6 +56,9 @@ class CaseHost {
   /// By how much the first pass made the peak of the process's memory grow; nothing where others
   /// share that memory, and before the first stop().
   [[nodiscard]] virtual std::optional<std::uint64_t> peakBytes() const { return std::nullopt; }
+  /// What the processor counted during the four phases of all frames of the last pass. Nothing
+  /// before its stop().
+  [[nodiscard]] virtual ProcessorCounts processorCounts() const { return {}; }
 };
 
 /// A host in this process. All passes share one Execution: threads, a device's context and its
@@ -75,13 +79,19 @@ class LocalHost final : public CaseHost {
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
+  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
 
   /// The instance: to call its phases one by one, as tests do. Only between start() and stop().
   BroadPhase& instance() { return *instance_; }
 
  private:
+  FrameTimes runCounted(const Frame& frame);
+
   Case case_;
-  std::optional<Execution> execution_;  ///< from the first start() on
+  // From the first start() on. The counters come first: they count the threads made after them.
+  std::optional<ProcessorCounters> processor_;
+  std::optional<Execution> execution_;
+  ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
   PairRuns answer_;
 };

@@ -47,6 +47,7 @@ class WorkerProcess final : public CaseHost {
   Counts setup() override;
   RecordedDrawing structure() override;
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const override { return peak_bytes_; }
+  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
 
  private:
   class Link;  ///< to a process
@@ -61,6 +62,7 @@ class WorkerProcess final : public CaseHost {
   WorkerOptions options_;
   std::unique_ptr<Link> link_;  ///< null: no process runs
   std::optional<std::uint64_t> peak_bytes_;
+  ProcessorCounts processor_counts_;
   std::vector<Pair> answer_;
   PairRun answer_run_;
 };
