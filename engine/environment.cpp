@@ -3,7 +3,6 @@
 #include "broadmark/environment.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <fstream>
 #include <set>
 
+#include "broadmark/cores.h"
 #include "broadmark/execution.h"
 
 namespace broadmark {
@@ -42,12 +42,6 @@ std::vector<std::string> valuesOf(const std::string& path, std::string_view key,
 
 std::string firstOr(const std::vector<std::string>& values, std::string otherwise) {
   return values.empty() ? std::move(otherwise) : values.front();
-}
-
-int usableCores() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  return ::sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
 }
 
 int physicalCores() {
@@ -100,7 +94,7 @@ std::string utcNow() {
 Environment thisEnvironment() {
   Environment environment{
       .cpu = firstOr(valuesOf("/proc/cpuinfo", "model name", ':'), "unknown"),
-      .logical_cores = usableCores(),
+      .logical_cores = static_cast<int>(usableCores().size()),
       .physical_cores = physicalCores(),
       .caches = caches(),
       .isa = std::string(isaName(bestIsa())),

@@ -82,6 +82,7 @@ Json toJson(const Conditions& c) {
           {"initialize_limit_seconds", toJson(c.initialize_limit_seconds)},
           {"call_limit_seconds", toJson(c.call_limit_seconds)},
           {"in_process", c.in_process},
+          {"pinned", c.pinned},
           {"load_average", c.load_average},
           {"plugin", {{"hash", c.plugin.hash}, {"flags", c.plugin.flags}}},
           {"warnings", c.warnings}};
@@ -99,6 +100,7 @@ Conditions conditionsFrom(const JsonFields& json) {
           .initialize_limit_seconds = limit("initialize_limit_seconds"),
           .call_limit_seconds = limit("call_limit_seconds"),
           .in_process = json.boolean("in_process"),
+          .pinned = json.has("pinned") && json.boolean("pinned"),
           .load_average = json.number("load_average"),
           .plugin = {plugin.text("hash"), plugin.text("flags")},
           .warnings = textsFrom(json.array("warnings"), json.path("warnings"))};

@@ -153,6 +153,7 @@ bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle
   result.status = run.status();
   result.reason = run.reason();
   result.peak_bytes = run.peakBytes();
+  result.conditions.pinned = run.pinned();
   return true;
 }
 

@@ -7,8 +7,8 @@
 //
 //   call        says                                              answer
 //   case        algorithm, plugin, isa, threads, device,
-//               parameters {}, memory_limit_bytes (0: none)       {}
-//   start       scene {name, object_type, objects, frames, world} initialize_ns
+//               parameters {}, memory_limit_bytes (0: none), pin  {}
+//   start       scene {name, object_type, objects, frames, world} initialize_ns, pinned
 //               and bodies: the boxes of frame 0 are shared
 //   step        frame, bodies: its boxes are shared               times_ns {}, pairs
 //   digest                                                        count, hash

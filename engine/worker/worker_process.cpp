@@ -137,6 +137,7 @@ void WorkerProcess::open() {
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
+    message["pin"] = options_.pin;
     link.begin(message);
   });
 }
@@ -148,6 +149,7 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
     link.frames.write(first.boxes);
     const Json started = link.call(
         {{"call", "start"}, {"scene", worker::toJson(scene)}, {"bodies", first.boxes.size()}});
+    pinned_ = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   });
 }

@@ -33,7 +33,7 @@ ProcessorCounters::Events pageFaults() {
 }
 
 /// Touches new pages, and so makes so many faults.
-void fault() {
+void makeFaults() {
   const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t size = kFaults * page;
   void* memory = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -44,7 +44,7 @@ void fault() {
   ::munmap(memory, size);
 }
 
-class Counters : public testing::Test {
+class CountedFaults : public testing::Test {
  protected:
   void SetUp() override {
     if (!counters_.counts()[ProcessorCounter::cycles]) {
@@ -58,32 +58,32 @@ class Counters : public testing::Test {
   ProcessorCounters counters_{pageFaults()};
 };
 
-TEST_F(Counters, CountOnlyWhileTheyAreToldTo) {
-  fault();
+TEST_F(CountedFaults, CountOnlyWhileTheyAreToldTo) {
+  makeFaults();
   EXPECT_EQ(count(), 0U);
   {
     const ProcessorCounters::Counting counting(counters_);
-    fault();
+    makeFaults();
   }
   const std::uint64_t counted = count();
   EXPECT_GE(counted, kFaults);
-  fault();
+  makeFaults();
   EXPECT_EQ(count(), counted);
   counters_.restart();
   EXPECT_EQ(count(), 0U);
 }
 
-TEST_F(Counters, IncludeThreadsStartedLater) {
+TEST_F(CountedFaults, IncludeThreadsStartedLater) {
   constexpr int kThreads = 4;
   ThreadTeam team(kThreads);
   {
     const ProcessorCounters::Counting counting(counters_);
-    team.run([](int) { fault(); });
+    team.run([](int) { makeFaults(); });
   }
   EXPECT_GE(count(), kThreads * kFaults);
 }
 
-TEST_F(Counters, WhatTheSystemRefusesIsUnknown) {
+TEST_F(CountedFaults, WhatTheSystemRefusesIsUnknown) {
   EXPECT_FALSE(counters_.counts()[ProcessorCounter::instructions]);
   EXPECT_FALSE(counters_.counts()[ProcessorCounter::branch_misses]);
 }
@@ -100,7 +100,7 @@ TEST(ProcessorCountersOfARun, AreKeptPerRepetition) {
 }
 
 /// Two repetitions of two frames; cycles are known in one of them.
-Results counted() {
+Results countedResults() {
   Results results;
   results.environments.emplace_back();
   CaseResult& result = results.cases.emplace_back();
@@ -110,7 +110,7 @@ Results counted() {
   return results;
 }
 
-std::string write(const Results& results, std::string_view name) {
+std::string textOf(const Results& results, std::string_view name) {
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == name) return writer.format(results);
   }
@@ -118,7 +118,7 @@ std::string write(const Results& results, std::string_view name) {
 }
 
 TEST(ProcessorCountersInResults, JsonAndBack) {
-  const std::string text = write(counted(), "json");
+  const std::string text = textOf(countedResults(), "json");
   const Json processor = Json::parse(text).at("cases").at(0).at("processor");
   EXPECT_EQ(processor.dump(),
             R"({"cycles":[null,31],"instructions":[null,null],"cache_misses":[null,null],)"
@@ -131,14 +131,14 @@ TEST(ProcessorCountersInResults, JsonAndBack) {
 }
 
 TEST(ProcessorCountersInResults, EarlierFilesHaveNone) {
-  Json file = Json::parse(write(counted(), "json"));
+  Json file = Json::parse(textOf(countedResults(), "json"));
   file.at("cases").at(0).erase("processor");
   const Results back = parseResults(file.dump(), "r.json");
   EXPECT_FALSE(back.cases.at(0).repetitions.at(1).processor[ProcessorCounter::cycles]);
 }
 
 TEST(ProcessorCountersInResults, BadOnesAreRefused) {
-  Json file = Json::parse(write(counted(), "json"));
+  Json file = Json::parse(textOf(countedResults(), "json"));
   Json& cycles = file.at("cases").at(0).at("processor").at("cycles");
   const auto refusal = [&] { return inputErrorOf([&] { parseResults(file.dump(), "r.json"); }); };
   cycles = {1};
@@ -148,7 +148,7 @@ TEST(ProcessorCountersInResults, BadOnesAreRefused) {
 }
 
 TEST(ProcessorCountersInResults, CsvHasTheMeanPerFrame) {
-  const std::string csv = write(counted(), "csv");
+  const std::string csv = textOf(countedResults(), "csv");
   EXPECT_THAT(csv, HasSubstr(",cycles_per_frame,instructions_per_frame,cache_misses_per_frame,"
                              "branches_per_frame,branch_misses_per_frame\n"));
   EXPECT_THAT(csv, HasSubstr(",15.5,,,,\n"));

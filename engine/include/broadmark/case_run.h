@@ -88,6 +88,8 @@ class CaseRun {
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
   /// As CaseHost::processorCounts().
   [[nodiscard]] ProcessorCounts processorCounts() const { return host_->processorCounts(); }
+  /// As CaseHost::pinned().
+  [[nodiscard]] bool pinned() const { return host_->pinned(); }
 
   // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
   // while hasInstance().

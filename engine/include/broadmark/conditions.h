@@ -24,6 +24,7 @@ struct Conditions {
   std::optional<double> initialize_limit_seconds;
   std::optional<double> call_limit_seconds;  ///< on one call into the algorithm
   bool in_process = false;                   ///< not in a worker process of its own
+  bool pinned = false;                       ///< each thread to a core of its own
   double load_average = 0;                   ///< over the last minute, when the case began
   PluginBuild plugin;                        ///< of an algorithm of a plug-in
   std::vector<std::string> warnings;         ///< what may have disturbed the times
