@@ -22,6 +22,7 @@
 #include "result_files.h"
 #include "screenshot.h"
 #include "table.h"
+#include "warnings.h"
 
 namespace broadmark {
 namespace {
@@ -60,7 +61,7 @@ class EntryRun {
  public:
   /// All arguments outlive this.
   EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted,
-           ResultFiles& files)
+           RunWarnings& warnings, ResultFiles& files)
       : cases_(entry.cases),
         options_(options),
         make_host_(hostMaker(options.hosts)),
@@ -70,7 +71,9 @@ class EntryRun {
         ended_(cases_.size()) {
     for (const Case& run : cases_) {
       results_.push_back(beginCase(run, entry.source.reference));
-      results_.back().conditions = conditions();
+      Conditions& conditions = results_.back().conditions = commonConditions();
+      conditions.plugin = run.algorithm.plugin_build;
+      conditions.warnings = warnings.of(run);
     }
   }
 
@@ -136,7 +139,7 @@ class EntryRun {
     ended_[i] = true;
   }
 
-  [[nodiscard]] Conditions conditions() const {
+  [[nodiscard]] Conditions commonConditions() const {
     const auto limit = [](double seconds) {
       return std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
     };
@@ -170,6 +173,7 @@ class PlanRun {
   PlanRun(const SessionOptions& options, const Plan& plan) : options_(options) {
     results_.environments = {environmentOf(plan.entries.front().cases.front().device)};
     results_.options = options.command_line;
+    warnings_.emplace(results_.environments.front());
     files_.emplace(options.outputs, results_);
   }
 
@@ -223,7 +227,7 @@ class PlanRun {
       return;
     }
     Oracle oracle;
-    EntryRun run(entry, options_, exhausted_, *files_);
+    EntryRun run(entry, options_, exhausted_, *warnings_, *files_);
     interrupted_ = !run.run(*recording, oracle);
     report(entry, run.takeResults());
     if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
@@ -254,6 +258,7 @@ class PlanRun {
 
   const SessionOptions& options_;
   Results results_;
+  std::optional<RunWarnings> warnings_;
   std::optional<ResultFiles> files_;
   Exhausted exhausted_;
   bool picture_failed_ = false;

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <set>
 
+#include "broadmark/compiler.h"
 #include "broadmark/cores.h"
 #include "broadmark/execution.h"
 
@@ -72,14 +73,6 @@ std::string operatingSystem() {
                      system.sysname, system.release);
 }
 
-std::string compiler() {
-#if defined(__clang__)
-  return "clang " __clang_version__;
-#else
-  return "gcc " __VERSION__;
-#endif
-}
-
 std::string utcNow() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -102,7 +95,7 @@ Environment thisEnvironment() {
                       static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
       .governor = firstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
       .os = operatingSystem(),
-      .compiler = compiler(),
+      .compiler = BROADMARK_COMPILER,
       .compiler_flags = BROADMARK_FLAGS,
       .build_type = BROADMARK_BUILD_TYPE,
       .version = BROADMARK_VERSION,

@@ -9,12 +9,6 @@
 
 namespace broadmark {
 
-/// A library that an algorithm comes from.
-struct PluginBuild {
-  std::string hash;   ///< of the file
-  std::string flags;  ///< its compiler's options, as far as it tells; "": it does not
-};
-
 struct Conditions {
   CheckMode check = CheckMode::full;
   int warmup = 0;       ///< unmeasured repetitions before
