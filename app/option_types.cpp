@@ -116,6 +116,11 @@ double parseNumber(const std::string& text, std::string_view option, double min,
   return value;
 }
 
+double parseShare(const std::string& text, std::string_view option) {
+  if (!text.ends_with('%')) return parseNumber(text, option, 0, true);
+  return parseNumber(text.substr(0, text.size() - 1), option, 0, true) / 100;
+}
+
 int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 int parseThreadCount(const std::string& text) {

@@ -29,6 +29,9 @@ std::vector<std::string> splitList(const std::vector<std::string>& texts);
 /// A finite number >= `min`, or > `min` when `open`.
 double parseNumber(const std::string& text, std::string_view option, double min, bool open);
 
+/// A share above 0: "1%" or "0.01".
+double parseShare(const std::string& text, std::string_view option);
+
 /// As many threads as this process has cores.
 int allCores();
 /// A number of threads.

@@ -103,12 +103,6 @@ int run(Options options) {
   return result.ok() ? 0 : 1;
 }
 
-/// "1%" or "0.01".
-double parseShare(const std::string& text, std::string_view option) {
-  if (!text.ends_with('%')) return parseNumber(text, option, 0, true);
-  return parseNumber(text.substr(0, text.size() - 1), option, 0, true) / 100;
-}
-
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("source", options->source,

@@ -314,5 +314,17 @@ TEST_F(Run, CountsOfTheProcessorAreThereOrNull) {
   }
 }
 
+TEST_F(Run, AutomaticRepetitionsAreWholeAndInTheOrderOfThePlan) {
+  const Json once = casesOf({"--algorithm", "bf,sap,kd"});
+  const Json often = casesOf({"--algorithm", "bf,sap,kd", "--repetitions", "auto", "--precision",
+                              "1000%", "--warmup", "1"});
+  ASSERT_EQ(often.size(), 3U);
+  for (std::size_t i = 0; i < often.size(); ++i) {
+    EXPECT_EQ(often[i].at("id"), once[i].at("id"));
+    EXPECT_EQ(often[i].at("initialize_ns").size(), often[i].at("conditions").at("repetitions"));
+    EXPECT_GE(often[i].at("initialize_ns").size(), 5U);
+  }
+}
+
 }  // namespace
 }  // namespace broadmark::tests
