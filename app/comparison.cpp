@@ -1,161 +1,306 @@
-// Matching the cases of two runs, and judging each pair by the interval of the ratio of its means.
+// Matching the cases of two runs, and judging each pair by the interval of its ratio.
 
 #include "comparison.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
+#include "broadmark/duel.h"
+#include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "table.h"
+#include "broadmark/runner.h"
 
 namespace broadmark {
+
+#define COMPARISON_WRITER(name) \
+  namespace comparisons::name { \
+  ComparisonWriter writer();    \
+  }
+#include "comparison_writers.inc"
+#undef COMPARISON_WRITER
+
 namespace {
 
-/// Seconds per frame of each repetition, or, of a single one, of each frame.
-std::vector<double> samples(const CaseResult& result, bool per_repetition) {
-  std::vector<double> values;
-  for (const Repetition& repetition : result.repetitions) {
-    std::vector<double> frames;
-    for (const FrameTimes& times : repetition.frames) {
-      // A time below the clock's resolution must still have a logarithm.
-      frames.push_back(static_cast<double>(std::max<std::int64_t>(times[Phase::total], 1)) * 1e-9);
+/// A case of one run.
+struct Candidate {
+  const Results* results;
+  const CaseResult* result;
+
+  [[nodiscard]] const Environment& environment() const {
+    return results->environments[result->environment];
+  }
+};
+
+/// Which cases belong together: the recording's hash, what is left of the case's name, and which of
+/// those that are alike in both.
+using CaseKey = std::tuple<std::string, std::string, int>;
+
+bool isThreads(const std::string& part) {
+  return part.size() > 1 && part[0] == 't' &&
+         std::all_of(part.begin() + 1, part.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Whether a part of a case's name, but the first, states this.
+bool states(const std::string& part, const std::string& what) {
+  if (what == "threads") return isThreads(part);
+  if (what == "isa") return kIsas.find(part).has_value();
+  return part.starts_with(what + '=');
+}
+
+/// The case's name without what is compared.
+std::string nameWithout(const CaseResult& result, const std::string& by) {
+  if (by == "algorithm") return {};
+  const std::string name = caseNameOf(result);
+  if (by.empty()) return name;
+  std::string rest;
+  for (std::size_t from = 0; from <= name.size();) {
+    const std::size_t to = std::min(name.find('/', from), name.size());
+    const std::string part = name.substr(from, to - from);
+    if (from == 0 || !states(part, by)) rest += '/' + part;
+    from = to + 1;
+  }
+  return rest;
+}
+
+/// The cases of one run by what they are compared as, in their order.
+std::vector<std::pair<CaseKey, Candidate>> keysOf(const Results& results, const std::string& by) {
+  std::vector<std::pair<CaseKey, Candidate>> keys;
+  std::map<std::pair<std::string, std::string>, int> seen;
+  for (const CaseResult& result : results.cases) {
+    const std::string name = nameWithout(result, by);
+    // With --by several are compared with the first; else each with its like.
+    const int which = by.empty() ? seen[{result.recording.hash, name}]++ : 0;
+    keys.push_back({{result.recording.hash, name, which}, {&results, &result}});
+  }
+  return keys;
+}
+
+void requireKnown(const std::string& by, std::span<const NamedResults> runs) {
+  std::vector<std::string> known = {"algorithm", "isa", "threads"};
+  for (const NamedResults& run : runs) {
+    for (const CaseResult& result : run.results.cases) {
+      for (const auto& [name, value] : result.parameters) known.push_back(name);
     }
-    if (frames.empty()) continue;
-    if (per_repetition) {
-      values.push_back(mean(frames));
-    } else {
-      values.insert(values.end(), frames.begin(), frames.end());
-    }
   }
-  return values;
+  std::ranges::sort(known);
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  if (std::ranges::find(known, by) == known.end()) {
+    throw InputError("--by: " + unknownName("name", by, known));
+  }
 }
 
-Verdict judge(const RatioEstimate& estimate, double fail_above) {
-  // Without an interval the ratio itself decides.
-  const Interval interval = estimate.ci95.value_or(Interval{estimate.ratio, estimate.ratio});
-  if (interval.low > 1 + fail_above) return Verdict::regressed;
-  if (interval.low > 1) return Verdict::slower;
-  if (interval.high < 1) return Verdict::faster;
-  return Verdict::same;
+std::vector<ConditionDifference> differencesOf(const Candidate& before, const Candidate& after) {
+  std::vector<ConditionDifference> differences;
+  const auto compare = [&](std::string_view name, const auto& a, const auto& b, bool refused) {
+    if (a != b) differences.push_back({fmt::format("{}: {} -> {}", name, a, b), refused});
+  };
+  const Environment& a = before.environment();
+  const Environment& b = after.environment();
+  compare("processor", a.cpu, b.cpu, true);
+  compare("build type", a.build_type, b.build_type, true);
+  compare("compiler", a.compiler, b.compiler, false);
+  compare("compiler's options", a.compiler_flags, b.compiler_flags, false);
+  compare("governor", a.governor, b.governor, false);
+  const Conditions& c = before.result->conditions;
+  const Conditions& d = after.result->conditions;
+  compare("check", kCheckModes.nameOf(c.check), kCheckModes.nameOf(d.check), false);
+  compare("in process", c.in_process, d.in_process, false);
+  compare("plug-in's options", c.plugin.flags, d.plugin.flags, false);
+  return differences;
 }
 
-void compareTimes(CaseComparison& compared, const CaseResult& before, const CaseResult& after,
-                  double fail_above) {
-  const bool per_repetition = before.repetitions.size() > 1 && after.repetitions.size() > 1;
-  const std::vector<double> a = samples(before, per_repetition);
-  const std::vector<double> b = samples(after, per_repetition);
-  if (a.empty() || b.empty()) {
-    compared.verdict = Verdict::not_timed;
-    return;
+Verdict verdictOn(const Interval& ratio, const ComparisonOptions& options) {
+  switch (standingOf(ratio, options.margin)) {
+    case Standing::same:
+      return Verdict::same;
+    case Standing::faster:
+      return Verdict::faster;
+    case Standing::slower:
+      return ratio.low > 1 + options.fail_above ? Verdict::regressed : Verdict::slower;
+    case Standing::undecided:
+      break;
   }
-  compared.before = before.summary().seconds_per_frame;
-  compared.after = after.summary().seconds_per_frame;
-  compared.ratio = ratioOfMeans(a, b);
-  compared.verdict = judge(*compared.ratio, fail_above);
+  return Verdict::undecided;
 }
 
-CaseComparison compareCase(const CaseResult& before, const CaseResult& after, double fail_above) {
-  if (before.recording.hash != after.recording.hash) {
-    return {.id = after.id, .verdict = Verdict::other_recording};
-  }
-  CaseComparison compared{
-      .id = after.id, .status_before = before.status, .status_after = after.status};
-  if (after.status != before.status) {
-    compared.verdict = before.status == Status::ok ? Verdict::regressed : Verdict::other_status;
-  } else if (after.status != Status::ok) {
+/// `before` has one case or, of several baselines, that case of each.
+CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
+                           const ComparisonOptions& options) {
+  const CaseResult& a = *before.front().result;
+  const CaseResult& b = *after.result;
+  CaseComparison compared{.id = b.id,
+                          .baseline = a.id == b.id ? "" : a.id,
+                          .conditions = differencesOf(before.front(), after),
+                          .status_before = a.status,
+                          .status_after = b.status};
+  const auto refused = [](const ConditionDifference& one) { return one.refused; };
+  if (a.status != b.status) {
+    compared.verdict = a.status == Status::ok ? Verdict::regressed : Verdict::other_status;
+  } else if (b.status != Status::ok) {
     compared.verdict = Verdict::not_ok;
+  } else if (!options.any_conditions && std::ranges::any_of(compared.conditions, refused)) {
+    compared.verdict = Verdict::other_conditions;
   } else {
-    compareTimes(compared, before, after, fail_above);
+    std::vector<const CaseResult*> runs;
+    for (const Candidate& one : before) {
+      if (one.result->status == Status::ok) runs.push_back(one.result);
+    }
+    compared.ratio = ratioOfRuns(runs, b);
+    compared.verdict =
+        compared.ratio ? verdictOn(compared.ratio->ratio.ci95, options) : Verdict::not_timed;
   }
   return compared;
 }
 
-/// Id, and which of the cases with this id.
-using CaseKey = std::pair<std::string, int>;
-
-std::vector<CaseKey> keysOf(const Results& results) {
-  std::vector<CaseKey> keys;
-  std::map<std::string, int> seen;
-  for (const CaseResult& result : results.cases) keys.emplace_back(result.id, seen[result.id]++);
-  return keys;
-}
-
-constexpr NameTable kVerdicts{{NamedValue{Verdict::same, "same within noise"},
-                               {Verdict::faster, "faster"},
-                               {Verdict::slower, "slower"},
-                               {Verdict::regressed, "REGRESSED"},
-                               {Verdict::other_status, ""},
-                               {Verdict::not_ok, "in both"},
-                               {Verdict::not_timed, "not timed"},
-                               {Verdict::other_recording, "not comparable: other recording"},
-                               {Verdict::only_before, "only in A"},
-                               {Verdict::only_after, "only in B"}}};
-
-std::string verdictText(const CaseComparison& compared) {
-  std::string text;
-  if (compared.status_before != compared.status_after) {
-    text = fmt::format("{} -> {} ", statusName(compared.status_before),
-                       statusName(compared.status_after));
-  } else if (compared.verdict == Verdict::not_ok) {
-    text = fmt::format("{} ", statusName(compared.status_after));
+/// "B.json: partial: the run did not end", where that is so.
+void noteWhatIsPartial(const NamedResults& run, std::vector<std::string>& notes) {
+  if (!run.results.complete)
+    notes.push_back(run.name + ": partial: the run did not come to its end");
+  for (const CaseResult& result : run.results.cases) {
+    if (result.isComplete()) continue;
+    notes.push_back(fmt::format("{}: {}: {} of {} repetitions", run.name, result.id,
+                                result.repetitions.size(), result.conditions.repetitions));
   }
-  return text + std::string(kVerdicts.nameOf(compared.verdict));
 }
 
-std::vector<std::string> rowOf(const CaseComparison& compared) {
-  if (!compared.ratio) return {compared.id, "", "", "", "", verdictText(compared)};
-  const auto& interval = compared.ratio->ci95;
-  return {compared.id,
-          fmt::format("{:.6g}", compared.before),
-          fmt::format("{:.6g}", compared.after),
-          fmt::format("{:.3f}", compared.ratio->ratio),
-          interval ? fmt::format("{:.3f}…{:.3f}", interval->low, interval->high) : "",
-          verdictText(compared)};
+/// Finds for each case of B what it is compared with.
+class Matching {
+ public:
+  Matching(std::span<const NamedResults> before, const ComparisonOptions& options)
+      : options_(options) {
+    for (const NamedResults& run : before) {
+      std::set<CaseKey> first_ones;  // of this run
+      for (const auto& [key, candidate] : keysOf(run.results, options.by)) {
+        if (!first_ones.insert(key).second) continue;
+        if (!before_.contains(key)) order_.push_back(key);
+        before_[key].push_back(candidate);
+        if (options.by.empty()) by_id_[candidate.result->id] = key;
+      }
+    }
+  }
+
+  void take(const CaseKey& key, const Candidate& after, std::vector<CaseComparison>& cases) {
+    if (const auto found = before_.find(key); found != before_.end()) {
+      met_.insert(key);
+      const CaseResult& first = *found->second.front().result;
+      if (options_.by.empty() || first.id != after.result->id) {
+        cases.push_back(compareCase(found->second, after, options_));
+      }
+      return;
+    }
+    const auto namesake = by_id_.find(after.result->id);
+    const bool other =
+        namesake != by_id_.end() && std::get<0>(namesake->second) != after.result->recording.hash;
+    if (other) met_.insert(namesake->second);
+    cases.push_back(
+        {.id = after.result->id, .verdict = other ? Verdict::other_recording : Verdict::added});
+  }
+
+  void addMissing(std::vector<CaseComparison>& cases) const {
+    for (const CaseKey& key : order_) {
+      if (met_.contains(key)) continue;
+      cases.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
+    }
+  }
+
+ private:
+  const ComparisonOptions& options_;
+  std::map<CaseKey, std::vector<Candidate>> before_;
+  std::map<std::string, CaseKey> by_id_;
+  std::vector<CaseKey> order_;
+  std::set<CaseKey> met_;
+};
+
+/// "5.3 % slower", "twice"…
+std::string changeText(const Estimate& ratio) {
+  return fmt::format("{:+.1f} %", 100 * (ratio.value - 1));
 }
 
 }  // namespace
 
-bool Comparison::regressed() const {
-  return std::ranges::find(cases, Verdict::regressed, &CaseComparison::verdict) != cases.end();
+std::size_t Comparison::count(Verdict verdict) const {
+  return static_cast<std::size_t>(std::ranges::count(cases, verdict, &CaseComparison::verdict));
+}
+
+bool Comparison::fails(const CaseComparison& compared) const {
+  return compared.verdict == Verdict::regressed ||
+         (compared.verdict == Verdict::missing && !options.allow_missing);
 }
 
 bool Comparison::comparable() const {
   return std::ranges::any_of(cases, [](const CaseComparison& compared) {
     return compared.verdict != Verdict::other_recording &&
-           compared.verdict != Verdict::only_before && compared.verdict != Verdict::only_after;
+           compared.verdict != Verdict::other_conditions && compared.verdict != Verdict::missing &&
+           compared.verdict != Verdict::added;
   });
 }
 
-Comparison compareResults(const Results& before, const Results& after, double fail_above) {
-  const std::vector<CaseKey> before_keys = keysOf(before);
-  const std::vector<CaseKey> after_keys = keysOf(after);
-  std::map<CaseKey, const CaseResult*> left;
-  for (std::size_t i = 0; i < before_keys.size(); ++i) left[before_keys[i]] = &before.cases[i];
+std::optional<double> Comparison::drift() const {
+  std::optional<double> most;
+  for (const CaseComparison& compared : cases) {
+    if (!compared.ratio || !compared.ratio->drift) continue;
+    const double drift = *compared.ratio->drift;
+    if (!most || std::abs(drift) > std::abs(*most)) most = drift;
+  }
+  return most;
+}
 
-  Comparison comparison;
-  for (std::size_t i = 0; i < after_keys.size(); ++i) {
-    const CaseResult& result = after.cases[i];
-    const auto found = left.find(after_keys[i]);
-    if (found == left.end()) {
-      comparison.cases.push_back({.id = result.id, .verdict = Verdict::only_after});
-      continue;
-    }
-    comparison.cases.push_back(compareCase(*found->second, result, fail_above));
-    left.erase(found);
+Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
+                          const ComparisonOptions& options) {
+  if (!options.by.empty()) requireKnown(options.by, {&after, 1});
+  Comparison comparison{.options = options, .cases = {}, .notes = {}};
+  for (const NamedResults& run : before) noteWhatIsPartial(run, comparison.notes);
+  noteWhatIsPartial(after, comparison.notes);
+  Matching matching(before, comparison.options);
+  for (const auto& [key, candidate] : keysOf(after.results, options.by)) {
+    matching.take(key, candidate, comparison.cases);
   }
-  for (const auto& [key, result] : left) {
-    comparison.cases.push_back({.id = result->id, .verdict = Verdict::only_before});
-  }
+  matching.addMissing(comparison.cases);
   return comparison;
 }
 
-std::string formatComparison(const Comparison& comparison) {
-  std::vector<std::vector<std::string>> rows = {
-      {"case", "A s/frame", "B s/frame", "B/A", "95 % interval", "verdict"}};
-  for (const CaseComparison& compared : comparison.cases) rows.push_back(rowOf(compared));
-  return alignColumns(rows, {false, true, true, true, true, false});
+std::string verdictText(const CaseComparison& compared) {
+  const std::string verdict(kVerdicts.nameOf(compared.verdict));
+  if (compared.status_before != compared.status_after) {
+    return fmt::format("{} -> {} {}", statusName(compared.status_before),
+                       statusName(compared.status_after), verdict);
+  }
+  if (compared.verdict == Verdict::not_ok) {
+    return fmt::format("{} in both", statusName(compared.status_after));
+  }
+  if (compared.verdict == Verdict::faster || compared.verdict == Verdict::slower ||
+      (compared.verdict == Verdict::regressed && compared.ratio)) {
+    return fmt::format("{} {}", verdict, changeText(compared.ratio->ratio));
+  }
+  return verdict;
+}
+
+std::string summaryText(const Comparison& comparison) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, name] : kVerdicts.entries) {
+    const std::size_t count = comparison.count(verdict);
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, name));
+  }
+  std::string text = fmt::format("{} case{}: {}", comparison.cases.size(),
+                                 comparison.cases.size() == 1 ? "" : "s", fmt::join(parts, ", "));
+  if (const auto drift = comparison.drift()) {
+    fmt::format_to(std::back_inserter(text), "; the machine drifted by up to {:+.1f} %",
+                   100 * *drift);
+  }
+  return text;
+}
+
+std::vector<ComparisonWriter> comparisonWriters() {
+  return {
+#define COMPARISON_WRITER(name) comparisons::name::writer(),
+#include "comparison_writers.inc"
+#undef COMPARISON_WRITER
+  };
 }
 
 }  // namespace broadmark

@@ -135,7 +135,7 @@ class EntryRun {
       runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy, make_host_,
                                            InterruptGuard::requested);
     }
-    const YardstickTimes yardsticks = measured ? yardsticks_.measure() : YardstickTimes();
+    const YardstickTimes yardsticks = measured ? yardsticks_.recent() : YardstickTimes();
     const std::size_t before = result.repetitions.size();
     if (!runRepetition(result, *runs_[i], recording, oracle, hooks, measured)) return false;
     if (result.repetitions.size() > before) result.repetitions.back().yardsticks = yardsticks;

@@ -116,9 +116,9 @@ double parseNumber(const std::string& text, std::string_view option, double min,
   return value;
 }
 
-double parseShare(const std::string& text, std::string_view option) {
-  if (!text.ends_with('%')) return parseNumber(text, option, 0, true);
-  return parseNumber(text.substr(0, text.size() - 1), option, 0, true) / 100;
+double parseShare(const std::string& text, std::string_view option, bool open) {
+  if (!text.ends_with('%')) return parseNumber(text, option, 0, open);
+  return parseNumber(text.substr(0, text.size() - 1), option, 0, open) / 100;
 }
 
 int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
@@ -186,6 +186,15 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
           "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+}
+
+std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
+  std::vector<CLI::Option*> options;
+  for (const ResultWriter& writer : resultWriters()) {
+    options.push_back(addPath(app, fmt::format("--{}", writer.name), "FILE",
+                              outputs[std::string(writer.name)], std::string(writer.doc)));
+  }
+  return options;
 }
 
 CLI::Option* addQuiet(CLI::App& app, bool& quiet) {

@@ -14,6 +14,7 @@
 #include "hosts.h"
 #include "parts.h"
 #include "picture_options.h"
+#include "result_files.h"
 #include "scene_options.h"
 
 namespace CLI {
@@ -29,8 +30,8 @@ std::vector<std::string> splitList(const std::vector<std::string>& texts);
 /// A finite number >= `min`, or > `min` when `open`.
 double parseNumber(const std::string& text, std::string_view option, double min, bool open);
 
-/// A share above 0: "1%" or "0.01".
-double parseShare(const std::string& text, std::string_view option);
+/// A share, "1%" or "0.01", > 0 or, unless `open`, 0.
+double parseShare(const std::string& text, std::string_view option, bool open);
 
 /// As many threads as this process has cores.
 int allCores();
@@ -94,6 +95,8 @@ void showWith(const BuildPart&, const std::vector<CLI::Option*>& options);
 CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
+/// Where results go: --json, --csv, … Paths that are not given stay "".
+std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
 /// --quiet
 CLI::Option* addQuiet(CLI::App&, bool& quiet);
 /// --recorder. Sets the default, too.

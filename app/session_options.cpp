@@ -150,7 +150,9 @@ void SessionParser::Parts::addRun() {
   };
   tag_auto(addValue(
       app, "--precision", "SHARE",
-      [&](const std::string& text) { repetitions.precision = parseShare(text, "--precision"); },
+      [&](const std::string& text) {
+        repetitions.precision = parseShare(text, "--precision", true);
+      },
       "of --repetitions auto: width of the mean's 95 % interval over the repetitions", "2%"));
   tag_auto(addValue(
       app, "--most-seconds", "S",
@@ -184,10 +186,8 @@ void SessionParser::Parts::addRun() {
 }
 
 void SessionParser::Parts::addOutput() {
-  for (const ResultWriter& writer : resultWriters()) {
-    tag(addPath(app, fmt::format("--{}", writer.name), "FILE",
-                options.outputs[std::string(writer.name)], std::string(writer.doc)),
-        kExport | kInspector);
+  for (const CLI::Option* option : addResultOutputs(app, options.outputs)) {
+    tagged.emplace_back(option, kExport | kInspector);
   }
   tag(addPath(app, "--record", "DIR", options.record,
               "keep the simulated recordings in this directory"),

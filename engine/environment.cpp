@@ -41,8 +41,8 @@ std::vector<std::string> valuesOf(const std::string& path, std::string_view key,
   return values;
 }
 
-std::string firstOr(const std::vector<std::string>& values, std::string otherwise) {
-  return values.empty() ? std::move(otherwise) : values.front();
+std::string firstOr(const std::vector<std::string>& values, const std::string& otherwise) {
+  return values.empty() ? otherwise : values.front();
 }
 
 int physicalCores() {

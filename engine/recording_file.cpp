@@ -27,7 +27,7 @@ bool isPrintable(std::string_view text) {
 std::string headerText(const char (&field)[kTextBytes], std::string_view what, std::size_t offset,
                        const std::string& name) {
   const auto* end = std::find(std::begin(field), std::end(field), '\0');
-  const std::string text(std::begin(field), end);
+  std::string text(std::begin(field), end);
   if (end == std::end(field) || !isPrintable(text)) {
     throw InputError(
         fmt::format("{}: byte {}: the {} is not printable ASCII ended by a NUL: not a "

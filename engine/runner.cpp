@@ -118,11 +118,19 @@ Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& orac
 
 }  // namespace
 
-std::string caseId(const RecordingReference& recording, const Case& run) {
+std::string recordingId(const RecordingReference& recording) {
   const SceneInfo& scene = recording.scene;
-  return fmt::format("{}/{}/N{}/F{}{}/{}", scene.name, scene.object_type, scene.objects,
-                     scene.frames, recording.seed ? fmt::format("/s{}", *recording.seed) : "",
-                     caseName(run));
+  return fmt::format("{}/{}/N{}/F{}{}", scene.name, scene.object_type, scene.objects, scene.frames,
+                     recording.seed ? fmt::format("/s{}", *recording.seed) : "");
+}
+
+std::string caseId(const RecordingReference& recording, const Case& run) {
+  return recordingId(recording) + '/' + caseName(run);
+}
+
+std::string caseNameOf(const CaseResult& result) {
+  const std::string recording = recordingId(result.recording) + '/';
+  return result.id.starts_with(recording) ? result.id.substr(recording.size()) : result.id;
 }
 
 CaseResult beginCase(const Case& run, const RecordingReference& recording) {

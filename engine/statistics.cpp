@@ -6,8 +6,9 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <vector>
+
+#include "block_bootstrap.h"
 
 namespace broadmark {
 namespace {
@@ -29,12 +30,6 @@ std::vector<double> sortedCopy(std::span<const double> values) {
 double squaredStandardError(std::span<const double> values) {
   const double deviation = standardDeviation(values);
   return deviation * deviation / static_cast<double>(values.size());
-}
-
-std::vector<double> logarithms(std::span<const double> values) {
-  std::vector<double> logs(values.size());
-  std::ranges::transform(values, logs.begin(), [](double v) { return std::log(v); });
-  return logs;
 }
 
 /// Autocovariance of values around `centre` at this lag.
@@ -141,34 +136,21 @@ std::size_t blockLength(std::span<const double> values) {
   return static_cast<std::size_t>(std::clamp(std::ceil(length), 1.0, std::ceil(n / 4)));
 }
 
+std::size_t safeBlockLength(std::span<const double> values) {
+  return std::max(blockLength(values), shortestBlock(values.size()));
+}
+
 Estimate medianOfSeries(std::span<const double> values) {
-  constexpr int kResamples = 500;
   const double median = quantile(values, 0.5);
-  // Never short: in short series likeness hides in the noise.
-  const std::size_t block =
-      std::max(blockLength(sidesOfMedian(values, median)), shortestBlock(values.size()));
-  std::mt19937_64 random;
-  std::uniform_int_distribution<std::size_t> starts(0, values.size() - 1);
-  std::vector<double> medians(kResamples);
+  const std::size_t block = safeBlockLength(sidesOfMedian(values, median));
   std::vector<double> sample(values.size());
-  for (double& resampled : medians) {
-    for (std::size_t i = 0; i < sample.size();) {
-      std::size_t from = starts(random);
-      for (std::size_t k = 0; k < block && i < sample.size(); ++k, ++i, ++from) {
-        sample[i] = values[from % values.size()];
-      }
-    }
+  const auto medianOf = [&](std::span<const std::size_t> drawn) {
+    std::ranges::transform(drawn, sample.begin(), [&](std::size_t place) { return values[place]; });
     const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
     std::ranges::nth_element(sample, middle);
-    resampled = *middle;
-  }
-  std::ranges::sort(medians);
-  // A few blocks know less than resampling them says, as a few values do (Student).
-  const double blocks = static_cast<double>(values.size()) / static_cast<double>(block);
-  const double widen = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
-  return {median,
-          {median + widen * (sortedQuantile(medians, 0.025) - median),
-           median + widen * (sortedQuantile(medians, 0.975) - median)}};
+    return *middle;
+  };
+  return {median, blockBootstrap95(values.size(), block, median, medianOf)};
 }
 
 std::optional<Interval> confidence95(std::span<const double> values) {
@@ -199,26 +181,6 @@ Summary summarise(std::span<const std::span<const double>> repetitions) {
           .stddev = standardDeviation(sorted),
           .outliers = static_cast<std::size_t>(outliers),
           .ci95 = confidence95(means)};
-}
-
-RatioEstimate ratioOfMeans(std::span<const double> a, std::span<const double> b) {
-  const std::vector<double> log_a = logarithms(a);
-  const std::vector<double> log_b = logarithms(b);
-  const double difference = mean(log_b) - mean(log_a);
-  RatioEstimate estimate{.ratio = std::exp(difference), .ci95 = {}};
-  if (a.size() < 2 || b.size() < 2) return estimate;
-
-  const double error_a = squaredStandardError(log_a);
-  const double error_b = squaredStandardError(log_b);
-  const double error = error_a + error_b;
-  // Welch–Satterthwaite.
-  const double degrees = error == 0 ? static_cast<double>(a.size() + b.size() - 2)
-                                    : error * error /
-                                          (error_a * error_a / static_cast<double>(a.size() - 1) +
-                                           error_b * error_b / static_cast<double>(b.size() - 1));
-  const double half = studentT975(degrees) * std::sqrt(error);
-  estimate.ci95 = Interval{std::exp(difference - half), std::exp(difference + half)};
-  return estimate;
 }
 
 }  // namespace broadmark

@@ -28,7 +28,8 @@ constexpr Rgb mixed(Rgb a, Rgb b, float part) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto start = static_cast<float>(from[i]);
     const float value = start + part * (static_cast<float>(to[i]) - start);
-    colour = colour << 8 | static_cast<Rgb>(value + 0.5F);
+    // Not std::lround(): that is no constant expression.
+    colour = colour << 8 | static_cast<Rgb>(value + 0.5F);  // NOLINT(bugprone-incorrect-roundings)
   }
   return colour;
 }

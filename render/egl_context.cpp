@@ -33,6 +33,7 @@ struct EglFunctions {
         destroySurface(library.get<decltype(destroySurface)>("eglDestroySurface")),
         makeCurrent(library.get<decltype(makeCurrent)>("eglMakeCurrent")) {}
 
+  // NOLINTBEGIN(readability-identifier-naming): they are called like functions
   decltype(&eglGetError) getError;
   decltype(&eglGetProcAddress) getProcAddress;
   decltype(&eglGetDisplay) getDisplay;
@@ -45,6 +46,7 @@ struct EglFunctions {
   decltype(&eglCreatePbufferSurface) createPbuffer;
   decltype(&eglDestroySurface) destroySurface;
   decltype(&eglMakeCurrent) makeCurrent;
+  // NOLINTEND(readability-identifier-naming)
 
   /// An extension's function, or null.
   template <class Function>

@@ -35,9 +35,9 @@ GlObject makeShader(const Gl& gl, GLenum type, std::string_view source) {
 }  // namespace
 
 Gl::Gl(const GlLoader& load) {
-#define BROADMARK_GL_LOAD(name)                              \
-  name = reinterpret_cast<decltype(name)>(load("gl" #name)); \
-  if (name == nullptr) throw RenderError("OpenGL lacks gl" #name);
+#define BROADMARK_GL_LOAD(name)                                \
+  (name) = reinterpret_cast<decltype(name)>(load("gl" #name)); \
+  if ((name) == nullptr) throw RenderError("OpenGL lacks gl" #name);
   BROADMARK_GL_FUNCTIONS(BROADMARK_GL_LOAD)
 #undef BROADMARK_GL_LOAD
 }

@@ -1,9 +1,10 @@
-// broadmark compare: two result files, case by case.
+// broadmark compare: result files, case by case.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <map>
 #include <memory>
 
 #include "broadmark/error.h"
@@ -15,46 +16,108 @@
 namespace broadmark::commands::compare {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct Options {
-  std::filesystem::path before;
-  std::filesystem::path after;
-  double fail_above = 0.05;
+  fs::path before;
+  std::vector<std::string> baselines;  ///< more runs like `before`
+  std::vector<fs::path> after;
+  ComparisonOptions comparison;
+  std::map<std::string, fs::path> outputs;  ///< by writer's name
 };
 
-Results readResults(const std::filesystem::path& path) {
-  return parseResults(readTextFile(path), path.string());
+NamedResults readResults(const fs::path& path) {
+  return {path.string(), parseResults(readTextFile(path), path.string())};
+}
+
+/// Only with --by a run is compared with itself.
+std::vector<fs::path> judgedFiles(const Options& options) {
+  if (!options.after.empty()) return options.after;
+  if (!options.comparison.by.empty()) return {options.before};
+  throw InputError("compare: one file alone: name the results to judge, too, or say --by");
+}
+
+void write(const Options& options, const Comparison& comparison) {
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    const fs::path& path = options.outputs.at(std::string(writer.name));
+    if (!path.empty()) writeTextFile(path, writer.format(comparison));
+  }
+}
+
+/// 1 for an answer that has become wrong, 3 for anything else that speaks against B.
+int statusOf(const Comparison& comparison) {
+  int status = 0;
+  for (const CaseComparison& compared : comparison.cases) {
+    if (!comparison.fails(compared)) continue;
+    const bool wrong =
+        compared.status_before == Status::ok &&
+        (compared.status_after == Status::mismatch || compared.status_after == Status::error);
+    if (wrong) return 1;
+    status = 3;
+  }
+  return status;
 }
 
 int run(const Options& options) {
-  const Comparison comparison =
-      compareResults(readResults(options.before), readResults(options.after), options.fail_above);
-  fmt::print("{}", formatComparison(comparison));
-  // A comparison of nothing must not look like one that passed.
-  if (!comparison.comparable()) {
-    throw InputError(fmt::format("{} and {}: no case of both ran on the same recording",
-                                 options.before.string(), options.after.string()));
+  const std::vector<fs::path> judged = judgedFiles(options);
+  const auto asked = [](const auto& output) { return !output.second.empty(); };
+  if (judged.size() > 1 && std::ranges::any_of(options.outputs, asked)) {
+    throw InputError("compare: a file can be written for one judged run: name only one");
   }
-  return comparison.regressed() ? 1 : 0;
+  std::vector<NamedResults> before = {readResults(options.before)};
+  for (const std::string& path : options.baselines) before.push_back(readResults(path));
+  int status = 0;
+  for (const fs::path& path : judged) {
+    const Comparison comparison = compareResults(before, readResults(path), options.comparison);
+    if (judged.size() > 1) fmt::print("B = {}\n", path.string());
+    fmt::print("{}", formatComparison(comparison));
+    // A comparison of nothing must not look like one that passed.
+    if (!comparison.comparable()) {
+      throw InputError(fmt::format("{} and {}: no case of both can be compared",
+                                   options.before.string(), path.string()));
+    }
+    write(options, comparison);
+    const int found = statusOf(comparison);
+    if (status != 1 && found != 0) status = found;
+  }
+  return status;
+}
+
+void addShare(CLI::App& app, const std::string& name, double& target, const std::string& doc) {
+  const auto set = [&target, name](const std::string& text) { target = parseShare(text, name, false); };
+  addValue(app, name, "SHARE", set, doc, fmt::format("{:g}%", 100 * target));
 }
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  addPath(app, "before", "A.json", options->before, "results to compare with")->required();
-  addPath(app, "after", "B.json", options->after, "results to judge")->required();
-  const auto set = [options = options.get()](const std::string& text) {
-    options->fail_above = parseNumber(text, "--fail-above", 0, false);
-  };
-  addValue(app, "--fail-above", "SHARE", set,
-           "slow-down that counts as a regression, as a share: 0.05 is 5 %",
-           fmt::format("{}", options->fail_above));
+  ComparisonOptions& comparison = options->comparison;
+  addPath(app, "A", "A", options->before, "results to compare with (.json, .jsonl)")->required();
+  app.add_option("B", options->after, "results to judge")->type_name("B");
+  addRepeatable(app, "--baseline", "FILE", options->baselines,
+                "another run like A (repeatable): three or more tell how much runs differ");
+  addShare(app, "--margin", comparison.margin, "differences within it are 'same'");
+  addShare(app, "--fail-above", comparison.fail_above, "slow-down that counts as a regression");
+  app.add_option("--by", comparison.by,
+                 "compare across this instead of each case with itself: algorithm, threads, isa or "
+                 "a parameter; with the first such case of A")
+      ->type_name("NAME");
+  app.add_flag("--allow-missing", comparison.allow_missing,
+               "cases of A that are not in B are no failure");
+  app.add_flag("--any-conditions", comparison.any_conditions,
+               "compare other processors and build types, too");
+  for (const ComparisonWriter& writer : comparisonWriters()) {
+    addPath(app, fmt::format("--{}", writer.name), "FILE",
+            options->outputs[std::string(writer.name)], std::string(writer.doc));
+  }
   return [options] { return run(*options); };
 }
 
 }  // namespace
 
 Command command() {
-  return {
-      .name = "compare", .summary = "Compares two result files (JSON) case by case.", .add = add};
+  return {.name = "compare",
+          .summary = "Compares runs (results as JSON) case by case, frame by frame.",
+          .add = add};
 }
 
 }  // namespace broadmark::commands::compare

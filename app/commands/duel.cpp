@@ -117,7 +117,7 @@ std::function<int()> add(CLI::App& app) {
   addPath(app, "--with", "PROGRAM", options->program,
           "another build of broadmark, which runs every variant, too");
   const auto set_precision = [options = options.get()](const std::string& text) {
-    options->duel.precision = parseShare(text, "--precision");
+    options->duel.precision = parseShare(text, "--precision", true);
   };
   addValue(app, "--precision", "SHARE", set_precision,
            "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "

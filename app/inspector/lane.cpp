@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "broadmark/frame_table.h"
+#include "broadmark/runner.h"
+
 namespace broadmark {
 namespace {
 
@@ -84,25 +87,26 @@ RecordedDrawing Lane::structure() {
   return drawing;
 }
 
-std::string formatFrameTable(const std::vector<LaneReport>& lanes) {
-  std::string table = "algorithm,isa,threads,frame";
-  for (const auto& phase : kPhases.entries) table += fmt::format(",{}_ns", phase.name);
-  table += ",pairs,missed,false,allowed_extra,invalid,checked,disturbed\n";
+std::string formatFrameTable(const SceneInfo& scene, const std::vector<LaneReport>& lanes) {
+  FrameTable table;
   for (const LaneReport& lane : lanes) {
-    const Case& run = lane.spec.run;
+    table.begin(beginCase(lane.spec.run, {.scene = scene}));
     for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
       const FrameRecord* record = lane.record(frame);
       if (record == nullptr) continue;
-      table += fmt::format("{},{},{},{}", run.algorithm.id, isaName(run.isa), run.threads, frame);
-      for (const auto& phase : kPhases.entries) {
-        table += fmt::format(",{}", record->times[phase.value]);
-      }
-      table += fmt::format(",{},{},{},{},{},{:d},{:d}\n", record->pairs, record->missed_count,
-                           record->false_count, record->allowed_extra_count, record->invalid_count,
-                           record->checked, record->disturbed);
+      FrameRow row{.frame = frame,
+                   .times = record->times,
+                   .checked = record->checked,
+                   .disturbed = record->disturbed};
+      row.counts[FrameCount::pairs] = record->pairs;
+      row.counts[FrameCount::missed] = record->missed_count;
+      row.counts[FrameCount::false_pairs] = record->false_count;
+      row.counts[FrameCount::allowed_extra] = record->allowed_extra_count;
+      row.counts[FrameCount::invalid] = record->invalid_count;
+      table.add(row);
     }
   }
-  return table;
+  return table.text();
 }
 
 }  // namespace broadmark

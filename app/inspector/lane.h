@@ -105,8 +105,7 @@ class Lane {
   std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
 };
 
-/// Of each lane every frame that has been run, as CSV: one line per lane and frame, times in
-/// nanoseconds.
-std::string formatFrameTable(const std::vector<LaneReport>& lanes);
+/// Of each lane every frame that has been run, as FrameTable writes it.
+std::string formatFrameTable(const SceneInfo& scene, const std::vector<LaneReport>& lanes);
 
 }  // namespace broadmark

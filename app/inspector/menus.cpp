@@ -36,7 +36,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       askSaveRecording();
     }
     if (ui_.menuItem("Export timings…", nullptr, false, !progress.lanes.empty())) {
-      timings_ = formatFrameTable(progress.lanes);
+      timings_ = formatFrameTable(session_.playback.scene(), progress.lanes);
       askExportTimings();
     }
     ImGui::Separator();

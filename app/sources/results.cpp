@@ -120,7 +120,7 @@ OpenedSource open(NamedSource& source, const OpeningOptions& options) {
 
 SourceKind kind() {
   return {
-      .what = "results of a run with --case (.json, .jsonl)",
+      .what = fmt::format("results with --case (.json, .jsonl, \"{}\")", kResultsSchema),
       .recognises =
           [](NamedSource& source) { return source.isJson() && isResultsSchema(source.schema()); },
       .open = open};

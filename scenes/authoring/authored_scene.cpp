@@ -106,16 +106,16 @@ void requireSound(const AuthoredBody& body, std::size_t id) {
 }
 
 void requireSound(const AuthoredScene& scene) {
-  const auto requireNoFault = [](const std::string& fault) {
+  const auto require_no_fault = [](const std::string& fault) {
     if (!fault.empty()) throw InputError("authored scene: " + fault);
   };
-  requireNoFault(faultOfName(scene.name));
-  requireNoFault(faultOfWorld(scene.world));
+  require_no_fault(faultOfName(scene.name));
+  require_no_fault(faultOfWorld(scene.world));
   if (scene.bodies.size() > kMostBodies) {
-    requireNoFault(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMostBodies));
+    require_no_fault(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMostBodies));
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    requireNoFault(faultOfBody(scene.bodies[i], i));
+    require_no_fault(faultOfBody(scene.bodies[i], i));
   }
 }
 

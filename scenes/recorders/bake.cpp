@@ -85,7 +85,7 @@ std::optional<std::string> bakedHash(const fs::path& recording) {
   if (!fs::exists(path)) return std::nullopt;
   const Sidecar sidecar = readSidecar(path);
   if (sidecar.value("schema", Sidecar()) != kBakeSchema) return std::nullopt;
-  const std::optional<std::string> hash = statedHash(sidecar);
+  std::optional<std::string> hash = statedHash(sidecar);
   if (!hash) {
     throw InputError(fmt::format("{}: states no hash: bake again with --force", path.string()));
   }

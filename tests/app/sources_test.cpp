@@ -206,7 +206,7 @@ TEST_F(Sources, UnknownOnesAreRefusedWithWhatWouldBeRight) {
   EXPECT_THAT(inputErrorOf([] { open("missing.aabbs"); }), HasSubstr("missing.aabbs"));
   for (const char* text : {"{}", "[]", "5", R"({"schema": "something/9"})", R"({"schema": 5})"}) {
     const std::string error = inputErrorOf([&] { open(write("unknown.json", text)); });
-    for (const char* word : {"unknown.json", "broadmark-scene/1", "broadmark-results/1",
+    for (const char* word : {"unknown.json", "broadmark-scene/1", "broadmark-results/2",
                              "broadmark-scene-parameters/1", "m_inputScene"}) {
       EXPECT_THAT(error, HasSubstr(word)) << text;
     }

@@ -29,7 +29,7 @@ TEST_F(Device, IsChosenByNumberOrNameAndRecorded) {
     Arguments arguments = short_run_;
     arguments.insert(arguments.end(), {"--device", wanted});
     EXPECT_EQ(run(arguments).status, 0);
-    const Json devices = readJson(file("r.json")).at("environment").at("compute_devices");
+    const Json devices = readJson(file("r.json")).at("environments").at(0).at("compute_devices");
     EXPECT_EQ(devices.at(0), describe(computeDevices().front()));
   }
 }
@@ -44,7 +44,7 @@ TEST_F(Device, WithoutAnIcdEverythingElseRuns) {
   const Ended ended = run(short_run_, {.environment = {{"OCL_ICD_VENDORS", "/nonexistent/"}}});
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json results = readJson(file("r.json"));
-  EXPECT_THAT(results.at("environment").at("compute_devices"), IsEmpty());
+  EXPECT_THAT(results.at("environments").at(0).at("compute_devices"), IsEmpty());
   for (const Json& result : results.at("cases")) {
     const bool on_device = result.at("algorithm") == "gpu-sap";
     EXPECT_EQ(result.at("status"), on_device ? "unsupported" : "ok");

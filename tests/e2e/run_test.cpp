@@ -50,11 +50,11 @@ TEST_F(Run, MainJob) {
   EXPECT_EQ(marks(linesOf(ended.out)), 3) << ended.out;
 
   const Json results = readJson(file("results.json"));
-  EXPECT_EQ(results.at("schema"), "broadmark-results/1");
+  EXPECT_EQ(results.at("schema"), "broadmark-results/2");
   for (const char* key :
        {"cpu", "caches", "logical_cores", "physical_cores", "isa", "memory_bytes", "governor",
         "load_average", "os", "compiler", "compiler_flags", "build_type", "version", "started"}) {
-    EXPECT_TRUE(results.at("environment").contains(key)) << key;
+    EXPECT_TRUE(results.at("environments").at(0).contains(key)) << key;
   }
   EXPECT_EQ(results.at("options").at(1), "freefall");
   ASSERT_EQ(results.at("cases").size(), 3 * algorithms);

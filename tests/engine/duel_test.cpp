@@ -5,12 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include "engine/spoilt_cases.h"
+#include "engine/uneven_machine.h"
 
 namespace broadmark::tests {
 namespace {
@@ -18,35 +17,10 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A machine whose pace changes: it drifts, and now and then something else takes half of it for a
-/// while. All who share it share that.
-class Machine {
- public:
-  explicit Machine(unsigned seed) : random_(seed) {}
-
-  /// The time of work that takes `seconds` on a quiet machine: with noise of its own that resembles
-  /// the noise before, and a heavy tail.
-  double time(double seconds, double& own_noise) {
-    drift_ += 0.002 * normal_(random_);
-    if (burst_ == 0 && uniform_(random_) < 0.01) burst_ = 20;
-    if (burst_ > 0) --burst_;
-    own_noise = 0.5 * own_noise + 0.03 * normal_(random_);
-    const double tail = uniform_(random_) < 0.02 ? 1 + 4 * uniform_(random_) : 1;
-    return seconds * std::exp(drift_ + own_noise) * tail * (burst_ > 0 ? 1.5 : 1);
-  }
-
- private:
-  std::mt19937 random_;
-  std::normal_distribution<double> normal_;
-  std::uniform_real_distribution<double> uniform_;
-  double drift_ = 0;
-  int burst_ = 0;
-};
-
 /// An algorithm that takes so long on that machine, and does nothing.
 class TimedHost final : public CaseHost {
  public:
-  TimedHost(std::shared_ptr<Machine> machine, double seconds)
+  TimedHost(std::shared_ptr<UnevenMachine> machine, double seconds)
       : machine_(std::move(machine)), seconds_(seconds) {}
 
   std::int64_t start(const SceneInfo&, const Frame&) override { return 0; }
@@ -63,14 +37,14 @@ class TimedHost final : public CaseHost {
   RecordedDrawing structure() override { return {}; }
 
  private:
-  std::shared_ptr<Machine> machine_;
+  std::shared_ptr<UnevenMachine> machine_;
   double seconds_;
   double own_noise_ = 0;
 };
 
 /// A duel of algorithms that take so long.
 DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double precision) {
-  const auto machine = std::make_shared<Machine>(seed);
+  const auto machine = std::make_shared<UnevenMachine>(seed);
   std::vector<DuelSide> sides;
   for (const double each : seconds) {
     sides.push_back(

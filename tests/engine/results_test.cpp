@@ -9,7 +9,9 @@
 #include <set>
 #include <sstream>
 
+#include "broadmark/files.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -94,8 +96,20 @@ Results everything() {
                        .invalid_pairs = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
   full.setup = {{"kernel_build_ns", 77}};
   full.peak_bytes = 12345;
-  full.repetitions = {{.initialize_ns = 5, .frames = {times(1000), times(2000)}},
+  full.repetitions = {{.initialize_ns = 5,
+                       .frames = {times(1000), times(2000)},
+                       .yardsticks = YardstickTimes{{100, 200}}},
                       {.initialize_ns = 6, .frames = {times(3000)}}};
+  full.frames = {{{1, 10, 1, 1, 1, 3}}, {{2, 4, 0, 0, 0, 0}}};
+  full.conditions = {.check = CheckMode::hash,
+                     .warmup = 1,
+                     .repetitions = 3,
+                     .frame_limit_seconds = 0.5,
+                     .call_limit_seconds = 60,
+                     .in_process = true,
+                     .load_average = 0.25,
+                     .plugin = {"ab12", "-O2"},
+                     .warnings = {"busy"}};
 
   CaseResult& bare = results.cases.emplace_back();
   bare.id = "bare";
@@ -122,6 +136,15 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(full.pairs_mean, 1.0 / 3);
   EXPECT_EQ(full.differences.at(0).invalid_pairs.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
+  ASSERT_TRUE(full.repetitions.at(0).yardsticks);
+  EXPECT_EQ((*full.repetitions[0].yardsticks)[Yardstick::memory], 200);
+  EXPECT_FALSE(full.repetitions.at(1).yardsticks);
+  EXPECT_EQ(full.frames.at(0)[FrameCount::invalid], 3U);
+  EXPECT_EQ(full.conditions.check, CheckMode::hash);
+  EXPECT_EQ(full.conditions.frame_limit_seconds, 0.5);
+  EXPECT_FALSE(full.conditions.initialize_limit_seconds);
+  EXPECT_EQ(full.conditions.plugin.flags, "-O2");
+  EXPECT_THAT(full.conditions.warnings, testing::ElementsAre("busy"));
   EXPECT_EQ(full.device, "pthread");
   EXPECT_EQ(full.plugin, "my plug-in.so");
   EXPECT_EQ(full.parameters, (ParameterValues{{"cells", "2"}, {"margin", "0.01"}}));
@@ -148,14 +171,14 @@ TEST(ResultsJson, EveryStatusAndInstructionSetSurvives) {
 
 TEST(ResultsJson, HasTheKeysThatOthersRelyOn) {
   const Json json = Json::parse(format(everything(), "json"));
-  EXPECT_EQ(json["schema"], "broadmark-results/1");
+  EXPECT_EQ(json["schema"], "broadmark-results/2");
   const auto expect_keys = [](const Json& object, const std::vector<std::string>& keys) {
     for (const std::string& key : keys) EXPECT_TRUE(object.contains(key)) << key;
   };
-  expect_keys(json, {"environment", "options", "cases"});
-  expect_keys(json["environment"], {"cpu", "caches", "logical_cores", "physical_cores", "isa",
-                                    "memory_bytes", "governor", "load_average", "os", "compiler",
-                                    "compiler_flags", "build_type", "version"});
+  expect_keys(json, {"environments", "options", "cases", "complete"});
+  expect_keys(json["environments"][0], {"cpu", "caches", "logical_cores", "physical_cores", "isa",
+                                        "memory_bytes", "governor", "load_average", "os",
+                                        "compiler", "compiler_flags", "build_type", "version"});
   ASSERT_THAT(json["cases"], SizeIs(2));
   const Json& full = json["cases"][0];
   expect_keys(full, {"id", "recording", "algorithm", "family", "isa", "threads", "params", "status",
@@ -193,9 +216,16 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
     const char* word;
   };
   const Fault faults[] = {
-      {"/environment/cpu", 5, "environment: cpu", "text"},
-      {"/environment/caches", Json::array({1}), "environment: caches", "texts"},
-      {"/environment/memory_bytes", -1, "environment: memory_bytes", "from 0 to"},
+      {"/environments/0/cpu", 5, "environments[0]: cpu", "text"},
+      {"/environments/0/caches", Json::array({1}), "environments[0]: caches", "texts"},
+      {"/environments/0/memory_bytes", -1, "environments[0]: memory_bytes", "from 0 to"},
+      {"/complete", 1, "complete", "true or false"},
+      {"/cases/1/environment", 1, "case 'bare'", "no environment 1"},
+      {"/cases/0/conditions/check", "some", "cases[0]: conditions: check", "'some'"},
+      {"/cases/0/yardsticks/memory_ns", Json::array(), "cases[0]: yardsticks: memory_ns",
+       "one time"},
+      {"/cases/0/frame_counts/missed", Json::array({1}), "cases[0]: frame_counts: missed",
+       "same number"},
       {"/options", "x", "options", "array"},
       {"/cases/0", 1, "cases[0]", "object"},
       {"/cases/1/threads", 0, "cases[1]: threads", "from 1 to"},
@@ -230,7 +260,9 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
 TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
-    const std::set<std::string> optional = {"peak_bytes", "counters", "setup", "device", "plugin"};
+    // Without conditions it is taken for results/1.
+    const std::set<std::string> optional = {"peak_bytes", "counters", "setup",
+                                            "device",     "plugin",   "conditions"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());
@@ -240,17 +272,70 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   }
 }
 
-TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
+/// everything() as an earlier version wrote it.
+Json asResults1() {
   Json json = Json::parse(format(everything(), "json"));
+  json["schema"] = "broadmark-results/1";
+  json["environment"] = json["environments"][0];
+  json.erase("environments");
+  json.erase("complete");
+  for (Json& one : json["cases"]) {
+    for (const char* key : {"environment", "conditions", "yardsticks", "frame_counts"}) {
+      one.erase(key);
+    }
+  }
+  return json;
+}
+
+TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
+  Json json = asResults1();
   for (const char* key : {"counters", "device", "plugin"}) json["cases"][0].erase(key);
   const Results results = parseResults(json.dump(), "a.json");
   EXPECT_EQ(results.cases[0].device, "");
   EXPECT_EQ(results.cases[0].plugin, "");
+  EXPECT_EQ(results.environments.at(0).cpu, everything().environments[0].cpu);
+  EXPECT_TRUE(results.complete) << "they did not say";
+  EXPECT_TRUE(results.cases[0].isComplete());
+}
+
+TEST(ResultsLines, HoldTheSame) {
+  const std::string lines = format(everything(), "jsonl");
+  EXPECT_EQ(std::ranges::count(lines, '\n'), 1 + 1 + 2 + 1);
+  EXPECT_EQ(format(parseResults(lines, "a.jsonl"), "json"), format(everything(), "json"));
+}
+
+// A run may end at any moment: whatever is whole is kept, and the rest is known to be missing.
+TEST(ResultsLines, ArePartialWhereverTheyEnd) {
+  const std::string lines = format(everything(), "jsonl");
+  const std::size_t first_line = lines.find('\n') + 1;
+  const std::size_t first_case = lines.find('\n', first_line) + 1;
+  for (std::size_t length = first_case; length + 1 < lines.size(); length += 7) {
+    const std::string text = lines.substr(0, length);
+    const Results results = parseResults(text, "a.jsonl");
+    EXPECT_FALSE(results.complete) << length;
+    EXPECT_LE(results.cases.size(), 2U);
+    const auto whole = static_cast<std::size_t>(std::ranges::count(text, '\n'));
+    EXPECT_GE(results.cases.size() + 2, whole) << length;
+  }
+  EXPECT_EQ(parseResults(lines.substr(0, lines.find("{\"end\"")), "a.jsonl").cases.size(), 2U);
+}
+
+TEST(ResultsLines, ErrorsNameTheLine) {
+  const std::string lines = format(everything(), "jsonl");
+  EXPECT_THAT(inputErrorOf([&] { parseResults(lines + "{}\n", "a.jsonl"); }),
+              StartsWith("a.jsonl: line 6: "));
+  const std::size_t second = lines.find('\n') + 1;
+  const std::string broken = lines.substr(0, second) + "{\n" + lines.substr(second);
+  EXPECT_THAT(inputErrorOf([&] { parseResults(broken, "a.jsonl"); }),
+              StartsWith("a.jsonl: line 2: not valid JSON"));
+  const std::string other = lines.substr(0, second) + "{\"what\": 1}\n";
+  EXPECT_THAT(inputErrorOf([&] { parseResults(other, "a.jsonl"); }),
+              HasSubstr("line 2: neither an environment, a case nor the end"));
 }
 
 // Which had one list for false and allowed extra pairs.
 TEST(ResultsJson, FilesWithExtraPairsOnlyAreRead) {
-  Json json = Json::parse(format(everything(), "json"));
+  Json json = asResults1();
   const auto restate = [](Json& object, const std::string& suffix) {
     object.erase("false" + suffix);
     object.erase("allowed_extra" + suffix);
@@ -285,13 +370,49 @@ TEST(ResultsJson, WhatIsNoResultsFile) {
       {"{}", "not a results file"},
       {R"({"schema": 1})", "schema: a text is expected"},
       {R"({"schema": "broadmark-scene/1"})", "not a results file"},
-      {R"({"schema": "broadmark-results/1"})", "'environment' is missing"}};
+      {R"({"schema": "broadmark-results/2"})", "'options' is missing"}};
   for (const auto& [text, fault] : texts) {
     EXPECT_THAT(inputErrorOf([text = text] { parseResults(text, "a.json"); }),
                 AllOf(StartsWith("a.json: "), HasSubstr(fault), testing::Not(HasSubstr("\n"))));
   }
   const std::string deep(100'000, '[');
   EXPECT_THAT(inputErrorOf([&] { parseResults(deep, "a.json"); }), HasSubstr("not valid JSON"));
+}
+
+std::string documentation() { return readTextFile(places::source("docs/results.md")); }
+
+TEST(ResultsDocumentation, ItsExampleIsAResultsFile) {
+  const std::string text = documentation();
+  const std::size_t begin = text.find("```json\n") + 8;
+  const std::string example = text.substr(begin, text.find("```", begin) - begin);
+  const Results results = parseResults(example, "example");
+  EXPECT_TRUE(results.complete);
+  ASSERT_THAT(results.cases, SizeIs(1));
+  EXPECT_TRUE(results.cases[0].isComplete());
+  // As it would be written today, but for the digits of numbers.
+  std::istringstream lines(format(results, "jsonl"));
+  std::istringstream documented(example);
+  for (std::string line, shown; std::getline(lines, line) && std::getline(documented, shown);) {
+    EXPECT_EQ(Json::parse(line), Json::parse(shown));
+  }
+}
+
+/// Calls visit(key) for every key of an object and of what is in it, but for those whose names are
+/// data.
+template <class Visit>
+void eachKey(const Json& json, Visit&& visit) {
+  for (const auto& [key, value] : json.items()) {
+    if (json.is_object()) visit(key);
+    if (key != "params" && key != "counters" && key != "setup" && key != "source") {
+      if (value.is_structured()) eachKey(value, visit);
+    }
+  }
+}
+
+TEST(ResultsDocumentation, NamesEveryKey) {
+  const std::string text = documentation();
+  eachKey(Json::parse(format(everything(), "json")),
+          [&](const std::string& key) { EXPECT_THAT(text, HasSubstr('`' + key + '`')); });
 }
 
 /// Splits CSV (RFC 4180) into rows of fields.
@@ -339,13 +460,16 @@ TEST(ResultsCsv, OneRowPerCase) {
   EXPECT_EQ(full["status"], "mismatch");
   EXPECT_EQ(full["repetitions"], "2");
   EXPECT_DOUBLE_EQ(std::stod(full["seconds_per_frame"]), (2000 + kTotal) * 1e-9);
-  EXPECT_DOUBLE_EQ(std::stod(full["min"]), (1000 + kTotal) * 1e-9);
+  EXPECT_DOUBLE_EQ(std::stod(full["min_seconds"]), (1000 + kTotal) * 1e-9);
+  EXPECT_DOUBLE_EQ(std::stod(full["initialize_seconds"]), 5.5e-9);
+  EXPECT_DOUBLE_EQ(std::stod(full["update_objects_seconds"]), 2000e-9);
   EXPECT_EQ(full["missed"], "1");
   EXPECT_EQ(full["peak_bytes"], "12345");
 
   auto bare = rowOf(rows, 2);
-  for (const char* unknown : {"seconds_per_frame", "median", "ci95_low", "outliers", "missed",
-                              "false", "allowed_extra", "invalid", "peak_bytes", "seed"}) {
+  for (const char* unknown :
+       {"seconds_per_frame", "median_seconds", "ci95_low_seconds", "outliers", "initialize_seconds",
+        "missed", "false", "allowed_extra", "invalid", "peak_bytes", "seed"}) {
     EXPECT_EQ(bare[unknown], "") << unknown << ": what is not known is empty, not 0";
   }
 }
@@ -372,6 +496,9 @@ TEST(ResultsCsv, OneRowPerFrame) {
   EXPECT_EQ(last["frame"], "1");
   EXPECT_EQ(last["update_objects_ns"], "3000");
   EXPECT_EQ(last["total_ns"], std::to_string(3000 + kTotal));
+  EXPECT_EQ(last["pairs"], "1");
+  EXPECT_EQ(last["changed_bodies"], "10");
+  EXPECT_EQ(last["missed"], "1");
 }
 
 }  // namespace

@@ -137,38 +137,6 @@ TEST(Summary, OutliersAreCountedAndKept) {
   EXPECT_DOUBLE_EQ(summary.seconds_per_frame, 55.5 / 9);
 }
 
-TEST(Ratio, WelchOfLogarithms) {
-  const Values a = {1, std::exp(1), std::exp(2)};
-  const Values b = {std::exp(1), std::exp(3), std::exp(5), std::exp(7)};
-  const RatioEstimate estimate = ratioOfMeans(a, b);
-  // Logarithms: means 1 and 4, variances 1 and 20/3, squared errors 1/3 and 5/3, their sum 2.
-  EXPECT_NEAR(estimate.ratio, std::exp(3), 1e-9);
-  // Welch–Satterthwaite: 2² / ((1/3)²/2 + (5/3)²/3) = 4 / (1/18 + 25/27) = 216/53 degrees; between
-  // 4 and 5, so t lies between 2.57058 and 2.77645: 2.75628 by integrating its density.
-  ASSERT_TRUE(estimate.ci95);
-  const double half = (std::log(estimate.ci95->high) - std::log(estimate.ci95->low)) / 2;
-  EXPECT_NEAR(half, studentT975(216.0 / 53) * std::sqrt(2.0), 1e-9);
-  EXPECT_NEAR(half, 2.75628 * std::sqrt(2.0), 2e-3);
-  EXPECT_NEAR(std::log(estimate.ci95->high), 3 + half, 1e-9);
-}
-
-TEST(Ratio, OfEqualSamplesIsOne) {
-  const Values same = {0.5, 0.5, 0.5};
-  const RatioEstimate estimate = ratioOfMeans(same, same);
-  EXPECT_DOUBLE_EQ(estimate.ratio, 1);
-  ASSERT_TRUE(estimate.ci95);
-  EXPECT_DOUBLE_EQ(estimate.ci95->low, 1);
-  EXPECT_DOUBLE_EQ(estimate.ci95->high, 1);
-}
-
-TEST(Ratio, OfSingleValuesHasNoInterval) {
-  const Values a = {2};
-  const Values b = {3};
-  const RatioEstimate estimate = ratioOfMeans(a, b);
-  EXPECT_DOUBLE_EQ(estimate.ratio, 1.5);
-  EXPECT_FALSE(estimate.ci95.has_value());
-}
-
 /// A series in which each value is `likeness` times the one before, plus noise.
 Values seriesOf(std::size_t count, double likeness, unsigned seed) {
   std::mt19937 random(seed);

@@ -275,10 +275,11 @@ TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
   session.lanes.add("sap");
   session.lanes.add("bf");
   session.playback.seek(3);
-  const std::string table = formatFrameTable(settle().lanes);
+  const std::string table = formatFrameTable(session.playback.scene(), settle().lanes);
   EXPECT_EQ(std::ranges::count(table, '\n'), 1 + 2 * 3);
-  EXPECT_THAT(table, testing::HasSubstr("sap,scalar,1,3,"));
-  EXPECT_THAT(table, testing::HasSubstr(",pairs,missed,false,allowed_extra,invalid,"));
+  EXPECT_THAT(table, testing::HasSubstr(",sap,SAP,scalar,1,,1,3,"));
+  EXPECT_THAT(table,
+              testing::HasSubstr(",pairs,changed_bodies,missed,false,allowed_extra,invalid,"));
 }
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {

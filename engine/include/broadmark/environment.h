@@ -25,6 +25,8 @@ struct Environment {
   /// OpenCL's devices, a line each; the first is the one used. Filled in by the caller: engine does
   /// not know OpenCL.
   std::vector<std::string> compute_devices;
+
+  friend bool operator==(const Environment&, const Environment&) = default;
 };
 
 /// That of this process.

@@ -28,7 +28,7 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
-  std::optional<YardstickTimes> yardsticks = {};  ///< measured just before
+  std::optional<YardstickTimes> yardsticks = {};  ///< as they were just before
   ProcessorCounts processor = {};                 ///< sums over the frames' four phases
 };
 

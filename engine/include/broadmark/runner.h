@@ -11,8 +11,12 @@
 
 namespace broadmark {
 
-/// "FreeFall/Cubes/N2000/F100/" + caseName; with the seed "/s7" when it is known.
+/// "FreeFall/Cubes/N2000/F100"; with the seed "/s7" when it is known.
+std::string recordingId(const RecordingReference&);
+/// recordingId() + '/' + caseName().
 std::string caseId(const RecordingReference&, const Case&);
+/// caseName() of the case that gave this result: its id without the recording's.
+std::string caseNameOf(const CaseResult&);
 
 /// A result with everything but measurements.
 CaseResult beginCase(const Case&, const RecordingReference&);

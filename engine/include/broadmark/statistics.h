@@ -59,13 +59,4 @@ struct Summary {
 /// Summarises frame times, given per repetition.
 Summary summarise(std::span<const std::span<const double>> repetitions);
 
-/// How much slower B is than A: the ratio of means B / A with its 95 % interval.
-struct RatioEstimate {
-  double ratio = 1;
-  std::optional<Interval> ci95;
-};
-
-/// From logarithms of positive times: independent samples (Welch).
-RatioEstimate ratioOfMeans(std::span<const double> a, std::span<const double> b);
-
 }  // namespace broadmark

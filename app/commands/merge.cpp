@@ -1,0 +1,63 @@
+// broadmark merge: result files of shards and machines as one.
+
+#include "broadmark/merge.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "commands/command.h"
+#include "option_types.h"
+#include "result_files.h"
+
+namespace broadmark::commands::merge {
+namespace {
+
+struct Options {
+  std::vector<std::filesystem::path> sources;
+  ResultPaths outputs;
+};
+
+int run(const Options& options) {
+  if (options.outputs.empty()) throw InputError("merge: say where to: --json, --jsonl, --csv …");
+  std::vector<Results> runs;
+  std::vector<std::string> names = {"merge"};
+  for (const std::filesystem::path& path : options.sources) {
+    runs.push_back(parseResults(readTextFile(path), path.string()));
+    names.push_back(path.string());
+  }
+  MergedResults merged = mergeResults(runs);
+  merged.results.options = names;
+  ResultFiles files(options.outputs, merged.results);
+  for (const CaseResult& result : merged.results.cases) files.add(result);
+  files.end(merged.results);
+  const auto partial = std::ranges::count_if(
+      merged.results.cases, [](const CaseResult& result) { return !result.isComplete(); });
+  fmt::print("merged: {} cases of {} files; {} were in several of them; {} are partial\n",
+             merged.results.cases.size(), runs.size(), merged.repeated, partial);
+  return 0;
+}
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("results", options->sources, "results to merge (.json, .jsonl)")
+      ->type_name("FILE")
+      ->required();
+  addResultOutputs(app, options->outputs);
+  return [options] {
+    std::erase_if(options->outputs, [](const auto& output) { return output.second.empty(); });
+    return run(*options);
+  };
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "merge", .summary = "Makes one file of several runs' results.", .add = add};
+}
+
+}  // namespace broadmark::commands::merge

@@ -1,0 +1,12 @@
+// Fields of CSV (RFC 4180).
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace broadmark {
+
+/// A field, quoted where it must be.
+std::string csvField(std::string_view text);
+
+}  // namespace broadmark

@@ -1,0 +1,35 @@
+// How much slower one run of a case is than another, at another time: from the same frames.
+//
+// Each frame counts with its least time over the repetitions, since what disturbs a frame makes it
+// slower. What is left between two runs is of three kinds, and the interval covers all of them:
+// noise from frame to frame (a block bootstrap over the frames), noise from repetition to
+// repetition (its spread, as Student's t), and the drift of the machine between the runs (what the
+// yardsticks differ by). Nothing is corrected.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "broadmark/results.h"
+#include "broadmark/statistics.h"
+
+namespace broadmark {
+
+/// Times of B / times of A.
+struct RunRatio {
+  // Mean over the frames of their least times, in seconds. The ratio is their quotient.
+  double before = 0;
+  double after = 0;
+  Estimate ratio;
+  /// How much slower the machine was during B, by the yardstick that differs most: 0.1 is 10 %.
+  /// Nothing if a run has no yardsticks.
+  std::optional<double> drift;
+};
+
+/// The ratio of one case in two runs over the same frames. Several runs may stand for A: three or
+/// more tell how much runs differ, too. Nothing if there is no time to compare.
+std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
+                                    const CaseResult& after);
+
+}  // namespace broadmark

@@ -1,0 +1,41 @@
+// A made-up machine with the noise that real ones have, for tests of statistics.
+#pragma once
+
+#include <cmath>
+#include <random>
+
+namespace broadmark::tests {
+
+/// A machine whose pace changes: it drifts, and now and then something else takes half of it for a
+/// while. All who share it share that.
+class UnevenMachine {
+ public:
+  /// `pace`: how long everything takes at first, against a machine of pace 1. `wander`: by how much
+  /// the pace changes from one piece of work to the next.
+  explicit UnevenMachine(unsigned seed, double pace = 1, double wander = 0.002)
+      : random_(seed), drift_(std::log(pace)), wander_(wander) {}
+
+  /// The time of work that takes `seconds` on a quiet machine: with noise of its own that resembles
+  /// the noise before, and a heavy tail.
+  double time(double seconds, double& own_noise) {
+    drift_ += wander_ * normal_(random_);
+    if (burst_ == 0 && uniform_(random_) < 0.01) burst_ = 20;
+    if (burst_ > 0) --burst_;
+    own_noise = 0.5 * own_noise + 0.03 * normal_(random_);
+    const double tail = uniform_(random_) < 0.02 ? 1 + 4 * uniform_(random_) : 1;
+    return seconds * std::exp(drift_ + own_noise) * tail * (burst_ > 0 ? 1.5 : 1);
+  }
+
+  /// The least time of a little work that is done a few times: noise of one in a hundred is left.
+  double yardstick(double seconds) { return seconds * std::exp(drift_ + 0.01 * normal_(random_)); }
+
+ private:
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+  std::uniform_real_distribution<double> uniform_;
+  double drift_;
+  double wander_;
+  int burst_ = 0;
+};
+
+}  // namespace broadmark::tests
