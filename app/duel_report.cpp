@@ -23,12 +23,12 @@ std::string changeText(double ratio) {
   return fmt::format("{:.1f} % {}", 100 * std::abs(ratio - 1), ratio > 1 ? "slower" : "faster");
 }
 
-std::string table(const DuelResult& result, const std::vector<DuelPlace>& places) {
+std::string table(const DuelResult& result) {
   std::vector<std::vector<std::string>> rows = {
       {"", "variant", "median", "least", "ratio to the first named", "95 % interval"}};
-  for (const DuelPlace& place : places) {
+  for (const DuelPlace& place : result.places) {
     const DuelResult::Side& side = result.sides[place.side];
-    const bool ties = std::ranges::count(places, place.place, &DuelPlace::place) > 1;
+    const bool ties = std::ranges::count(result.places, place.place, &DuelPlace::place) > 1;
     const bool first = place.side == 0;
     rows.push_back(
         {fmt::format("{}{}.", ties ? "=" : "", place.place), side.name,
@@ -63,13 +63,13 @@ std::string histogram(const std::vector<double>& ratios) {
   return text;
 }
 
-std::string verdictOnTwo(const DuelResult& result, double margin) {
-  const Estimate ratio = result.ratio(1, 0);
+std::string verdictOnTwo(const DuelResult& result) {
+  const Estimate& ratio = std::ranges::find(result.places, 1U, &DuelPlace::side)->ratio;
   const std::string& a = result.sides[0].name;
   const std::string& b = result.sides[1].name;
-  switch (standingOf(ratio.ci95, margin)) {
+  switch (standingOf(ratio.ci95, result.margin)) {
     case Standing::same:
-      return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * margin);
+      return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * result.margin);
     case Standing::undecided:
       return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
     case Standing::faster:
@@ -79,10 +79,10 @@ std::string verdictOnTwo(const DuelResult& result, double margin) {
   return fmt::format("{} is {} than {}", b, changeText(ratio.value), a);
 }
 
-std::string verdict(const DuelResult& result, const std::vector<DuelPlace>& places, double margin) {
-  if (result.sides.size() == 2) return verdictOnTwo(result, margin);
+std::string verdict(const DuelResult& result) {
+  if (result.sides.size() == 2) return verdictOnTwo(result);
   std::vector<std::string> best;
-  for (const DuelPlace& place : places) {
+  for (const DuelPlace& place : result.places) {
     if (place.place == 1) best.push_back(result.sides[place.side].name);
   }
   return best.size() == 1 ? fmt::format("{} is the fastest", best.front())
@@ -100,21 +100,20 @@ std::string failures(const DuelResult& result) {
 
 }  // namespace
 
-std::string formatDuel(const DuelResult& result, const SceneInfo& scene, double margin) {
+std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
   std::string text = fmt::format("{} {} N{}: {} rounds in {}{}\n", scene.name, scene.object_type,
                                  scene.objects, result.rounds(), waitingTime(result.seconds),
                                  result.decided || !result.ok() ? "" : ", until time was up");
   if (!result.ok()) return text + failures(result);
-  const std::vector<DuelPlace> places = ranking(result, margin);
-  text += table(result, places);
+  text += table(result);
   if (result.sides.size() == 2) {
     text += fmt::format("rounds by ratio {} / {}:\n{}", result.sides[1].name, result.sides[0].name,
                         histogram(result.ratios(1, 0)));
   }
-  return text + verdict(result, places, margin);
+  return text + verdict(result);
 }
 
-std::string duelJson(const DuelResult& result, Recording& recording, double margin) {
+std::string duelJson(const DuelResult& result, Recording& recording) {
   const SceneInfo& scene = recording.scene();
   Json json = {{"schema", "broadmark-duel/1"},
                {"recording",
@@ -123,7 +122,7 @@ std::string duelJson(const DuelResult& result, Recording& recording, double marg
                  {"objects", scene.objects},
                  {"frames", scene.frames},
                  {"hash", recording.hash()}}},
-               {"margin", margin},
+               {"margin", result.margin},
                {"seconds", result.seconds},
                {"decided", result.decided}};
   for (const DuelResult::Side& side : result.sides) {
@@ -132,8 +131,7 @@ std::string duelJson(const DuelResult& result, Recording& recording, double marg
                              {"reason", side.reason},
                              {"seconds", side.seconds}});
   }
-  if (!result.ok()) return json.dump(1) + "\n";
-  for (const DuelPlace& place : ranking(result, margin)) {
+  for (const DuelPlace& place : result.places) {
     json["ranking"].push_back({{"name", result.sides[place.side].name},
                                {"place", place.place},
                                {"ratio", place.ratio.value},

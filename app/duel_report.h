@@ -8,11 +8,10 @@
 
 namespace broadmark {
 
-/// Times, ranking, intervals, and, of two sides, a histogram of the ratios. `margin`: within it
-/// sides are the same.
-std::string formatDuel(const DuelResult&, const SceneInfo&, double margin);
+/// Times, ranking, intervals, and, of two sides, a histogram of the ratios.
+std::string formatDuel(const DuelResult&, const SceneInfo&);
 
 /// All times and ratios as JSON (schema "broadmark-duel/1").
-std::string duelJson(const DuelResult&, Recording&, double margin);
+std::string duelJson(const DuelResult&, Recording&);
 
 }  // namespace broadmark

@@ -31,6 +31,21 @@ std::vector<std::size_t> fastestFirst(const DuelResult& result) {
   return sides;
 }
 
+std::vector<DuelPlace> ranking(const DuelResult& result) {
+  std::vector<DuelPlace> places;
+  for (const std::size_t side : fastestFirst(result)) {
+    places.push_back({.side = side, .ratio = {1, {1, 1}}});
+    if (side != 0) places.back().ratio = result.ratio(side, 0);
+  }
+  std::size_t first = 0;  // of the present place
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Interval ratio = result.ratio(places[i].side, places[first].side).ci95;
+    if (standingOf(ratio, result.margin) == Standing::slower) first = i;
+    places[i].place = first + 1;
+  }
+  return places;
+}
+
 class Duel {
  public:
   Duel(const std::vector<DuelSide>& sides, const DuelOptions& options)
@@ -51,6 +66,8 @@ class Duel {
     }
     for (const auto& run : runs_) run->stop();
     result_.seconds = elapsed();
+    result_.margin = 2 * options_.precision;
+    if (result_.ok() && result_.rounds() > 0) result_.places = ranking(result_);
     return std::move(result_);
   }
 
@@ -165,21 +182,6 @@ std::vector<double> DuelResult::ratios(std::size_t a, std::size_t b) const {
 
 Estimate DuelResult::ratio(std::size_t a, std::size_t b) const {
   return medianOfSeries(ratios(a, b));
-}
-
-std::vector<DuelPlace> ranking(const DuelResult& result, double margin) {
-  std::vector<DuelPlace> places;
-  for (const std::size_t side : fastestFirst(result)) {
-    places.push_back({.side = side, .ratio = {1, {1, 1}}});
-    if (side != 0) places.back().ratio = result.ratio(side, 0);
-  }
-  std::size_t first = 0;  // of the present place
-  for (std::size_t i = 1; i < places.size(); ++i) {
-    const Interval ratio = result.ratio(places[i].side, places[first].side).ci95;
-    if (standingOf(ratio, margin) == Standing::slower) first = i;
-    places[i].place = first + 1;
-  }
-  return places;
 }
 
 DuelResult runDuel(const std::vector<DuelSide>& sides, FrameSource& frames,

@@ -96,10 +96,8 @@ int run(Options options) {
     }
   }();
   progress.update(static_cast<std::uint64_t>(kTicks));
-  // An interval that misses 1 by little is no news: one in twenty does.
-  const double margin = 2 * options.duel.precision;
-  progress.print(formatDuel(result, recording->scene(), margin));
-  if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording, margin));
+  progress.print(formatDuel(result, recording->scene()));
+  if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording));
   return result.ok() ? 0 : 1;
 }
 

@@ -89,8 +89,7 @@ TEST(Duel, FindsADifferenceOfTenPercent) {
 }
 
 TEST(Duel, RanksWithTies) {
-  const DuelResult result = duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, 0.03);
-  const std::vector<DuelPlace> places = ranking(result, 0.03);
+  const std::vector<DuelPlace> places = duelOf({2e-4, 1e-4, 2e-4, 3e-4}, 3, 0.03).places;
   std::vector<std::size_t> numbers;
   for (const DuelPlace& place : places) numbers.push_back(place.place);
   EXPECT_THAT(numbers, ElementsAre(1, 2, 2, 4));

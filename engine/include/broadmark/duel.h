@@ -39,12 +39,21 @@ struct DuelProgress {
 };
 
 struct DuelOptions {
-  double precision = 0.01;            ///< width of the intervals at which the duel ends
+  /// Width of the intervals at which the duel ends. The margin is twice that: an interval that
+  /// misses 1 by little is no news, one in twenty does.
+  double precision = 0.01;
   double most_seconds = 60;           ///< after which it ends whatever is known
   std::uint64_t seed = 1;             ///< of the order of turns
   CheckMode check = CheckMode::hash;  ///< of the first pass; later ones give the same answers
   std::function<void(const DuelProgress&)> progress = {};
   CancelQuery cancelled = {};
+};
+
+/// A place in the ranking of a duel.
+struct DuelPlace {
+  std::size_t side = 0;
+  std::size_t place = 1;  ///< from 1, the fastest; shared by sides that are not told apart
+  Estimate ratio;         ///< to the first side
 };
 
 /// What a duel has found.
@@ -56,6 +65,10 @@ struct DuelResult {
     std::vector<double> seconds;  ///< a frame's total, round by round
   };
   std::vector<Side> sides;
+  /// All sides, the fastest first; empty unless ok(). One has a place of its own when it is slower
+  /// than the first one of the place before, beyond the margin.
+  std::vector<DuelPlace> places;
+  double margin = 0;     ///< sides whose ratio is surely within it are the same
   double seconds = 0;    ///< that it took
   bool decided = false;  ///< ended as every interval was narrow enough
 
@@ -67,16 +80,6 @@ struct DuelResult {
   /// The median of those. Only after a round.
   [[nodiscard]] Estimate ratio(std::size_t a, std::size_t b) const;
 };
-
-/// A place in the ranking of a duel.
-struct DuelPlace {
-  std::size_t side = 0;
-  std::size_t place = 1;  ///< from 1, the fastest; shared by sides that are not told apart
-  Estimate ratio;         ///< to the first side
-};
-/// All sides, the fastest first. One has a place of its own when it is slower than the first one of
-/// the place before, beyond `margin`.
-std::vector<DuelPlace> ranking(const DuelResult&, double margin);
 
 /// Goes through the frames as often as it takes, each time with fresh instances. At least two
 /// sides. Ends early when one fails. Throws InputError, and Cancelled.
