@@ -18,6 +18,7 @@
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
+#include "warnings.h"
 
 namespace broadmark::commands::duel {
 namespace {
@@ -69,6 +70,13 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   return sides;
 }
 
+/// Says what may disturb the times of any side.
+void warnOf(const std::vector<DuelSide>& sides) {
+  const Environment environment = thisEnvironment();
+  RunWarnings warnings(environment);
+  for (const DuelSide& side : sides) warnings.of(side.run);
+}
+
 int run(Options options) {
   if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
   const InterruptGuard guard;
@@ -78,6 +86,7 @@ int run(Options options) {
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.source));
   }
+  warnOf(sides);
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.cancelled = InterruptGuard::requested;
