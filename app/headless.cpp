@@ -25,6 +25,7 @@
 #include "screenshot.h"
 #include "sweep.h"
 #include "table.h"
+#include "warnings.h"
 #include "words.h"
 
 namespace broadmark {
@@ -66,39 +67,51 @@ class EntryRun {
  public:
   /// All arguments outlive this.
   EntryRun(const PlanEntry& entry, const SessionOptions& options, Exhausted& exhausted,
-           ResultFiles& files)
+           RunWarnings& warnings, ResultFiles& files)
       : cases_(entry.cases),
         options_(options),
         make_host_(hostMaker(options.hosts)),
         exhausted_(exhausted),
         files_(files),
         runs_(cases_.size()),
-        ended_(cases_.size()) {
+        ended_(cases_.size()),
+        order_(cases_.size(), options.repetitions.order_seed) {
     for (const Case& run : cases_) {
       results_.push_back(beginCase(run, entry.source.reference));
-      results_.back().conditions = conditions();
+      Conditions& conditions = results_.back().conditions = commonConditions();
+      conditions.plugin = run.algorithm.plugin_build;
+      conditions.warnings = warnings.of(run);
     }
   }
 
   /// Runs all repetitions, interleaved. Returns false when interrupted.
   bool run(Recording& recording, Oracle& oracle) {
-    const int passes = options_.warmup + options_.repetitions;
+    const int passes = options_.warmup + options_.repetitions.most;
     const SceneInfo& scene = recording.scene();
-    Progress progress(
-        fmt::format("running {} N{}", scene.name, scene.objects),
-        std::uint64_t{scene.frames} * cases_.size() * static_cast<std::uint64_t>(passes),
-        options_.quiet);
+    const auto steps_of = [&](int some_passes) {
+      return std::uint64_t{scene.frames} * static_cast<std::uint64_t>(some_passes);
+    };
+    Progress progress(fmt::format("running {} N{}", scene.name, scene.objects),
+                      steps_of(passes) * cases_.size(), options_.quiet);
     std::uint64_t steps = 0;
     const RunHooks hooks{.cancelled = InterruptGuard::requested,
                          .progress = [&](std::uint32_t frame) { progress.update(steps + frame); }};
+    const RepetitionRule rule(options_.repetitions);
     for (int pass = 0; pass < passes; ++pass) {
-      for (std::size_t i = 0; i < cases_.size(); ++i) {
+      if (passes > 1) order_.shuffle();
+      for (const std::size_t i : order_.cases()) {
+        if (ended_[i]) continue;
         progress.detail(cases_[i].algorithm.id);
         if (!runOnce(i, recording, oracle, hooks, pass >= options_.warmup)) return false;
+        steps += steps_of(1);
+        if (results_[i].status != Status::ok || rule.isEnough(results_[i])) {
+          results_[i].conditions.repetitions = rule.wanted(results_[i]);
+          end(i);
+          steps += steps_of(passes - 1 - pass);
+        }
         // Its process is not needed any more, or would be one of too many.
-        if (pass + 1 == passes || results_[i].status != Status::ok) end(i);
         if (ended_[i] || cases_.size() > kMostHeld) runs_[i].reset();
-        progress.update(steps += scene.frames);
+        progress.update(steps);
       }
     }
     return true;
@@ -142,14 +155,14 @@ class EntryRun {
     ended_[i] = true;
   }
 
-  [[nodiscard]] Conditions conditions() const {
+  [[nodiscard]] Conditions commonConditions() const {
     const auto limit = [](double seconds) {
       return std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
     };
     const HostOptions& hosts = options_.hosts;
     return {.check = options_.policy.check,
             .warmup = options_.warmup,
-            .repetitions = options_.repetitions,
+            .repetitions = options_.repetitions.most,
             .frame_limit_seconds = limit(options_.policy.frame_limit_seconds),
             .initialize_limit_seconds = limit(options_.policy.initialize_limit_seconds),
             .call_limit_seconds =
@@ -168,6 +181,7 @@ class EntryRun {
   std::vector<CaseResult> results_;
   std::vector<std::unique_ptr<CaseRun>> runs_;  ///< null before the first and after the last pass
   std::vector<bool> ended_;
+  TurnOrder order_;
 };
 
 /// A whole plan, run entry by entry.
@@ -176,6 +190,7 @@ class PlanRun {
   PlanRun(const SessionOptions& options, const Plan& plan) : options_(options) {
     results_.environments = {environmentOf(plan.entries.front().cases.front().device)};
     results_.options = options.command_line;
+    warnings_.emplace(results_.environments.front());
     files_.emplace(options.outputs, results_);
   }
 
@@ -238,7 +253,7 @@ class PlanRun {
       return;
     }
     Oracle oracle;
-    EntryRun run(entry, options_, exhausted_, *files_);
+    EntryRun run(entry, options_, exhausted_, *warnings_, *files_);
     interrupted_ = !run.run(*recording, oracle);
     report(entry, run.takeResults());
     if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
@@ -272,6 +287,7 @@ class PlanRun {
   const bool prints_results_ = std::ranges::any_of(
       options_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   Results results_;
+  std::optional<RunWarnings> warnings_;
   std::optional<ResultFiles> files_;
   Exhausted exhausted_;
   bool picture_failed_ = false;

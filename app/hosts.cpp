@@ -31,7 +31,8 @@ HostMaker hostMaker(const HostOptions& options) {
       // This very program, even if another has taken its name meanwhile.
       .command = {other ? fs::absolute(options.program).string() : "/proc/self/exe", "worker"},
       .hard_limit = std::chrono::duration<double>(options.hard_limit_seconds),
-      .memory_limit_bytes = memoryLimit(options)};
+      .memory_limit_bytes = memoryLimit(options),
+      .pin = options.pin};
   return [worker](const Case& run, CancelQuery cancelled) {
     WorkerOptions own = worker;
     own.cancelled = std::move(cancelled);

@@ -12,6 +12,7 @@ struct HostOptions {
   bool in_process = false;
   std::filesystem::path program;  ///< another build of this program, for the workers; "": this one
   double hard_limit_seconds = 60;
+  bool pin = false;                        ///< each thread to a core of its own; of workers only
   std::optional<double> memory_limit_gib;  ///< nothing: as much as the machine has
 };
 

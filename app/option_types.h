@@ -102,7 +102,7 @@ CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
 /// --device. Help shows it only if there is OpenCL.
 CLI::Option* addDevice(CLI::App&, std::string& device);
-/// Where cases run: --in-process, --hard-limit, --memory-limit
+/// Where cases run: --in-process, --pin, --hard-limit, --memory-limit
 void addHosts(CLI::App&, HostOptions&);
 /// What a scene is like: --objects, --object-type, --frames, …
 std::vector<CLI::Option*> addSceneOptions(CLI::App&, SceneOptions&);

@@ -7,11 +7,13 @@
 
 #include <exception>
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/hasher.h"
 #include "broadmark/plugin.h"
 #include "cases.h"
 
@@ -70,12 +72,23 @@ void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& know
   }
 }
 
+PluginBuild buildOf(const Plugin& plugin, const std::string& file) {
+  Hasher hasher;
+  const std::string bytes = readTextFile(file);
+  hasher.add(std::as_bytes(std::span(bytes)));
+  return {.hash = hasher.hex(),
+          .flags = plugin.build == nullptr ? "" : plugin.build,
+          .unoptimised = !plugin.optimised};
+}
+
 void add(std::vector<Algorithm>& known, const std::string& file) {
   const Plugin& plugin = load(file);
+  const PluginBuild build = buildOf(plugin, file);
   try {
     for (Algorithm& algorithm : plugin.variants()) {
       requireSound(algorithm, known, file);
       algorithm.plugin = file;
+      algorithm.plugin_build = build;
       known.push_back(std::move(algorithm));
     }
   } catch (const InputError&) {

@@ -84,6 +84,7 @@ struct SessionParser::Parts {
   CLI::App& app;
   SessionOptions options;
   std::vector<std::pair<const CLI::Option*, unsigned>> tagged;
+  std::vector<const CLI::Option*> only_with_auto;
 };
 
 void SessionParser::Parts::addInspector() {
@@ -132,8 +133,42 @@ void SessionParser::Parts::addCases() {
 void SessionParser::Parts::addRun() {
   constexpr long long kMostPasses = 1'000'000;
   RunPolicy& policy = options.policy;
-  tag(addInteger(app, "--repetitions", "R", options.repetitions, 1, kMostPasses,
-                 "measured repetitions of each case"),
+  RepetitionOptions& repetitions = options.repetitions;
+  const auto set_repetitions = [&](const std::string& text) {
+    repetitions.until_precise = text == "auto";
+    repetitions.most = repetitions.until_precise
+                           ? RepetitionOptions::kMostUntilPrecise
+                           : static_cast<int>(parseInteger(text, "--repetitions", 1, kMostPasses));
+  };
+  tag(addValue(
+          app, "--repetitions", "R|auto", set_repetitions,
+          fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
+                      "is known precisely",
+                      RepetitionOptions::kFewestUntilPrecise, RepetitionOptions::kMostUntilPrecise),
+          fmt::format("{}", repetitions.most)),
+      kInspector);
+  const auto tag_auto = [&](CLI::Option* option) {
+    tag(option, kInspector);
+    only_with_auto.push_back(option);
+  };
+  tag_auto(addValue(
+      app, "--precision", "SHARE",
+      [&](const std::string& text) {
+        repetitions.precision = parseShare(text, "--precision", true);
+      },
+      "of --repetitions auto: width of the mean's 95 % interval over the repetitions", "2%"));
+  tag_auto(addValue(
+      app, "--most-seconds", "S",
+      [&](const std::string& text) {
+        repetitions.most_seconds = parseNumber(text, "--most-seconds", 0, true);
+      },
+      fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
+                  "more than {} times",
+                  RepetitionOptions::kFewestUntilPrecise),
+      fmt::format("{}", repetitions.most_seconds)));
+  tag(addInteger(app, "--order-seed", "S", repetitions.order_seed, 0,
+                 std::numeric_limits<long long>::max(),
+                 "seed of the order in which cases take turns, another for each repetition"),
       kInspector);
   tag(addInteger(app, "--warmup", "W", options.warmup, 0, kMostPasses,
                  "unmeasured repetitions before them"),
@@ -221,6 +256,11 @@ void SessionParser::Parts::requireNoConflict() const {
       if (option->count() == 0 || (conflicts & rule.conflict) == 0) continue;
       throw InputError(fmt::format("{}: {}", option->get_name(), rule.why));
     }
+  }
+  if (options.repetitions.until_precise) return;
+  for (const CLI::Option* option : only_with_auto) {
+    if (option->count() == 0) continue;
+    throw InputError(fmt::format("{}: only with --repetitions auto", option->get_name()));
   }
 }
 

@@ -12,6 +12,7 @@
 #include "cases.h"
 #include "hosts.h"
 #include "picture_options.h"
+#include "repetitions.h"
 #include "result_files.h"
 #include "scene_options.h"
 
@@ -35,7 +36,7 @@ struct SessionOptions {
   std::vector<std::string> plugins;   ///< libraries with more algorithms
   std::string case_id;                ///< of the results file that is the source; "": none
   std::filesystem::path export_case;  ///< where its smallest failing recording goes; "": nowhere
-  int repetitions = 1;
+  RepetitionOptions repetitions;
   int warmup = 0;
   RunPolicy policy;
   bool allow_timeout = false;  ///< a case that crosses a time limit is no failure of the run

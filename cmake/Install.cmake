@@ -31,7 +31,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cm
 install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
   ${PROJECT_BINARY_DIR}/broadmarkConfigVersion.cmake DESTINATION ${package_dir})
 list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
-install(FILES ${finders} DESTINATION ${package_dir})
+install(FILES ${finders} cmake/Plugin.cmake DESTINATION ${package_dir})
 
 # Manual page and completion scripts: the program prints them, when it is installed. (A program for
 # another kind of machine cannot.)

@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
 
 namespace broadmark {
@@ -67,16 +68,37 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   stop();
   requireRunnable(case_, scene);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  processor_counts_ = {};
+  if (!processor_) processor_.emplace();
+  processor_->restart();
+  if (usable_cores_.empty()) usable_cores_ = usableCores();
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
+  if (pin_) pinThreads();
   instance_ = makeInstance(case_);
   const auto start = Clock::now();
   instance_->initialize(scene, first, *execution_);
   return nanoseconds(Clock::now() - start);
 }
 
+void LocalHost::pinThreads() {
+  // A library that starts threads would have them all on one core.
+  if (case_.algorithm.traits.on_device) return;
+  constexpr std::chrono::milliseconds kMoment{60};
+  const bool is_choice = execution_->threads() < static_cast<int>(usable_cores_.size());
+  const std::vector<int> cores =
+      quietestCores(execution_->threads(), usable_cores_,
+                    is_choice ? watchCores(kMoment) : BusyShares(), coreSiblings());
+  pinned_ = execution_->team().pin(cores, usable_cores_);
+}
+
+FrameTimes LocalHost::runCounted(const Frame& frame) {
+  const ProcessorCounters::Counting counting(*processor_);
+  return runPhases(*instance_, frame);
+}
+
 FrameRun LocalHost::step(const Frame& frame) {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  FrameRun run{.times = runPhases(*instance_, frame)};
+  FrameRun run{.times = runCounted(frame)};
   // Asked once: whoever looks at the answer sees the same one.
   answer_ = instance_->overlaps();
   run.pairs = pairCount(answer_);
@@ -86,6 +108,7 @@ FrameRun LocalHost::step(const Frame& frame) {
 void LocalHost::stop() {
   answer_ = {};
   if (instance_ == nullptr) return;
+  processor_counts_ = processor_->counts();
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   instance_.reset();
 }

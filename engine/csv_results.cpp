@@ -154,6 +154,10 @@ Columns resultColumns() {
        wrongPairs("allowed_extra", &CaseResult::allowed_extra_count),
        wrongPairs("invalid", &CaseResult::invalid_count),
        column("peak_bytes", [](R r) { return orEmpty(r.peak_bytes); })});
+  for (const auto& [which, name] : kProcessorCounters.entries) {
+    columns.push_back(column(fmt::format("{}_per_frame", name),
+                             [which = which](R r) { return orEmpty(r.perFrame(which)); }));
+  }
   return columns;
 }
 

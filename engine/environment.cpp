@@ -3,7 +3,6 @@
 #include "broadmark/environment.h"
 
 #include <fmt/format.h>
-#include <sched.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
@@ -13,6 +12,8 @@
 #include <fstream>
 #include <set>
 
+#include "broadmark/compiler.h"
+#include "broadmark/cores.h"
 #include "broadmark/execution.h"
 
 namespace broadmark {
@@ -44,12 +45,6 @@ std::string firstOr(const std::vector<std::string>& values, const std::string& o
   return values.empty() ? otherwise : values.front();
 }
 
-int usableCores() {
-  cpu_set_t set;
-  CPU_ZERO(&set);
-  return ::sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
-}
-
 int physicalCores() {
   const auto packages = valuesOf("/proc/cpuinfo", "physical id", ':');
   const auto cores = valuesOf("/proc/cpuinfo", "core id", ':');
@@ -78,14 +73,6 @@ std::string operatingSystem() {
                      system.sysname, system.release);
 }
 
-std::string compiler() {
-#if defined(__clang__)
-  return "clang " __clang_version__;
-#else
-  return "gcc " __VERSION__;
-#endif
-}
-
 std::string utcNow() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
@@ -100,7 +87,7 @@ std::string utcNow() {
 Environment thisEnvironment() {
   Environment environment{
       .cpu = firstOr(valuesOf("/proc/cpuinfo", "model name", ':'), "unknown"),
-      .logical_cores = usableCores(),
+      .logical_cores = static_cast<int>(usableCores().size()),
       .physical_cores = physicalCores(),
       .caches = caches(),
       .isa = std::string(isaName(bestIsa())),
@@ -108,7 +95,7 @@ Environment thisEnvironment() {
                       static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
       .governor = firstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
       .os = operatingSystem(),
-      .compiler = compiler(),
+      .compiler = BROADMARK_COMPILER,
       .compiler_flags = BROADMARK_FLAGS,
       .build_type = BROADMARK_BUILD_TYPE,
       .version = BROADMARK_VERSION,

@@ -2,8 +2,13 @@
 
 #include "broadmark/execution.h"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 #include <system_error>
+
+#include "broadmark/cores.h"
 
 namespace broadmark {
 namespace {
@@ -31,8 +36,14 @@ void awaitChange(const std::atomic<T>& value, T old, int spins) {
   value.wait(old, std::memory_order_acquire);
 }
 
-int spinsFor(std::size_t workers) {
-  return workers <= std::thread::hardware_concurrency() ? kSpins : 0;
+int spinsFor(int workers) { return workers <= static_cast<int>(usableCores().size()) ? kSpins : 0; }
+
+/// Lets a thread use these cores only. Whether the system allowed it.
+bool bind(pthread_t thread, std::span<const int> cores) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const int core : cores) CPU_SET(core, &set);
+  return ::pthread_setaffinity_np(thread, sizeof set, &set) == 0;
 }
 
 }  // namespace
@@ -68,7 +79,7 @@ Isa bestIsa() {
   return best;
 }
 
-ThreadTeam::ThreadTeam(int size) {
+ThreadTeam::ThreadTeam(int size) : spins_(spinsFor(size)) {
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
   try {
     for (int worker = 1; worker < size; ++worker) {
@@ -81,6 +92,17 @@ ThreadTeam::ThreadTeam(int size) {
 }
 
 ThreadTeam::~ThreadTeam() { stop(); }
+
+bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
+  bool all = std::cmp_equal(cores.size(), size()) && bind(::pthread_self(), cores.first(1));
+  for (std::size_t i = 0; all && i < threads_.size(); ++i) {
+    all = bind(threads_[i].native_handle(), cores.subspan(i + 1, 1));
+  }
+  if (all) return true;
+  bind(::pthread_self(), usable);
+  for (std::thread& thread : threads_) bind(thread.native_handle(), usable);
+  return false;
+}
 
 void ThreadTeam::stop() {
   stopping_.store(true);
@@ -107,14 +129,14 @@ void ThreadTeam::start(Job job) {
   perform(0);
   for (int busy = busy_.load(std::memory_order_acquire); busy != 0;
        busy = busy_.load(std::memory_order_acquire)) {
-    awaitChange(busy_, busy, spinsFor(threads_.size() + 1));
+    awaitChange(busy_, busy, spins_);
   }
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadTeam::loop(int worker) {
   for (unsigned seen = 0;; ++seen) {
-    awaitChange(generation_, seen, spinsFor(threads_.capacity() + 1));
+    awaitChange(generation_, seen, spins_);
     if (stopping_.load()) return;
     perform(worker);
     if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_one();

@@ -82,6 +82,7 @@ Json toJson(const Conditions& c) {
           {"initialize_limit_seconds", toJson(c.initialize_limit_seconds)},
           {"call_limit_seconds", toJson(c.call_limit_seconds)},
           {"in_process", c.in_process},
+          {"pinned", c.pinned},
           {"load_average", c.load_average},
           {"plugin", {{"hash", c.plugin.hash}, {"flags", c.plugin.flags}}},
           {"warnings", c.warnings}};
@@ -99,6 +100,7 @@ Conditions conditionsFrom(const JsonFields& json) {
           .initialize_limit_seconds = limit("initialize_limit_seconds"),
           .call_limit_seconds = limit("call_limit_seconds"),
           .in_process = json.boolean("in_process"),
+          .pinned = json.has("pinned") && json.boolean("pinned"),
           .load_average = json.number("load_average"),
           .plugin = {plugin.text("hash"), plugin.text("flags")},
           .warnings = textsFrom(json.array("warnings"), json.path("warnings"))};
@@ -329,6 +331,35 @@ void readYardsticks(const JsonFields& json, std::vector<Repetition>& repetitions
   }
 }
 
+/// Of each counter one sum per repetition; null where it is not known.
+Json processorToJson(const std::vector<Repetition>& repetitions) {
+  Json json = Json::object();
+  for (const auto& [which, name] : kProcessorCounters.entries) {
+    Json& counts = json[std::string(name)] = Json::array();
+    for (const Repetition& repetition : repetitions) {
+      const auto& count = repetition.processor[which];
+      counts.push_back(count ? Json(*count) : Json(nullptr));
+    }
+  }
+  return json;
+}
+
+void readProcessor(const JsonFields& json, std::vector<Repetition>& repetitions) {
+  for (const auto& [which, counter] : kProcessorCounters.entries) {
+    const std::string key(counter);
+    if (!json.has(key.c_str())) continue;
+    const Json& counts = json.array(key.c_str());
+    const std::string name = json.path(key.c_str());
+    if (counts.size() != repetitions.size()) {
+      throw InputError(name + ": one count per repetition is expected");
+    }
+    for (std::size_t r = 0; r < counts.size(); ++r) {
+      if (counts[r].is_null()) continue;
+      repetitions[r].processor[which] = JsonFields::integerOf<std::uint64_t>(counts[r], name);
+    }
+  }
+}
+
 /// One array per kind, those of wrong pairs only where there are any.
 Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
   Json json = Json::object();
@@ -387,6 +418,7 @@ Json toJson(const CaseResult& result) {
                {"summary", toJson(result.summary())},
                {"initialize_ns", Json::array()},
                {"yardsticks", yardsticksToJson(result.repetitions)},
+               {"processor", processorToJson(result.repetitions)},
                {"frame_counts", frameCountsToJson(result.frames)},
                {"frames", framesToJson(result.repetitions)}};
   for (const FrameDifference& difference : result.differences) {
@@ -445,6 +477,7 @@ CaseResult caseFrom(const JsonFields& json) {
   if (json.has("peak_bytes")) result.peak_bytes = json.integer<std::uint64_t>("peak_bytes");
   result.repetitions =
       framesFrom(json.object("frames"), json.array("initialize_ns"), json.path("initialize_ns"));
+  if (json.has("processor")) readProcessor(json.object("processor"), result.repetitions);
   if (json.has("conditions")) {  // since results/2
     result.environment = json.integer<std::size_t>("environment");
     result.conditions = conditionsFrom(json.object("conditions"));

@@ -23,6 +23,18 @@ Summary CaseResult::summary() const {
   return summarise(views);
 }
 
+std::optional<double> CaseResult::perFrame(ProcessorCounter which) const {
+  double sum = 0;
+  std::size_t frames_counted = 0;
+  for (const Repetition& repetition : repetitions) {
+    if (!repetition.processor[which]) continue;
+    sum += static_cast<double>(*repetition.processor[which]);
+    frames_counted += repetition.frames.size();
+  }
+  if (frames_counted == 0) return std::nullopt;
+  return sum / static_cast<double>(frames_counted);
+}
+
 bool CaseResult::isComplete() const {
   return status != Status::ok || std::cmp_greater_equal(repetitions.size(), conditions.repetitions);
 }

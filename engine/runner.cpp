@@ -112,6 +112,7 @@ Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& orac
   pass.finished = runFrames(pass.repetition, counter, run, source, oracle, hooks);
   pass.whole = run.hasInstance();
   run.stop();
+  pass.repetition.processor = run.processorCounts();
   return pass;
 }
 
@@ -165,6 +166,7 @@ bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle
   result.status = run.status();
   result.reason = run.reason();
   result.peak_bytes = run.peakBytes();
+  result.conditions.pinned = run.pinned();
   return true;
 }
 

@@ -20,6 +20,7 @@
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
+#include "warnings.h"
 #include "words.h"
 
 namespace broadmark::commands::duel {
@@ -80,6 +81,13 @@ int exitStatusOf(const DuelResult& result) {
   return status == exit_status::fine && !result.ok() ? exit_status::bad_input : status;
 }
 
+/// Says what may disturb the times of any side.
+void warnOf(const std::vector<DuelSide>& sides) {
+  const Environment environment = thisEnvironment();
+  RunWarnings warnings(environment);
+  for (const DuelSide& side : sides) warnings.of(side.run);
+}
+
 int run(Options options) {
   if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
@@ -89,6 +97,7 @@ int run(Options options) {
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.source));
   }
+  warnOf(sides);
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.cancelled = InterruptGuard::requested;

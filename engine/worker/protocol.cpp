@@ -163,4 +163,21 @@ FrameTimes timesFrom(const Json& json) {
   return times;
 }
 
+Json toJson(const ProcessorCounts& counts) {
+  Json json = Json::object();
+  for (const auto& [which, name] : kProcessorCounters.entries) {
+    if (counts[which]) json[std::string(name)] = *counts[which];
+  }
+  return json;
+}
+
+ProcessorCounts processorCountsFrom(const Json& json) {
+  ProcessorCounts counts;
+  for (const auto& [which, name] : kProcessorCounters.entries) {
+    const auto found = json.find(std::string(name));
+    if (found != json.end()) counts[which] = found->get<std::uint64_t>();
+  }
+  return counts;
+}
+
 }  // namespace broadmark::worker

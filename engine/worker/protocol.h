@@ -7,8 +7,8 @@
 //
 //   call        says                                              answer
 //   case        algorithm, plugin, isa, threads, device,
-//               parameters {}, memory_limit_bytes (0: none)       {}
-//   start       scene {name, object_type, objects, frames, world} initialize_ns
+//               parameters {}, memory_limit_bytes (0: none), pin  {}
+//   start       scene {name, object_type, objects, frames, world} initialize_ns, pinned
 //               and bodies: the boxes of frame 0 are shared
 //   step        frame, bodies: its boxes are shared               times_ns {}, pairs
 //   digest                                                        count, hash
@@ -16,7 +16,8 @@
 //   counters, setup                                               counts {}
 //   structure                                                     boxes, lines: so many are
 //                                                                 shared; left_out
-//   stop                                                          peak_bytes (null: not known)
+//   stop                                                          peak_bytes (null: not known),
+//                                                                 processor {} (what is known)
 //
 // A side passes over keys that it does not know. A change that an older side cannot pass over
 // raises kProtocolVersion.
@@ -112,5 +113,8 @@ Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);
 Json toJson(const FrameTimes&);
 FrameTimes timesFrom(const Json&);
+Json toJson(const ProcessorCounts&);
+/// What an earlier worker does not tell is not known.
+ProcessorCounts processorCountsFrom(const Json&);
 
 }  // namespace broadmark::worker

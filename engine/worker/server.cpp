@@ -79,7 +79,7 @@ class Server {
   }
 
   Json takeCase(const Json& message) {
-    host_.emplace(worker::caseFrom(message, find_));
+    host_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
     limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>());
     return Json::object();
   }
@@ -98,7 +98,8 @@ class Server {
   Json start(const Json& message) {
     const Frame first = takeFrame(message, 0);
     if (!measured_) peak_before_ = peakBytes();
-    return {{"initialize_ns", host().start(worker::sceneFrom(message.at("scene")), first)}};
+    const std::int64_t initialize_ns = host().start(worker::sceneFrom(message.at("scene")), first);
+    return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
   }
 
   Json step(const Json& message) {
@@ -135,7 +136,8 @@ class Server {
     if (!measured_) measure();
     host().stop();
     std::vector<Aabb>().swap(boxes_);  // others run while this waits for its next pass
-    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)}};
+    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
+            {"processor", worker::toJson(host().processorCounts())}};
   }
 
   /// Only the first pass tells: later ones use memory again that the first has freed.

@@ -137,16 +137,19 @@ void WorkerProcess::open() {
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
+    message["pin"] = options_.pin;
     link.begin(message);
   });
 }
 
 std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
+  processor_counts_ = {};
   open();
   return talk([&](Link& link) {
     link.frames.write(first.boxes);
     const Json started = link.call(
         {{"call", "start"}, {"scene", worker::toJson(scene)}, {"bodies", first.boxes.size()}});
+    pinned_ = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   });
 }
@@ -168,6 +171,7 @@ void WorkerProcess::stop() {
   if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
     peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
   }
+  processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
   link_->frames.clear();
   link_->answers.clear();
 }

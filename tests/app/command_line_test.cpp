@@ -48,7 +48,7 @@ TEST(Session, Defaults) {
   EXPECT_THAT(options.scene.parameters, IsEmpty());
   EXPECT_THAT(options.scene.recorders, ElementsAre("aabbs"));
   EXPECT_THAT(options.cases.algorithms, IsEmpty());
-  EXPECT_EQ(options.repetitions, 1);
+  EXPECT_EQ(options.repetitions.most, 1);
   EXPECT_EQ(options.warmup, 0);
   EXPECT_EQ(options.policy.check, CheckMode::full);
   EXPECT_EQ(options.policy.frame_limit_seconds, 0.5);
@@ -135,7 +135,7 @@ TEST(Session, ValuesAreUnderstood) {
                                           "2.5",
                                           "--memory-limit",
                                           "0.5"});
-  EXPECT_EQ(options.repetitions, 5);
+  EXPECT_EQ(options.repetitions.most, 5);
   EXPECT_EQ(options.warmup, 2);
   EXPECT_EQ(options.policy.frame_limit_seconds, 1e-3);
   EXPECT_EQ(options.policy.check, CheckMode::hash);
@@ -156,6 +156,17 @@ TEST(Session, ValuesAreUnderstood) {
   EXPECT_TRUE(options.quiet);
 }
 
+TEST(Session, AutomaticRepetitions) {
+  const SessionOptions options = session(
+      {"--repetitions", "auto", "--precision", "1%", "--most-seconds", "60", "--order-seed", "7"});
+  EXPECT_TRUE(options.repetitions.until_precise);
+  EXPECT_EQ(options.repetitions.most, RepetitionOptions::kMostUntilPrecise);
+  EXPECT_EQ(options.repetitions.precision, 0.01);
+  EXPECT_EQ(options.repetitions.most_seconds, 60);
+  EXPECT_EQ(options.repetitions.order_seed, 7U);
+  EXPECT_FALSE(session({}).repetitions.until_precise);
+}
+
 TEST(Session, NumbersOutOfRangeAreNamed) {
   for (const char* count : {"-1", "0x", "1e99", "abc", "99999999999", "1.5", "10000001"}) {
     expectSessionRefused({"--objects", count}, {"--objects", count});
@@ -173,6 +184,10 @@ TEST(Session, NumbersOutOfRangeAreNamed) {
   }
   expectSessionRefused({"--repetitions", "0"}, {"--repetitions", "'0'"});
   expectSessionRefused({"--repetitions", "x"}, {"--repetitions", "'x'"});
+  expectSessionRefused({"--precision", "1%"}, {"--precision", "--repetitions auto"});
+  expectSessionRefused({"--most-seconds", "9", "--repetitions", "5"},
+                       {"--most-seconds", "--repetitions auto"});
+  expectSessionRefused({"--repetitions", "auto", "--precision", "0"}, {"--precision", "'0'"});
   expectSessionRefused({"--warmup", "-1"}, {"--warmup", "'-1'"});
   expectSessionRefused({"--frame", "-1"}, {"--frame", "'-1'"});
   expectSessionRefused({"--size", "640"}, {"--size", "'640'", "WxH"});

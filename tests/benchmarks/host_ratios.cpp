@@ -3,7 +3,10 @@
 // the median of the paired ratios (worker / this process) and its 95 % confidence interval: same
 // within 3 % of 1. Exit status 1 where any differs.
 //
-//   host_ratios [ALGORITHM...] [--objects N,...] [--seconds S]
+// With --pin: of the case in two worker processes, in one of which its threads are pinned; the
+// spread is the distance of a time's quartiles, as a share of the median.
+//
+//   host_ratios [ALGORITHM...] [--objects N,...] [--threads T] [--seconds S] [--pin]
 
 #include <fmt/format.h>
 
@@ -29,12 +32,23 @@ constexpr double kSame = 0.03;
 struct Options {
   std::vector<std::string> algorithms = {"bf", "sap-simd", "grid-sap", "kd", "tracy", "gpu-grid"};
   std::vector<std::size_t> objects = {1000, 32'000, 512'000};
+  int threads = 1;
   double seconds = 60;
+  bool pin = false;
 };
 
-std::unique_ptr<CaseHost> makeWorker(const Case& run, CancelQuery) {
-  return std::make_unique<WorkerProcess>(run, WorkerOptions{.command = {"/proc/self/exe", "worker"},
-                                                            .hard_limit = std::chrono::hours(1)});
+HostMaker workerMaker(bool pin) {
+  return [pin](const Case& run, CancelQuery) {
+    return std::make_unique<WorkerProcess>(run,
+                                           WorkerOptions{.command = {"/proc/self/exe", "worker"},
+                                                         .hard_limit = std::chrono::hours(1),
+                                                         .pin = pin});
+  };
+}
+
+std::vector<DuelSide> sidesOf(const Case& run, bool pin) {
+  if (pin) return {{"free", run, workerMaker(false)}, {"pinned", run, workerMaker(true)}};
+  return {{"here", run}, {"there", run, workerMaker(false)}};
 }
 
 /// A few frames, to and fro, so that all motion is smooth.
@@ -63,13 +77,13 @@ class Drifting final : public IndexedFrames {
 };
 
 /// Prints one line; false where the times differ.
-bool measure(const std::string& id, Drifting& frames, double seconds) {
+bool measure(const std::string& id, Drifting& frames, const Options& options) {
   const std::optional<Algorithm> algorithm = findAlgorithm(id);
   if (!algorithm) throw std::invalid_argument("no algorithm '" + id + "'");
-  const Case run = makeCase(*algorithm, bestIsa(), 1, "", {});
+  const Case run = makeCase(*algorithm, bestIsa(), options.threads, "", {});
   const DuelResult duel =
-      runDuel({{"here", run}, {"there", run, makeWorker}}, frames,
-              {.precision = kSame, .most_seconds = seconds, .check = CheckMode::off});
+      runDuel(sidesOf(run, options.pin), frames,
+              {.precision = kSame, .most_seconds = options.seconds, .check = CheckMode::off});
   fmt::print("{:>8}  {:10} ", frames.scene().objects, id);
   if (!duel.ok()) {
     const auto failed = std::ranges::find_if(
@@ -79,9 +93,13 @@ bool measure(const std::string& id, Drifting& frames, double seconds) {
   }
   const Estimate ratio = duel.ratio(1, 0);
   const Standing standing = standingOf(ratio.ci95, kSame);
-  const auto median = [&](int side) { return 1e3 * quantile(duel.sides[side].seconds, 0.5); };
-  fmt::print("{:4} rounds  here {:10.4f} ms  there {:10.4f} ms  {:.3f} [{:.3f}, {:.3f}]  {}\n",
-             duel.rounds(), median(0), median(1), ratio.value, ratio.ci95.low, ratio.ci95.high,
+  fmt::print("{:4} rounds", duel.rounds());
+  for (const DuelResult::Side& side : duel.sides) {
+    const auto at = [&](double q) { return 1e3 * quantile(side.seconds, q); };
+    fmt::print("  {} {:10.4f} ms (spread {:2.0f} %)", side.name, at(0.5),
+               100 * (at(0.75) - at(0.25)) / at(0.5));
+  }
+  fmt::print("  {:.3f} [{:.3f}, {:.3f}]  {}\n", ratio.value, ratio.ci95.low, ratio.ci95.high,
              kStandings.nameOf(standing));
   std::fflush(stdout);
   return standing == Standing::same || standing == Standing::undecided;
@@ -96,6 +114,8 @@ int run(int argc, char** argv) {
   CLI::App app("Times in a worker process against times in this one");
   app.add_option("algorithms", options.algorithms)->capture_default_str();
   app.add_option("--objects", options.objects)->delimiter(',')->capture_default_str();
+  app.add_option("--threads", options.threads)->capture_default_str();
+  app.add_flag("--pin", options.pin, "pinned threads against free ones");
   app.add_option("--seconds", options.seconds, "at most, for each line")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
@@ -103,7 +123,7 @@ int run(int argc, char** argv) {
   for (const std::size_t objects : options.objects) {
     Drifting frames(objects);
     for (const std::string& id : options.algorithms) {
-      none_differs &= measure(id, frames, options.seconds);
+      none_differs &= measure(id, frames, options);
     }
   }
   return none_differs ? EXIT_SUCCESS : EXIT_FAILURE;

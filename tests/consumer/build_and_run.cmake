@@ -22,4 +22,12 @@ run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
 run("${WORK_DIR}/build/my_broad_phase")
 run("${WORK_DIR}/prefix/bin/broadmark" --version)
 run("${WORK_DIR}/prefix/bin/broadmark" --headless brownian --objects 50 --frames 5 --quiet
-  --plugin "${WORK_DIR}/build/libmy_plugin.so" --algorithm Mine --threads 3)
+  --plugin "${WORK_DIR}/build/libmy_plugin.so" --algorithm Mine --threads 3
+  --json "${WORK_DIR}/results.json")
+
+# Nobody has chosen a build type: a plug-in is optimised nevertheless, and says how it was built.
+file(READ "${WORK_DIR}/results.json" results)
+string(JSON flags GET "${results}" cases 0 conditions plugin flags)
+if(NOT flags MATCHES ", optimised.*: .*-O3")
+  message(FATAL_ERROR "the plug-in says that it was built with '${flags}'")
+endif()

@@ -6,6 +6,8 @@
 namespace broadmark::tests {
 namespace {
 
+using ::testing::Contains;
+
 class Duel : public EndToEnd {
  protected:
   /// A duel on a small scene.
@@ -64,6 +66,12 @@ TEST_F(Duel, OfTwoPrograms) {
   const Ended ended = run(duelOf({"sap"}, {"--seconds", "0.5", "--with", places::program()}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("sap (" + std::string(places::program()) + ")"));
+}
+
+TEST_F(Duel, WarnsOfWhatDisturbsTimesAndPins) {
+  const Ended ended = run(duelOf({"sap", "bf-mt/t500"}, {"--seconds", "0.1", "--pin"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.warnings, Contains(HasSubstr("500 threads take turns")));
 }
 
 TEST_F(Duel, AWrongAnswerEndsIt) {

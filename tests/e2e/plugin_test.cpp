@@ -40,6 +40,10 @@ TEST_F(Plugin, RunsBesideTheBuiltInOnes) {
   EXPECT_EQ(cases[0].at("plugin"), "");
   EXPECT_EQ(cases[1].at("algorithm"), "faulty");
   EXPECT_EQ(cases[1].at("plugin"), plugin_);
+  const Json& build = cases[1].at("conditions").at("plugin");
+  EXPECT_EQ(build.at("hash").get<std::string>().size(), 32U);
+  EXPECT_THAT(build.at("flags"), HasSubstr("optimised"));
+  EXPECT_EQ(cases[0].at("conditions").at("plugin").at("hash"), "");
   EXPECT_EQ(cases[1].at("pairs"), cases[0].at("pairs"));
   EXPECT_THAT(ended.out, HasSubstr("faulty-extra"));
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <thread>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/execution.h"
@@ -300,6 +301,64 @@ TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
   EXPECT_EQ(allowed.status, 0) << allowed.err;
   EXPECT_THAT(allowed.out, HasSubstr("timeout"));
   for (const Json& one : cases()) EXPECT_EQ(one.at("status"), "timeout");
+}
+
+TEST_F(Run, PinsThreadsWhereTheyFit) {
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  const Arguments call = {"--algorithm", "bf,bf-mt", "--threads", fmt::format("{}", cores + 1)};
+  Arguments pinned = call;
+  pinned.emplace_back("--pin");
+  for (const Json& result : casesOf(pinned)) {
+    EXPECT_EQ(result.at("conditions").at("pinned"), result.at("threads") == 1);
+  }
+  for (const Json& result : casesOf(call)) {
+    EXPECT_EQ(result.at("conditions").at("pinned"), false);
+  }
+  expectRefusal({"--headless", "freefall", "--pin", "--in-process"}, {"--pin", "--in-process"});
+}
+
+TEST_F(Run, WarnsOnceOfWhatDisturbsTimes) {
+  const Ended ended =
+      run({"--headless", "freefall", "brownian", "--objects", "20", "--frames", "2", "--algorithm",
+           "bf-mt,sap-mt", "--threads", "500", "--quiet", "--json", "results.json"});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const auto tells = [](const std::string& warning) {
+    return warning.find("500 threads take turns") != std::string::npos;
+  };
+  EXPECT_EQ(std::ranges::count_if(ended.warnings, tells), 1);
+  ASSERT_EQ(cases().size(), 4U);
+  for (const Json& result : cases()) {
+    const auto warnings = result.at("conditions").at("warnings").get<std::vector<std::string>>();
+    EXPECT_EQ(std::ranges::count_if(warnings, tells), 1);
+    EXPECT_LE(warnings.size(), ended.warnings.size());
+  }
+}
+
+TEST_F(Run, CountsOfTheProcessorAreThereOrNull) {
+  for (const Arguments& where : {Arguments{}, Arguments{"--in-process"}}) {
+    Arguments call = {"--algorithm", "bf", "--repetitions", "2"};
+    call.insert(call.end(), where.begin(), where.end());
+    const Json processor = casesOf(call).at(0).at("processor");
+    for (const char* name :
+         {"cycles", "instructions", "cache_misses", "branches", "branch_misses"}) {
+      ASSERT_EQ(processor.at(name).size(), 2U);
+      for (const Json& count : processor.at(name)) {
+        EXPECT_TRUE(count.is_null() || count.is_number_unsigned()) << name << ": " << count;
+      }
+    }
+  }
+}
+
+TEST_F(Run, AutomaticRepetitionsAreWholeAndInTheOrderOfThePlan) {
+  const Json once = casesOf({"--algorithm", "bf,sap,kd"});
+  const Json often = casesOf({"--algorithm", "bf,sap,kd", "--repetitions", "auto", "--precision",
+                              "1000%", "--warmup", "1"});
+  ASSERT_EQ(often.size(), 3U);
+  for (std::size_t i = 0; i < often.size(); ++i) {
+    EXPECT_EQ(often[i].at("id"), once[i].at("id"));
+    EXPECT_EQ(often[i].at("initialize_ns").size(), often[i].at("conditions").at("repetitions"));
+    EXPECT_GE(often[i].at("initialize_ns").size(), 5U);
+  }
 }
 
 }  // namespace

@@ -1,5 +1,9 @@
 // A plug-in from another build: its headers were not the program's.
 
+#include "broadmark/headers_hash.h"
+
+#undef BROADMARK_VERSION_TEXT
+#define BROADMARK_VERSION_TEXT "9.9.9"
 #include "broadmark/plugin.h"
 
 namespace {
@@ -8,5 +12,4 @@ std::vector<broadmark::Algorithm> variants() { return {}; }
 
 }  // namespace
 
-extern "C" [[gnu::visibility("default")]] const broadmark::Plugin broadmark_plugin;
-extern "C" const broadmark::Plugin broadmark_plugin = {"9.9.9, headers of old", variants};
+BROADMARK_PLUGIN(variants);

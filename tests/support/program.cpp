@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -75,7 +76,16 @@ Ended Program::wait() {
   }
   const int status =
       WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
-  return {status, contents(out_.get()), contents(err_.get())};
+  Ended ended{.status = status, .out = contents(out_.get())};
+  std::istringstream lines(contents(err_.get()));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("broadmark: warning: ")) {
+      ended.warnings.push_back(line);
+    } else {
+      ended.err += line + (lines.eof() ? "" : "\n");
+    }
+  }
+  return ended;
 }
 
 void Program::enter(const std::filesystem::path& directory, const Surroundings& around,

@@ -20,7 +20,9 @@ namespace broadmark::tests {
 struct Ended {
   int status = 0;  ///< exit status; 128 + the signal that ended it
   std::string out;
-  std::string err;
+  std::string err;  ///< but for the lines below
+  /// "broadmark: warning: …": they depend on what else the machine does.
+  std::vector<std::string> warnings;
 };
 
 /// What may differ about the surroundings of a program.

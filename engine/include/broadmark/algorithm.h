@@ -38,6 +38,13 @@ struct AlgorithmDescription {
   std::string source;         ///< paper and section, or library
 };
 
+/// A library that an algorithm comes from.
+struct PluginBuild {
+  std::string hash = {};     ///< of the file
+  std::string flags = {};    ///< compiler and options, as far as it tells; "": it does not
+  bool unoptimised = false;  ///< it says so
+};
+
 /// One algorithm variant.
 struct Algorithm {
   std::string id;            ///< "sap-simd-mt"
@@ -48,6 +55,7 @@ struct Algorithm {
   /// A new instance with default parameters.
   std::function<std::unique_ptr<BroadPhase>()> create;
   std::string plugin = {};  ///< the file it was loaded from; "": built in
+  PluginBuild plugin_build = {};
 };
 
 }  // namespace broadmark

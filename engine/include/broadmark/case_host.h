@@ -8,11 +8,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "broadmark/case.h"
 #include "broadmark/error.h"
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
+#include "broadmark/processor_counters.h"
 #include "broadmark/recorded_drawing.h"
 
 namespace broadmark {
@@ -55,6 +57,11 @@ class CaseHost {
   /// By how much the first pass made the peak of the process's memory grow; nothing where others
   /// share that memory, and before the first stop().
   [[nodiscard]] virtual std::optional<std::uint64_t> peakBytes() const { return std::nullopt; }
+  /// What the processor counted during the four phases of all frames of the last pass. Nothing
+  /// before its stop().
+  [[nodiscard]] virtual ProcessorCounts processorCounts() const { return {}; }
+  /// Whether each thread of the last pass had a core of its own, to which it was bound.
+  [[nodiscard]] virtual bool pinned() const { return false; }
 };
 
 /// A host in this process. All passes share one Execution: threads, a device's context and its
@@ -62,7 +69,10 @@ class CaseHost {
 /// for that is not timed.
 class LocalHost final : public CaseHost {
  public:
-  explicit LocalHost(Case run) : case_(std::move(run)) {}
+  /// With `pin`, each of the case's threads is bound to a core of its own, chosen anew for every
+  /// pass; unless they are more than the cores, or a device's driver has threads, too. That goes
+  /// for the calling thread as well, which so stays: for a process that does nothing else.
+  explicit LocalHost(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
   ~LocalHost() override;
   LocalHost(const LocalHost&) = delete;
   LocalHost& operator=(const LocalHost&) = delete;
@@ -75,13 +85,24 @@ class LocalHost final : public CaseHost {
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
+  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
+  [[nodiscard]] bool pinned() const override { return pinned_; }
 
   /// The instance: to call its phases one by one, as tests do. Only between start() and stop().
   BroadPhase& instance() { return *instance_; }
 
  private:
+  FrameTimes runCounted(const Frame& frame);
+  void pinThreads();
+
   Case case_;
-  std::optional<Execution> execution_;  ///< from the first start() on
+  bool pin_;
+  bool pinned_ = false;
+  std::vector<int> usable_cores_;  ///< before any thread was pinned
+  // From the first start() on. The counters come first: they count the threads made after them.
+  std::optional<ProcessorCounters> processor_;
+  std::optional<Execution> execution_;
+  ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
   PairRuns answer_;
 };

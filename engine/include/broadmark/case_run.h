@@ -86,6 +86,10 @@ class CaseRun {
   [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
   /// As CaseHost::peakBytes().
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
+  /// As CaseHost::processorCounts().
+  [[nodiscard]] ProcessorCounts processorCounts() const { return host_->processorCounts(); }
+  /// As CaseHost::pinned().
+  [[nodiscard]] bool pinned() const { return host_->pinned(); }
 
   // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
   // while hasInstance().

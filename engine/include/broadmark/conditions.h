@@ -9,12 +9,6 @@
 
 namespace broadmark {
 
-/// A library that an algorithm comes from.
-struct PluginBuild {
-  std::string hash;   ///< of the file
-  std::string flags;  ///< its compiler's options, as far as it tells; "": it does not
-};
-
 struct Conditions {
   CheckMode check = CheckMode::full;
   int warmup = 0;       ///< unmeasured repetitions before
@@ -24,6 +18,7 @@ struct Conditions {
   std::optional<double> initialize_limit_seconds;
   std::optional<double> call_limit_seconds;  ///< on one call into the algorithm
   bool in_process = false;                   ///< not in a worker process of its own
+  bool pinned = false;                       ///< each thread to a core of its own
   double load_average = 0;                   ///< over the last minute, when the case began
   PluginBuild plugin;                        ///< of an algorithm of a plug-in
   std::vector<std::string> warnings;         ///< what may have disturbed the times

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <exception>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -43,6 +44,10 @@ class ThreadTeam {
 
   [[nodiscard]] int size() const { return static_cast<int>(threads_.size()) + 1; }
 
+  /// Binds worker i, the caller being worker 0, to the core `cores[i]`. Whether the system allowed
+  /// it; if not, all workers may use the cores `usable`.
+  bool pin(std::span<const int> cores, std::span<const int> usable);
+
   /// Calls work(worker) once for each worker, in parallel, and returns when all are done. The first
   /// exception of any worker is rethrown here. Not reentrant.
   template <class Work>
@@ -62,6 +67,7 @@ class ThreadTeam {
   void loop(int worker);
   void stop();
 
+  int spins_;  ///< of a waiting worker, before it sleeps
   Job job_;
   std::atomic<unsigned> generation_{0};
   std::atomic<int> busy_{0};

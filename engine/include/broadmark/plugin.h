@@ -5,8 +5,8 @@
 //
 // and by CMake's
 //
-//   add_library(my_sweep MODULE my_sweep.cpp)
-//   target_link_libraries(my_sweep PRIVATE broadmark::broadmark)
+//   find_package(broadmark REQUIRED)
+//   broadmark_add_plugin(my_sweep my_sweep.cpp)
 //
 // It takes all of the framework's code from the program that loads it.
 #pragma once
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/compiler.h"
 #include "broadmark/headers_hash.h"
 
 #if defined(_GLIBCXX_DEBUG)
@@ -24,11 +25,46 @@
 #define BROADMARK_LIBRARY_LAYOUT ""
 #endif
 
+// How a library was built, as far as its preprocessor knows, and broadmark_add_plugin() tells it.
+#if defined(__OPTIMIZE__)
+#define BROADMARK_OPTIMISED true
+#define BROADMARK_BUILD_OPTIMISED ", optimised"
+#else
+#define BROADMARK_OPTIMISED false
+#define BROADMARK_BUILD_OPTIMISED ", not optimised"
+#endif
+#if defined(NDEBUG)
+#define BROADMARK_BUILD_ASSERTS ""
+#else
+#define BROADMARK_BUILD_ASSERTS ", with assertions"
+#endif
+#if defined(__AVX512F__)
+#define BROADMARK_BUILD_ISA ", AVX-512"
+#elif defined(__AVX2__)
+#define BROADMARK_BUILD_ISA ", AVX2"
+#else
+#define BROADMARK_BUILD_ISA ""
+#endif
+#if defined(__FAST_MATH__)
+#define BROADMARK_BUILD_MATH ", fast math"
+#else
+#define BROADMARK_BUILD_MATH ""
+#endif
+#if defined(BROADMARK_BUILD_FLAGS)
+#define BROADMARK_BUILD_OPTIONS ": " BROADMARK_BUILD_FLAGS
+#else
+#define BROADMARK_BUILD_OPTIONS ""
+#endif
+#define BROADMARK_BUILD                                                                    \
+  BROADMARK_COMPILER BROADMARK_BUILD_OPTIMISED BROADMARK_BUILD_ASSERTS BROADMARK_BUILD_ISA \
+      BROADMARK_BUILD_MATH BROADMARK_BUILD_OPTIONS
+
 namespace broadmark {
 
 /// What program and library must have in common, for they exchange C++ objects: the public headers,
-/// to the byte, and how the standard library lays out its types.
-inline constexpr char kPluginInterface[] =
+/// to the byte, and how the standard library lays out its types. Not inline: the loader would give
+/// a library the program's in place of its own.
+constexpr char kPluginInterface[] =
     BROADMARK_VERSION_TEXT ", headers " BROADMARK_HEADERS_HASH BROADMARK_LIBRARY_LAYOUT;
 
 /// What a library exports under kPluginSymbol.
@@ -36,6 +72,8 @@ struct Plugin {
   /// kPluginInterface of its build. Read before compatibility is known; must stay the first member.
   const char* interface;
   std::vector<Algorithm> (*variants)();
+  const char* build = nullptr;  ///< how it was built, in words; null: it does not tell
+  bool optimised = true;
 };
 
 inline constexpr char kPluginSymbol[] = "broadmark_plugin";
@@ -43,9 +81,10 @@ inline constexpr char kPluginSymbol[] = "broadmark_plugin";
 }  // namespace broadmark
 
 /// Exports the algorithms that a function `std::vector<broadmark::Algorithm> variants()` returns.
-#define BROADMARK_PLUGIN(variants)                                                        \
-  extern "C" {                                                                            \
-  [[gnu::visibility("default")]] extern const ::broadmark::Plugin broadmark_plugin;       \
-  const ::broadmark::Plugin broadmark_plugin = {::broadmark::kPluginInterface, variants}; \
-  }                                                                                       \
+#define BROADMARK_PLUGIN(variants)                                                       \
+  extern "C" {                                                                           \
+  [[gnu::visibility("default")]] extern const ::broadmark::Plugin broadmark_plugin;      \
+  const ::broadmark::Plugin broadmark_plugin = {::broadmark::kPluginInterface, variants, \
+                                                BROADMARK_BUILD, BROADMARK_OPTIMISED};   \
+  }                                                                                      \
   static_assert(true)

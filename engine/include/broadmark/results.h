@@ -17,6 +17,7 @@
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
 #include "broadmark/parameters.h"
+#include "broadmark/processor_counters.h"
 #include "broadmark/statistics.h"
 #include "broadmark/status.h"
 #include "broadmark/yardsticks.h"
@@ -28,6 +29,7 @@ struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
   std::optional<YardstickTimes> yardsticks = {};  ///< as they were just before
+  ProcessorCounts processor = {};                 ///< sums over the frames' four phases
 };
 
 /// What is counted in each frame: pairs in the answer, bodies whose boxes are not those of the
@@ -97,6 +99,8 @@ struct CaseResult {
 
   /// The total times in seconds, per repetition.
   [[nodiscard]] Summary summary() const;
+  /// The mean per frame, over the repetitions in which it was known; nothing if there is none.
+  [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
   /// Whether it ran as often as was asked for, or ended by its status. A run that was interrupted
   /// leaves cases that did not.
   [[nodiscard]] bool isComplete() const;

@@ -25,6 +25,7 @@ struct WorkerOptions {
   std::chrono::duration<double> hard_limit{60};
   /// Data that the process may hold; beyond it, allocating fails. 0: whatever the system gives.
   std::uint64_t memory_limit_bytes = 0;
+  bool pin = false;  ///< as LocalHost does
   CancelQuery cancelled = {};
 };
 
@@ -47,6 +48,8 @@ class WorkerProcess final : public CaseHost {
   Counts setup() override;
   RecordedDrawing structure() override;
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const override { return peak_bytes_; }
+  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
+  [[nodiscard]] bool pinned() const override { return pinned_; }
 
  private:
   class Link;  ///< to a process
@@ -61,6 +64,8 @@ class WorkerProcess final : public CaseHost {
   WorkerOptions options_;
   std::unique_ptr<Link> link_;  ///< null: no process runs
   std::optional<std::uint64_t> peak_bytes_;
+  ProcessorCounts processor_counts_;
+  bool pinned_ = false;
   std::vector<Pair> answer_;
   PairRun answer_run_;
 };

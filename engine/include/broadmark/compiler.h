@@ -1,0 +1,8 @@
+// The compiler of the file that includes this, as text.
+#pragma once
+
+#if defined(__clang__)
+#define BROADMARK_COMPILER "clang " __clang_version__
+#else
+#define BROADMARK_COMPILER "gcc " __VERSION__
+#endif
