@@ -133,7 +133,8 @@ std::string duelJson(const DuelResult& result, Recording& recording) {
                              {"seconds", side.seconds}});
   }
   for (const DuelPlace& place : result.places) {
-    json["ranking"].push_back({{"name", result.sides[place.side].name},
+    json["ranking"].push_back({{"side", place.side},
+                               {"name", result.sides[place.side].name},
                                {"place", place.place},
                                {"ratio", place.ratio.value},
                                {"ci95", {place.ratio.ci95.low, place.ratio.ci95.high}}});
