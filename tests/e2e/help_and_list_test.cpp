@@ -1,7 +1,6 @@
 // What the program says about itself.
 
 #include <algorithm>
-#include <sstream>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/scenes/simulation.h"
@@ -12,14 +11,6 @@ namespace {
 
 using Help = EndToEnd;
 using List = EndToEnd;
-
-/// A text with its lines as one, so that it does not matter where they are broken.
-std::string onOneLine(const std::string& text) {
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) line += word + ' ';
-  return line;
-}
 
 void expectWords(const Ended& ended, const std::vector<std::string>& words) {
   EXPECT_EQ(ended.status, 0);
