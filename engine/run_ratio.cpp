@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <random>
 
 #include "block_bootstrap.h"
 
@@ -77,72 +78,72 @@ std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frame
   return least;
 }
 
-/// How slow a pass is as a whole, as a logarithm: typical of its frames.
-double offsetOf(const PassTimes& pass, std::span<const double> least) {
-  std::vector<double> ratios(least.size());
-  std::ranges::transform(pass.begin(), pass.begin() + static_cast<std::ptrdiff_t>(least.size()),
-                         least.begin(), least.end(), ratios.begin(),
-                         [](double time, double best) { return std::log(time / best); });
-  return quantile(ratios, 0.5);
+/// The logarithm of the mean of each frame's least time over some of the passes.
+double levelOf(const std::vector<const PassTimes*>& passes, std::span<const std::size_t> chosen,
+               std::size_t frames) {
+  double sum = 0;
+  for (std::size_t frame = 0; frame < frames; ++frame) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::size_t pass : chosen) least = std::min(least, (*passes[pass])[frame]);
+    sum += least;
+  }
+  return std::log(sum);
 }
 
-/// How slow each pass is. One that was disturbed as a whole counts as slow as the quick ones allow:
-/// it has no part in the least times.
-std::vector<double> offsetsOf(const TimedRun& run, std::span<const double> least) {
-  std::vector<double> offsets;
-  for (const PassTimes& pass : run.passes) offsets.push_back(offsetOf(pass, least));
-  const double median = quantile(offsets, 0.5);
-  const double slowest = median + 2 * (median - quantile(offsets, 0));
-  for (double& offset : offsets) offset = std::min(offset, slowest);
-  return offsets;
+/// Variance of levelOf() all passes, from that of halves of them (McCarthy, 1969, "Pseudo-
+/// replication: half samples"): a statistic of half of the values varies about its mean as that of
+/// all does about the truth. At least two passes.
+double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t frames) {
+  constexpr int kHalves = 100;
+  std::vector<std::size_t> order(passes.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t half = passes.size() / 2;
+  std::mt19937_64 random;
+  std::vector<double> levels(kHalves);
+  for (double& level : levels) {
+    std::ranges::shuffle(order, random);
+    level = levelOf(passes, std::span(order).first(half), frames);
+  }
+  const double deviation = standardDeviation(levels);
+  // An odd one out makes the halves differ by more than that.
+  return deviation * deviation * static_cast<double>(half) /
+         static_cast<double>(passes.size() - half);
 }
 
-/// A variance that is known from so many values beyond the first.
-struct Spread {
-  double squares = 0;
-  double degrees = 0;
+/// What repetitions differ by: half of an interval, as a logarithm.
+double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRun> after,
+                       std::size_t frames) {
+  const std::vector<const PassTimes*> a = passesOf(before);
+  const std::vector<const PassTimes*> b = passesOf(after);
+  if (a.size() < 2 || b.size() < 2) return kUnknownSpread;
+  const auto degrees = static_cast<double>(a.size() + b.size() - 2);
+  return studentT975(degrees) * std::sqrt(varianceOfLevel(a, frames) + varianceOfLevel(b, frames));
+}
 
-  void add(std::span<const double> values) {
-    if (values.size() < 2) return;
-    const double deviation = standardDeviation(values);
-    const auto more = static_cast<double>(values.size() - 1);
-    squares += deviation * deviation * more;
-    degrees += more;
-  }
-  /// Half of the 95 % interval of a difference of two means, of `a` and `b` values.
-  [[nodiscard]] double half(double a, double b) const {
-    if (degrees == 0) return kUnknownSpread;
-    return studentT975(degrees) * std::sqrt(squares / degrees * (1 / a + 1 / b));
-  }
-};
-
-/// What repetitions, and runs, differ by: half of an interval, as a logarithm.
-double repetitionNoise(std::span<const TimedRun> before, std::span<const double> least_before,
-                       const TimedRun& after, std::span<const double> least_after) {
-  Spread passes;
-  Spread runs;
-  double count = 0;
+/// What runs differ by, as far as there are enough of them to tell: likewise.
+double runNoise(std::span<const TimedRun> before, std::size_t frames) {
+  if (before.size() < kFewestRuns) return 0;
   std::vector<double> levels;
   for (const TimedRun& run : before) {
-    const std::vector<double> offsets = offsetsOf(run, least_before);
-    passes.add(offsets);
-    levels.push_back(mean(offsets));
-    count += static_cast<double>(run.passes.size());
+    const std::vector<const PassTimes*> passes = passesOf({&run, 1});
+    std::vector<std::size_t> all(passes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    levels.push_back(levelOf(passes, all, frames));
   }
-  passes.add(offsetsOf(after, least_after));
-  const double noise = passes.half(count, static_cast<double>(after.passes.size()));
-  if (before.size() < kFewestRuns) return noise;
-  runs.add(levels);
-  return std::max(noise, runs.half(static_cast<double>(before.size()), 1));
+  const auto runs = static_cast<double>(levels.size());
+  // Of their mean, and of one more run.
+  return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
-/// Mean logarithm of a yardstick's times; nothing without any.
+/// Logarithm of a yardstick's least time, as frames count with theirs: the mean over the runs;
+/// nothing without any.
 std::optional<double> levelOf(std::span<const TimedRun> runs, Yardstick which) {
   std::vector<double> logs;
   for (const TimedRun& run : runs) {
-    for (const YardstickTimes& times : run.yardsticks) {
-      logs.push_back(std::log(static_cast<double>(std::max<std::int64_t>(times[which], 1))));
-    }
+    if (run.yardsticks.empty()) continue;
+    std::int64_t least = std::numeric_limits<std::int64_t>::max();
+    for (const YardstickTimes& times : run.yardsticks) least = std::min(least, times[which]);
+    logs.push_back(std::log(static_cast<double>(std::max<std::int64_t>(least, 1))));
   }
   return logs.empty() ? std::nullopt : std::optional(mean(logs));
 }
@@ -197,10 +198,10 @@ std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
   RunRatio result{.before = mean(a), .after = mean(b), .ratio = {}, .drift = {}};
   const double estimate = std::log(result.after / result.before);
   const std::optional<double> drift = driftBetween(runs, judged);
-  const double repetitions = repetitionNoise(runs, a, judged, b);
+  const double between = std::max(repetitionNoise(runs, alone, frames), runNoise(runs, frames));
   const Interval noise = frameNoise(a, b);
   const auto half = [&](double of_frames) {
-    return std::hypot(of_frames, repetitions) + std::abs(drift.value_or(0));
+    return std::hypot(of_frames, between) + std::abs(drift.value_or(0));
   };
   result.ratio = {std::exp(estimate),
                   {std::exp(estimate - half(estimate - noise.low)),
