@@ -13,6 +13,7 @@
 #include "cases.h"
 #include "recordings.h"
 #include "sources/make_source.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {
@@ -42,10 +43,10 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::set<std::vector<fs::path>> taken;
   for (const std::string& name : scenesOf(options)) {
     NamedSource scene(name);
-    for (auto& simulation : makeSimulations(scene, options.scene, options.parameters)) {
+    for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
       BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
       job.simulation = std::move(simulation);
-      job.paths = recordingPaths(options.output, job.scene, options.scene.recorders);
+      job.paths = recordingPaths(options.output, job.scene, swept, options.scene.recorders);
       requireApart(*job.simulation, job.paths);
       if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
     }
@@ -64,9 +65,9 @@ void requireRoom(const BakePlan& plan, const fs::path& output) {
   const std::uint64_t free = fs::space(there, unknown).available;
   const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
   if (unknown || needed <= free) return;
-  throw InputError(
-      fmt::format("{}: not enough room: {} recordings take {} bytes, but only {} are free",
-                  output.string(), plan.recordings(), needed, free));
+  throw InputError(fmt::format("{}: not enough room: {} would take {} bytes, but only {} are free",
+                               output.string(), counted(plan.recordings(), "recording"), needed,
+                               free));
 }
 
 /// Throws InputError when a recording cannot be written.

@@ -39,7 +39,7 @@ struct BakePlan {
 using PlanProgress =
     std::function<bool(const std::filesystem::path&, std::uint64_t number, std::uint64_t total)>;
 
-/// Every combination of the options' scenes, object types and object counts once. What is already
+/// Every combination of the options' scenes and parameter values once. What is already
 /// there is kept; to know that, those recordings are read through, unless `force`. Nothing when
 /// stopped. Throws InputError.
 std::optional<BakePlan> planBake(const BakeOptions&, const PlanProgress& = {});

@@ -25,7 +25,7 @@ constexpr std::uint64_t kBytesPerBody = 32'000;
 
 /// A job with its progress.
 struct BakeBatch::Run {
-  enum class Phase { waiting, running, ended };
+  enum class Phase { waiting, running, ended, stopped };
 
   explicit Run(BakeJob what) : job(std::move(what)) {}
 
@@ -157,9 +157,10 @@ void BakeBatch::perform(Run& run) {
   }
   run.job.simulation.reset();
   const std::lock_guard lock(mutex_);
-  run.phase = Run::Phase::ended;
+  const bool ended = whole || !failure.empty();
+  run.phase = ended ? Run::Phase::ended : Run::Phase::stopped;
   run.end = Clock::now();
-  if (whole || !failure.empty()) ended_.push_back({run.job.paths, std::move(failure)});
+  if (ended) ended_.push_back({run.job.paths, std::move(failure)});
   changed_.notify_all();
 }
 

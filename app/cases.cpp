@@ -7,12 +7,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <iterator>
+#include <map>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "option_types.h"
 #include "original/ids.h"
 #include "plugins.h"
+#include "sweep.h"
 
 namespace broadmark {
 namespace {
@@ -29,6 +32,67 @@ bool selects(const std::string& selector, const Algorithm& algorithm,
   if (globMatches(selector, algorithm.id)) return true;
   // An id is that algorithm alone, even where a whole family is called the same ("sap").
   return findAlgorithm(selector, known) == nullptr && lower(selector) == lower(algorithm.family);
+}
+
+/// A key of --param: the parameter, and whose.
+struct ParameterKey {
+  std::string selector;  ///< of algorithms; "": of anything that has it
+  std::string parameter;
+};
+
+ParameterKey parseKey(const std::string& key) {
+  const auto colon = key.rfind(':');
+  if (colon == std::string::npos) return {{}, key};
+  return {key.substr(0, colon), key.substr(colon + 1)};
+}
+
+/// An id of the original as the id that it stands for; anything else as it is.
+std::string ownSelector(const std::string& selector, const std::vector<Algorithm>& known) {
+  const OriginalId* original = findOriginalId(selector);
+  if (original == nullptr) return selector;
+  const std::string id(original->algorithm);
+  return findAlgorithm(id, known) == nullptr ? selector : id;
+}
+
+/// Those of the parameters that are for an algorithm, by their own names. What is given for it
+/// alone wins over what is given for all.
+ParameterValues parametersOf(const Algorithm& algorithm, const ParameterValues& given,
+                             const std::vector<Algorithm>& known) {
+  ParameterValues own;
+  std::map<std::string, std::string> stated;  // parameter to key
+  for (const auto& [key, text] : given) {
+    const auto [selector, parameter] = parseKey(key);
+    if (selector.empty()) {
+      if (!stated.contains(parameter)) own[parameter] = text;
+    } else if (selects(ownSelector(selector, known), algorithm, known)) {
+      const auto [other, first] = stated.emplace(parameter, key);
+      if (!first) {
+        throw InputError(fmt::format("--param: '{}' and '{}' both set {} of {}", other->second, key,
+                                     parameter, algorithm.id));
+      }
+      own[parameter] = text;
+    }
+  }
+  return applicableValues(*algorithm.create(), own);
+}
+
+/// Throws InputError unless `key`, which names algorithms, sets a parameter of one of the `cases`.
+void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
+                    const std::vector<Algorithm>& known) {
+  const auto [selector, parameter] = parseKey(key);
+  const std::vector<Algorithm> named =
+      selectAlgorithms({ownSelector(selector, known)}, known, "--param");
+  std::vector<std::string> parameters;
+  bool any = false;
+  for (const Case& run : cases) {
+    if (findAlgorithm(run.algorithm.id, named) == nullptr) continue;
+    any = true;
+    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(parameters));
+  }
+  if (!any) {
+    throw InputError(fmt::format("--param: '{}': no case is of '{}'", key, selector));
+  }
+  requireKnownParameters({{parameter, ""}}, std::move(parameters));
 }
 
 /// The cases, each once.
@@ -86,7 +150,8 @@ std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known) {
 }
 
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
-                                        const std::vector<Algorithm>& known) {
+                                        const std::vector<Algorithm>& known,
+                                        std::string_view option) {
   std::vector<bool> selected(known.size());
   for (const std::string& selector : selectors) {
     bool names_any = false;
@@ -96,7 +161,8 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
       names_any = true;
     }
     if (!names_any) {
-      throw InputError("--algorithm: " + unknownName("algorithm", selector, algorithmIds(known)));
+      throw InputError(
+          fmt::format("{}: {}", option, unknownName("algorithm", selector, algorithmIds(known))));
     }
   }
   std::vector<Algorithm> algorithms;
@@ -113,8 +179,10 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   const std::vector<Isa> isas = options.isas.empty() ? std::vector{bestIsa()} : options.isas;
   CaseList cases;
   const auto add = [&](const Algorithm& algorithm, Isa isa, int count) {
-    cases.add(makeCase(algorithm, isa, count, options.device,
-                       applicableValues(*algorithm.create(), parameters)));
+    const ParameterValues own = parametersOf(algorithm, parameters, known);
+    for (ParameterValues& values : combinations(*algorithm.create(), own)) {
+      cases.add(makeCase(algorithm, isa, count, options.device, std::move(values)));
+    }
   };
 
   std::vector<std::string> selectors;
@@ -130,7 +198,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
     for (const int count : threads) add(*algorithm, original->isa.value_or(isas.front()), count);
   }
   if (options.algorithms.empty()) selectors.emplace_back("all");
-  for (const Algorithm& algorithm : selectAlgorithms(selectors, known)) {
+  for (const Algorithm& algorithm : selectAlgorithms(selectors, known, "--algorithm")) {
     for (const int count : threads) {
       for (const Isa isa : isas) add(algorithm, isa, count);
     }
@@ -156,6 +224,22 @@ Case caseNamed(const std::string& name, const std::string& device) {
   }
   makeInstance(made);  // throws for bad parameters
   return made;
+}
+
+void requireUsedParameters(const ParameterValues& given, const std::vector<Case>& cases,
+                           std::vector<std::string> names, const std::vector<Algorithm>& known) {
+  ParameterValues unqualified;
+  for (const auto& [key, text] : given) {
+    if (parseKey(key).selector.empty()) {
+      unqualified.emplace(key, text);
+    } else {
+      requireUsedKey(key, cases, known);
+    }
+  }
+  for (const Case& run : cases) {
+    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(names));
+  }
+  requireKnownParameters(unqualified, std::move(names));
 }
 
 void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/algorithm.h"
@@ -18,14 +19,17 @@ struct CaseOptions {
 };
 
 /// The algorithms that the selectors (ids, families, globs, "all") name, each once, in the order of
-/// `known`. What is both an id and a family means the id. Throws InputError for a selector that
-/// names none.
+/// `known`. What is both an id and a family means the id. Throws InputError, which begins with
+/// `option`, for a selector that names none.
 std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
-                                        const std::vector<Algorithm>& known);
+                                        const std::vector<Algorithm>& known,
+                                        std::string_view option);
 
 /// Every selected algorithm with every instruction set and thread count that it heeds, each once;
 /// first those that are selected by an id of the original Broadmark. Of the parameters each takes
-/// those that it has; their values are not checked. Throws InputError as above.
+/// those that it has, and those that name it ("kd:margin", "sap*:margin") before the others; of
+/// several values (sweep.h) each makes a case. The values are not checked. Throws InputError as
+/// above, and for a parameter that is set twice.
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 
@@ -40,6 +44,11 @@ const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorith
 const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
 /// All ids, for messages.
 std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known);
+
+/// Throws InputError for a --param that none of these cases has and that is not among `names`,
+/// those of scenes.
+void requireUsedParameters(const ParameterValues& given, const std::vector<Case>& cases,
+                           std::vector<std::string> names, const std::vector<Algorithm>& known);
 
 /// Throws InputError for a --param that is in none of the parameters' `known` names.
 void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known);

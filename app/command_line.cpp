@@ -15,8 +15,10 @@
 #include "broadmark/names.h"
 #include "commands/command.h"
 #include "commands/session.h"
+#include "exit_status.h"
 #include "parts.h"
 #include "sources/source.h"
+#include "usage.h"
 
 namespace broadmark {
 
@@ -32,9 +34,17 @@ namespace {
 constexpr const char* kWithoutHeadless =
     "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
 constexpr const char* kFooter =
-    "\nExit status: 0 all cases ok; 1 a case mismatched, timed out or regressed; 2 bad usage or "
-    "bad input.\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
+    "\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
     "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
+
+std::string footer() {
+  std::string text = parts::kInspector.included ? kWithoutHeadless : "";
+  text += "\nExit status:\n";
+  for (const auto& [status, meaning] : kExitStatuses.entries) {
+    text += fmt::format("  {:<4}{}\n", static_cast<int>(status), meaning);
+  }
+  return text + kFooter;
+}
 
 std::vector<Command> allCommands() {
   return {
@@ -43,10 +53,6 @@ std::vector<Command> allCommands() {
 #undef COMMAND
   };
 }
-
-/// Whether help shows it: CLI11's own way to hide an option takes its name away, which complaints
-/// need.
-bool isShown(const CLI::Option& option) { return !option.get_description().empty(); }
 
 class HelpFormatter final : public CLI::Formatter {
   std::string make_option(const CLI::Option* option, bool is_positional) const override {
@@ -81,7 +87,7 @@ InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.footer(parts::kInspector.included ? std::string(kWithoutHeadless) + kFooter : kFooter);
+    app_.footer(footer());
     app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
     app_.set_version_flag("--version", thisEnvironment().version);
     app_.formatter(std::make_shared<HelpFormatter>());
@@ -155,16 +161,16 @@ class CommandLine {
 }  // namespace
 
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
-  CommandLine line;
+  const auto line = std::make_shared<CommandLine>();
   std::string printed;
-  if (!line.parse(arguments, printed)) {
+  if (!line->parse(arguments, printed)) {
     return [printed] {
       std::fputs(printed.c_str(), stdout);
       return 0;
     };
   }
-  if (auto run = line.command()) return run;
-  SessionOptions options = line.session();
+  if (auto run = line->command()) return [line, run = std::move(run)] { return run(); };
+  SessionOptions options = line->session();
   options.command_line = arguments;
   return [options = std::move(options)] { return runSession(options); };
 }

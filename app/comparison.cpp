@@ -14,6 +14,7 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/runner.h"
+#include "words.h"
 
 namespace broadmark {
 
@@ -286,8 +287,8 @@ std::string summaryText(const Comparison& comparison) {
     const std::size_t count = comparison.count(verdict);
     if (count > 0) parts.push_back(fmt::format("{} {}", count, name));
   }
-  std::string text = fmt::format("{} case{}: {}", comparison.cases.size(),
-                                 comparison.cases.size() == 1 ? "" : "s", fmt::join(parts, ", "));
+  std::string text =
+      fmt::format("{}: {}", counted(comparison.cases.size(), "case"), fmt::join(parts, ", "));
   if (const auto drift = comparison.drift()) {
     fmt::format_to(std::back_inserter(text), "; the machine drifted by up to {:+.1f} %",
                    100 * *drift);

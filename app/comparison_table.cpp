@@ -37,10 +37,11 @@ std::string conditionsText(const Comparison& comparison) {
   }
   std::string text;
   for (const auto& [what, how] : found) {
-    fmt::format_to(
-        std::back_inserter(text), "conditions differ: {} ({} cases){}\n", what, how.first,
-        how.second && !comparison.options.any_conditions ? ": not compared without --any-conditions"
-                                                         : "");
+    fmt::format_to(std::back_inserter(text), "conditions differ: {} ({}){}\n", what,
+                   counted(how.first, "case"),
+                   how.second && !comparison.options.any_conditions
+                       ? ": not compared without --any-conditions"
+                       : "");
   }
   return text;
 }

@@ -101,9 +101,10 @@ std::string failures(const DuelResult& result) {
 }  // namespace
 
 std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
-  std::string text = fmt::format("{} {} N{}: {} rounds in {}{}\n", scene.name, scene.object_type,
-                                 scene.objects, result.rounds(), waitingTime(result.seconds),
-                                 result.decided || !result.ok() ? "" : ", until time was up");
+  std::string text =
+      fmt::format("{} {} N{}: {} in {}{}\n", scene.name, scene.object_type, scene.objects,
+                  counted(result.rounds(), "round"), waitingTime(result.seconds),
+                  result.decided || !result.ok() ? "" : ", until time was up");
   if (!result.ok()) return text + failures(result);
   text += table(result);
   if (result.sides.size() == 2) {
@@ -132,7 +133,8 @@ std::string duelJson(const DuelResult& result, Recording& recording) {
                              {"seconds", side.seconds}});
   }
   for (const DuelPlace& place : result.places) {
-    json["ranking"].push_back({{"name", result.sides[place.side].name},
+    json["ranking"].push_back({{"side", place.side},
+                               {"name", result.sides[place.side].name},
                                {"place", place.place},
                                {"ratio", place.ratio.value},
                                {"ci95", {place.ratio.ci95.low, place.ratio.ci95.high}}});

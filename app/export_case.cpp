@@ -37,9 +37,9 @@ std::string pathWord(const fs::path& path) {
 
 /// What is left, in one line.
 std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
-  return fmt::format("{}: {} of {} ({} runs): {}", partName(whole),
+  return fmt::format("{}: {} of {} ({}): {}", partName(whole),
                      extentText(shrunk.part.bodies.size(), shrunk.part.frames.size() - 1),
-                     extentText(whole.objects, whole.frames), shrunk.trials,
+                     extentText(whole.objects, whole.frames), counted(shrunk.trials, "run"),
                      mismatchText(shrunk.difference));
 }
 
@@ -83,7 +83,7 @@ int runExportCase(Plan plan, const SessionOptions& options) {
   requireExportable(options.export_case, entry.source.reference.path);
   const InterruptGuard guard;
   const auto recording = openRecording(entry.source, {}, {}, options.quiet);
-  if (!recording) throw InputError("interrupted");
+  if (!recording) throw Interrupted();
 
   const Case& run = entry.cases.front();
   const SceneInfo& whole = recording->scene();
@@ -98,14 +98,14 @@ int runExportCase(Plan plan, const SessionOptions& options) {
            },
        .cancelled = InterruptGuard::requested,
        .make_host = hostMaker(options.hosts)});
-  if (shrunk.trials == 0) throw InputError("interrupted");
+  if (shrunk.trials == 0) throw Interrupted();
   if (shrunk.minimal) progress.update(size);
 
   writePart(options.export_case, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
   progress.print("written: " + options.export_case.string());
   progress.print(reproducingCommand(run, options.export_case));
-  if (!shrunk.minimal) throw InputError("interrupted: the smallest part so far is written");
+  if (!shrunk.minimal) throw Interrupted("the smallest part so far is written");
   return 0;
 }
 

@@ -16,13 +16,17 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/runner.h"
+#include "exit_status.h"
 #include "interrupt.h"
+#include "output.h"
 #include "progress.h"
 #include "recordings.h"
 #include "result_files.h"
 #include "screenshot.h"
+#include "sweep.h"
 #include "table.h"
 #include "warnings.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {
@@ -44,14 +48,16 @@ class Exhausted {
     const auto found = smallest_.find(key(result, run));
     if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
     result.status = Status::timeout;
-    result.reason = fmt::format("not run: crossed the time limit with {} bodies", found->second);
+    result.reason = fmt::format("not run: crossed the time limit with {}",
+                                counted(found->second, "body", "bodies"));
     return true;
   }
 
  private:
   static std::string key(const CaseResult& result, const Case& run) {
     const SceneInfo& scene = result.recording.scene;
-    return fmt::format("{}/{}/{}", scene.name, scene.object_type, caseName(run));
+    return fmt::format("{}/{}{}/{}", scene.name, scene.object_type,
+                       sweptText(result.recording.swept), caseName(run));
   }
   std::map<std::string, std::uint32_t> smallest_;
 };
@@ -195,25 +201,34 @@ class PlanRun {
     }
   }
 
-  /// Says what has been written. Returns the exit status. Throws InputError when interrupted.
+  /// Prints the results that go to standard output, and says what has been written. Returns the
+  /// exit status. Throws Interrupted.
   int finish() {
     if (!options_.record.empty()) written_.push_back(options_.record);
     results_.complete = !interrupted_;
     files_->end(results_);
     if (!results_.cases.empty()) {
-      for (const auto& [name, path] : options_.outputs) written_.push_back(path);
+      for (const auto& [name, path] : options_.outputs) {
+        if (!isStandardOutput(path)) written_.push_back(path);
+      }
     }
-    for (const fs::path& path : written_) fmt::print("written: {}\n", path.string());
-    if (interrupted_) {
-      throw InputError(fmt::format("interrupted: {} finished cases kept", results_.cases.size()));
+    for (const fs::path& path : written_) {
+      fmt::print(prints_results_ ? stderr : stdout, "written: {}\n", path.string());
     }
-    if (picture_failed_) return 2;
-    return std::ranges::any_of(results_.cases, isFailure) ? 1 : 0;
+    if (interrupted_ || InterruptGuard::requested()) {
+      throw Interrupted(fmt::format("{} kept", counted(results_.cases.size(), "finished case")));
+    }
+    const int status = exitStatusOf(judgedStatuses());
+    return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
   }
 
  private:
-  static bool isFailure(const CaseResult& result) {
-    return result.status != Status::ok && result.status != Status::unsupported;
+  /// Those that tell how the run ends.
+  [[nodiscard]] std::vector<Status> judgedStatuses() const {
+    std::vector<Status> statuses;
+    for (const CaseResult& result : results_.cases) statuses.push_back(result.status);
+    if (options_.allow_timeout) std::erase(statuses, Status::timeout);
+    return statuses;
   }
 
   /// The machine, with the compute device that is used before the others.
@@ -246,7 +261,7 @@ class PlanRun {
 
   void report(const PlanEntry& entry, const std::vector<CaseResult>& done) {
     if (done.empty()) return;
-    std::cout << formatTable(done) << std::endl;
+    if (!prints_results_) std::cout << formatTable(done) << std::endl;
     if (entry.original) {
       const fs::path log = entry.original->output_log;
       writeTextFile(log, formatOriginalLog(*entry.original, done.front()));
@@ -258,8 +273,8 @@ class PlanRun {
 
   void draw(Recording& recording, Oracle& oracle, const fs::path& path) {
     try {
-      takeScreenshot(recording, options_.screenshot_frame.value_or(recording.scene().frames),
-                     oracle, options_.picture, path);
+      takeScreenshot(recording, options_.frame.value_or(recording.scene().frames), oracle,
+                     options_.picture, path);
       written_.push_back(path);
     } catch (const RenderError& error) {
       std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
@@ -268,6 +283,9 @@ class PlanRun {
   }
 
   const SessionOptions& options_;
+  /// Results go to standard output: then nothing else does.
+  const bool prints_results_ = std::ranges::any_of(
+      options_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   Results results_;
   std::optional<RunWarnings> warnings_;
   std::optional<ResultFiles> files_;
@@ -291,6 +309,7 @@ std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions&
 
 /// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
 fs::path oneName(const fs::path& path) {
+  if (isStandardOutput(path)) return "-";
   std::error_code failed;
   fs::path name = fs::weakly_canonical(path, failed);
   return failed ? path : name;
@@ -312,17 +331,7 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
                                    path.string(), other->second));
     }
-    AtomicFile probe(path);
-  }
-}
-
-/// The frame of the screenshot is in every recording.
-void requireFrame(const SessionOptions& options, const Plan& plan) {
-  for (const PlanEntry& entry : plan.entries) {
-    const SceneInfo& scene = entry.source.reference.scene;
-    if (options.screenshot_frame.value_or(0) <= scene.frames) continue;
-    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}",
-                                 *options.screenshot_frame, scene.name, scene.frames));
+    requireOutput(path);
   }
 }
 
@@ -330,7 +339,6 @@ void requireFrame(const SessionOptions& options, const Plan& plan) {
 
 int runHeadless(Plan plan, const SessionOptions& options) {
   if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
-  requireFrame(options, plan);
   requireWritable(options, plan);
   if (!options.record.empty()) makeDirectory(options.record);
   const InterruptGuard guard;

@@ -1,14 +1,16 @@
 // broadmark: generates scenes, runs broad-phase algorithms on them, checks and measures them.
-//
-// Exit status: 0 all well; 1 a case mismatched, timed out or regressed; 2 bad usage or input.
+// How it ends: exit_status.h.
 
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <system_error>
 
 #include "broadmark/error.h"
 #include "command_line.h"
+#include "exit_status.h"
+#include "interrupt.h"
 
 namespace {
 
@@ -26,8 +28,13 @@ int main(int argc, char** argv) {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();
     return status;
+  } catch (const broadmark::Interrupted& end) {
+    std::cerr << "broadmark: " << end.what() << '\n';
+    return broadmark::exit_status::interrupted;
   } catch (const broadmark::InputError& error) {
     std::cerr << "broadmark: " << error.what() << '\n';
+  } catch (const std::filesystem::filesystem_error& error) {
+    std::cerr << "broadmark: " << error.path1().string() << ": " << error.code().message() << '\n';
   } catch (const std::system_error& error) {
     // The system refused something, such as a write or a thread: no internal error.
     std::cerr << "broadmark: " << error.what() << '\n';
@@ -36,5 +43,5 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "broadmark: internal error: " << error.what() << '\n';
   }
-  return 2;
+  return broadmark::exit_status::bad_input;
 }

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "broadmark/scenes/simulation.h"
+#include "sweep.h"
 
 namespace broadmark {
 namespace {
@@ -50,15 +51,16 @@ std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& tex
   return counts;
 }
 
-/// KEY=VALUE texts as parameter values.
+/// [ALGORITHM:]KEY=VALUE texts as parameter values; ALGORITHM is part of the key.
 ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
   ParameterValues values;
   for (const std::string& text : texts) {
     const auto split = text.find('=');
-    if (split == std::string::npos || split == 0) {
-      throw InputError(fmt::format("--param: '{}' is not of the form KEY=VALUE", text));
+    const std::string key = text.substr(0, std::min(split, text.size()));
+    if (split == std::string::npos || key.empty() || key.front() == ':' || key.back() == ':') {
+      throw InputError(
+          fmt::format("--param: '{}' is not of the form KEY=VALUE or ALGORITHM:KEY=VALUE", text));
     }
-    const std::string key = text.substr(0, split);
     if (!values.emplace(key, text.substr(split + 1)).second) {
       throw InputError(fmt::format("--param: '{}' is given twice", key));
     }
@@ -81,27 +83,16 @@ struct SceneShortcut {
   const char* parameter;
   const char* type;
   const char* doc;
+  bool list = true;  ///< of several values, each makes a recording
 };
 constexpr SceneShortcut kSceneShortcuts[] = {
-    {"frames", "F", "frames to simulate, the initial pose not counted"},
-    {"seed", "S", "seed: same seed, same recording"},
-    {"density", "D", "share of the world's volume that bodies fill"},
-    {"engine", "NAME", "what moves the bodies (see 'broadmark list engines')"},
-    {"input", "PATH", "recording, or directory of those, that an engine replays"}};
+    {"frames", "F[,F...]", "frames to simulate, the initial pose not counted"},
+    {"seed", "S[,S...]", "seeds: same seed, same recording"},
+    {"density", "D[,D...]", "share of the world's volume that bodies fill"},
+    {"engine", "NAME[,NAME...]", "what moves the bodies (see 'broadmark list engines')"},
+    {"input", "PATH", "recording, or directory of those, that an engine replays", false}};
 
 }  // namespace
-
-std::vector<std::string> splitList(const std::vector<std::string>& texts) {
-  std::vector<std::string> parts;
-  for (const std::string& text : texts) {
-    for (std::size_t start = 0; start <= text.size();) {
-      const std::size_t end = std::min(text.find(',', start), text.size());
-      if (end > start) parts.push_back(text.substr(start, end - start));
-      start = end + 1;
-    }
-  }
-  return parts;
-}
 
 double parseNumber(const std::string& text, std::string_view option, double min, bool open) {
   // CLI11's own checks let NaN pass.
@@ -183,7 +174,9 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
   return app
       .add_option_function<std::vector<std::string>>(
           "--param", set,
-          "sets a parameter of scene or algorithm (repeatable; see 'broadmark list')")
+          "sets a parameter of scene or algorithm (see 'broadmark list'; repeatable); "
+          "KEY=A,B,C: a recording or case for each value, and for every combination; "
+          "ALGORITHM:KEY=VALUE: of these algorithms only, named as in --algorithm")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
 }
@@ -191,8 +184,9 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
 std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
   std::vector<CLI::Option*> options;
   for (const ResultWriter& writer : resultWriters()) {
-    options.push_back(addPath(app, fmt::format("--{}", writer.name), "FILE",
-                              outputs[std::string(writer.name)], std::string(writer.doc)));
+    options.push_back(
+        addPath(app, fmt::format("--{}", writer.name), "FILE", outputs[std::string(writer.name)],
+                fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
   }
   return options;
 }
@@ -272,11 +266,15 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) 
           [&](const std::vector<std::string>& names) { options.object_types = names; },
           "shapes of the bodies")};
   for (const SceneShortcut& shortcut : kSceneShortcuts) {
+    const std::string name = fmt::format("--{}", shortcut.parameter);
     const auto set = [&options, &shortcut](const std::string& text) {
       options.parameters[shortcut.parameter] = text;
     };
-    added.push_back(
-        addValue(app, std::string("--") + shortcut.parameter, shortcut.type, set, shortcut.doc));
+    const auto set_list = [set](const std::vector<std::string>& texts) {
+      set(fmt::format("{}", fmt::join(texts, ",")));
+    };
+    added.push_back(shortcut.list ? addList(app, name, shortcut.type, set_list, shortcut.doc)
+                                  : addValue(app, name, shortcut.type, set, shortcut.doc));
   }
   return added;
 }

@@ -24,9 +24,6 @@ class Option;
 
 namespace broadmark {
 
-/// All texts split at commas, empty parts dropped.
-std::vector<std::string> splitList(const std::vector<std::string>& texts);
-
 /// A finite number >= `min`, or > `min` when `open`.
 double parseNumber(const std::string& text, std::string_view option, double min, bool open);
 

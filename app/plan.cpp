@@ -13,6 +13,7 @@
 #include "screenshot.h"
 #include "session_options.h"
 #include "sources/results.h"
+#include "sweep.h"
 
 namespace broadmark {
 namespace {
@@ -55,20 +56,16 @@ void addCases(PlanEntry& entry, const std::vector<Case>& selected, const Session
 }
 
 /// Throws InputError for a --param that no scene and no algorithm has.
-void requireUsedParameters(const Plan& plan, const SessionOptions& options) {
-  std::vector<std::string> known;
-  const auto collect = [&](Parametrised& object) {
-    std::ranges::move(parameterNames(object), std::back_inserter(known));
-  };
-  const auto collect_all = [&](const std::vector<Case>& cases) {
-    for (const Case& run : cases) collect(*run.algorithm.create());
-  };
-  collect_all(plan.cases);
+void requireParametersUsed(const Plan& plan, const SessionOptions& options) {
+  if (options.parameters.empty()) return;
+  std::vector<std::string> names;
+  std::vector<Case> cases = plan.cases;
   for (const PlanEntry& entry : plan.entries) {
-    if (entry.source.simulation) collect(*entry.source.simulation);
-    collect_all(entry.cases);
+    cases.insert(cases.end(), entry.cases.begin(), entry.cases.end());
+    if (!entry.source.simulation) continue;
+    std::ranges::move(parameterNames(*entry.source.simulation), std::back_inserter(names));
   }
-  requireKnownParameters(options.parameters, std::move(known));
+  requireUsedParameters(options.parameters, cases, std::move(names), plan.algorithms);
 }
 
 std::regex compiledFilter(const std::string& filter) {
@@ -99,10 +96,28 @@ void requireSound(const Plan& plan) {
   }
 }
 
+/// Throws InputError unless the frame that is to be shown is in every recording.
+void requireFrame(const Plan& plan, const SessionOptions& options) {
+  if (!options.frame) return;
+  if (options.inspector() && plan.entries.empty()) {
+    throw InputError("--frame: nothing is opened that has frames");
+  }
+  for (const PlanEntry& entry : plan.entries) {
+    const SceneInfo& scene = entry.source.reference.scene;
+    if (*options.frame <= scene.frames) continue;
+    throw InputError(fmt::format("--frame: there is no frame {}: the last one of {} is {}",
+                                 *options.frame, scene.name, scene.frames));
+  }
+}
+
 void nameScreenshots(Plan& plan, const SessionOptions& options) {
-  std::vector<const SceneInfo*> scenes;
-  for (const PlanEntry& entry : plan.entries) scenes.push_back(&entry.source.reference.scene);
-  const auto paths = screenshotPaths(options.screenshot, scenes);
+  std::vector<std::string> names;
+  for (const PlanEntry& entry : plan.entries) {
+    const RecordingReference& reference = entry.source.reference;
+    names.push_back(fmt::format("{} {} N{}{}", reference.scene.name, reference.scene.object_type,
+                                reference.scene.objects, sweptText(reference.swept)));
+  }
+  const auto paths = screenshotPaths(options.screenshot, names);
   for (std::size_t i = 0; i < paths.size(); ++i) plan.entries[i].screenshot = paths[i];
 }
 
@@ -114,12 +129,14 @@ Plan makePlan(const SessionOptions& options) {
   const std::vector<Case> selected = selectedCases(plan, options);
   for (PlanEntry& entry : plan.entries) addCases(entry, selected, options);
   if (options.sources.empty()) plan.cases = selected;
-  requireUsedParameters(plan, options);
+  requireParametersUsed(plan, options);
   requireSound(plan);
-  if (options.inspector()) return plan;
-  divide(plan, options);
-  std::erase_if(plan.entries, [](const PlanEntry& entry) { return entry.cases.empty(); });
-  if (!options.screenshot.empty()) nameScreenshots(plan, options);
+  if (!options.inspector()) {
+    divide(plan, options);
+    std::erase_if(plan.entries, [](const PlanEntry& entry) { return entry.cases.empty(); });
+    if (!options.screenshot.empty()) nameScreenshots(plan, options);
+  }
+  requireFrame(plan, options);
   return plan;
 }
 

@@ -8,7 +8,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "interrupt.h"
 #include "words.h"
 
 namespace broadmark {
@@ -43,10 +45,12 @@ Progress::Progress(std::string task, std::uint64_t steps, bool quiet)
 
 Progress::~Progress() {
   if (quiet_) return;
+  // What has been interrupted is not done, however far it got.
+  const bool whole = done_ >= steps_ && !InterruptGuard::requested();
+  const double share =
+      static_cast<double>(done_) / static_cast<double>(std::max<std::uint64_t>({steps_, done_, 1}));
   fmt::print(stderr, "{}{}: {} ({})\n", terminal_ ? kEraseLine : "", task_,
-             done_ >= steps_ ? "done"
-                             : fmt::format("stopped at {:.0f} %", 100 * static_cast<double>(done_) /
-                                                                      static_cast<double>(steps_)),
+             whole ? "done" : fmt::format("stopped at {:.0f} %", std::floor(100 * share)),
              waitingTime(seconds(Clock::now() - start_)));
 }
 

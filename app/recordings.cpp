@@ -9,6 +9,7 @@
 #include "broadmark/error.h"
 #include "interrupt.h"
 #include "progress.h"
+#include "sweep.h"
 
 namespace broadmark {
 namespace {
@@ -27,11 +28,13 @@ bool recordWithProgress(const Simulation& simulation, bool quiet, Record&& recor
   });
 }
 
-/// Bakes a simulation below `directory`, unless it is already there. Returns the path of the first
-/// recorder's recording, or "" when interrupted.
-fs::path bakeInto(Simulation& simulation, const fs::path& directory,
+/// Bakes a source's simulation below `directory`, unless it is already there. Returns the path of
+/// the first recorder's recording, or "" when interrupted.
+fs::path bakeInto(Source& source, const fs::path& directory,
                   const std::vector<std::string>& recorders, bool quiet) {
-  const auto paths = recordingPaths(directory, simulation.scene(), recorders);
+  Simulation& simulation = *source.simulation;
+  const auto paths =
+      recordingPaths(directory, simulation.scene(), source.reference.swept, recorders);
   const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
   if (std::ranges::all_of(paths, there)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
@@ -58,8 +61,7 @@ std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directo
     recording = openRecordingFile(source.reference.path);
   } else if (directory.empty()) {
     recording = recordTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(*source.simulation, directory, recorders, quiet);
-             !path.empty()) {
+  } else if (const fs::path path = bakeInto(source, directory, recorders, quiet); !path.empty()) {
     recording = openRecordingFile(path);
   }
   if (!recording) return nullptr;
@@ -79,12 +81,14 @@ void requireHash(const std::string& what, const std::string& hash, const std::st
 }
 
 std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo& scene,
+                                     const ParameterValues& swept,
                                      const std::vector<std::string>& recorders) {
   std::vector<fs::path> paths;
   const std::vector<RecorderListing> listings = builtinRecorders();
   for (const std::string& id : recorders) {
     const auto listing = std::ranges::find(listings, id, &RecorderListing::id);
-    paths.push_back(directory / listing->folder / recordingFileName(scene, "." + id));
+    paths.push_back(directory / listing->folder /
+                    recordingFileName(scene, fmt::format("{}.{}", sweptText(swept), id)));
   }
   return paths;
 }

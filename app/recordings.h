@@ -12,9 +12,10 @@
 namespace broadmark {
 
 /// Where recordings by these recorders lie below a directory, laid out as the original's:
-/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", ….
+/// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", …. Those of a sweep also
+/// have the `swept` parameters in their names.
 std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
-                                                  const SceneInfo&,
+                                                  const SceneInfo&, const ParameterValues& swept,
                                                   const std::vector<std::string>& recorders);
 
 /// Opens a source's recording and fills in its hash. A simulation is recorded first: below

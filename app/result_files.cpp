@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -9,11 +10,13 @@
 #include <string_view>
 
 #include "broadmark/error.h"
+#include "output.h"
 
 namespace broadmark {
 namespace {
 
 FileDescriptor begin(const std::filesystem::path& path) {
+  if (isStandardOutput(path)) return FileDescriptor(::dup(STDOUT_FILENO));
   constexpr int kEveryoneReads = 0666;
   FileDescriptor file(
       ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kEveryoneReads));
@@ -44,13 +47,19 @@ void ResultFiles::add(const CaseResult& result) {
   for (const Lines& lines : lines_) append(lines, lines.writer->one(result));
 }
 
-void ResultFiles::rewrite(const Results& results) {
-  for (const auto& [writer, path] : wholes_) writeTextFile(path, writer.format(results));
+void ResultFiles::write(const Results& results, bool to_standard_output) {
+  for (const auto& [writer, path] : wholes_) {
+    if (isStandardOutput(path) == to_standard_output) writeOutput(path, writer.format(results));
+  }
 }
+
+void ResultFiles::rewrite(const Results& results) { write(results, false); }
 
 void ResultFiles::end(const Results& results) {
   for (const Lines& lines : lines_) append(lines, lines.writer->after(results));
-  if (!results.cases.empty()) rewrite(results);
+  if (results.cases.empty()) return;
+  rewrite(results);
+  write(results, true);
 }
 
 }  // namespace broadmark

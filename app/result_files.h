@@ -15,11 +15,12 @@ namespace broadmark {
 using ResultPaths = std::map<std::string, std::filesystem::path>;
 
 /// Keeps files of results up to date while a run goes on. Those made of lines get each case as soon
-/// as it is done; the others are written anew, each time atomically, when a recording is done.
-/// Every method throws InputError when a file cannot be written.
+/// as it is done; the others are written anew, each time atomically, when a recording is done, or,
+/// to standard output, once at the end. Every method throws InputError when a file cannot be
+/// written.
 class ResultFiles {
  public:
-  /// Begins the files of lines; `results` has no cases yet.
+  /// Begins the files of lines; `results` has no cases yet. Paths as writeOutput() takes them.
   ResultFiles(const ResultPaths& paths, const Results& results);
 
   void add(const CaseResult& result);
@@ -35,6 +36,7 @@ class ResultFiles {
     FileDescriptor file;
   };
   static void append(const Lines& lines, const std::string& text);
+  void write(const Results& results, bool to_standard_output);
 
   std::vector<Lines> lines_;
   std::vector<std::pair<ResultWriter, std::filesystem::path>> wholes_;

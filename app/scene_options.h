@@ -12,7 +12,8 @@ namespace broadmark {
 struct SceneOptions {
   std::vector<std::uint32_t> objects;  ///< numbers of bodies, ascending; empty: the scene's default
   std::vector<std::string> object_types;  ///< empty: the scene's default
-  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name.
+  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name. A
+  /// text may hold several values (sweep.h).
   ParameterValues parameters;
   std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on
 };

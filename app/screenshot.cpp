@@ -18,12 +18,11 @@ void takeScreenshot(IndexedFrames& recording, std::uint32_t index, Oracle& oracl
 }
 
 std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& asked,
-                                                   const std::vector<const SceneInfo*>& scenes) {
-  if (scenes.size() == 1) return {asked};
+                                                   const std::vector<std::string>& recordings) {
+  if (recordings.size() == 1) return {asked};
   std::vector<std::filesystem::path> paths;
-  for (const SceneInfo* scene : scenes) {
-    const std::string name = fmt::format("{} {} {} N{}", asked.stem().string(), scene->name,
-                                         scene->object_type, scene->objects);
+  for (const std::string& recording : recordings) {
+    const std::string name = fmt::format("{} {}", asked.stem().string(), recording);
     std::filesystem::path path = asked;
     path.replace_filename(name + asked.extension().string());
     // Two recordings may differ in nothing but their boxes.

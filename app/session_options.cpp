@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <limits>
 
 #include "broadmark/results.h"
@@ -36,9 +37,11 @@ Shard parseShard(const std::string& text) {
   return shard;
 }
 
+/// By size.
 std::vector<int> parseThreads(const std::vector<std::string>& texts) {
   std::vector<int> threads;
   for (const std::string& text : texts) threads.push_back(parseThreadCount(text));
+  std::ranges::sort(threads);
   return threads;
 }
 
@@ -178,6 +181,9 @@ void SessionParser::Parts::addRun() {
           "limit on the mean seconds per frame (the paper's cap)",
           fmt::format("{}", policy.frame_limit_seconds)),
       kInspector);
+  tag(app.add_flag("--allow-timeout", options.allow_timeout,
+                   "cases that cross a time limit do not make the run fail"),
+      kInspector);
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
@@ -203,13 +209,13 @@ void SessionParser::Parts::addPictures() {
               "are added to the file's");
   tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
-    options.screenshot_frame =
-        static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
+    options.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
   };
   CLI::Option* frame =
       addValue(app, "--frame", "K", set_frame,
-               "frame of the screenshot, 0 being the initial pose (default: the last)");
-  tag(frame, kInspector);
+               "frame of the screenshot, 0 being the initial pose (default: the last); of the "
+               "inspector: where it opens");
+  tag(frame, kNone);
   showWith(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
     tagged.emplace_back(option, kWindow);

@@ -39,11 +39,12 @@ struct SessionOptions {
   RepetitionOptions repetitions;
   int warmup = 0;
   RunPolicy policy;
+  bool allow_timeout = false;  ///< a case that crosses a time limit is no failure of the run
   HostOptions hosts;
   ResultPaths outputs;
-  std::filesystem::path record;                   ///< "": keep no recordings
-  std::filesystem::path screenshot;               ///< "": none
-  std::optional<std::uint32_t> screenshot_frame;  ///< nothing: the last one
+  std::filesystem::path record;        ///< "": keep no recordings
+  std::filesystem::path screenshot;    ///< "": none
+  std::optional<std::uint32_t> frame;  ///< of the screenshot, or where the inspector opens
   PictureOptions picture;
   Shard shard;
   std::string filter;  ///< regular expression

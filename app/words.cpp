@@ -15,9 +15,13 @@ std::string bytesText(std::uint64_t bytes) {
   return fmt::format("{:.3g} {}", size, kUnits[unit]);
 }
 
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many) {
+  if (count == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+}
+
 std::string extentText(std::size_t bodies, std::size_t frames) {
-  return fmt::format("{} {}, {} {}", bodies, bodies == 1 ? "body" : "bodies", frames,
-                     frames == 1 ? "frame" : "frames");
+  return fmt::format("{}, {}", counted(bodies, "body", "bodies"), counted(frames, "frame"));
 }
 
 std::string durationText(double seconds) {

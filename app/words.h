@@ -4,11 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace broadmark {
 
 /// "1.25 MB"
 std::string bytesText(std::uint64_t bytes);
+
+/// "1 case", "2 cases"; of "body" the plural is stated.
+std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
 /// "3 bodies, 1 frame"
 std::string extentText(std::size_t bodies, std::size_t frames);

@@ -33,6 +33,24 @@ install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
 list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
 install(FILES ${finders} cmake/Plugin.cmake DESTINATION ${package_dir})
 
+# Manual page and completion scripts: the program prints them, when it is installed. (A program for
+# another kind of machine cannot.)
+if(BROADMARK_APP AND NOT CMAKE_CROSSCOMPILING)
+  set(printed ${PROJECT_BINARY_DIR}/printed)
+  function(broadmark_install_printed directory file)
+    install(CODE "
+      file(MAKE_DIRECTORY \"${printed}\")
+      execute_process(COMMAND \"$<TARGET_FILE:broadmark>\" ${ARGN}
+        OUTPUT_FILE \"${printed}/${file}\" COMMAND_ERROR_IS_FATAL ANY)")
+    install(FILES ${printed}/${file} DESTINATION ${directory})
+  endfunction()
+  broadmark_install_printed(${CMAKE_INSTALL_MANDIR}/man1 broadmark.1 manual)
+  set(data ${CMAKE_INSTALL_DATADIR})
+  broadmark_install_printed(${data}/bash-completion/completions broadmark completion bash)
+  broadmark_install_printed(${data}/zsh/vendor-completions _broadmark completion zsh)
+  broadmark_install_printed(${data}/fish/vendor_completions.d broadmark.fish completion fish)
+endif()
+
 # Documents, with the example scenes that they mention, laid out as their links expect.
 include(cmake/Copyright.cmake)
 file(GLOB documents CONFIGURE_DEPENDS docs/*.md)

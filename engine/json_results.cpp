@@ -71,16 +71,13 @@ Environment environmentFrom(const JsonFields& json) {
   return environment;
 }
 
-/// A limit, or null.
-Json toJson(const std::optional<double>& limit) { return limit ? Json(*limit) : Json(nullptr); }
-
 Json toJson(const Conditions& c) {
   return {{"check", kCheckModes.nameOf(c.check)},
           {"warmup", c.warmup},
           {"repetitions", c.repetitions},
-          {"frame_limit_seconds", toJson(c.frame_limit_seconds)},
-          {"initialize_limit_seconds", toJson(c.initialize_limit_seconds)},
-          {"call_limit_seconds", toJson(c.call_limit_seconds)},
+          {"frame_limit_seconds", orNull(c.frame_limit_seconds)},
+          {"initialize_limit_seconds", orNull(c.initialize_limit_seconds)},
+          {"call_limit_seconds", orNull(c.call_limit_seconds)},
           {"in_process", c.in_process},
           {"pinned", c.pinned},
           {"load_average", c.load_average},
@@ -143,9 +140,9 @@ Json toJson(const RecordingReference& recording) {
                {"objects", scene.objects},
                {"frames", scene.frames},
                {"world", {{"min", toJson(scene.world.min)}, {"max", toJson(scene.world.max)}}},
-               {"seed", nullptr},
+               {"seed", orNull(recording.seed)},
                {"hash", recording.hash}};
-  if (recording.seed) json["seed"] = *recording.seed;
+  if (!recording.swept.empty()) json["swept"] = toJson(recording.swept);
   if (recording.path.empty()) {
     json["source"] = toJson(recording.scene_parameters);
   } else {
@@ -165,6 +162,7 @@ RecordingReference recordingFrom(const JsonFields& json) {
   scene.world.min = cornerFrom(world.array("min"), world.path("min"));
   scene.world.max = cornerFrom(world.array("max"), world.path("max"));
   if (json.has("seed")) recording.seed = json.integer<std::uint64_t>("seed");
+  if (json.has("swept")) recording.swept = parametersFrom(json.at("swept"), json.path("swept"));
   recording.hash = json.text("hash");
   if (json.at("source").is_string()) {
     recording.path = json.text("source");
@@ -336,7 +334,7 @@ Json processorToJson(const std::vector<Repetition>& repetitions) {
     Json& counts = json[std::string(name)] = Json::array();
     for (const Repetition& repetition : repetitions) {
       const auto& count = repetition.processor[which];
-      counts.push_back(count ? Json(*count) : Json(nullptr));
+      counts.push_back(orNull(count));
     }
   }
   return json;
@@ -410,7 +408,7 @@ Json toJson(const CaseResult& result) {
                {"allowed_extra", result.allowed_extra_count},
                {"invalid", result.invalid_count},
                {"differences", Json::array()},
-               {"peak_bytes", nullptr},
+               {"peak_bytes", orNull(result.peak_bytes)},
                {"counters", result.counters},
                {"setup", result.setup},
                {"summary", toJson(result.summary())},
@@ -422,7 +420,6 @@ Json toJson(const CaseResult& result) {
   for (const FrameDifference& difference : result.differences) {
     json["differences"].push_back(toJson(difference));
   }
-  if (result.peak_bytes) json["peak_bytes"] = *result.peak_bytes;
   for (const Repetition& repetition : result.repetitions) {
     json["initialize_ns"].push_back(repetition.initialize_ns);
   }

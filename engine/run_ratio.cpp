@@ -18,18 +18,18 @@ constexpr double kUnknownSpread = 0.15;
 /// As many baselines tell how much runs differ.
 constexpr std::size_t kFewestRuns = 3;
 
-using Pass = std::vector<double>;  ///< seconds of each frame
+using PassTimes = std::vector<double>;  ///< seconds of each frame
 
 /// The repetitions of one run.
-struct Run {
-  std::vector<Pass> passes;
+struct TimedRun {
+  std::vector<PassTimes> passes;
   std::vector<YardstickTimes> yardsticks;
 };
 
-Run runOf(const CaseResult& result) {
-  Run run;
+TimedRun runOf(const CaseResult& result) {
+  TimedRun run;
   for (const Repetition& repetition : result.repetitions) {
-    Pass& pass = run.passes.emplace_back();
+    PassTimes& pass = run.passes.emplace_back();
     for (const FrameTimes& times : repetition.frames) {
       // A time below the clock's resolution must still have a logarithm.
       pass.push_back(static_cast<double>(std::max<std::int64_t>(times[Phase::total], 1)) * 1e-9);
@@ -39,30 +39,32 @@ Run runOf(const CaseResult& result) {
   return run;
 }
 
-std::vector<const Pass*> passesOf(std::span<const Run> runs) {
-  std::vector<const Pass*> passes;
-  for (const Run& run : runs) {
-    for (const Pass& pass : run.passes) passes.push_back(&pass);
+std::vector<const PassTimes*> passesOf(std::span<const TimedRun> runs) {
+  std::vector<const PassTimes*> passes;
+  for (const TimedRun& run : runs) {
+    for (const PassTimes& pass : run.passes) passes.push_back(&pass);
   }
   return passes;
 }
 
-std::size_t framesOf(std::span<const Run> runs) {
+std::size_t framesOf(std::span<const TimedRun> runs) {
   std::size_t frames = std::numeric_limits<std::size_t>::max();
-  for (const Pass* pass : passesOf(runs)) frames = std::min(frames, pass->size());
+  for (const PassTimes* pass : passesOf(runs)) frames = std::min(frames, pass->size());
   return frames == std::numeric_limits<std::size_t>::max() ? 0 : frames;
 }
 
 /// For each frame the least time to be expected of `drawn` of the passes: where one side has more
 /// passes than the other its least time would be less by chance.
-std::vector<double> leastTimes(std::span<const Run> runs, std::size_t frames, std::size_t drawn) {
-  const std::vector<const Pass*> passes = passesOf(runs);
+std::vector<double> leastTimes(std::span<const TimedRun> runs, std::size_t frames,
+                               std::size_t drawn) {
+  const std::vector<const PassTimes*> passes = passesOf(runs);
   const auto count = static_cast<double>(passes.size());
   const auto few = static_cast<double>(drawn);
   std::vector<double> least(frames);
   std::vector<double> times(passes.size());
   for (std::size_t frame = 0; frame < frames; ++frame) {
-    std::ranges::transform(passes, times.begin(), [&](const Pass* pass) { return (*pass)[frame]; });
+    std::ranges::transform(passes, times.begin(),
+                           [&](const PassTimes* pass) { return (*pass)[frame]; });
     std::ranges::sort(times);
     // The chance that the i-th is the least of those drawn.
     double chance = few / count;
@@ -76,7 +78,7 @@ std::vector<double> leastTimes(std::span<const Run> runs, std::size_t frames, st
 }
 
 /// How slow a pass is as a whole, as a logarithm: typical of its frames.
-double offsetOf(const Pass& pass, std::span<const double> least) {
+double offsetOf(const PassTimes& pass, std::span<const double> least) {
   std::vector<double> ratios(least.size());
   std::ranges::transform(pass.begin(), pass.begin() + static_cast<std::ptrdiff_t>(least.size()),
                          least.begin(), least.end(), ratios.begin(),
@@ -86,9 +88,9 @@ double offsetOf(const Pass& pass, std::span<const double> least) {
 
 /// How slow each pass is. One that was disturbed as a whole counts as slow as the quick ones allow:
 /// it has no part in the least times.
-std::vector<double> offsetsOf(const Run& run, std::span<const double> least) {
+std::vector<double> offsetsOf(const TimedRun& run, std::span<const double> least) {
   std::vector<double> offsets;
-  for (const Pass& pass : run.passes) offsets.push_back(offsetOf(pass, least));
+  for (const PassTimes& pass : run.passes) offsets.push_back(offsetOf(pass, least));
   const double median = quantile(offsets, 0.5);
   const double slowest = median + 2 * (median - quantile(offsets, 0));
   for (double& offset : offsets) offset = std::min(offset, slowest);
@@ -115,13 +117,13 @@ struct Spread {
 };
 
 /// What repetitions, and runs, differ by: half of an interval, as a logarithm.
-double repetitionNoise(std::span<const Run> before, std::span<const double> least_before,
-                       const Run& after, std::span<const double> least_after) {
+double repetitionNoise(std::span<const TimedRun> before, std::span<const double> least_before,
+                       const TimedRun& after, std::span<const double> least_after) {
   Spread passes;
   Spread runs;
   double count = 0;
   std::vector<double> levels;
-  for (const Run& run : before) {
+  for (const TimedRun& run : before) {
     const std::vector<double> offsets = offsetsOf(run, least_before);
     passes.add(offsets);
     levels.push_back(mean(offsets));
@@ -135,9 +137,9 @@ double repetitionNoise(std::span<const Run> before, std::span<const double> leas
 }
 
 /// Mean logarithm of a yardstick's times; nothing without any.
-std::optional<double> levelOf(std::span<const Run> runs, Yardstick which) {
+std::optional<double> levelOf(std::span<const TimedRun> runs, Yardstick which) {
   std::vector<double> logs;
-  for (const Run& run : runs) {
+  for (const TimedRun& run : runs) {
     for (const YardstickTimes& times : run.yardsticks) {
       logs.push_back(std::log(static_cast<double>(std::max<std::int64_t>(times[which], 1))));
     }
@@ -146,7 +148,7 @@ std::optional<double> levelOf(std::span<const Run> runs, Yardstick which) {
 }
 
 /// By how much the machine was slower during `after`, as a logarithm.
-std::optional<double> driftBetween(std::span<const Run> before, const Run& after) {
+std::optional<double> driftBetween(std::span<const TimedRun> before, const TimedRun& after) {
   double most = 0;
   for (const auto& yardstick : kYardsticks.entries) {
     const auto a = levelOf(before, yardstick.value);
@@ -182,10 +184,10 @@ Interval frameNoise(std::span<const double> before, std::span<const double> afte
 
 std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
                                     const CaseResult& after) {
-  std::vector<Run> runs;
+  std::vector<TimedRun> runs;
   for (const CaseResult* result : before) runs.push_back(runOf(*result));
-  const Run judged = runOf(after);
-  const std::span<const Run> alone(&judged, 1);
+  const TimedRun judged = runOf(after);
+  const std::span<const TimedRun> alone(&judged, 1);
   const std::size_t frames = std::min(framesOf(runs), framesOf(alone));
   if (frames == 0) return std::nullopt;
 

@@ -120,8 +120,13 @@ PassOutcome runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracl
 
 std::string recordingId(const RecordingReference& recording) {
   const SceneInfo& scene = recording.scene;
-  return fmt::format("{}/{}/N{}/F{}{}", scene.name, scene.object_type, scene.objects, scene.frames,
-                     recording.seed ? fmt::format("/s{}", *recording.seed) : "");
+  std::string id =
+      fmt::format("{}/{}/N{}/F{}", scene.name, scene.object_type, scene.objects, scene.frames);
+  if (recording.seed) id += fmt::format("/s{}", *recording.seed);
+  for (const auto& [name, value] : recording.swept) {
+    if (name != "seed") id += fmt::format("/{}={}", name, value);
+  }
+  return id;
 }
 
 std::string caseId(const RecordingReference& recording, const Case& run) {

@@ -45,19 +45,17 @@ double meanOf(std::span<const FrameStatistics> frames, Figure figure) {
   return sum / static_cast<double>(frames.size());
 }
 
-Json toJson(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 Json toJson(const RangeStatistics& range) {
   return {{"first_frame", range.first},
           {"last_frame", range.last},
           {"density", range.density},
           {"pairs_per_body", range.pairs_per_body},
-          {"moving_share", toJson(range.moving_share)},
+          {"moving_share", orNull(range.moving_share)},
           {"max_outside", range.max_outside},
           {"min_extent", range.min_extent},
           {"median_extent", range.median_extent},
           {"max_extent", range.max_extent},
-          {"size_ratio", toJson(range.sizeRatio())}};
+          {"size_ratio", orNull(range.sizeRatio())}};
 }
 
 }  // namespace

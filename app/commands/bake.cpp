@@ -15,10 +15,12 @@
 #include "batch.h"
 #include "broadmark/error.h"
 #include "commands/command.h"
+#include "exit_status.h"
 #include "interrupt.h"
 #include "movie.h"
 #include "option_types.h"
 #include "progress.h"
+#include "words.h"
 
 namespace broadmark::commands::bake {
 namespace {
@@ -32,11 +34,11 @@ struct Options {
   bool quiet = false;
 };
 
-InputError interruption() {
-  return InputError("interrupted: finished recordings are kept; the same call continues");
+Interrupted interruption() {
+  return Interrupted("finished recordings are kept; the same call continues");
 }
 
-/// The plan, with progress. Throws InputError when interrupted.
+/// The plan, with progress. Throws Interrupted.
 BakePlan makeBakePlan(const Options& options) {
   std::optional<Progress> shown;  // only when there is something to check
   auto plan =
@@ -58,9 +60,9 @@ int listPlan(const BakePlan& plan) {
   for (const BakeJob& job : plan.pending) {
     for (const fs::path& path : job.paths) print("bake ", recordingBytes(job.scene), path);
   }
-  fmt::print("{} recordings: {} to bake ({} bytes), {} kept\n",
-             plan.kept.size() + plan.recordings(), plan.recordings(), plan.bytes(),
-             plan.kept.size());
+  fmt::print("{}: {} to bake ({}), {} kept\n",
+             counted(plan.kept.size() + plan.recordings(), "recording"), plan.recordings(),
+             counted(plan.bytes(), "byte"), plan.kept.size());
   return 0;
 }
 
@@ -76,7 +78,7 @@ struct Tally {
     std::string text = fmt::format("{} baked, {} kept", baked, kept);
     if (failed > 0) text += fmt::format(", {} failed", failed);
     if (unfinished > 0) text += fmt::format(", {} not finished", unfinished);
-    fmt::print("{}; {} bytes written in {:.1f} s\n", text, bytes, seconds);
+    fmt::print("{}; {} written in {:.1f} s\n", text, counted(bytes, "byte"), seconds);
   }
 };
 
@@ -90,8 +92,8 @@ std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& 
   if (plan.pending.empty()) return whole;
 
   BakeBatch batch(std::move(plan.pending), options.bake.threads);
-  Progress progress(fmt::format("baking {} recordings", tally.unfinished), batch.state().total,
-                    options.quiet);
+  Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")),
+                    batch.state().total, options.quiet);
   while (!batch.ended()) {
     constexpr std::chrono::milliseconds kGlance{50};
     for (const BakedJob& job : batch.await(kGlance)) {
@@ -126,7 +128,7 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
   };
   std::uint64_t total = 0;
   for (const fs::path& path : recordings) total += pictures(path);
-  Progress progress(fmt::format("drawing {} movies", recordings.size()), total, quiet);
+  Progress progress(fmt::format("drawing {}", counted(recordings.size(), "movie")), total, quiet);
   std::uint64_t done = 0;
   for (const fs::path& path : recordings) {
     progress.detail(path.stem().string());
@@ -153,9 +155,9 @@ int run(const Options& options) {
   Tally tally;
   const std::vector<fs::path> whole = performPlan(std::move(plan), options, tally);
   tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-  if (tally.unfinished > 0) throw interruption();
+  if (InterruptGuard::requested()) throw interruption();
   if (movie_maker && !makeMovies(*movie_maker, whole, options.quiet)) throw interruption();
-  return tally.failed == 0 ? 0 : 2;
+  return tally.failed == 0 ? exit_status::fine : exit_status::bad_input;
 }
 
 /// The scenes, built-in or in files.

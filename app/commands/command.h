@@ -15,8 +15,8 @@ namespace broadmark {
 struct Command {
   std::string name;
   std::string summary;
-  /// Adds its options to `app`. Returns what runs it once `app` has parsed a command line, and
-  /// returns the exit status; that throws InputError.
+  /// Adds its options to `app`. Returns what runs it once `app`, which lives as long, has parsed a
+  /// command line, and returns the exit status; that throws InputError.
   std::function<int()> (*add)(CLI::App& app);
 };
 

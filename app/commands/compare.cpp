@@ -11,7 +11,9 @@
 #include "broadmark/files.h"
 #include "commands/command.h"
 #include "comparison.h"
+#include "exit_status.h"
 #include "option_types.h"
+#include "output.h"
 
 namespace broadmark::commands::compare {
 namespace {
@@ -40,20 +42,21 @@ std::vector<fs::path> judgedFiles(const Options& options) {
 void write(const Options& options, const Comparison& comparison) {
   for (const ComparisonWriter& writer : comparisonWriters()) {
     const fs::path& path = options.outputs.at(std::string(writer.name));
-    if (!path.empty()) writeTextFile(path, writer.format(comparison));
+    if (!path.empty()) writeOutput(path, writer.format(comparison));
   }
 }
 
-/// 1 for an answer that has become wrong, 3 for anything else that speaks against B.
+/// A wrong answer for one that has become wrong, a regression for anything else that speaks against
+/// B.
 int statusOf(const Comparison& comparison) {
-  int status = 0;
+  int status = exit_status::fine;
   for (const CaseComparison& compared : comparison.cases) {
     if (!comparison.fails(compared)) continue;
     const bool wrong =
         compared.status_before == Status::ok &&
         (compared.status_after == Status::mismatch || compared.status_after == Status::error);
-    if (wrong) return 1;
-    status = 3;
+    if (wrong) return exit_status::wrong_answer;
+    status = exit_status::regression;
   }
   return status;
 }
@@ -66,11 +69,13 @@ int run(const Options& options) {
   }
   std::vector<NamedResults> before = {readResults(options.before)};
   for (const std::string& path : options.baselines) before.push_back(readResults(path));
-  int status = 0;
+  const bool prints_output = std::ranges::any_of(
+      options.outputs, [](const auto& output) { return isStandardOutput(output.second); });
+  int status = exit_status::fine;
   for (const fs::path& path : judged) {
     const Comparison comparison = compareResults(before, readResults(path), options.comparison);
     if (judged.size() > 1) fmt::print("B = {}\n", path.string());
-    fmt::print("{}", formatComparison(comparison));
+    if (!prints_output) fmt::print("{}", formatComparison(comparison));
     // A comparison of nothing must not look like one that passed.
     if (!comparison.comparable()) {
       throw InputError(fmt::format("{} and {}: no case of both can be compared",
@@ -78,13 +83,15 @@ int run(const Options& options) {
     }
     write(options, comparison);
     const int found = statusOf(comparison);
-    if (status != 1 && found != 0) status = found;
+    if (status != exit_status::wrong_answer && found != exit_status::fine) status = found;
   }
   return status;
 }
 
 void addShare(CLI::App& app, const std::string& name, double& target, const std::string& doc) {
-  const auto set = [&target, name](const std::string& text) { target = parseShare(text, name, false); };
+  const auto set = [&target, name](const std::string& text) {
+    target = parseShare(text, name, false);
+  };
   addValue(app, name, "SHARE", set, doc, fmt::format("{:g}%", 100 * target));
 }
 
@@ -107,7 +114,8 @@ std::function<int()> add(CLI::App& app) {
                "compare other processors and build types, too");
   for (const ComparisonWriter& writer : comparisonWriters()) {
     addPath(app, fmt::format("--{}", writer.name), "FILE",
-            options->outputs[std::string(writer.name)], std::string(writer.doc));
+            options->outputs[std::string(writer.name)],
+            fmt::format("{}; '-': to standard output, instead of the table", writer.doc));
   }
   return [options] { return run(*options); };
 }

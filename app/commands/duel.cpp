@@ -12,13 +12,16 @@
 #include "cases.h"
 #include "commands/command.h"
 #include "duel_report.h"
+#include "exit_status.h"
 #include "hosts.h"
 #include "interrupt.h"
 #include "option_types.h"
+#include "output.h"
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
 #include "warnings.h"
+#include "words.h"
 
 namespace broadmark::commands::duel {
 namespace {
@@ -41,8 +44,8 @@ std::unique_ptr<Recording> open(const Options& options) {
   OpenedSource opened =
       openSource(options.source, {.scene = options.scene, .parameters = options.parameters});
   if (opened.entries.size() != 1) {
-    throw InputError(fmt::format("duel: {} stands for {} recordings; a duel is on one",
-                                 options.source, opened.entries.size()));
+    throw InputError(fmt::format("duel: {} stands for {}; a duel is on one", options.source,
+                                 counted(opened.entries.size(), "recording")));
   }
   Source& source = opened.entries.front().source;
   requireKnownParameters(options.parameters, source.simulation ? parameterNames(*source.simulation)
@@ -70,6 +73,14 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   return sides;
 }
 
+int exitStatusOf(const DuelResult& result) {
+  std::vector<Status> statuses;
+  for (const DuelResult::Side& side : result.sides) statuses.push_back(side.status);
+  const int status = exitStatusOf(statuses);
+  // A side that cannot run here leaves nothing to compare.
+  return status == exit_status::fine && !result.ok() ? exit_status::bad_input : status;
+}
+
 /// Says what may disturb the times of any side.
 void warnOf(const std::vector<DuelSide>& sides) {
   const Environment environment = thisEnvironment();
@@ -78,11 +89,11 @@ void warnOf(const std::vector<DuelSide>& sides) {
 }
 
 int run(Options options) {
-  if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
+  if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
   const std::unique_ptr<Recording> recording = open(options);
-  if (!recording) throw InputError("interrupted");
+  if (!recording) throw Interrupted();
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.source));
   }
@@ -92,7 +103,7 @@ int run(Options options) {
   options.duel.cancelled = InterruptGuard::requested;
   options.duel.progress = [&](const DuelProgress& now) {
     const double left = std::max(options.duel.most_seconds - now.seconds, 0.0);
-    progress.detail(fmt::format("{} rounds", now.rounds));
+    progress.detail(counted(now.rounds, "round"));
     progress.update(
         static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.most_seconds)),
         left);
@@ -101,13 +112,13 @@ int run(Options options) {
     try {
       return runDuel(sides, *recording, options.duel);
     } catch (const Cancelled&) {
-      throw InputError("interrupted");
+      throw Interrupted();
     }
   }();
   progress.update(static_cast<std::uint64_t>(kTicks));
-  progress.print(formatDuel(result, recording->scene()));
-  if (!options.json.empty()) writeTextFile(options.json, duelJson(result, *recording));
-  return result.ok() ? 0 : 1;
+  if (!isStandardOutput(options.json)) progress.print(formatDuel(result, recording->scene()));
+  if (!options.json.empty()) writeOutput(options.json, duelJson(result, *recording));
+  return exitStatusOf(result);
 }
 
 std::function<int()> add(CLI::App& app) {
@@ -141,7 +152,8 @@ std::function<int()> add(CLI::App& app) {
   addSceneOptions(app, options->scene);
   addParameters(app, options->parameters);
   addHosts(app, options->hosts);
-  addPath(app, "--json", "FILE", options->json, "write all times and the verdict as JSON");
+  addPath(app, "--json", "FILE", options->json,
+          "write all times and the verdict as JSON; '-': to standard output, instead of the table");
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }

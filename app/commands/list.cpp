@@ -33,7 +33,7 @@ std::string parameterLines(Parametrised& object) {
     rows.push_back({"   ", std::string(parameter.name), parameterText(parameter),
                     parameterRange(parameter), std::string(parameter.doc)});
   });
-  return alignColumns(rows, {false, false, true, false, false});
+  return alignColumns(rows, {false, false, true, false, false}, LastColumn::wrapped);
 }
 
 std::string optimisationsOf(const Algorithm& algorithm) {
@@ -55,10 +55,19 @@ std::string exactnessOf(const Algorithm& algorithm) {
   return margin == 0 ? "exact" : fmt::format("margin {}", margin);
 }
 
+/// A paragraph of a list.
+void printParagraph(const std::string& text) {
+  constexpr std::size_t kIndent = 2;
+  constexpr std::size_t kHanging = 6;
+  fmt::print("{:{}}{}\n", "", kIndent, wrapped(text, kIndent, kHanging));
+}
+
 /// What the columns have no room for, in sentences.
 std::string detailsOf(const Algorithm& algorithm) {
-  std::string text =
-      fmt::format("{}: {}. {}", algorithm.id, algorithm.summary, algorithm.description.source);
+  const AlgorithmDescription& description = algorithm.description;
+  std::string text = fmt::format("{}: {}. Optimisations: {}. Time {}. Space {}. {}", algorithm.id,
+                                 algorithm.summary, optimisationsOf(algorithm), description.time,
+                                 description.space, description.source);
   std::vector<std::string_view> original;
   for (const OriginalId& id : originalIds()) {
     if (id.algorithm == algorithm.id) original.push_back(id.name);
@@ -72,42 +81,40 @@ std::string detailsOf(const Algorithm& algorithm) {
 }
 
 void listAlgorithms(const std::vector<Algorithm>& algorithms) {
-  fmt::print(
-      "Algorithms (id, family, principle, optimisations, pairs kept over frames, answer, "
-      "time, space)\n");
+  fmt::print("Algorithms (id, family, principle, pairs kept over frames, answer)\n");
   std::vector<std::vector<std::string>> rows;
   for (const Algorithm& a : algorithms) {
-    rows.push_back({" ", a.id, a.family, a.description.principle, optimisationsOf(a),
-                    a.traits.incremental ? "incremental" : "from scratch", exactnessOf(a),
-                    a.description.time, a.description.space});
+    rows.push_back({" ", a.id, a.family, a.description.principle,
+                    a.traits.incremental ? "incremental" : "from scratch", exactnessOf(a)});
   }
   fmt::print("{}", alignColumns(rows, std::vector<bool>(rows.front().size(), false)));
-  fmt::print("\nTheir sources, other names, limits and parameters (default, range)\n");
+  fmt::print("\nMore of each, with parameters (default, range)\n");
   for (const Algorithm& a : algorithms) {
-    fmt::print("  {}\n{}", detailsOf(a), parameterLines(*a.create()));
+    printParagraph(detailsOf(a));
+    fmt::print("{}", parameterLines(*a.create()));
   }
 }
 
 void listScenes() {
   fmt::print("Scenes, with their parameters (default, range)\n");
   for (const SceneListing& scene : builtinScenes()) {
-    fmt::print("  {} ({}): {}\n{}", scene.id, scene.name, scene.summary,
-               parameterLines(*makeSimulation(scene.id)));
+    printParagraph(fmt::format("{} ({}): {}", scene.id, scene.name, scene.summary));
+    fmt::print("{}", parameterLines(*makeSimulation(scene.id)));
   }
 }
 
 void listEngines() {
   fmt::print("Engines, with the parameters that come with them (default, range)\n");
   for (const EngineListing& engine : builtinEngines()) {
-    fmt::print("  {}: {}\n{}", engine.id, engine.summary,
-               parameterLines(*engineParameters(engine.id)));
+    printParagraph(fmt::format("{}: {}", engine.id, engine.summary));
+    fmt::print("{}", parameterLines(*engineParameters(engine.id)));
   }
 }
 
 void listRecorders() {
   fmt::print("Recorders\n");
   for (const RecorderListing& recorder : builtinRecorders()) {
-    fmt::print("  {}: {}\n", recorder.id, recorder.summary);
+    printParagraph(fmt::format("{}: {}", recorder.id, recorder.summary));
   }
 }
 
@@ -115,7 +122,7 @@ void listDevices() {
   fmt::print("Compute devices (OpenCL); the first is used unless --device names another\n");
   const std::vector<ComputeDevice> devices = computeDevices();
   for (std::size_t i = 0; i < devices.size(); ++i) {
-    fmt::print("  {}: {}\n", i, describe(devices[i]));
+    printParagraph(fmt::format("{}: {}", i, describe(devices[i])));
   }
   if (devices.empty()) fmt::print("  none\n");
 }
@@ -130,7 +137,8 @@ std::vector<Section> sections() {
       {"algorithms",
        [](const Options& options) {
          const std::vector<Algorithm> known = availableAlgorithms(options.plugins);
-         listAlgorithms(options.names.empty() ? known : selectAlgorithms(options.names, known));
+         listAlgorithms(options.names.empty() ? known
+                                              : selectAlgorithms(options.names, known, "list"));
        }},
       {"scenes", [](const Options&) { listScenes(); }},
       {"engines", [](const Options&) { listEngines(); }},

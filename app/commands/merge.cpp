@@ -12,7 +12,9 @@
 #include "broadmark/files.h"
 #include "commands/command.h"
 #include "option_types.h"
+#include "output.h"
 #include "result_files.h"
+#include "words.h"
 
 namespace broadmark::commands::merge {
 namespace {
@@ -24,6 +26,7 @@ struct Options {
 
 int run(const Options& options) {
   if (options.outputs.empty()) throw InputError("merge: say where to: --json, --jsonl, --csv …");
+  for (const auto& [name, path] : options.outputs) requireOutput(path);
   std::vector<Results> runs;
   std::vector<std::string> names = {"merge"};
   for (const std::filesystem::path& path : options.sources) {
@@ -37,8 +40,9 @@ int run(const Options& options) {
   files.end(merged.results);
   const auto partial = std::ranges::count_if(
       merged.results.cases, [](const CaseResult& result) { return !result.isComplete(); });
-  fmt::print("merged: {} cases of {} files; {} were in several of them; {} are partial\n",
-             merged.results.cases.size(), runs.size(), merged.repeated, partial);
+  fmt::print(stderr, "merged: {} of {}; {} were in several of them; {} are partial\n",
+             counted(merged.results.cases.size(), "case"), counted(runs.size(), "file"),
+             merged.repeated, partial);
   return 0;
 }
 

@@ -6,15 +6,17 @@
 #include <memory>
 
 #include "broadmark/error.h"
-#include "broadmark/files.h"
 #include "broadmark/recording.h"
 #include "broadmark/scene_statistics.h"
 #include "broadmark/scenes/simulation.h"
 #include "commands/command.h"
+#include "exit_status.h"
 #include "interrupt.h"
 #include "option_types.h"
+#include "output.h"
 #include "progress.h"
 #include "table.h"
+#include "words.h"
 
 namespace broadmark::commands::verify {
 namespace {
@@ -91,30 +93,31 @@ std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options&
                                  file.string(), recording.hash(),
                                  fs::path(file).replace_extension(".json").string(), *stated));
   }
-  progress.print(fmt::format("{}: ok: {} {}, {} bodies, {} frames, hash {}{}", file.string(),
-                             scene.name, scene.object_type, scene.objects, scene.frames,
-                             recording.hash(), stated ? ", as baked" : ""));
-  if (options.describe) progress.print(formatDescription(*description));
+  if (!isStandardOutput(options.json)) {
+    progress.print(fmt::format("{}: ok: {} {}, {}, hash {}{}", file.string(), scene.name,
+                               scene.object_type, extentText(scene.objects, scene.frames),
+                               recording.hash(), stated ? ", as baked" : ""));
+    if (options.describe) progress.print(formatDescription(*description));
+  }
   return DescribedRecording{file.string(), recording.hash(), scene, *description};
 }
 
 int run(const Options& options) {
-  if (!options.json.empty()) AtomicFile probe(options.json);  // fails now rather than at the end
+  if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
-  int status = 0;
+  int status = exit_status::fine;
   std::vector<DescribedRecording> described;
   for (const auto& file : options.files) {
     try {
       auto one = verifyOne(file, options);
-      if (!one) throw InputError("interrupted");
+      if (!one) throw Interrupted();
       described.push_back(std::move(*one));
     } catch (const InputError& error) {
-      if (InterruptGuard::requested()) throw;
       fmt::print(stderr, "broadmark: {}\n", error.what());
-      status = 2;
+      status = exit_status::bad_input;
     }
   }
-  if (!options.json.empty()) writeTextFile(options.json, formatDescriptions(described));
+  if (!options.json.empty()) writeOutput(options.json, formatDescriptions(described));
   return status;
 }
 
@@ -128,7 +131,9 @@ std::function<int()> add(CLI::App& app) {
       app.add_flag("--describe", options->describe,
                    "also print what each is like, over time: density, pairs per body, share of "
                    "moving bodies, sizes (longest edge of a box), most bodies outside the world");
-  addPath(app, "--json", "FILE", options->json, "write that as JSON, too")->needs(describe);
+  addPath(app, "--json", "FILE", options->json,
+          "write that as JSON, too; '-': to standard output, instead of all else")
+      ->needs(describe);
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }

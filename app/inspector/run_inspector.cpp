@@ -18,15 +18,18 @@ int runInspector(Plan plan, const SessionOptions& options) {
   std::vector<Algorithm> algorithms = plan.algorithms;
   // std::function wants to be copied, and a plan cannot be.
   const auto shared = std::make_shared<Plan>(std::move(plan));
-  const InspectOptions inspect{
-      .algorithms = std::move(algorithms),
-      .make_host = hostMaker(options.hosts),
-      .begin = [shared](Session& session) { session.open(std::move(*shared)); },
-      .script = options.script,
-      .screenshot = options.screenshot,
-      .width = options.picture.width,
-      .height = options.picture.height,
-      .gl = options.picture.gl};
+  const InspectOptions inspect{.algorithms = std::move(algorithms),
+                               .make_host = hostMaker(options.hosts),
+                               .begin =
+                                   [shared, frame = options.frame](Session& session) {
+                                     session.open(std::move(*shared));
+                                     if (frame) session.playback.goTo(*frame);
+                                   },
+                               .script = options.script,
+                               .screenshot = options.screenshot,
+                               .width = options.picture.width,
+                               .height = options.picture.height,
+                               .gl = options.picture.gl};
   try {
     if (options.headless) {
       inspectOffscreen(inspect);

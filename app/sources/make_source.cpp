@@ -3,50 +3,55 @@
 #include "sources/make_source.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/recording.h"
+#include "sweep.h"
 
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// One of the simulations that options ask for: "" and nothing stand for the scene's default.
-struct Axes {
-  std::string object_type;
-  std::optional<std::uint32_t> objects;
-
-  [[nodiscard]] ParameterValues values() const {
-    ParameterValues values;
-    if (objects) values["objects"] = fmt::format("{}", *objects);
-    if (!object_type.empty()) values["object_type"] = object_type;
-    return values;
+/// Scene parameters that have options of their own, as texts of values.
+ParameterValues statedValues(const SceneOptions& options) {
+  ParameterValues values = options.parameters;
+  if (!options.objects.empty()) {
+    values["objects"] = fmt::format("{}", fmt::join(options.objects, ","));
   }
-};
-
-std::vector<Axes> axesOf(const SceneOptions& options) {
-  std::vector<std::string> types = options.object_types;
-  if (types.empty()) types.emplace_back();
-  std::vector<std::optional<std::uint32_t>> counts(options.objects.begin(), options.objects.end());
-  if (counts.empty()) counts.emplace_back();
-  std::vector<Axes> axes;
-  for (const std::string& type : types) {
-    for (const auto& count : counts) axes.push_back({type, count});
+  if (!options.object_types.empty()) {
+    values["object_type"] = fmt::format("{}", fmt::join(options.object_types, ","));
   }
-  return axes;
+  return values;
 }
 
-/// The engine asked for, by its own option or by --param; "": the default.
-std::string engineOf(const SceneOptions& options, const ParameterValues& parameters) {
-  for (const ParameterValues* values : {&options.parameters, &parameters}) {
-    if (const auto engine = values->find("engine"); engine != values->end()) return engine->second;
+std::string optionOf(std::string parameter) {
+  std::ranges::replace(parameter, '_', '-');
+  return fmt::format("--{}", parameter);
+}
+
+void requireStatedOnce(const ParameterValues& stated, const ParameterValues& parameters) {
+  for (const auto& [name, text] : stated) {
+    if (!parameters.contains(name)) continue;
+    throw InputError(
+        fmt::format("--param: '{}' is given twice: {} states it, too", name, optionOf(name)));
   }
-  return {};
+}
+
+/// The engines asked for, by their own option or by --param; one "": the default.
+std::vector<std::string> enginesOf(const ParameterValues& stated,
+                                   const ParameterValues& parameters) {
+  for (const ParameterValues* values : {&stated, &parameters}) {
+    const auto engine = values->find("engine");
+    if (engine != values->end()) return valuesIn(engine->second);
+  }
+  return {""};
 }
 
 std::unique_ptr<Simulation> simulationOf(NamedSource& scene, const std::string& engine) {
@@ -61,10 +66,29 @@ void requireApplicable(Simulation& simulation, const std::string& scene,
   const std::vector<std::string> known = parameterNames(simulation);
   for (const auto& [name, value] : options) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    std::string option = "--" + name;
-    std::ranges::replace(option, '_', '-');
-    throw InputError(fmt::format(
-        "{}: {}: an authored scene states its bodies itself: leave the option out", scene, option));
+    throw InputError(
+        fmt::format("{}: {}: an authored scene states its bodies itself: leave the option out",
+                    scene, optionOf(name)));
+  }
+}
+
+/// Fills in what of the `given` parameters tells the simulations apart, but for what the names of
+/// recordings state anyway.
+void noteSwept(std::vector<SweptSimulation>& simulations, const ParameterValues& given) {
+  const auto values_of = [&](const std::string& name) {
+    std::vector<std::string> values;  // "": has no such parameter
+    for (const auto& [simulation, swept] : simulations) {
+      values.push_back(parameterValues(*simulation)[name]);
+    }
+    return values;
+  };
+  for (const auto& [name, text] : given) {
+    if (name == "objects" || name == "object_type" || name == "frames") continue;
+    const std::vector<std::string> values = values_of(name);
+    if (std::ranges::adjacent_find(values, std::ranges::not_equal_to()) == values.end()) continue;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (!values[i].empty()) simulations[i].swept[name] = values[i];
+    }
   }
 }
 
@@ -110,29 +134,41 @@ fs::path statedPath(const fs::path& file, const std::string& stated) {
   return !fs::exists(stated) && fs::exists(beside) ? beside : fs::path(stated);
 }
 
-std::vector<std::unique_ptr<Simulation>> makeSimulations(NamedSource& scene,
-                                                         const SceneOptions& options,
-                                                         const ParameterValues& parameters) {
-  const std::string engine = engineOf(options, parameters);
-  std::vector<std::unique_ptr<Simulation>> simulations;
-  for (const Axes& axes : axesOf(options)) {
-    auto simulation = simulationOf(scene, engine);
-    requireApplicable(*simulation, scene.name(), options.parameters);
-    requireApplicable(*simulation, scene.name(), axes.values());
-    // The engine first: it brings parameters of its own.
-    if (!engine.empty()) setParameters(*simulation, {{"engine", engine}});
-    setParameters(*simulation, options.parameters);
-    setParameters(*simulation, applicableValues(*simulation, parameters));
-    setParameters(*simulation, axes.values());
-    simulations.push_back(std::move(simulation));
+std::vector<SweptSimulation> makeSimulations(NamedSource& scene, const SceneOptions& options,
+                                             const ParameterValues& parameters) {
+  const ParameterValues stated = statedValues(options);
+  requireStatedOnce(stated, parameters);
+  std::vector<SweptSimulation> simulations;
+  for (const std::string& engine : enginesOf(stated, parameters)) {
+    const auto fresh = [&] {
+      auto simulation = simulationOf(scene, engine);
+      requireApplicable(*simulation, scene.name(), stated);
+      // The engine first: it brings parameters of its own.
+      if (!engine.empty()) setParameters(*simulation, {{"engine", engine}});
+      return simulation;
+    };
+    const auto first = fresh();
+    ParameterValues texts = stated;
+    texts.merge(applicableValues(*first, parameters));
+    if (!engine.empty()) texts["engine"] = engine;
+    for (const ParameterValues& values : combinations(*first, texts)) {
+      auto simulation = fresh();
+      setParameters(*simulation, values);
+      simulations.push_back({std::move(simulation), {}});
+    }
   }
+  ParameterValues given = stated;
+  given.insert(parameters.begin(), parameters.end());
+  noteSwept(simulations, given);
   return simulations;
 }
 
 OpenedSource openScene(NamedSource& scene, const OpeningOptions& options) {
   OpenedSource opened;
-  for (auto& simulation : makeSimulations(scene, options.scene, options.parameters)) {
-    opened.entries.push_back({.source = simulationSource(std::move(simulation)), .cases = {}});
+  for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
+    PlanEntry entry{.source = simulationSource(std::move(simulation)), .cases = {}};
+    entry.source.reference.swept = std::move(swept);
+    opened.entries.push_back(std::move(entry));
   }
   return opened;
 }

@@ -24,11 +24,17 @@ Source recordingSource(const std::filesystem::path&);
 /// A path that is stated in `file`: as stated if there is such a file, else relative to `file`.
 std::filesystem::path statedPath(const std::filesystem::path& file, const std::string& stated);
 
-/// Every simulation that the options ask for: object types × object counts. The scene is a built-in
-/// one's name, a file of scene parameters, or an authored scene, of which the options override the
-/// parameters. Throws InputError.
-std::vector<std::unique_ptr<Simulation>> makeSimulations(NamedSource& scene, const SceneOptions&,
-                                                         const ParameterValues& parameters);
+/// One of several simulations of a scene.
+struct SweptSimulation {
+  std::unique_ptr<Simulation> simulation;
+  ParameterValues swept;  ///< what tells it from the others, as RecordingReference::swept
+};
+
+/// Every simulation that the options ask for: every combination of their values (sweep.h). The
+/// scene is a built-in one's name, a file of scene parameters, or an authored scene, of which the
+/// options override the parameters. Throws InputError.
+std::vector<SweptSimulation> makeSimulations(NamedSource& scene, const SceneOptions&,
+                                             const ParameterValues& parameters);
 
 /// Opens a scene of any kind: SourceKind::open of all of them.
 OpenedSource openScene(NamedSource&, const OpeningOptions&);

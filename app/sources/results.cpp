@@ -84,6 +84,7 @@ Source sourceOf(const RecordingReference& reference, const fs::path& results_fil
   Source source = reference.path.empty()
                       ? simulationAgain(reference, results_file)
                       : recordingSource(statedPath(results_file, reference.path));
+  source.reference.swept = reference.swept;
   source.expected_hash = reference.hash;
   return source;
 }

@@ -76,6 +76,22 @@ TEST_F(BatchOfBakes, PlansBakesAndKeeps) {
   EXPECT_EQ(testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr(), "");
 }
 
+TEST_F(BatchOfBakes, EveryValueMakesARecordingOfItsOwnName) {
+  options_.scenes = {"brownian"};
+  options_.scene.object_types = {"cubes"};
+  options_.scene.objects = {20};
+  options_.scene.parameters["seed"] = "3,1";
+  options_.parameters = {{"density", "0.10,0.05"}};
+  const auto plan = planBake(options_);
+  ASSERT_TRUE(plan);
+  std::vector<std::string> names;
+  for (const BakeJob& job : plan->pending) names.push_back(job.paths.front().filename());
+  EXPECT_THAT(names, testing::ElementsAre("Brownian Cubes N20 F5frames density=0.05 seed=1.aabbs",
+                                          "Brownian Cubes N20 F5frames density=0.05 seed=3.aabbs",
+                                          "Brownian Cubes N20 F5frames density=0.1 seed=1.aabbs",
+                                          "Brownian Cubes N20 F5frames density=0.1 seed=3.aabbs"));
+}
+
 TEST_F(BatchOfBakes, PlanningCanBeStopped) {
   auto plan = planBake(options_);
   prepare(*plan, options_.output);

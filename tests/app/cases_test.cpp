@@ -24,7 +24,7 @@ using testing::SizeIs;
 using Names = std::vector<std::string>;
 
 Names idsOf(const Names& selectors) {
-  return algorithmIds(selectAlgorithms(selectors, builtinAlgorithms()));
+  return algorithmIds(selectAlgorithms(selectors, builtinAlgorithms(), "--algorithm"));
 }
 
 std::vector<Case> casesOf(const CaseOptions& options, const ParameterValues& parameters = {}) {
@@ -102,6 +102,39 @@ TEST(SelectCases, TakeTheParametersThatTheyHave) {
         run.algorithm.id == "kd" ? ParameterValues{{"objects_per_leaf", "7"}} : ParameterValues{};
     EXPECT_EQ(run.parameters, expected);
   }
+}
+
+TEST(SelectCases, OneForEachValueOfAParameter) {
+  const CaseOptions kd{.algorithms = {"kd"}, .isas = {Isa::scalar}};
+  EXPECT_THAT(namesOf(casesOf(kd, {{"objects_per_leaf", "128,9,64,9.0"}})),
+              ElementsAre("kd/scalar/objects_per_leaf=9", "kd/scalar/objects_per_leaf=64",
+                          "kd/scalar/objects_per_leaf=128"))
+      << "by size, each once";
+  EXPECT_THAT(
+      namesOf(casesOf(kd, {{"objects_per_leaf", "9,64"}, {"margin", "0,0.1"}})),
+      ElementsAre("kd/scalar/margin=0/objects_per_leaf=9", "kd/scalar/margin=0/objects_per_leaf=64",
+                  "kd/scalar/margin=0.1/objects_per_leaf=9",
+                  "kd/scalar/margin=0.1/objects_per_leaf=64"));
+}
+
+TEST(SelectCases, AParameterMayBeOfOneAlgorithmOnly) {
+  const CaseOptions options{
+      .algorithms = {"kd", "kd-mt", "dbvt-d"}, .threads = {1}, .isas = {Isa::scalar}};
+  const auto names = [&](const ParameterValues& given) { return namesOf(casesOf(options, given)); };
+  EXPECT_THAT(names({{"kd:margin", "0.5"}}),
+              ElementsAre("dbvt-d", "kd/scalar/margin=0.5", "kd-mt/scalar/t1"));
+  EXPECT_THAT(
+      names({{"margin", "0.3"}, {"kd*:margin", "0.5"}}),
+      ElementsAre("dbvt-d/margin=0.3", "kd/scalar/margin=0.5", "kd-mt/scalar/t1/margin=0.5"))
+      << "it wins over the one that is given for all";
+  EXPECT_THAT(
+      names({{"DBVT:margin", "0.1,0.2"}}),
+      ElementsAre("dbvt-d/margin=0.1", "dbvt-d/margin=0.2", "kd/scalar", "kd-mt/scalar/t1"));
+  EXPECT_THAT(
+      inputErrorOf([&] {
+        names({{"kd:margin", "1"}, {"kd*:margin", "2"}});
+      }),
+      AllOf(HasSubstr("'kd:margin'"), HasSubstr("'kd*:margin'"), HasSubstr("margin of kd")));
 }
 
 TEST(SelectCases, TheOriginalsIdsStateTheirInstructionSet) {

@@ -55,7 +55,7 @@ TEST(Session, Defaults) {
   EXPECT_THAT(options.outputs, IsEmpty());
   EXPECT_EQ(options.picture.width, 1280);
   EXPECT_EQ(options.picture.height, 720);
-  EXPECT_FALSE(options.screenshot_frame);
+  EXPECT_FALSE(options.frame);
   EXPECT_EQ(options.shard.count, 1);
 }
 
@@ -67,7 +67,7 @@ TEST(Session, ListsMayBeDividedByCommasAndRepeated) {
   EXPECT_THAT(options.scene.objects, ElementsAre(10, 20, 30)) << "ascending, each once";
   EXPECT_THAT(options.scene.object_types, ElementsAre("cubes", "spheres"));
   EXPECT_THAT(options.cases.algorithms, ElementsAre("bf", "sap*", "KD"));
-  EXPECT_THAT(options.cases.threads, ElementsAre(4, 1));
+  EXPECT_THAT(options.cases.threads, ElementsAre(1, 4)) << "by size";
   EXPECT_THAT(options.cases.isas, ElementsAre(Isa::sse2, bestIsa()));
   EXPECT_THAT(options.scene.recorders, ElementsAre("posrot", "aabbs"));
 }
@@ -87,6 +87,14 @@ TEST(Session, ParametersKeepTheirCommas) {
                                                        {"density", "0.5"},
                                                        {"engine", "ode"},
                                                        {"input", "there"}}));
+}
+
+TEST(Session, OptionsOfScenesMayHaveSeveralValues) {
+  const SessionOptions options = session({"--seed", "2,1", "--seed", "3", "--engine", "ode,bullet",
+                                          "--input", "a,b", "--param", "kd:margin=1,2"});
+  EXPECT_EQ(options.scene.parameters,
+            (ParameterValues{{"seed", "2,1,3"}, {"engine", "ode,bullet"}, {"input", "a,b"}}));
+  EXPECT_EQ(options.parameters, (ParameterValues{{"kd:margin", "1,2"}}));
 }
 
 TEST(Session, ValuesAreUnderstood) {
@@ -131,7 +139,7 @@ TEST(Session, ValuesAreUnderstood) {
   EXPECT_EQ(options.warmup, 2);
   EXPECT_EQ(options.policy.frame_limit_seconds, 1e-3);
   EXPECT_EQ(options.policy.check, CheckMode::hash);
-  EXPECT_EQ(options.screenshot_frame, 0U);
+  EXPECT_EQ(options.frame, 0U);
   EXPECT_EQ(options.picture.width, 16);
   EXPECT_EQ(options.picture.height, 9);
   EXPECT_EQ(options.picture.gl, GlSource::egl);
@@ -203,6 +211,9 @@ TEST(Session, UnknownNamesAreSuggested) {
   expectSessionRefused({"--recorder", "posrat"}, {"--recorder", "'posrat'", "'posrot'"});
   expectSessionRefused({"--param", "friction"}, {"--param", "'friction'", "KEY=VALUE"});
   expectSessionRefused({"--param", "=5"}, {"--param", "'=5'"});
+  expectSessionRefused({"--param", ":margin=5"}, {"--param", "':margin=5'", "ALGORITHM:KEY=VALUE"});
+  expectSessionRefused({"--param", "kd:=5"}, {"--param", "'kd:=5'"});
+  expectSessionRefused({"--param", "kd:a=1", "--param", "kd:a=2"}, {"'kd:a'", "twice"});
   expectSessionRefused({"--param", "a=1", "--param", "a=2"}, {"--param", "'a'", "twice"});
   expectSessionRefused({"--objects", ""}, {"--objects", "names nothing"});
   expectSessionRefused({"--algorithm", ","}, {"--algorithm", "','"});
@@ -264,7 +275,7 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
   for (const Arguments& lost :
        {Arguments{"--repetitions", "2"}, Arguments{"--warmup", "2"}, Arguments{"--check", "off"},
         Arguments{"--time-limit", "1"}, Arguments{"--record", "d"}, Arguments{"--shard", "0/2"},
-        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--frame", "1"},
+        Arguments{"--filter", "x"}, Arguments{"--list"}, Arguments{"--allow-timeout"},
         Arguments{"--recorder", "aabbs"}, Arguments{"--json", "j"}, Arguments{"--csv", "c"},
         Arguments{"--csv-frames", "c"}}) {
     Arguments window = {"freefall"};
@@ -278,6 +289,7 @@ TEST(Session, TheInspectorRefusesWhatItWouldNotUse) {
     expectRefused({"freefall", lost[0], lost[1]}, {lost[0], "--headless"});
     EXPECT_TRUE(parseSession({"freefall", lost[0], lost[1], "--headless", "--ui"}).inspector());
   }
+  EXPECT_EQ(parseSession({"freefall", "--frame", "7"}).frame, 7U);
   expectRefused({"freefall", "brownian"}, {"'brownian'", "one source"});
   EXPECT_THAT(parseSession({}).sources, IsEmpty()) << "the inspector needs none";
 }
@@ -307,10 +319,6 @@ TEST(ParseNumber, TakesFiniteNumbersOnly) {
     EXPECT_THAT(inputErrorOf([&] { parseNumber(bad, "--x", 0, false); }),
                 AllOf(HasSubstr("--x"), HasSubstr(bad)));
   }
-}
-
-TEST(SplitList, DropsEmptyParts) {
-  EXPECT_THAT(splitList({"a,b", "", ",c,", "d"}), ElementsAre("a", "b", "c", "d"));
 }
 
 }  // namespace

@@ -108,6 +108,45 @@ TEST(Plan, ParametersMustBeSomebodys) {
               AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
 }
 
+TEST(Plan, ParametersOfOneAlgorithmMustBeItsOwn) {
+  SessionOptions asked = options();
+  asked.cases.algorithms = {"kd", "sap"};
+  asked.parameters = {{"kd:objects_per_leaf", "9"}};
+  EXPECT_THAT(caseIds(makePlan(asked)).at(1), HasSubstr("objects_per_leaf=9"));
+  const auto refused = [&](const std::string& key, const Names& words) {
+    asked.parameters = {{key, "1"}};
+    for (const std::string& word : words) EXPECT_THAT(complaint(asked), HasSubstr(word));
+  };
+  refused("kdd:objects_per_leaf", {"--param", "'kdd'", "'kd'"});
+  refused("kd:objects_per_lef", {"--param", "'objects_per_lef'", "'objects_per_leaf'"});
+  refused("kd:density", {"--param", "'density'"});
+  refused("tracy:objects_per_cell", {"--param", "'tracy:objects_per_cell'", "no case"});
+}
+
+TEST(Plan, EveryValueOfAParameterMakesARecordingOrACase) {
+  SessionOptions asked = options();
+  asked.sources = {"freefall"};
+  asked.scene.objects = {10};
+  asked.scene.parameters = {{"frames", "3"}, {"seed", "2,1"}};
+  asked.cases.algorithms = {"kd"};
+  asked.parameters = {{"density", "0.05,0.1"}, {"objects_per_leaf", "9,20"}};
+  const Plan plan = makePlan(asked);
+  ASSERT_THAT(plan.entries, SizeIs(4));
+  EXPECT_THAT(
+      caseIds(plan),
+      testing::ElementsAre(HasSubstr("/s1/density=0.05/kd/scalar/objects_per_leaf=9"),
+                           HasSubstr("/s1/density=0.05/kd/scalar/objects_per_leaf=20"),
+                           HasSubstr("/s2/density=0.05/kd/"), HasSubstr("/s2/density=0.05/kd/"),
+                           HasSubstr("/s1/density=0.1/kd/"), HasSubstr("/s1/density=0.1/kd/"),
+                           HasSubstr("/s2/density=0.1/kd/"), HasSubstr("/s2/density=0.1/kd/")));
+  EXPECT_EQ(plan.entries.back().source.reference.seed, 2U);
+
+  asked.parameters = {{"frames", "3"}};
+  EXPECT_THAT(complaint(asked), AllOf(HasSubstr("'frames'"), HasSubstr("twice")));
+  asked.parameters = {{"density", "0.1,7"}};
+  EXPECT_THAT(complaint(asked), AllOf(HasSubstr("density"), HasSubstr("'7'")));
+}
+
 TEST(Plan, ParametersOfEveryCaseAreChecked) {
   SessionOptions asked = options();
   asked.cases.algorithms = {"sap", "kd"};
@@ -147,6 +186,19 @@ TEST(Plan, TheInspectorBeginsWithTheNamedAlgorithmsOnly) {
   ASSERT_THAT(without.entries, SizeIs(1)) << "kept, although it has no cases";
   EXPECT_THAT(without.entries.front().cases, IsEmpty());
   EXPECT_GT(without.algorithms.size(), 20U);
+}
+
+TEST(Plan, TheFrameToBeShownMustExist) {
+  for (SessionOptions asked : {options(), inspector()}) {
+    asked.frame = 3;
+    makePlan(asked);
+    asked.frame = 4;
+    EXPECT_THAT(complaint(asked), AllOf(HasSubstr("--frame"), HasSubstr("4")));
+  }
+  SessionOptions without = inspector();
+  without.sources.clear();
+  without.frame = 0;
+  EXPECT_THAT(complaint(without), HasSubstr("--frame"));
 }
 
 TEST(Plan, TheInspectorNeedsNoSource) {

@@ -85,6 +85,21 @@ TEST_F(Sources, EveryCombinationOfAScenesOptions) {
   EXPECT_THAT(made, testing::ElementsAre("Spheres10", "Spheres20", "Cubes10", "Cubes20"));
 }
 
+TEST_F(Sources, EveryEngineWithItsOwnParameters) {
+  const OpenedSource opened = open(
+      "brownian",
+      {.scene = {.parameters = {{"engine", "boids,bullet"}}}, .parameters = {{"sight", "2,3"}}});
+  std::vector<ParameterValues> swept;
+  for (const PlanEntry& entry : opened.entries) swept.push_back(entry.source.reference.swept);
+  EXPECT_THAT(swept, testing::ElementsAre(ParameterValues{{"engine", "boids"}, {"sight", "2"}},
+                                          ParameterValues{{"engine", "boids"}, {"sight", "3"}},
+                                          ParameterValues{{"engine", "bullet"}}));
+  EXPECT_THAT(inputErrorOf([&] {
+                open("brownian", {.scene = {.parameters = {{"engine", "boids,bulet"}}}});
+              }),
+              HasSubstr("'bulet'"));
+}
+
 TEST_F(Sources, Recordings) {
   const std::string path = recording();
   const PlanEntry entry = entryOf(path);

@@ -9,6 +9,13 @@ endfunction()
 
 file(REMOVE_RECURSE "${WORK_DIR}")
 run(${CMAKE_COMMAND} --install "${BUILD_DIR}" --prefix "${WORK_DIR}/prefix")
+foreach(printed man/man1/broadmark.1 bash-completion/completions/broadmark
+    zsh/vendor-completions/_broadmark fish/vendor_completions.d/broadmark.fish)
+  file(READ "${WORK_DIR}/prefix/share/${printed}" text)
+  if(NOT text MATCHES "headless")
+    message(FATAL_ERROR "${printed}: names no options")
+  endif()
+endforeach()
 run(${CMAKE_COMMAND} -S "${SOURCE_DIR}" -B "${WORK_DIR}/build"
   "-DCMAKE_PREFIX_PATH=${WORK_DIR}/prefix" "-DCMAKE_CXX_COMPILER=${COMPILER}")
 run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")

@@ -87,12 +87,12 @@ TEST_F(Bake, ListTellsWhatWouldBeDone) {
   EXPECT_THAT(
       linesOf(before.out),
       ElementsAre(AllOf(StartsWith("bake "), HasSubstr(" " + size + " "), HasSubstr(kBaked)),
-                  "1 recordings: 1 to bake (" + size + " bytes), 0 kept"));
+                  "1 recording: 1 to bake (" + size + " bytes), 0 kept"));
   EXPECT_THAT(entries(), IsEmpty());
   runQuietly(bakeCall());
   const Ended after = runQuietly(call);
   EXPECT_THAT(after.out, StartsWith("kept "));
-  EXPECT_THAT(after.out, HasSubstr("1 recordings: 0 to bake (0 bytes), 1 kept"));
+  EXPECT_THAT(after.out, HasSubstr("1 recording: 0 to bake (0 bytes), 1 kept"));
   EXPECT_THAT(runQuietly(bakeCall({"--list", "--force"})).out, StartsWith("bake "));
 }
 
@@ -111,7 +111,7 @@ TEST_F(Bake, AFailedOneDoesNotStopTheOthers) {
 TEST_F(Bake, PlainProgressEndsWithALine) {
   const Ended ended = run(bakeCall());
   EXPECT_EQ(ended.status, 0);
-  EXPECT_THAT(linesOf(ended.err), ElementsAre(StartsWith("baking 1 recordings: done (")));
+  EXPECT_THAT(linesOf(ended.err), ElementsAre(StartsWith("baking 1 recording: done (")));
 }
 
 TEST_F(Bake, TheSeedDecidesTheRecording) {

@@ -20,7 +20,7 @@ class Device : public EndToEnd {
 TEST_F(Device, AreListed) {
   const Ended ended = run({"list", "devices"});
   EXPECT_EQ(ended.status, 0);
-  EXPECT_THAT(ended.out, HasSubstr("0: " + describe(computeDevices().front())));
+  EXPECT_THAT(onOneLine(ended.out), HasSubstr("0: " + describe(computeDevices().front())));
 }
 
 TEST_F(Device, IsChosenByNumberOrNameAndRecorded) {

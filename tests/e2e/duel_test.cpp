@@ -45,6 +45,15 @@ TEST_F(Duel, RanksMoreThanTwo) {
   }
 }
 
+TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
+  const Ended ended = run(duelOf({"bf", "sap"}, {"--seconds", "0.5", "--json", "-"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  const Json json = Json::parse(ended.out, nullptr, false);
+  ASSERT_TRUE(json.is_object()) << ended.out;
+  EXPECT_EQ(json.at("schema"), "broadmark-duel/1");
+  EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(Duel, OfTwoBuildsOfAPlugIn) {
   fs::copy_file(places::faultyPlugin(), file("old.so"));
   fs::copy_file(places::faultyPlugin(), file("new.so"));

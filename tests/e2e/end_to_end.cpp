@@ -33,6 +33,13 @@ std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
+std::string onOneLine(const std::string& text) {
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
 std::string recordingOf(std::int32_t objects, std::int32_t frames, const std::vector<Aabb>& boxes,
                         const Aabb& world) {
   std::string bytes("Handmade");

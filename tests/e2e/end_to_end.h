@@ -33,6 +33,9 @@ Json readJson(const fs::path& path);
 
 std::vector<std::string> linesOf(const std::string& text);
 
+/// A text's words, so that it does not matter where its lines are broken.
+std::string onOneLine(const std::string& text);
+
 /// An .aabbs recording put together by hand: whatever the header claims, with these boxes.
 std::string recordingOf(std::int32_t objects, std::int32_t frames, const std::vector<Aabb>& boxes,
                         const Aabb& world = {{-9, -9, -9, 0}, {9, 9, 9, 0}});

@@ -1,5 +1,7 @@
 // What the program says about itself.
 
+#include <algorithm>
+
 #include "broadmark/algorithms.h"
 #include "broadmark/scenes/simulation.h"
 #include "e2e/end_to_end.h"
@@ -13,7 +15,18 @@ using List = EndToEnd;
 void expectWords(const Ended& ended, const std::vector<std::string>& words) {
   EXPECT_EQ(ended.status, 0);
   EXPECT_EQ(ended.err, "");
-  for (const std::string& word : words) EXPECT_THAT(ended.out, HasSubstr(word));
+  const std::string text = onOneLine(ended.out);
+  for (const std::string& word : words) EXPECT_THAT(text, HasSubstr(word));
+}
+
+/// In characters, not bytes.
+std::size_t longestLine(const std::string& text) {
+  std::size_t longest = 0;
+  for (const std::string& line : linesOf(text)) {
+    const auto characters = std::ranges::count_if(line, [](char c) { return (c & 0xC0) != 0x80; });
+    longest = std::max(longest, static_cast<std::size_t>(characters));
+  }
+  return longest;
 }
 
 TEST_F(Help, NamesEveryOptionAndCommand) {
@@ -21,12 +34,35 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                                             "--density", "--engine",      "--param"};
   const Ended help = run({"--help"});
   expectWords(help, session);
-  expectWords(help, {"Usage: broadmark ", "--headless", "--algorithm",  "--plugin",      "--case",
-                     "--export-case",     "--threads",  "--isa",        "--repetitions", "--warmup",
-                     "--time-limit",      "--check",    "--in-process", "--json",        "--csv ",
-                     "--csv-frames",      "--record",   "--shard",      "--filter",      "--list",
-                     "--quiet",           "--version",  "bake",         "list ",         "verify",
-                     "compare",           "Exit status"});
+  expectWords(help, {"Usage: broadmark ",
+                     "--headless",
+                     "--algorithm",
+                     "--plugin",
+                     "--case",
+                     "--export-case",
+                     "--threads",
+                     "--isa",
+                     "--repetitions",
+                     "--warmup",
+                     "--time-limit",
+                     "--allow-timeout",
+                     "--check",
+                     "--in-process",
+                     "--json",
+                     "--csv ",
+                     "--csv-frames",
+                     "--record",
+                     "--shard",
+                     "--filter",
+                     "--list",
+                     "--quiet",
+                     "--version",
+                     "bake",
+                     "list ",
+                     "verify",
+                     "compare",
+                     "Exit status",
+                     "130"});
   expectWords(run({"bake", "--help"}), session);
   expectWords(run({"bake", "--help"}),
               {"--scenes", "--output", "--threads", "--list", "--force", "--quiet"});
@@ -62,12 +98,19 @@ TEST_F(List, NamesEverything) {
   }
 }
 
+TEST_F(List, FitsInto100Columns) {
+  const Ended all = run({"list"});
+  EXPECT_LE(longestLine(all.out), 100U);
+  EXPECT_GT(longestLine(all.out), 90U) << "and uses them";
+}
+
 TEST_F(List, OfSomeAlgorithms) {
   const Ended ended = run({"list", "algorithms", "kd", "sap*"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"kd: ", "sap-simd: "}) EXPECT_THAT(ended.out, HasSubstr(word));
   EXPECT_THAT(ended.out, Not(HasSubstr("tracy")));
-  expectRefusal({"list", "algorithms", "kdd"}, {"'kdd'", "'kd'"});
+  expectRefusal({"list", "algorithms", "kdd"}, {"list: ", "'kdd'", "'kd'"});
+  EXPECT_THAT(run({"list", "algorithms", "kdd"}).err, Not(HasSubstr("--algorithm")));
   expectRefusal({"list", "scenes", "city"}, {"'city'", "algorithms"});
 }
 

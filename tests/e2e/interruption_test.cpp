@@ -10,6 +10,8 @@
 namespace broadmark::tests {
 namespace {
 
+using ::testing::AllOf;
+
 /// So many frames that no bake of them ends before it is interrupted.
 constexpr const char* kEndless = "1000000";
 
@@ -32,12 +34,21 @@ TEST_F(Interruption, OfABakeLeavesNothingHalf) {
     ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
     bake.signal(signal);
     const Ended ended = bake.wait();
-    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.status, 130);
     EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
     EXPECT_THAT(ended.err, StartsWith("broadmark: interrupted"));
     EXPECT_THAT(ended.out, StartsWith("0 baked, 0 kept, 1 not finished"));
     EXPECT_THAT(files(), IsEmpty());
   }
+}
+
+TEST_F(Interruption, TwoSignalsAtOnceAreOne) {
+  Program bake(directory_, kEndlessBake);
+  ASSERT_TRUE(bake.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
+  bake.signal(SIGINT);
+  bake.signal(SIGTERM);
+  EXPECT_EQ(bake.wait().status, 130);
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
@@ -56,7 +67,8 @@ TEST_F(Interruption, OfABatchKeepsWhatIsBaked) {
     bake.signal(signal);
     const Ended ended = bake.wait();
     if (signal == SIGKILL) continue;
-    EXPECT_EQ(ended.status, 2);
+    EXPECT_EQ(ended.status, 130);
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("stopped at"), Not(HasSubstr("done"))));
     EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
     EXPECT_THAT(ended.out, HasSubstr("baked  " + path(3) + "\n"));
     EXPECT_THAT(linesOf(ended.out).back(), StartsWith("2 baked, 0 kept, 1 not finished; "));
@@ -93,7 +105,7 @@ TEST_F(Interruption, AKilledBakeLeavesNothingThatLooksWhole) {
     return hasGrown(kEndlessFile + ".part") && fs::file_size(file(kEndlessFile + ".part")) < kMuch;
   }));
   again.signal(SIGINT);
-  EXPECT_EQ(again.wait().status, 2);
+  EXPECT_EQ(again.wait().status, 130);
   EXPECT_THAT(files(), IsEmpty());
 }
 
@@ -116,7 +128,7 @@ TEST_F(Interruption, OfARunKeepsFinishedCases) {
   ASSERT_TRUE(run_of_two.waitUntil([&] { return fs::exists(file("results.json")); }));
   run_of_two.signal(SIGINT);
   const Ended ended = run_of_two.wait();
-  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.status, 130);
   EXPECT_THAT(linesOf(ended.err).back(), StartsWith("broadmark: interrupted"));
   EXPECT_THAT(ended.out, HasSubstr("written: results.json"));
   const Json cases = readJson(file("results.json")).at("cases");
@@ -131,9 +143,23 @@ TEST_F(Interruption, OfARunsFirstSimulationWritesNothing) {
   ASSERT_TRUE(endless.waitUntil([&] { return hasGrown(kEndlessFile + ".part"); }));
   endless.signal(SIGINT);
   const Ended ended = endless.wait();
-  EXPECT_EQ(ended.status, 2);
+  EXPECT_EQ(ended.status, 130);
   EXPECT_EQ(linesOf(ended.err).size(), 1U) << ended.err;
   EXPECT_THAT(ended.out, Not(HasSubstr("results.json")));
+  EXPECT_THAT(files(), IsEmpty());
+}
+
+TEST_F(Interruption, OfADuelWritesNothing) {
+  const Arguments duel = {"duel",   "freefall", "--objects",   "20",        "--frames",
+                          "20",     "bf",       "sap",         "--seconds", "1000",
+                          "--json", "d.json",   "--precision", "1e-9",      "--quiet"};
+  Program endless(directory_, duel);
+  ASSERT_TRUE(endless.waitUntil([&] { return endless.children().size() >= 2; }));
+  endless.signal(SIGINT);
+  const Ended ended = endless.wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_EQ(ended.err, "broadmark: interrupted\n");
+  EXPECT_EQ(ended.out, "");
   EXPECT_THAT(files(), IsEmpty());
 }
 

@@ -19,7 +19,7 @@ TEST_F(Merge, TwoShardsGiveTheWholeRun) {
   runShard("1/2", "--json", "b.json");
   const Ended ended = run({"merge", "a.jsonl", "b.json", "--json", "whole.json", "--csv", "w.csv"});
   EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_THAT(ended.out, HasSubstr("3 cases of 2 files"));
+  EXPECT_THAT(ended.err, HasSubstr("3 cases of 2 files"));
   const Json whole = readJson(file("whole.json"));
   EXPECT_EQ(whole.at("cases").size(), 3U);
   EXPECT_EQ(whole.at("environments").size(), 1U);

@@ -245,6 +245,32 @@ TEST_F(Run, FilterChoosesByCaseId) {
   EXPECT_EQ(done[1].at("algorithm"), "sap-mt");
 }
 
+TEST_F(Run, ResultsMayGoToStandardOutputAndNothingElseThen) {
+  const Arguments call = {"--headless", "freefall", "--objects",   "9,20",  "--frames",
+                          "3",          "--quiet",  "--algorithm", "bf,sap"};
+  const auto printed = [&](const Arguments& more) {
+    Arguments arguments = call;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return ended;
+  };
+  for (const char* output : {"-", "/dev/stdout"}) {
+    const Json results = Json::parse(printed({"--json", output}).out, nullptr, false);
+    ASSERT_TRUE(results.is_object()) << output;
+    EXPECT_EQ(results.at("cases").size(), 4U);
+  }
+  const Ended csv = printed({"--csv", "-", "--json", "results.json"});
+  EXPECT_EQ(linesOf(csv.out).size(), 5U) << csv.out;
+  EXPECT_THAT(csv.err, HasSubstr("written: results.json"));
+  EXPECT_EQ(linesOf(printed({"--csv-frames", "-"}).out).size(), 1U + 4 * 3);
+  EXPECT_EQ(files(), std::set<std::string>{"results.json"});
+
+  Arguments twice = call;
+  twice.insert(twice.end(), {"--json", "-", "--csv", "-"});
+  expectRefusal(twice, {"--csv", "--json", "-"});
+}
+
 TEST_F(Run, ProgressSpeaksUnlessQuiet) {
   const Arguments call = {"--headless", "freefall", "--objects", "20", "--frames", "3"};
   EXPECT_THAT(run(call).err, HasSubstr("running FreeFall N20"));
@@ -252,10 +278,11 @@ TEST_F(Run, ProgressSpeaksUnlessQuiet) {
 }
 
 TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
-  const Ended ended =
-      run({"--headless", "freefall", "--objects", "40,20,30", "--frames", "5", "--algorithm", "bf",
-           "--filter", "/bf$", "--time-limit", "1e-12", "--json", "results.json"});
-  EXPECT_EQ(ended.status, 1) << ended.err;
+  const Arguments call = {"--headless",   "freefall", "--objects",   "40,20,30",
+                          "--frames",     "5",        "--algorithm", "bf",
+                          "--time-limit", "1e-12",    "--json",      "results.json"};
+  const Ended ended = run(call);
+  EXPECT_EQ(ended.status, 4) << ended.err;
   const Json done = cases();
   ASSERT_EQ(done.size(), 3U);
   EXPECT_EQ(done[0].at("recording").at("objects"), 20);
@@ -266,6 +293,14 @@ TEST_F(Run, TheTimeLimitStopsACaseAndSparesItLargerScenes) {
     EXPECT_THAT(done[larger].at("reason"), HasSubstr("20 bodies"));
   }
   EXPECT_EQ(marks(linesOf(ended.out)), 0);
+
+  // A limit that is crossed on purpose is no failure; the cases are timeouts all the same.
+  Arguments on_purpose = call;
+  on_purpose.emplace_back("--allow-timeout");
+  const Ended allowed = run(on_purpose);
+  EXPECT_EQ(allowed.status, 0) << allowed.err;
+  EXPECT_THAT(allowed.out, HasSubstr("timeout"));
+  for (const Json& one : cases()) EXPECT_EQ(one.at("status"), "timeout");
 }
 
 TEST_F(Run, PinsThreadsWhereTheyFit) {

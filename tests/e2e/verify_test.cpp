@@ -94,5 +94,11 @@ TEST_F(Verify, BadOptions) {
   expectRefusal({"verify", "--descrbe", "known.aabbs"}, {"'--describe'"});
 }
 
+TEST_F(Verify, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
+  bakeRecording("a.aabbs");
+  const Ended ended = runQuietly({"verify", "--describe", "--json", "-", "a.aabbs"});
+  EXPECT_FALSE(Json::parse(ended.out, nullptr, false).is_discarded()) << ended.out;
+}
+
 }  // namespace
 }  // namespace broadmark::tests

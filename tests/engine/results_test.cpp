@@ -114,6 +114,7 @@ Results everything() {
   CaseResult& bare = results.cases.emplace_back();
   bare.id = "bare";
   bare.recording.scene_parameters = {{"density", "0.1"}};
+  bare.recording.swept = {{"density", "0.1"}};
   bare.status = Status::unsupported;
   return results;
 }
@@ -153,6 +154,7 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_FALSE(bare.peak_bytes);
   EXPECT_EQ(bare.recording.path, "");
   EXPECT_EQ(bare.recording.scene_parameters, (ParameterValues{{"density", "0.1"}}));
+  EXPECT_EQ(bare.recording.swept, bare.recording.scene_parameters);
   EXPECT_EQ(bare.status, Status::unsupported);
 }
 

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "engine/spoilt_cases.h"
@@ -167,6 +168,47 @@ TEST(Runner, AWarmUpIsCheckedButNotRecorded) {
   runRepetition(spoilt, wrong, source, oracle, {}, false);
   EXPECT_EQ(spoilt.status, Status::mismatch);
   EXPECT_TRUE(spoilt.repetitions.empty());
+}
+
+TEST(Runner, WrongPairsOfAFrameCountOnceHoweverOftenItIsRun) {
+  ChainSource source;
+  Oracle oracle;
+  CaseRun wrong(spoilingAnswer([](auto& answer) { answer.pop_back(); }));
+  CaseResult result = beginCase(wrong.description(), {.scene = source.scene()});
+  for (int pass = 0; pass < 3; ++pass) runRepetition(result, wrong, source, oracle);
+  ASSERT_EQ(result.frames.size(), kChainFrames);
+  std::uint64_t missed = 0;
+  for (const FrameCounts& counts : result.frames) missed += counts[FrameCount::missed];
+  EXPECT_GT(missed, 0U);
+  EXPECT_EQ(result.missed_count, missed);
+  EXPECT_LE(missed, kChainFrames);
+}
+
+/// Two bodies that do not touch: body 0 moves in every frame but the last, body 1 in frame 2 only.
+class TwoBodies final : public IndexedFrames {
+ public:
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+
+ private:
+  static Aabb boxAt(float x) { return {{x, 0, 0, 0}, {x + 1, 1, 1, 0}}; }
+  std::span<const Aabb> readBoxes(std::uint32_t index) override {
+    boxes_ = {boxAt(static_cast<float>(std::min(index, 2U))), boxAt(index < 2 ? 10.0F : 11.0F)};
+    return boxes_;
+  }
+
+  SceneInfo scene_{"Two", "Cubes", 2, 3, {{0, 0, 0, 0}, {100, 100, 100, 0}}};
+  std::vector<Aabb> boxes_;
+};
+
+TEST(Runner, BodiesThatMoveAreCounted) {
+  TwoBodies frames;
+  const CaseResult result = runCase(caseOf({.on_answer = [](auto, auto& answer) { answer = {}; }}),
+                                    frames, {.check = CheckMode::off});
+  std::vector<std::uint64_t> changed;
+  for (const FrameCounts& counts : result.frames) {
+    changed.push_back(counts[FrameCount::changed_bodies]);
+  }
+  EXPECT_THAT(changed, ElementsAre(1, 2, 0));
 }
 
 TEST(Runner, FramesComeInOrderAndEveryRepetitionIsAFreshInstance) {

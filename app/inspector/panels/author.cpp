@@ -9,6 +9,7 @@
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/author_dialogs.h"
 #include "inspector/panel.h"
+#include "words.h"
 
 namespace broadmark::panels::author {
 namespace {
@@ -200,8 +201,9 @@ class AuthorPanel final : public Panel {
       std::size_t left_out = 0;
       session.document.edit([&](SceneEditor&) { left_out = desk.addStroke(); });
       const std::size_t added = desk.editor.selection().size();
-      session.notices.say(left_out == 0 ? fmt::format("{} bodies added", added)
-                                        : fmt::format("no room for {} bodies", left_out),
+      session.notices.say(left_out == 0
+                              ? fmt::format("{} added", counted(added, "body", "bodies"))
+                              : fmt::format("no room for {}", counted(left_out, "body", "bodies")),
                           left_out == 0 ? Message::Kind::note : Message::Kind::warning);
     }
     ImGui::PopID();

@@ -192,7 +192,7 @@ class BatchPanel final : public Panel {
       ImGui::PopTextWrapPos();
       return;
     }
-    ui.heading(fmt::format("To bake: {} recordings, {}", preview_.recordings.size(),
+    ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
                            bytesText(preview_.bytes))
                    .c_str());
     ImGuiListClipper clipper;

@@ -7,6 +7,7 @@
 #include "broadmark/scene_statistics.h"
 #include "inspector/panel.h"
 #include "inspector/wrong_pair.h"
+#include "words.h"
 
 namespace broadmark::panels::selection {
 namespace {
@@ -73,7 +74,7 @@ class SelectionPanel final : public Panel {
   static void drawBodies(PanelContext& context, const Snapshot& snapshot) {
     Ui& ui = context.ui;
     const std::vector<std::uint32_t> bodies = context.session.selection.bodies();
-    ui.heading(fmt::format("{} bodies", bodies.size()).c_str());
+    ui.heading(counted(bodies.size(), "body", "bodies").c_str());
     if (ui.button("Fly there", "(F)")) context.session.selection.fly_to = bodies;
     ImGui::BeginChild("bodies");
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {

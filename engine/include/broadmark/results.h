@@ -58,6 +58,7 @@ struct RecordingReference {
   std::string hash;
   std::string path;                  ///< "" when it was simulated for this run
   ParameterValues scene_parameters;  ///< all of them, when it was simulated
+  ParameterValues swept = {};        ///< of those, what tells it from other recordings of its run
 };
 
 struct CaseResult {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,6 +23,12 @@ Json parseJson(std::string_view text, std::string_view name);
 /// As a text that ends in a line feed; `indent` spaces a level. Texts that are not UTF-8 (names may
 /// come from file names) are made so.
 std::string formatJson(const Json& json, int indent = 1);
+
+/// The value, or null.
+template <class T>
+Json orNull(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
 
 /// A text for messages, control characters escaped.
 std::string onOneLine(const std::string& text);

@@ -1,0 +1,39 @@
+// How commands end.
+
+#include "exit_status.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <set>
+#include <vector>
+
+#include "broadmark/files.h"
+#include "support/places.h"
+
+namespace broadmark::tests {
+namespace {
+
+int endOf(const std::vector<Status>& statuses) { return exitStatusOf(statuses); }
+
+TEST(ExitStatus, OfCases) {
+  EXPECT_EQ(endOf({}), 0);
+  EXPECT_EQ(endOf({Status::ok, Status::unsupported}), 0) << "what cannot run here is no failure";
+  EXPECT_EQ(endOf({Status::ok, Status::mismatch}), 1);
+  EXPECT_EQ(endOf({Status::error}), 1);
+  EXPECT_EQ(endOf({Status::timeout, Status::ok}), 4);
+  EXPECT_EQ(endOf({Status::timeout, Status::mismatch}), 1) << "a wrong answer says more";
+}
+
+TEST(ExitStatus, AreExplainedInTheReadme) {
+  const std::string readme = readTextFile(places::source("README.md"));
+  std::set<int> values;
+  for (const auto& [value, meaning] : kExitStatuses.entries) {
+    EXPECT_THAT(readme,
+                testing::HasSubstr(fmt::format("| {} | {} |", static_cast<int>(value), meaning)));
+    EXPECT_TRUE(values.insert(value).second);
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests

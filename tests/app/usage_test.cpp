@@ -1,0 +1,124 @@
+// Completion and manual have every option that help has.
+
+#include "usage.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <regex>
+#include <set>
+
+#include "broadmark/files.h"
+#include "command_line.h"
+#include "engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string printedBy(const std::vector<std::string>& arguments) {
+  testing::internal::CaptureStdout();
+  const int status = parseCommandLine(arguments)();
+  std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_EQ(status, 0);
+  return text;
+}
+
+/// The names at the beginnings of lines of --help-all, without dashes.
+std::set<std::string> shownOptions() {
+  const std::string help = printedBy({"--help-all"});
+  const std::regex option(R"((^|\n) +(-h,)?--([a-z][a-z-]*))");
+  std::set<std::string> names;
+  for (std::sregex_iterator found(help.begin(), help.end(), option), end; found != end; ++found) {
+    names.insert((*found)[3]);
+  }
+  return names;
+}
+
+/// Whether `name` is in the text as a whole word.
+bool hasWord(const std::string& text, const std::string& name) {
+  for (auto at = text.find(name); at != std::string::npos; at = text.find(name, at + 1)) {
+    const char next = at + name.size() < text.size() ? text[at + name.size()] : ' ';
+    if (std::isalnum(static_cast<unsigned char>(next)) == 0 && next != '-') return true;
+  }
+  return false;
+}
+
+TEST(Usage, EveryOptionOfHelpIsEverywhere) {
+  const std::set<std::string> names = shownOptions();
+  for (const char* known :
+       {"help", "version", "json", "param", "scenes", "fail-above", "describe"}) {
+    EXPECT_TRUE(names.contains(known)) << known;
+  }
+  const std::string bash = printedBy({"completion", "bash"});
+  const std::string zsh = printedBy({"completion", "zsh"});
+  const std::string fish = printedBy({"completion", "fish"});
+  const std::string manual = printedBy({"manual"});
+  for (const std::string& name : names) {
+    EXPECT_TRUE(hasWord(bash, "--" + name)) << name;
+    EXPECT_TRUE(hasWord(zsh, "--" + name)) << name;
+    EXPECT_TRUE(hasWord(fish, " -l " + name)) << name;
+    std::string dashes = "--" + name;
+    for (auto at = dashes.find('-'); at != std::string::npos; at = dashes.find('-', at + 2)) {
+      dashes.insert(at, "\\");
+    }
+    EXPECT_THAT(manual, HasSubstr(dashes));
+  }
+  for (const char* command : {"bake", "list", "verify", "compare", "duel", "manual"}) {
+    for (const std::string& text : {bash, zsh, fish, manual}) EXPECT_TRUE(hasWord(text, command));
+  }
+}
+
+TEST(Usage, OfTheManual) {
+  const std::string manual = printedBy({"manual"});
+  EXPECT_THAT(manual, testing::StartsWith(".TH BROADMARK 1 "));
+  for (const char* section :
+       {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "COMMANDS", "EXIT STATUS"}) {
+    EXPECT_THAT(manual, HasSubstr(std::string(".SH ") + section + "\n"));
+  }
+  EXPECT_THAT(manual, HasSubstr(".TP\n130\ninterrupted"));
+  EXPECT_THAT(manual, HasSubstr(".TP\n\\fB\\-\\-json\\fR \\fIFILE\\fR\nresults as JSON"));
+}
+
+/// What bash makes of the last of these words.
+std::string completedByBash(const std::filesystem::path& script, const std::string& words) {
+  const auto last = std::ranges::count(words, ' ');
+  const std::string command = fmt::format(
+      "bash -c '. \"$0\"; COMP_WORDS=({}) COMP_CWORD={}; _broadmark; echo ${{COMPREPLY[*]}}' "
+      "\"{}\"",
+      words, last, script.string());
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> pipe(::popen(command.c_str(), "r"),
+                                                             ::pclose);
+  std::string text;
+  for (int c = std::fgetc(pipe.get()); c != EOF; c = std::fgetc(pipe.get())) {
+    text += static_cast<char>(c);
+  }
+  return text;
+}
+
+TEST(Usage, BashCompletes) {
+  const TemporaryDirectory directory;
+  const auto script = directory / "script";
+  writeTextFile(script, printedBy({"completion", "bash"}));
+  EXPECT_EQ(completedByBash(script, "broadmark --csv"), "--csv --csv-frames\n");
+  EXPECT_EQ(completedByBash(script, "broadmark ba"), "bake\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --sce"), "--scenes\n");
+  EXPECT_EQ(completedByBash(script, "broadmark bake --csv"), "\n") << "no option of bake";
+  EXPECT_EQ(completedByBash(script, "broadmark bake fi"), "\n") << "files are left to bash";
+}
+
+TEST(Usage, OfAnUnknownShell) {
+  EXPECT_THAT(inputErrorOf([] {
+                parseCommandLine({"completion", "bsh"});
+              }),
+              AllOf(HasSubstr("completion"), HasSubstr("'bsh'"), HasSubstr("'bash'")));
+  EXPECT_THAT(inputErrorOf([] { parseCommandLine({"completion"}); }), HasSubstr("shell"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests
