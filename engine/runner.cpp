@@ -96,14 +96,14 @@ bool runFrames(Repetition& repetition, FrameCounter& counter, CaseRun& run, Fram
 }
 
 /// What came of one pass.
-struct PassOutcome {
+struct Pass {
   bool finished = false;  ///< not cancelled
   bool whole = false;     ///< its instance was not lost on the way
   Repetition repetition;
 };
-PassOutcome runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
-                    const RunHooks& hooks) {
-  PassOutcome pass;
+Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
+             const RunHooks& hooks) {
+  Pass pass;
   pass.repetition.frames.reserve(source.scene().frames);
   const Frame first = source.rewind();
   FrameCounter counter(result, first);
@@ -157,7 +157,7 @@ bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle
                    const RunHooks& hooks, bool measured) {
   result.checked = run.checks();
   try {
-    PassOutcome pass = runPass(result, run, source, oracle, hooks);
+    Pass pass = runPass(result, run, source, oracle, hooks);
     if (!pass.finished) return false;
     if (measured && pass.whole) result.repetitions.push_back(std::move(pass.repetition));
   } catch (const Cancelled&) {
