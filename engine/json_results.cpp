@@ -556,8 +556,10 @@ Results linesFrom(const JsonFields& first, std::string_view rest, std::string_vi
 /// The first line of JSON Lines, or null for what is no such file.
 Json headOfLines(std::string_view text) {
   Json head = Json::parse(takeFirstLine(text), nullptr, false);
-  if (head.is_object() && head.contains("schema") && !head.contains("cases")) return head;
-  return nullptr;
+  const auto has = [&](const char* key) { return head.contains(key); };
+  // A document on one line, even a damaged one, has some of these.
+  const bool is_document = has("cases") || has("environments") || has("environment");
+  return head.is_object() && has("schema") && !is_document ? head : nullptr;
 }
 
 std::string lineOf(const Json& json) { return formatJson(json, -1); }

@@ -16,8 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
-/// How long a process may take to begin: no part of the algorithm's time.
-constexpr std::chrono::seconds kTimeToBegin{60};
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
 
@@ -42,7 +40,7 @@ class WorkerProcess::Link {
   /// Introduces both sides, and names the case.
   void begin(const Json& case_message) {
     greet();
-    call(case_message, kTimeToBegin);
+    call(case_message, options_.begin_limit);
   }
 
   /// The answer to a call into the algorithm. Throws what that threw, and as CaseHost says.
@@ -52,7 +50,7 @@ class WorkerProcess::Link {
   using Seconds = std::chrono::duration<double>;
 
   void greet() {
-    const std::optional<Json> hello = receive(kTimeToBegin);
+    const std::optional<Json> hello = receive(options_.begin_limit);
     const int version = hello ? hello->value("protocol", 0) : 0;
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();

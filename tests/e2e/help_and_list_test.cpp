@@ -66,7 +66,7 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
   expectWords(run({"bake", "--help"}), session);
   expectWords(run({"bake", "--help"}),
               {"--scenes", "--output", "--threads", "--list", "--force", "--quiet"});
-  expectWords(run({"compare", "--help"}), {"--fail-above", "A.json", "B.json"});
+  expectWords(run({"compare", "--help"}), {"--fail-above", "--baseline", "--by", "--junit"});
   expectWords(run({"verify", "--help"}), {"FILE", "--describe", "--json", "--quiet"});
   expectWords(run({"list", "--help"}), {"algorithms", "scenes", "engines", "--plugin"});
   expectWords(run({"--help-all"}), {"--headless", "--scenes", "--fail-above"});

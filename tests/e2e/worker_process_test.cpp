@@ -132,7 +132,8 @@ std::string ending(const std::string& script) {
                 return std::make_unique<WorkerProcess>(
                     one, WorkerOptions{.command = {"/bin/sh", "-c",
                                                    "printf '{\"protocol\": 1}' >&3; " + script},
-                                       .hard_limit = std::chrono::milliseconds(300)});
+                                       .hard_limit = std::chrono::milliseconds(300),
+                                       .begin_limit = std::chrono::seconds(3)});
               });
   EXPECT_FALSE(run.start(sceneOf({boxes, boxes}), {0, boxes}));
   EXPECT_NE(run.status(), Status::ok);

@@ -207,6 +207,7 @@ TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
   right.id = "right/case";
   right.status = Status::ok;
   right.differences.clear();
+  results.environments.resize(1);
   results.cases = {right, one};
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));

@@ -23,6 +23,8 @@ struct WorkerOptions {
   std::vector<std::string> command;
   /// On a single call into the algorithm; then the process is killed.
   std::chrono::duration<double> hard_limit{60};
+  /// On the process's first answers: to its start, and to the case that it is to run.
+  std::chrono::duration<double> begin_limit{60};
   /// Data that the process may hold; beyond it, allocating fails. 0: whatever the system gives.
   std::uint64_t memory_limit_bytes = 0;
   bool pin = false;  ///< as LocalHost does
