@@ -239,10 +239,9 @@ void addHosts(CLI::App& app, HostOptions& hosts) {
                    "run all cases in this process, for debuggers and profilers, instead of each in "
                    "a worker process of its own: a crash or a hang then ends everything, and "
                    "memory is not measured");
-  app.add_flag(
-         "--pin,!--no-pin", hosts.pin,
-         "bind each thread of a case to a core of its own, the quietest ones for every "
-         "repetition; not if they are more than the cores, or of a device (default: --no-pin)")
+  app.add_flag("--pin", hosts.pin,
+               "bind each thread of a case to a core of its own, the quietest ones for every "
+               "repetition; not if they are more than the cores, or of a device")
       ->excludes(in_process);
   number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
          "limit on a single call into an algorithm: its process is then ended",

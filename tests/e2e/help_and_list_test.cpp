@@ -34,35 +34,14 @@ TEST_F(Help, NamesEveryOptionAndCommand) {
                                             "--density", "--engine",      "--param"};
   const Ended help = run({"--help"});
   expectWords(help, session);
-  expectWords(help, {"Usage: broadmark ",
-                     "--headless",
-                     "--algorithm",
-                     "--plugin",
-                     "--case",
-                     "--export-case",
-                     "--threads",
-                     "--isa",
-                     "--repetitions",
-                     "--warmup",
-                     "--time-limit",
-                     "--allow-timeout",
-                     "--check",
-                     "--in-process",
-                     "--json",
-                     "--csv ",
-                     "--csv-frames",
-                     "--record",
-                     "--shard",
-                     "--filter",
-                     "--list",
-                     "--quiet",
-                     "--version",
-                     "bake",
-                     "list ",
-                     "verify",
-                     "compare",
-                     "Exit status",
-                     "130"});
+  expectWords(help,
+              {"Usage: broadmark ", "--headless",      "--algorithm",  "--plugin",      "--case",
+               "--export-case",     "--threads",       "--isa",        "--repetitions", "--warmup",
+               "--time-limit",      "--allow-timeout", "--check",      "--in-process",  "--pin",
+               "--precision",       "--most-seconds",  "--order-seed", "--json",        "--csv ",
+               "--csv-frames",      "--record",        "--shard",      "--filter",      "--list",
+               "--quiet",           "--version",       "bake",         "list ",         "verify",
+               "compare",           "Exit status",     "130"});
   expectWords(run({"bake", "--help"}), session);
   expectWords(run({"bake", "--help"}),
               {"--scenes", "--output", "--threads", "--list", "--force", "--quiet"});
