@@ -35,6 +35,9 @@ struct Candidate {
   [[nodiscard]] const Environment& environment() const {
     return results->environments[result->environment];
   }
+  [[nodiscard]] CaseInRun inRun() const {
+    return {.result = result, .pace = paceOf(*results, result->recording.hash)};
+  }
 };
 
 /// Which cases belong together: the recording's hash, what is left of the case's name, and which of
@@ -147,11 +150,11 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
   } else if (!options.any_conditions && std::ranges::any_of(compared.conditions, refused)) {
     compared.verdict = Verdict::other_conditions;
   } else {
-    std::vector<const CaseResult*> runs;
+    std::vector<CaseInRun> runs;
     for (const Candidate& one : before) {
-      if (one.result->status == Status::ok) runs.push_back(one.result);
+      if (one.result->status == Status::ok) runs.push_back(one.inRun());
     }
-    compared.ratio = ratioOfRuns(runs, b);
+    compared.ratio = ratioOfRuns(runs, after.inRun());
     compared.verdict =
         compared.ratio ? verdictOn(compared.ratio->ratio.ci95, options) : Verdict::not_timed;
   }

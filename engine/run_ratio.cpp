@@ -24,7 +24,6 @@ using PassTimes = std::vector<double>;  ///< seconds of each frame
 /// The repetitions of one run.
 struct TimedRun {
   std::vector<PassTimes> passes;
-  std::vector<YardstickTimes> yardsticks;
 };
 
 TimedRun runOf(const CaseResult& result) {
@@ -35,7 +34,6 @@ TimedRun runOf(const CaseResult& result) {
       // A time below the clock's resolution must still have a logarithm.
       pass.push_back(static_cast<double>(std::max<std::int64_t>(times[Phase::total], 1)) * 1e-9);
     }
-    if (repetition.yardsticks) run.yardsticks.push_back(*repetition.yardsticks);
   }
   return run;
 }
@@ -135,21 +133,18 @@ double runNoise(std::span<const TimedRun> before, std::size_t frames) {
   return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
-/// Logarithm of a yardstick's least time, as frames count with theirs: the mean over the runs;
-/// nothing without any.
-std::optional<double> levelOf(std::span<const TimedRun> runs, Yardstick which) {
-  std::vector<double> logs;
-  for (const TimedRun& run : runs) {
-    if (run.yardsticks.empty()) continue;
-    std::int64_t least = std::numeric_limits<std::int64_t>::max();
-    for (const YardstickTimes& times : run.yardsticks) least = std::min(least, times[which]);
-    logs.push_back(std::log(static_cast<double>(std::max<std::int64_t>(least, 1))));
+/// Mean logarithm of a yardstick's least times in these runs; nothing unless all have it.
+std::optional<double> levelOf(std::span<const CaseInRun> runs, Yardstick which) {
+  double sum = 0;
+  for (const CaseInRun& run : runs) {
+    if (!run.pace) return std::nullopt;
+    sum += std::log(static_cast<double>(std::max<std::int64_t>((*run.pace)[which], 1)));
   }
-  return logs.empty() ? std::nullopt : std::optional(mean(logs));
+  return sum / static_cast<double>(runs.size());
 }
 
 /// By how much the machine was slower during `after`, as a logarithm.
-std::optional<double> driftBetween(std::span<const TimedRun> before, const TimedRun& after) {
+std::optional<double> driftBetween(std::span<const CaseInRun> before, const CaseInRun& after) {
   double most = 0;
   for (const auto& yardstick : kYardsticks.entries) {
     const auto a = levelOf(before, yardstick.value);
@@ -183,11 +178,26 @@ Interval frameNoise(std::span<const double> before, std::span<const double> afte
 
 }  // namespace
 
-std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
-                                    const CaseResult& after) {
+std::optional<YardstickTimes> paceOf(const Results& results, const std::string& recording_hash) {
+  std::optional<YardstickTimes> pace;
+  for (const CaseResult& result : results.cases) {
+    if (result.recording.hash != recording_hash) continue;
+    for (const Repetition& repetition : result.repetitions) {
+      if (!repetition.yardsticks) continue;
+      if (!pace) pace = repetition.yardsticks;
+      for (const auto& yardstick : kYardsticks.entries) {
+        std::int64_t& least = (*pace)[yardstick.value];
+        least = std::min(least, (*repetition.yardsticks)[yardstick.value]);
+      }
+    }
+  }
+  return pace;
+}
+
+std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const CaseInRun& after) {
   std::vector<TimedRun> runs;
-  for (const CaseResult* result : before) runs.push_back(runOf(*result));
-  const TimedRun judged = runOf(after);
+  for (const CaseInRun& run : before) runs.push_back(runOf(*run.result));
+  const TimedRun judged = runOf(*after.result);
   const std::span<const TimedRun> alone(&judged, 1);
   const std::size_t frames = std::min(framesOf(runs), framesOf(alone));
   if (frames == 0) return std::nullopt;
@@ -197,7 +207,7 @@ std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
   const std::vector<double> b = leastTimes(alone, frames, drawn);
   RunRatio result{.before = mean(a), .after = mean(b), .ratio = {}, .drift = {}};
   const double estimate = std::log(result.after / result.before);
-  const std::optional<double> drift = driftBetween(runs, judged);
+  const std::optional<double> drift = driftBetween(before, after);
   const double between = std::max(repetitionNoise(runs, alone, frames), runNoise(runs, frames));
   const Interval noise = frameNoise(a, b);
   const auto half = [&](double of_frames) {

@@ -26,9 +26,20 @@ CaseResult resultOf(const std::vector<std::vector<double>>& passes) {
   return result;
 }
 
+/// A case in a run of nothing else.
+CaseInRun inRun(const CaseResult& result) {
+  Results run;
+  run.cases = {result};
+  return {.result = &result, .pace = paceOf(run, result.recording.hash)};
+}
+
+std::optional<RunRatio> ratioOf(const std::vector<CaseResult>& before, const CaseResult& after) {
+  std::vector<CaseInRun> runs;
+  for (const CaseResult& run : before) runs.push_back(inRun(run));
+  return ratioOfRuns(runs, inRun(after));
+}
 RunRatio ratioOf(const CaseResult& before, const CaseResult& after) {
-  const CaseResult* const runs[] = {&before};
-  return ratioOfRuns(runs, after).value();
+  return ratioOf(std::vector{before}, after).value();
 }
 
 TEST(RunRatio, IsTheQuotientOfTheMeansOfLeastTimes) {
@@ -50,17 +61,33 @@ TEST(RunRatio, NothingWithoutTimes) {
   const CaseResult none = resultOf({});
   const CaseResult empty = resultOf({{}});
   const CaseResult some = resultOf({{1}});
-  for (const CaseResult* untimed : {&none, &empty}) {
-    const CaseResult* const runs[] = {untimed};
-    EXPECT_FALSE(ratioOfRuns(runs, some));
-    const CaseResult* const others[] = {&some};
-    EXPECT_FALSE(ratioOfRuns(others, *untimed));
+  for (const CaseResult& untimed : {none, empty}) {
+    EXPECT_FALSE(ratioOf(std::vector{untimed}, some));
+    EXPECT_FALSE(ratioOf(std::vector{some}, untimed));
   }
 }
 
 TEST(RunRatio, ClockTicksOfZeroStillHaveARatio) {
   const RunRatio ratio = ratioOf(resultOf({{0, 0}}), resultOf({{0, 0}}));
   EXPECT_DOUBLE_EQ(ratio.ratio.value, 1);
+}
+
+TEST(RunRatio, ThePaceIsTheLeastOfAllCasesThatTookTurns) {
+  CaseResult one = resultOf({{1}, {1}});
+  one.repetitions[0].yardsticks = {{5, 9}};
+  one.repetitions[1].yardsticks = {{7, 8}};
+  CaseResult other = one;
+  other.repetitions[1].yardsticks = {{6, 3}};
+  CaseResult elsewhere = one;
+  elsewhere.recording.hash = "elsewhere";
+  elsewhere.repetitions[0].yardsticks = {{1, 1}};
+  Results run;
+  run.cases = {one, other, elsewhere};
+  const std::optional<YardstickTimes> pace = paceOf(run, "");
+  ASSERT_TRUE(pace);
+  EXPECT_EQ(pace->ns, (YardstickTimes{{5, 3}}.ns));
+  run.cases = {resultOf({{1}})};
+  EXPECT_FALSE(paceOf(run, ""));
 }
 
 TEST(RunRatio, DriftWidensTheIntervalAndMovesNothing) {
@@ -135,10 +162,8 @@ TEST(RunRatio, ThreeBaselinesTellHowMuchRunsDiffer) {
   const CaseResult two = constant(1.1);
   const CaseResult three = constant(0.9);
   const CaseResult judged = constant(1.1);
-  const CaseResult* const alone[] = {&one};
-  EXPECT_GT(ratioOfRuns(alone, judged)->ratio.ci95.low, 1);
-  const CaseResult* const several[] = {&one, &two, &three};
-  EXPECT_LT(ratioOfRuns(several, judged)->ratio.ci95.low, 1);
+  EXPECT_GT(ratioOf(one, judged).ratio.ci95.low, 1);
+  EXPECT_LT(ratioOf({one, two, three}, judged)->ratio.ci95.low, 1);
 }
 
 }  // namespace

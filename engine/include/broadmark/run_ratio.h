@@ -27,9 +27,17 @@ struct RunRatio {
   std::optional<double> drift;
 };
 
+/// A case in one run.
+struct CaseInRun {
+  const CaseResult* result = nullptr;
+  /// The yardsticks' least times while the recording was run; nothing if they were not measured.
+  std::optional<YardstickTimes> pace = {};
+};
+/// The least times of all cases on the recording of this hash, which took turns.
+std::optional<YardstickTimes> paceOf(const Results&, const std::string& recording_hash);
+
 /// The ratio of one case in two runs over the same frames. Several runs may stand for A: three or
 /// more tell how much runs differ, too. Nothing if there is no time to compare.
-std::optional<RunRatio> ratioOfRuns(std::span<const CaseResult* const> before,
-                                    const CaseResult& after);
+std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const CaseInRun& after);
 
 }  // namespace broadmark

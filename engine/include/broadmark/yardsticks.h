@@ -13,8 +13,8 @@
 
 namespace broadmark {
 
-/// What bounds the work: arithmetic in registers, or reads spread over more memory than caches of
-/// one core hold.
+/// What bounds the work: arithmetic in registers, or reading more memory than the caches of one
+/// core hold.
 enum class Yardstick { arithmetic, memory };
 inline constexpr NameTable kYardsticks{
     {NamedValue{Yardstick::arithmetic, "arithmetic"}, {Yardstick::memory, "memory"}}};
@@ -30,8 +30,8 @@ struct YardstickTimes {
 class Yardsticks {
  public:
   Yardsticks();
-  /// The least of a few times of each, measured now, which takes about 10 ms, or within the last
-  /// quarter of a second.
+  /// A time of each: measured now, which takes about 3 ms, or within the last 30 ms. One alone says
+  /// little; of many the least is how fast the machine can be.
   YardstickTimes recent();
 
  private:
