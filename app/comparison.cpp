@@ -161,14 +161,19 @@ CaseComparison compareCase(std::span<const Candidate> before, const Candidate& a
   return compared;
 }
 
-/// "B.json: partial: the run did not end", where that is so.
-void noteWhatIsPartial(const NamedResults& run, std::vector<std::string>& notes) {
-  if (!run.results.complete)
-    notes.push_back(run.name + ": partial: the run did not come to its end");
+/// What is to be known of a run as a whole: that it is partial, and what may have disturbed it.
+void noteRun(const NamedResults& run, std::vector<std::string>& notes) {
+  const auto note = [&](const std::string& text) { notes.push_back(run.name + ": " + text); };
+  if (!run.results.complete) note("partial: the run did not come to its end");
+  std::set<std::string> warnings;
   for (const CaseResult& result : run.results.cases) {
-    if (result.isComplete()) continue;
-    notes.push_back(fmt::format("{}: {}: {} of {} repetitions", run.name, result.id,
-                                result.repetitions.size(), result.conditions.repetitions));
+    if (!result.isComplete()) {
+      note(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
+                       result.conditions.repetitions));
+    }
+    for (const std::string& warning : result.conditions.warnings) {
+      if (warnings.insert(warning).second) note(warning);
+    }
   }
 }
 
@@ -220,8 +225,8 @@ class Matching {
   std::set<CaseKey> met_;
 };
 
-/// "5.3 % slower", "twice"…
-std::string changeText(const Estimate& ratio) {
+/// "+5.3 %"
+std::string slowdownText(const Estimate& ratio) {
   return fmt::format("{:+.1f} %", 100 * (ratio.value - 1));
 }
 
@@ -258,8 +263,8 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
                           const ComparisonOptions& options) {
   if (!options.by.empty()) requireKnown(options.by, {&after, 1});
   Comparison comparison{.options = options, .cases = {}, .notes = {}};
-  for (const NamedResults& run : before) noteWhatIsPartial(run, comparison.notes);
-  noteWhatIsPartial(after, comparison.notes);
+  for (const NamedResults& run : before) noteRun(run, comparison.notes);
+  noteRun(after, comparison.notes);
   Matching matching(before, comparison.options);
   for (const auto& [key, candidate] : keysOf(after.results, options.by)) {
     matching.take(key, candidate, comparison.cases);
@@ -279,7 +284,7 @@ std::string verdictText(const CaseComparison& compared) {
   }
   if (compared.verdict == Verdict::faster || compared.verdict == Verdict::slower ||
       (compared.verdict == Verdict::regressed && compared.ratio)) {
-    return fmt::format("{} {}", verdict, changeText(compared.ratio->ratio));
+    return fmt::format("{} {}", verdict, slowdownText(compared.ratio->ratio));
   }
   return verdict;
 }

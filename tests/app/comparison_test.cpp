@@ -194,6 +194,13 @@ TEST(Compare, WhatIsPartialIsTold) {
   EXPECT_THAT(table, HasSubstr("3 of 5 repetitions"));
 }
 
+TEST(Compare, WhatMayHaveDisturbedARunIsToldOnce) {
+  NamedResults run = resultsOf({resultOf("a", 1'000'000), resultOf("b", 1'000'000)});
+  for (CaseResult& result : run.results.cases) result.conditions.warnings = {"busy"};
+  EXPECT_THAT(comparisonOf(resultsOf({resultOf("a", 1)}), run).notes,
+              ElementsAre("name.json: busy"));
+}
+
 TEST(Compare, AcrossThreadsWithinARun) {
   const NamedResults run =
       resultsOf({resultOf("kd-mt/avx2/t1", 2'000'000), resultOf("kd-mt/avx2/t2", 1'000'000),
