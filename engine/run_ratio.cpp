@@ -16,8 +16,10 @@ namespace {
 /// Between two runs of one repetition each, nothing tells how much repetitions differ: this much is
 /// taken for it, as a logarithm. Whole runs on shared machines differ by that.
 constexpr double kUnknownSpread = 0.15;
-/// As many baselines tell how much runs differ.
+/// As many baselines tell how much runs differ, beside what repetitions and yardsticks show. Fewer
+/// do not: then this much is taken for it, likewise.
 constexpr std::size_t kFewestRuns = 3;
+constexpr double kUnknownRunSpread = 0.08;
 
 using PassTimes = std::vector<double>;  ///< seconds of each frame
 
@@ -120,7 +122,7 @@ double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRu
 
 /// What runs differ by, as far as there are enough of them to tell: likewise.
 double runNoise(std::span<const TimedRun> before, std::size_t frames) {
-  if (before.size() < kFewestRuns) return 0;
+  if (before.size() < kFewestRuns) return kUnknownRunSpread;
   std::vector<double> levels;
   for (const TimedRun& run : before) {
     const std::vector<const PassTimes*> passes = passesOf({&run, 1});
@@ -208,7 +210,7 @@ std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const Cas
   RunRatio result{.before = mean(a), .after = mean(b), .ratio = {}, .drift = {}};
   const double estimate = std::log(result.after / result.before);
   const std::optional<double> drift = driftBetween(before, after);
-  const double between = std::max(repetitionNoise(runs, alone, frames), runNoise(runs, frames));
+  const double between = std::hypot(repetitionNoise(runs, alone, frames), runNoise(runs, frames));
   const Interval noise = frameNoise(a, b);
   const auto half = [&](double of_frames) {
     return std::hypot(of_frames, between) + std::abs(drift.value_or(0));

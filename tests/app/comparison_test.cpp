@@ -42,9 +42,11 @@ NamedResults resultsOf(std::vector<CaseResult> cases) {
           {.environments = {{}}, .options = {}, .cases = std::move(cases), .complete = true}};
 }
 
+/// With three baselines that agree: so it is known that runs do not differ.
 Comparison comparisonOf(const NamedResults& before, const NamedResults& after,
                         const ComparisonOptions& options = {}) {
-  return compareResults({&before, 1}, after, options);
+  const std::vector<NamedResults> baselines(3, before);
+  return compareResults(baselines, after, options);
 }
 
 /// The verdict on one case in both runs.
@@ -73,6 +75,16 @@ TEST(Compare, TimesDecide) {
   EXPECT_EQ(verdictOn(normal, resultOf("a", 1'500'000)), Verdict::regressed);
   EXPECT_EQ(verdictOn(normal, resultOf("a", 1'030'000)), Verdict::slower);
   EXPECT_EQ(verdictOn(normal, resultOf("a", 700'000)), Verdict::faster);
+}
+
+TEST(Compare, OneBaselineTellsLittle) {
+  const NamedResults before = resultsOf({resultOf("a", 1'000'000)});
+  const auto verdict = [&](std::int64_t ns) {
+    return compareResults({&before, 1}, resultsOf({resultOf("a", ns)}), {}).cases[0].verdict;
+  };
+  EXPECT_EQ(verdict(1'000'000), Verdict::undecided);
+  EXPECT_EQ(verdict(1'050'000), Verdict::undecided);
+  EXPECT_EQ(verdict(1'200'000), Verdict::regressed);
 }
 
 TEST(Compare, OneRepetitionEachTellsLittle) {

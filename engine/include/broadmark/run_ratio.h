@@ -3,8 +3,8 @@
 // Each frame counts with its least time over the repetitions, since what disturbs a frame makes it
 // slower. What is left between two runs is of three kinds, and the interval covers all of them:
 // noise from frame to frame (a block bootstrap over the frames), noise from repetition to
-// repetition (its spread, as Student's t), and the drift of the machine between the runs (what the
-// yardsticks differ by). Nothing is corrected.
+// repetition and from run to run (their spread, as Student's t), and the drift of the machine
+// between the runs (what the yardsticks differ by). Nothing is corrected.
 #pragma once
 
 #include <optional>
