@@ -163,6 +163,27 @@ TEST_F(Interruption, OfADuelWritesNothing) {
   EXPECT_THAT(files(), IsEmpty());
 }
 
+// The second case of the one recording would take long: the first one is kept nevertheless.
+TEST_F(Interruption, AKilledRunLosesNoFinishedCase) {
+  Program two(directory_, {"--headless", "freefall", "--objects", "10", "--frames", "100",
+                           "--algorithm", "sap,time-validator", "--param", "phase_us=200000",
+                           "--time-limit", "100", "--jsonl", "results.jsonl", "--quiet"});
+  const auto cases = [&] {
+    std::size_t found = 0;
+    for (const std::string& line : linesOf(readFile(file("results.jsonl")))) {
+      found += line.starts_with("{\"case\"") ? 1 : 0;
+    }
+    return found;
+  };
+  ASSERT_TRUE(two.waitUntil([&] { return fs::exists(file("results.jsonl")) && cases() == 1; }));
+  two.signal(SIGKILL);
+  two.wait();
+  const Ended compared = run({"compare", "results.jsonl", "results.jsonl"});
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_THAT(compared.out, HasSubstr("results.jsonl: partial"));
+  EXPECT_THAT(linesOf(compared.out).back(), StartsWith("1 case: "));
+}
+
 TEST_F(Interruption, AKilledRunLeavesWholeResultsOrNone) {
   std::string counts = "1";
   for (int n = 2; n <= 120; ++n) counts += fmt::format(",{}", n);
