@@ -59,7 +59,7 @@ bool states(const std::string& part, const std::string& what) {
 /// The case's name without what is compared.
 std::string nameWithout(const CaseResult& result, const std::string& by) {
   if (by == "algorithm") return {};
-  const std::string name = caseNameOf(result);
+  std::string name = caseNameOf(result);
   if (by.empty()) return name;
   std::string rest;
   for (std::size_t from = 0; from <= name.size();) {
@@ -274,7 +274,7 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
 }
 
 std::string verdictText(const CaseComparison& compared) {
-  const std::string verdict(kVerdicts.nameOf(compared.verdict));
+  std::string verdict(kVerdicts.nameOf(compared.verdict));
   if (compared.status_before != compared.status_after) {
     return fmt::format("{} -> {} {}", statusName(compared.status_before),
                        statusName(compared.status_after), verdict);

@@ -591,7 +591,11 @@ std::string formatJsonResults(const Results& results) {
   return formatJson(json);
 }
 
-const ResultWriter::Lines kJsonLines{.before = linesBefore, .one = lineOfCase, .after = linesAfter};
+const ResultWriter::Lines& jsonLines() {
+  static constexpr ResultWriter::Lines kLines{
+      .before = linesBefore, .one = lineOfCase, .after = linesAfter};
+  return kLines;
+}
 
 std::string formatJsonLines(const Results& results) {
   std::string text = linesBefore(results);

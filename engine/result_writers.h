@@ -9,7 +9,7 @@ namespace broadmark {
 
 std::string formatJsonResults(const Results&);
 std::string formatJsonLines(const Results&);
-extern const ResultWriter::Lines kJsonLines;
+const ResultWriter::Lines& jsonLines();
 std::string formatCsvResults(const Results&);
 std::string formatCsvFrames(const Results&);
 

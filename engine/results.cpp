@@ -45,7 +45,7 @@ std::vector<ResultWriter> resultWriters() {
       {"jsonl",
        "the same as JSON Lines, one line a case, written as the run goes: whatever ends it, "
        "finished cases are kept",
-       formatJsonLines, &kJsonLines},
+       formatJsonLines, &jsonLines()},
       {"csv", "results as CSV: one row per case", formatCsvResults},
       {"csv-frames", "times as CSV: one row per frame", formatCsvFrames},
   };

@@ -159,7 +159,7 @@ std::optional<double> driftBetween(std::span<const CaseInRun> before, const Case
 
 /// Of the logarithm of the sums' ratio: noise from frame to frame.
 Interval frameNoise(std::span<const double> before, std::span<const double> after) {
-  const auto logOf = [&](std::span<const std::size_t> drawn) {
+  const auto log_of = [&](std::span<const std::size_t> drawn) {
     double a = 0;
     double b = 0;
     for (const std::size_t frame : drawn) {
@@ -170,12 +170,12 @@ Interval frameNoise(std::span<const double> before, std::span<const double> afte
   };
   std::vector<std::size_t> all(before.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const double estimate = logOf(all);
+  const double estimate = log_of(all);
   // What each frame does to the ratio.
   std::vector<double> influence(before.size());
   std::ranges::transform(before, after, influence.begin(),
                          [&](double a, double b) { return b - std::exp(estimate) * a; });
-  return blockBootstrap95(before.size(), safeBlockLength(influence), estimate, logOf);
+  return blockBootstrap95(before.size(), safeBlockLength(influence), estimate, log_of);
 }
 
 }  // namespace

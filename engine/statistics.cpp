@@ -144,13 +144,13 @@ Estimate medianOfSeries(std::span<const double> values) {
   const double median = quantile(values, 0.5);
   const std::size_t block = safeBlockLength(sidesOfMedian(values, median));
   std::vector<double> sample(values.size());
-  const auto medianOf = [&](std::span<const std::size_t> drawn) {
+  const auto median_of = [&](std::span<const std::size_t> drawn) {
     std::ranges::transform(drawn, sample.begin(), [&](std::size_t place) { return values[place]; });
     const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
     std::ranges::nth_element(sample, middle);
     return *middle;
   };
-  return {median, blockBootstrap95(values.size(), block, median, medianOf)};
+  return {median, blockBootstrap95(values.size(), block, median, median_of)};
 }
 
 std::optional<Interval> confidence95(std::span<const double> values) {
