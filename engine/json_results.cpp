@@ -297,6 +297,17 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
   return repetitions;
 }
 
+/// Calls visit(place, element, name) for each element of the array at `key`, of which there must be
+/// `count`, or `complaint` says what is wrong.
+template <class Visit>
+void eachOf(const JsonFields& json, const std::string& key, std::size_t count,
+            std::string_view complaint, Visit&& visit) {
+  const Json& elements = json.array(key.c_str());
+  const std::string name = json.path(key.c_str());
+  if (elements.size() != count) throw InputError(fmt::format("{}: {}", name, complaint));
+  for (std::size_t place = 0; place < count; ++place) visit(place, elements[place], name);
+}
+
 /// Of each yardstick one time per repetition; null before a repetition without.
 Json yardsticksToJson(const std::vector<Repetition>& repetitions) {
   Json json = Json::object();
@@ -312,18 +323,14 @@ Json yardsticksToJson(const std::vector<Repetition>& repetitions) {
 
 void readYardsticks(const JsonFields& json, std::vector<Repetition>& repetitions) {
   for (const auto& [which, yardstick] : kYardsticks.entries) {
-    const std::string key = fmt::format("{}_ns", yardstick);
-    const Json& times = json.array(key.c_str());
-    const std::string name = json.path(key.c_str());
-    if (times.size() != repetitions.size()) {
-      throw InputError(name + ": one time per repetition is expected");
-    }
-    for (std::size_t r = 0; r < times.size(); ++r) {
-      if (times[r].is_null()) continue;
+    const auto take = [&, which = which](std::size_t r, const Json& time, const std::string& name) {
+      if (time.is_null()) return;
       std::optional<YardstickTimes>& taken = repetitions[r].yardsticks;
       if (!taken) taken.emplace();
-      (*taken)[which] = JsonFields::integerOf<std::int64_t>(times[r], name, 1);
-    }
+      (*taken)[which] = JsonFields::integerOf<std::int64_t>(time, name, 1);
+    };
+    eachOf(json, fmt::format("{}_ns", yardstick), repetitions.size(),
+           "one time per repetition is expected", take);
   }
 }
 
@@ -333,8 +340,7 @@ Json processorToJson(const std::vector<Repetition>& repetitions) {
   for (const auto& [which, name] : kProcessorCounters.entries) {
     Json& counts = json[std::string(name)] = Json::array();
     for (const Repetition& repetition : repetitions) {
-      const auto& count = repetition.processor[which];
-      counts.push_back(orNull(count));
+      counts.push_back(orNull(repetition.processor[which]));
     }
   }
   return json;
@@ -344,15 +350,11 @@ void readProcessor(const JsonFields& json, std::vector<Repetition>& repetitions)
   for (const auto& [which, counter] : kProcessorCounters.entries) {
     const std::string key(counter);
     if (!json.has(key.c_str())) continue;
-    const Json& counts = json.array(key.c_str());
-    const std::string name = json.path(key.c_str());
-    if (counts.size() != repetitions.size()) {
-      throw InputError(name + ": one count per repetition is expected");
-    }
-    for (std::size_t r = 0; r < counts.size(); ++r) {
-      if (counts[r].is_null()) continue;
-      repetitions[r].processor[which] = JsonFields::integerOf<std::uint64_t>(counts[r], name);
-    }
+    const auto take = [&, which = which](std::size_t r, const Json& sum, const std::string& name) {
+      if (sum.is_null()) return;
+      repetitions[r].processor[which] = JsonFields::integerOf<std::uint64_t>(sum, name);
+    };
+    eachOf(json, key, repetitions.size(), "one count per repetition is expected", take);
   }
 }
 
@@ -374,14 +376,11 @@ std::vector<FrameCounts> frameCountsFrom(const JsonFields& json) {
   for (const auto& [which, kind] : kFrameCounts.entries) {
     const std::string key(kind);
     if (!json.has(key.c_str())) continue;
-    const Json& counts = json.array(key.c_str());
-    const std::string name = json.path(key.c_str());
-    if (counts.size() != frames.size()) {
-      throw InputError(name + ": all counts must have the same number of frames");
-    }
-    for (std::size_t f = 0; f < frames.size(); ++f) {
-      frames[f][which] = JsonFields::integerOf<std::uint64_t>(counts[f], name);
-    }
+    const auto take = [&, which = which](std::size_t f, const Json& count,
+                                         const std::string& name) {
+      frames[f][which] = JsonFields::integerOf<std::uint64_t>(count, name);
+    };
+    eachOf(json, key, frames.size(), "all counts must have the same number of frames", take);
   }
   return frames;
 }
