@@ -1,0 +1,24 @@
+"""Broadmark from Python: recordings as arrays, results as data frames, runs, tables, figures.
+
+`python3 -m broadmark --help` lists the commands. The functions behind them:
+
+- `read_recording`, `write_recording`: the boxes of a recording as numpy arrays
+- `run`: runs algorithms on a scene, a recording or arrays, by the program `broadmark`
+- `read_results`: results files as pandas data frames
+"""
+
+from broadmark.errors import InputError
+from broadmark.program import run
+from broadmark.recordings import PoseRecording, Recording, read_recording, write_recording
+from broadmark.results import Results, read_results
+
+__all__ = [
+    "InputError",
+    "PoseRecording",
+    "Recording",
+    "Results",
+    "read_recording",
+    "read_results",
+    "run",
+    "write_recording",
+]

@@ -1,0 +1,62 @@
+"""The command line: `python3 -m broadmark COMMAND …`."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import sys
+
+import broadmark
+from broadmark.commands import COMMANDS
+
+EXIT_STATUSES = """\
+exit status:
+  0    all well
+  1    a wrong answer, or an algorithm that failed
+  2    bad usage or bad input
+  130  interrupted (Ctrl-C)"""
+
+
+def parser() -> argparse.ArgumentParser:
+    """All commands with their options."""
+    summary, _, rest = (broadmark.__doc__ or "").partition("\n")
+    top = argparse.ArgumentParser(
+        "python3 -m broadmark",
+        description=summary,
+        epilog=EXIT_STATUSES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    commands = top.add_subparsers(metavar="COMMAND", required=True)
+    for name in COMMANDS:
+        module = importlib.import_module(f"broadmark.commands.{name}")
+        doc = (module.__doc__ or "").strip()
+        command = commands.add_parser(
+            name,
+            help=doc.splitlines()[0],
+            description=doc,
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        module.add_options(command)
+        command.set_defaults(main=module.main)
+    return top
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Runs one command; bad input is a line on standard error and status 2."""
+    options = parser().parse_args(arguments)
+    try:
+        return options.main(options) or 0
+    except broadmark.InputError as error:
+        print(f"broadmark: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("broadmark: interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:  # `… | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

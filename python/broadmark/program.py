@@ -1,0 +1,108 @@
+"""The program `broadmark`, called from Python."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+from collections.abc import Iterable
+from typing import Any
+
+from broadmark.errors import InputError
+from broadmark.recordings import write_recording
+from broadmark.results import Results, read_results
+
+#: The environment variable that names the program.
+VARIABLE = "BROADMARK"
+
+#: Exit statuses with which a run has results all the same: fine, a wrong answer, a time limit.
+WITH_RESULTS = (0, 1, 4)
+
+
+def find_program() -> str:
+    """The program: what $BROADMARK names, the one built or installed with this package, or on PATH."""
+    named = os.environ.get(VARIABLE)
+    if named:
+        if not os.access(named, os.X_OK):
+            raise InputError(f"${VARIABLE} is '{named}', which is no program")
+        return named
+    package = pathlib.Path(__file__).resolve().parent
+    for beside in (package.parents[1] / "build/release", *(p / "bin" for p in package.parents)):
+        if os.access(beside / "broadmark", os.X_OK):
+            return str(beside / "broadmark")
+    found = shutil.which("broadmark")
+    if found:
+        return found
+    raise InputError(f"the program broadmark is not there: build it, or name it in ${VARIABLE}")
+
+
+def call(*arguments: str, accept: tuple[int, ...] = (0,), show: bool = False) -> str:
+    """Runs the program and returns what it prints; with `show` it prints to the terminal instead.
+
+    Raises InputError with its own message when it ends with a status that is not in `accept`.
+    """
+    keep = None if show else subprocess.PIPE
+    done = subprocess.run(
+        [find_program(), *arguments], stdout=keep, stderr=keep, text=True, check=False
+    )
+    if done.returncode in (-signal.SIGINT, 130):
+        raise KeyboardInterrupt
+    if done.returncode not in accept:
+        lines = (done.stderr or "").strip().splitlines()
+        message = lines[-1] if lines else f"broadmark ended with status {done.returncode}"
+        raise InputError(message.removeprefix("broadmark: "))
+    return done.stdout or ""
+
+
+def as_options(**options: Any) -> list[str]:
+    """Options of the command line: threads=[1, 2] is --threads 1,2; allow_timeout=True is
+    --allow-timeout; param={"margin": 0.1} is --param margin=0.1; None is nothing."""
+    arguments = []
+    for name, value in options.items():
+        option = "--" + name.replace("_", "-")
+        if value is None or value is False:
+            continue
+        if value is True:
+            arguments.append(option)
+        elif isinstance(value, dict):
+            for key, one in value.items():
+                arguments += [option, f"{key}={_text(one)}"]
+        else:
+            arguments += [option, _text(value)]
+    return arguments
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return str(value)
+    return ",".join(str(one) for one in value)
+
+
+def run(source: Any, *, algorithm: Any = "all", show: bool = False, **options: Any) -> Results:
+    """Runs algorithms, and returns their results; a case that failed says so in its `status`.
+
+    `source` is whatever the command line takes (a scene's name, a file), or boxes as
+    `write_recording` takes them. Other arguments are the program's options, as in `as_options`:
+
+        run("brownian", algorithm="sap*", objects=[1000, 8000], threads=[1, 2], repetitions=5)
+
+    With `show`, progress and the program's own table go to the terminal. Raises InputError for
+    what the program refuses.
+    """
+    with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
+        if not isinstance(source, (str, os.PathLike)):
+            boxes, source = source, os.path.join(folder, "boxes.aabbs")
+            write_recording(source, boxes)
+        lines = os.path.join(folder, "results.jsonl")
+        call(
+            "--headless",
+            os.fspath(source),
+            *as_options(algorithm=algorithm, quiet=not show, **options),
+            *("--jsonl", lines),
+            accept=WITH_RESULTS,
+            show=show,
+        )
+        return read_results(lines)

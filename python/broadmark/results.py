@@ -1,0 +1,297 @@
+"""Results files as pandas data frames (docs/results.md describes the files)."""
+
+from __future__ import annotations
+
+import functools
+import json
+import os
+import pathlib
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from broadmark.errors import InputError
+
+SCHEMAS = ("broadmark-results/2", "broadmark-results/1")
+
+#: The parts of a frame's work that are timed apart, and all of it.
+PHASES = ["update_objects", "clean_cache", "update_structures", "search_overlaps"]
+TRANSFERS = ["upload", "download"]  #: are in the phases; only of algorithms on a device
+COUNTS = ["pairs", "changed_bodies", "missed", "false", "allowed_extra", "invalid"]
+PROCESSOR = ["cycles", "instructions", "cache_misses", "branches", "branch_misses"]
+
+#: The columns that tell which case a frame is of.
+CASE_KEYS = [
+    *("case", "id", "scene", "object_type", "objects"),
+    *("algorithm", "family", "isa", "threads", "params"),
+]
+
+
+@dataclass
+class Results:
+    """The cases of one or several results files.
+
+    `cases` has a row per case, its index being the case's number. Columns are those of the
+    program's `--csv`, and `machine`, `file`, `complete` (it ran as often as was asked for, or ended
+    by its status), `warnings`. Times are in seconds. Cells of what is not known are missing (NaN).
+
+    `details` holds what else the files say of each case, by its number: parameters, conditions,
+    counters, differences, and its times as arrays.
+    """
+
+    cases: pd.DataFrame
+    details: list[dict[str, Any]]
+    environments: pd.DataFrame  #: a row per machine and build
+    partial: list[str] = field(default_factory=list)  #: files of runs that did not come to an end
+
+    @functools.cached_property
+    def frames(self) -> pd.DataFrame:
+        """A row per case, repetition and frame; columns are those of the program's `--csv-frames`.
+
+        Times are in whole nanoseconds; `repetition` and `frame` count from 1.
+        """
+        numbers = [i for i, case in enumerate(self.details) if case["initialize_ns"]]
+        if not numbers:
+            return pd.DataFrame(columns=[*CASE_KEYS, "repetition", "frame"])
+        tables = [_frames_of(number, self.details[number]) for number in numbers]
+        frames = pd.concat(tables, ignore_index=True)
+        keys = self.cases[CASE_KEYS[1:]].astype("category")
+        for column in reversed(CASE_KEYS[1:]):
+            frames.insert(1, column, keys[column].take(frames["case"]).values)
+        return frames
+
+    def select(self, keep: Any) -> Results:
+        """These cases only: `keep` is a mask, as in `results.select(results.cases.status == "ok")`."""
+        cases = self.cases[keep]
+        return Results(
+            cases.reset_index(drop=True).assign(case=range(len(cases))),
+            [self.details[i] for i in cases.index],
+            self.environments,
+            self.partial,
+        )
+
+
+def read_results(*paths: str | os.PathLike[str]) -> Results:
+    """Reads results files of any version, JSON or JSON Lines.
+
+    Raises InputError for a file that is none. A file whose last line is broken is of a run that was
+    ended while it wrote: what is before counts, and the file is in `partial`.
+    """
+    environments: list[dict[str, Any]] = []
+    details: list[dict[str, Any]] = []
+    rows: list[dict[str, Any]] = []
+    partial: list[str] = []
+    for path in paths:
+        document = _document(pathlib.Path(path))
+        known = [_number_in(environments, one) for one in document.environments]
+        if not document.complete:
+            partial.append(os.fspath(path))
+        for case in document.cases:
+            try:
+                _check_lengths(case)
+                row = _row(case)
+                row["environment"] = known[case.get("environment", 0)]
+            except (KeyError, TypeError, IndexError, AttributeError, ValueError) as error:
+                raise InputError(
+                    f"{path}: case {case.get('id', len(rows))!r}: not as docs/results.md has it: "
+                    f"{type(error).__name__} {error}"
+                ) from None
+            rows.append({"case": len(rows), **row, "file": os.fspath(path)})
+            details.append(case)
+    machines = _machine_names(environments)
+    cases = pd.DataFrame(rows, columns=None if rows else ["case", *CASE_KEYS[1:], "status"])
+    if rows:
+        cases["machine"] = [machines[number] for number in cases["environment"]]
+    table = pd.DataFrame(environments)
+    table["machine"] = machines
+    return Results(cases, details, table, partial)
+
+
+@dataclass
+class _Document:
+    environments: list[dict[str, Any]]
+    cases: list[dict[str, Any]]
+    complete: bool
+
+
+def _document(path: pathlib.Path) -> _Document:
+    try:
+        with open(path, encoding="utf-8") as file:
+            first = file.readline()
+            try:
+                head = _parsed(first)
+            except json.JSONDecodeError:  # a document of many lines
+                head = _parsed(first + file.read())
+            if not isinstance(head, dict) or head.get("schema") not in SCHEMAS:
+                raise InputError(f"{path}: is no results file: its schema is not {SCHEMAS[0]}")
+            if "cases" not in head:
+                return _from_lines(path, file)
+    except (OSError, UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+        raise InputError(f"{path}: cannot be read: {error}") from None
+    environments = head.get("environments", [head.get("environment")])
+    if not all(isinstance(one, dict) for one in environments + head["cases"]):
+        raise InputError(f"{path}: an environment or a case is not an object")
+    return _Document(environments, head["cases"], head.get("complete", True))
+
+
+def _from_lines(path: pathlib.Path, lines: Iterable[str]) -> _Document:
+    document = _Document([], [], False)
+    for number, line in enumerate(lines, 2):
+        try:
+            kind, content = next(iter(_parsed(line).items()))
+        except (json.JSONDecodeError, AttributeError, StopIteration):
+            if line.endswith("\n"):
+                raise InputError(f"{path}: line {number}: is no JSON object") from None
+            break  # the run ended while it wrote this line
+        if kind == "end":
+            document.complete = content["complete"]
+        elif kind == "environment":
+            document.environments.append(content)
+        elif kind == "case":
+            document.cases.append(content)
+    return document
+
+
+def _parsed(text: str) -> Any:
+    """JSON whose times and counts of frames are arrays: a tenth of the memory of lists."""
+    return json.loads(text, object_hook=_with_arrays)
+
+
+def _with_arrays(members: dict[str, Any]) -> dict[str, Any]:
+    if "total" in members and "search_overlaps" in members:  # times: a list per repetition
+        return {
+            phase: [np.array(times, np.int64) for times in repetitions]
+            for phase, repetitions in members.items()
+        }
+    if "changed_bodies" in members:  # counts
+        return {name: np.array(counts, np.int64) for name, counts in members.items()}
+    return members
+
+
+def _number_in(environments: list[dict[str, Any]], one: dict[str, Any]) -> int:
+    """The number of the machine and build; runs that began at another time are of the same."""
+    changing = ("started", "load_average")
+    lasting = {key: value for key, value in one.items() if key not in changing}
+    for number, known in enumerate(environments):
+        if all(known.get(key) == value for key, value in lasting.items()):
+            return number
+    environments.append(one)
+    return len(environments) - 1
+
+
+def _machine_names(environments: list[dict[str, Any]]) -> list[str]:
+    """A short name for each environment, no two alike."""
+    names: list[str] = []
+    for one in environments:
+        name = f"{one.get('cpu') or 'unknown processor'}, {one.get('logical_cores', '?')} cores"
+        alike = sum(other.split(" #")[0] == name for other in names)
+        names.append(f"{name} #{alike + 1}" if alike else name)
+    return names
+
+
+def _check_lengths(case: dict[str, Any]) -> None:
+    """Raises ValueError unless every phase has the same frames, in as many repetitions."""
+    lengths = [len(repetition) for repetition in case["frames"]["total"]]
+    if len(lengths) != len(case["initialize_ns"]):
+        raise ValueError("as many repetitions as initialisations are expected")
+    for phase, repetitions in case["frames"].items():
+        if [len(repetition) for repetition in repetitions] != lengths:
+            raise ValueError(f"{phase}: the same number of frames in all phases is expected")
+
+
+def _row(case: dict[str, Any]) -> dict[str, Any]:
+    """What the table of cases says of one."""
+    recording, conditions = case["recording"], case.get("conditions", {})
+    source = recording["source"]
+    simulated = isinstance(source, dict)
+    times = case["frames"]["total"]
+    asked = conditions.get("repetitions")
+    checked = case["checked"]
+    processor = case.get("processor", {})
+    row = {
+        "id": case["id"],
+        "scene": recording["name"],
+        "object_type": recording["object_type"],
+        "objects": recording["objects"],
+        "algorithm": case["algorithm"],
+        "family": case["family"],
+        "isa": case["isa"],
+        "threads": case["threads"],
+        "params": _joined(case["params"]),
+        "frames": recording["frames"],
+        "seed": recording.get("seed"),
+        "recording_hash": recording["hash"],
+        "recording_file": "" if simulated else source,
+        "scene_params": _joined(source) if simulated else "",
+        "device": case.get("device", ""),
+        "status": case["status"],
+        "reason": case["reason"],
+        "repetitions": len(times),
+        "repetitions_asked": asked,
+        "complete": case["status"] != "ok" or asked is None or len(times) >= asked,
+        "check": conditions.get("check"),
+        **_summary(case["summary"] if times else {}),
+        "initialize_seconds": _mean(case["initialize_ns"]) * 1e-9,
+    }
+    for phase in PHASES + TRANSFERS:
+        nothing = [np.zeros(1)] if sum(map(len, times)) else []  # without a device
+        row[f"{phase}_seconds"] = _mean_of_arrays(case["frames"].get(phase, nothing)) * 1e-9
+    row |= {"pairs_mean": case["pairs"]["mean"], "pairs_max": case["pairs"]["max"]}
+    for count in ("missed", "false", "allowed_extra", "invalid"):
+        row[count] = case.get(count) if checked else None
+    row["peak_bytes"] = case.get("peak_bytes")
+    frames = sum(len(repetition) for repetition in times)
+    for counter in PROCESSOR:
+        known = [count for count in processor.get(counter, []) if count is not None]
+        row[f"{counter}_per_frame"] = sum(known) / frames if known and frames else None
+    row["warnings"] = "; ".join(conditions.get("warnings", []))
+    return row
+
+
+def _joined(parameters: dict[str, str]) -> str:
+    return ";".join(f"{name}={value}" for name, value in parameters.items())
+
+
+def _summary(summary: dict[str, Any]) -> dict[str, Any]:
+    low, high = summary.get("ci95") or (None, None)
+    columns = {"seconds_per_frame": summary.get("seconds_per_frame")}
+    for name in ("median", "p95", "p99", "min", "stddev"):
+        columns[f"{name}_seconds"] = summary.get(name)
+    return columns | {
+        "ci95_low_seconds": low,
+        "ci95_high_seconds": high,
+        "outliers": summary.get("outliers"),
+    }
+
+
+def _mean(values: list[float]) -> float:
+    return sum(values) / len(values) if values else float("nan")
+
+
+def _mean_of_arrays(arrays: list[Any]) -> float:
+    return float(np.concatenate(arrays).mean()) if sum(map(len, arrays)) else float("nan")
+
+
+def _frames_of(number: int, case: dict[str, Any]) -> pd.DataFrame:
+    tables = []
+    counts = case.get("frame_counts", {})
+    for repetition in range(len(case["frames"]["total"])):
+        length = len(case["frames"]["total"][repetition])
+        columns: dict[str, Any] = {
+            "case": number,
+            "repetition": repetition + 1,
+            "frame": np.arange(1, length + 1),
+        }
+        for phase in [*PHASES, *TRANSFERS, "total"]:
+            times = case["frames"].get(phase)
+            columns[f"{phase}_ns"] = times[repetition] if times else 0
+        for count in COUNTS:
+            # Kinds of wrong pairs that there are none of are left out of the file.
+            none = 0 if case["checked"] and count not in ("pairs", "changed_bodies") else np.nan
+            values = counts.get(count, [])[:length]
+            columns[count] = values if len(values) == length else none
+        tables.append(pd.DataFrame(columns, index=range(length)))
+    return pd.concat(tables, ignore_index=True)

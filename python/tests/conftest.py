@@ -1,0 +1,54 @@
+"""What several tests share."""
+
+from __future__ import annotations
+
+import pathlib
+import sys
+from collections.abc import Callable
+
+import pytest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+
+from broadmark.__main__ import main  # noqa: E402
+from broadmark.program import call, find_program  # noqa: E402
+
+SOURCE_FOLDER = pathlib.Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def some_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+    """A folder with results of a small run in every format: results.json, .jsonl, .csv, frames.csv."""
+    folder = tmp_path_factory.mktemp("results")
+    call(
+        *("--headless", "brownian", "freefall", "--objects", "100,200", "--frames", "4", "--quiet"),
+        *("--algorithm", "bf,sap-mt,kd,none", "--threads", "1,2", "--repetitions", "2"),
+        *("--json", str(folder / "results.json"), "--jsonl", str(folder / "results.jsonl")),
+        *("--csv", str(folder / "results.csv"), "--csv-frames", str(folder / "frames.csv")),
+        accept=(0, 1, 4),
+    )
+    return folder
+
+
+@pytest.fixture
+def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+    """Runs a command of the package: exit status, standard output, standard error."""
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        try:
+            status = main([str(argument) for argument in arguments])
+        except SystemExit as end:  # argparse
+            status = int(end.code or 0)
+        out, err = capfd.readouterr()
+        return status, out, err
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def faulty_plugin() -> str:
+    """A plug-in with an algorithm, `faulty`, that is wrong on purpose."""
+    plugin = pathlib.Path(find_program()).parent / "tests/libfaulty_algorithm.so"
+    if not plugin.exists():
+        pytest.skip("the tests' plug-in is built in the checkout only")
+    return str(plugin)

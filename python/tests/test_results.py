@@ -1,0 +1,122 @@
+"""Results files as data frames."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+
+import numpy as np
+import pandas as pd
+import pytest
+from conftest import SOURCE_FOLDER
+
+import broadmark
+
+
+def test_cases_are_those_of_the_programs_csv(some_results: pathlib.Path) -> None:
+    expected = pd.read_csv(some_results / "results.csv", keep_default_na=False, na_values=[""])
+    for name in ("results.json", "results.jsonl"):
+        cases = broadmark.read_results(some_results / name).cases
+        cases = cases.set_index("id").loc[expected["id"]].reset_index()  # lines are as cases ended
+        for column in expected:
+            there = (
+                expected[column].fillna("")
+                if expected[column].dtype == object or expected[column].isna().all()
+                else None
+            )
+            if there is not None:
+                assert list(cases[column].fillna("").astype(str)) == list(there.astype(str)), column
+            else:
+                np.testing.assert_allclose(
+                    cases[column].astype(float), expected[column], rtol=1e-6, err_msg=column
+                )
+
+
+def test_frames_are_those_of_the_programs_csv(some_results: pathlib.Path) -> None:
+    expected = pd.read_csv(some_results / "frames.csv", keep_default_na=False, na_values=[""])
+    frames = broadmark.read_results(some_results / "results.json").frames
+    assert len(frames) == len(expected) > 100
+    for column in expected.columns.drop(["checked", "disturbed"]):
+        there, ours = expected[column].fillna(""), frames[column].astype(object).fillna("")
+        assert list(ours) == list(there), column
+
+
+def test_several_files_are_one_table(some_results: pathlib.Path) -> None:
+    paths = [some_results / "results.json", some_results / "results.jsonl"]
+    both = broadmark.read_results(*paths)
+    one = broadmark.read_results(paths[0])
+    assert len(both.cases) == 2 * len(one.cases)
+    assert list(both.cases.index) == list(both.cases["case"]) == list(range(len(both.cases)))
+    assert len(both.environments) == 1  # one machine
+    assert both.cases["file"].nunique() == 2
+    assert len(both.frames) == 2 * len(one.frames)
+
+
+def test_selected_cases_keep_their_frames(some_results: pathlib.Path) -> None:
+    results = broadmark.read_results(some_results / "results.json")
+    kd = results.select(results.cases["algorithm"] == "kd")
+    assert set(kd.frames["algorithm"]) == {"kd"}
+    assert list(kd.cases.index) == list(kd.cases["case"]) == [0, 1, 2, 3]
+    assert (
+        kd.frames["total_ns"].sum() == results.frames.query("algorithm == 'kd'")["total_ns"].sum()
+    )
+
+
+def test_a_file_that_was_cut_is_partial(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    text = (some_results / "results.jsonl").read_text()
+    cut = tmp_path / "cut.jsonl"
+    cut.write_text(text[: len(text) * 2 // 3])
+    results = broadmark.read_results(cut)
+    assert results.partial == [str(cut)]
+    assert (
+        0 < len(results.cases) < len(broadmark.read_results(some_results / "results.jsonl").cases)
+    )
+
+
+def test_the_first_version_is_read() -> None:
+    results = broadmark.read_results(SOURCE_FOLDER / "tests/fuzz/corpus/results/seed")
+    assert list(results.cases["seconds_per_frame"].isna()) == [True]  # its summary is empty
+    assert list(results.frames["total_ns"]) == [1, 2, 3, 4]
+    assert list(results.cases["missed"]) == [1]
+
+
+def test_times_are_arrays(some_results: pathlib.Path) -> None:
+    details = broadmark.read_results(some_results / "results.json").details
+    assert all(isinstance(a, np.ndarray) for case in details for a in case["frames"]["total"])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "cannot be read"),
+        ("{", "cannot be read"),
+        ("[]", "its schema is not broadmark-results/2"),
+        ('{"schema": "broadmark-scene/1"}', "its schema is not broadmark-results/2"),
+        ('{"schema": "broadmark-results/2", "environments": [], "cases": [5]}', "not an object"),
+        ('{"schema": "broadmark-results/2", "environments": [], "cases": [{}]}', "case 0"),
+        ('{"schema": "broadmark-results/2"}\n5\n', "line 2"),
+    ],
+)
+def test_other_files_are_refused(tmp_path: pathlib.Path, text: str, message: str) -> None:
+    file = tmp_path / "file.json"
+    file.write_text(text)
+    with pytest.raises(broadmark.InputError, match=message) as refused:
+        broadmark.read_results(file)
+    assert str(file) in str(refused.value)
+
+
+def test_what_fuzzers_found_is_read_or_refused() -> None:
+    read = 0
+    for file in sorted((SOURCE_FOLDER / "tests/fuzz/corpus/results").iterdir()):
+        try:
+            read += len(broadmark.read_results(file).frames) > 0
+        except broadmark.InputError:
+            pass
+    assert read > 5
+
+
+def test_nothing_has_empty_tables(tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "nothing.json"
+    file.write_text(json.dumps({"schema": "broadmark-results/2", "environments": [], "cases": []}))
+    results = broadmark.read_results(file)
+    assert len(results.cases) == len(results.frames) == 0
