@@ -4,10 +4,12 @@
 
 - `read_recording`, `write_recording`: the boxes of a recording as numpy arrays
 - `run`: runs algorithms on a scene, a recording or arrays, by the program `broadmark`
+- `overlaps`: the overlapping pairs of an array of boxes
 - `read_results`: results files as pandas data frames
 """
 
 from broadmark.errors import InputError
+from broadmark.native import overlaps
 from broadmark.program import run
 from broadmark.recordings import PoseRecording, Recording, read_recording, write_recording
 from broadmark.results import Results, read_results
@@ -17,6 +19,7 @@ __all__ = [
     "PoseRecording",
     "Recording",
     "Results",
+    "overlaps",
     "read_recording",
     "read_results",
     "run",

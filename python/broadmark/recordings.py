@@ -14,7 +14,7 @@ import os
 import pathlib
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -114,18 +114,23 @@ def as_boxes(boxes: Any) -> Floats:
     if array.ndim != 3 or array.shape[1:] != (2, 3):
         raise InputError(f"boxes: of shape {array.shape}, not (n, 2, 3) or (n, 6)")
     array = array.astype(np.float32, copy=False)
-    wrong = ~np.isfinite(array).all((1, 2))
-    if wrong.any():
-        raise InputError(
-            f"boxes: body {int(wrong.argmax())} has a side that is not a finite number"
-        )
-    wrong = (array[:, 0] > array[:, 1]).any(1)
-    if wrong.any():
-        body = int(wrong.argmax())
-        raise InputError(
-            f"boxes: body {body} has its min {array[body, 0]} above its max {array[body, 1]}"
-        )
+    low, high = array[:, 0], array[:, 1]
+    if len(array) and not (
+        (low <= high).all() and array.min() > -np.inf and array.max() < np.inf  # NaN is neither
+    ):
+        _complain(array)
     return array
+
+
+def _complain(boxes: Floats) -> NoReturn:
+    """Raises InputError for the first bad box."""
+    unknown = ~np.isfinite(boxes).all((1, 2))
+    body = int((unknown | (boxes[:, 0] > boxes[:, 1]).any(1)).argmax())
+    if unknown[body]:
+        raise InputError(f"boxes: body {body} has a side that is not a finite number")
+    raise InputError(
+        f"boxes: body {body} has its min {boxes[body, 0]} above its max {boxes[body, 1]}"
+    )
 
 
 def write_recording(

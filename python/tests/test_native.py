@@ -1,0 +1,89 @@
+"""The algorithms as functions."""
+
+from __future__ import annotations
+
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import pytest
+
+import broadmark
+from broadmark.native import _native
+
+
+def boxes_in(side: float, count: int) -> Any:
+    """Boxes of all sizes, some of them touching, flat or alike."""
+    generator = np.random.default_rng(3)
+    low = np.round(generator.uniform(0, side, (count, 3)))
+    return np.stack([low, low + generator.integers(0, 3, (count, 3))], axis=1).astype(np.float32)
+
+
+def brute_force(boxes: Any) -> set[tuple[int, int]]:
+    low, high = boxes[:, None, 0], boxes[None, :, 1]
+    overlap = (low <= high).all(2)
+    return {(a, b) for a, b in np.argwhere(overlap & overlap.T).tolist() if a < b}
+
+
+@pytest.mark.parametrize("algorithm", _native().algorithms())
+@pytest.mark.parametrize("count", [0, 1, 2, 300])
+def test_every_algorithm_finds_the_pairs(algorithm: str, count: int) -> None:
+    boxes = boxes_in(12, count)
+    try:
+        pairs = broadmark.overlaps(boxes, algorithm, threads=2)
+    except broadmark.InputError as error:
+        if algorithm.startswith(("gpu-", "b3-")):  # no device here, or one that cannot
+            pytest.skip(str(error))
+        raise
+    assert pairs.dtype == np.uint32 and pairs.shape == (len(pairs), 2)
+    assert len(pairs) == len(set(map(tuple, pairs.tolist())))
+    assert set(map(tuple, pairs.tolist())) == brute_force(boxes)
+
+
+def test_boxes_may_be_flat_doubles_or_views() -> None:
+    boxes = boxes_in(12, 300)
+    expected = brute_force(boxes)
+    padded = np.zeros((300, 2, 4), np.float32)
+    padded[..., :3] = boxes
+    for array in (boxes.reshape(-1, 6), boxes.astype(float), padded[..., :3], boxes.tolist()):
+        assert set(map(tuple, broadmark.overlaps(array).tolist())) == expected
+
+
+def test_parameters_and_instruction_sets() -> None:
+    boxes = boxes_in(12, 300)
+    for isa in ("scalar", "auto"):
+        pairs = broadmark.overlaps(boxes, "kd", isa=isa, parameters={"objects_per_leaf": 8})
+        assert set(map(tuple, pairs.tolist())) == brute_force(boxes)
+
+
+def test_other_threads_go_on() -> None:
+    boxes = boxes_in(1000, 40_000)
+    worker = threading.Thread(target=broadmark.overlaps, args=(boxes, "bf"))
+    worker.start()
+    turns = 0
+    while worker.is_alive():
+        time.sleep(0.001)
+        turns += 1
+    assert turns > 20  # of some hundreds; a single one if the lock were held
+
+
+REFUSED: list[tuple[dict[str, Any], str]] = [
+    ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), not \(n, 2, 3\) or \(n, 6\)"),
+    ({"boxes": np.zeros((2, 3, 2))}, "of shape"),
+    ({"boxes": [[0, 0, 0, 1, 1, np.nan]]}, "body 0 has a side that is not a finite number"),
+    ({"boxes": [[0, 0, 0, 1, np.inf, 1]]}, "body 0 has a side"),
+    ({"boxes": [[0] * 6, [0, 0, 2, 1, 1, 1]]}, "body 1 has its min"),
+    ({"boxes": [["x"] * 6]}, "not numbers"),
+    ({"algorithm": "quick"}, "algorithm 'quick': is none of bf, "),
+    ({"isa": "mmx"}, "isa 'mmx'"),
+    ({"threads": 0}, "threads 0: is not a number from 1 to"),
+    ({"parameters": {"cells": 3}}, "unknown parameter 'cells'"),
+    ({"parameters": {"objects_per_cell": "many"}}, "objects_per_cell"),
+]
+
+
+@pytest.mark.parametrize(("arguments", "message"), REFUSED)
+def test_what_is_refused(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(broadmark.InputError, match=message):
+        broadmark.overlaps(**({"boxes": np.zeros((1, 6))} | arguments))
