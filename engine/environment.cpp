@@ -66,9 +66,7 @@ std::vector<std::string> caches() {
   }
 }
 
-std::string operatingSystem() {
-  utsname system{};
-  ::uname(&system);
+std::string operatingSystem(const utsname& system) {
   return fmt::format("{}, {} {}", firstOr(valuesOf("/etc/os-release", "PRETTY_NAME", '='), "?"),
                      system.sysname, system.release);
 }
@@ -85,7 +83,10 @@ std::string utcNow() {
 }  // namespace
 
 Environment thisEnvironment() {
+  utsname system{};
+  ::uname(&system);
   Environment environment{
+      .host = system.nodename,
       .cpu = firstOr(valuesOf("/proc/cpuinfo", "model name", ':'), "unknown"),
       .logical_cores = static_cast<int>(usableCores().size()),
       .physical_cores = physicalCores(),
@@ -94,7 +95,7 @@ Environment thisEnvironment() {
       .memory_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
                       static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
       .governor = firstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
-      .os = operatingSystem(),
+      .os = operatingSystem(system),
       .compiler = BROADMARK_COMPILER,
       .compiler_flags = BROADMARK_FLAGS,
       .build_type = BROADMARK_BUILD_TYPE,

@@ -14,7 +14,8 @@ namespace broadmark {
 namespace {
 
 Json toJson(const Environment& e) {
-  return {{"cpu", e.cpu},
+  return {{"host", e.host},
+          {"cpu", e.cpu},
           {"logical_cores", e.logical_cores},
           {"physical_cores", e.physical_cores},
           {"caches", e.caches},
@@ -64,6 +65,7 @@ Environment environmentFrom(const JsonFields& json) {
                              .build_type = json.text("build_type"),
                              .version = json.text("version"),
                              .started = json.text("started")};
+  if (json.has("host")) environment.host = json.text("host");
   if (json.has("compute_devices")) {
     environment.compute_devices =
         textsFrom(json.array("compute_devices"), json.path("compute_devices"));

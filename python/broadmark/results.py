@@ -186,7 +186,8 @@ def _machine_names(environments: list[dict[str, Any]]) -> list[str]:
     """A short name for each environment, no two alike."""
     names: list[str] = []
     for one in environments:
-        name = f"{one.get('cpu') or 'unknown processor'}, {one.get('logical_cores', '?')} cores"
+        host = f"{one['host']}: " if one.get("host") else ""
+        name = f"{host}{one.get('cpu') or 'unknown'}, {one.get('logical_cores', '?')} cores"
         alike = sum(other.split(" #")[0] == name for other in names)
         names.append(f"{name} #{alike + 1}" if alike else name)
     return names

@@ -85,5 +85,6 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 
 @pytest.mark.parametrize(("arguments", "message"), REFUSED)
 def test_what_is_refused(arguments: dict[str, Any], message: str) -> None:
+    all_arguments: dict[str, Any] = {"boxes": np.zeros((1, 6))} | arguments
     with pytest.raises(broadmark.InputError, match=message):
-        broadmark.overlaps(**({"boxes": np.zeros((1, 6))} | arguments))
+        broadmark.overlaps(**all_arguments)

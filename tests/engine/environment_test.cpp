@@ -18,6 +18,7 @@ using testing::StartsWith;
 
 TEST(Environment, IsPlausible) {
   const Environment environment = thisEnvironment();
+  EXPECT_NE(environment.host, "");
   EXPECT_NE(environment.cpu, "");
   EXPECT_GE(environment.logical_cores, 1);
   EXPECT_LE(environment.logical_cores, 4096);

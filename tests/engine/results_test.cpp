@@ -44,7 +44,8 @@ constexpr auto kTotal = static_cast<std::int64_t>(Phase::total);
 /// Two cases: one with every field set, one with nothing but its name.
 Results everything() {
   Results results;
-  results.environments = {{.cpu = "A \"fast\" one",
+  results.environments = {{.host = "desk",
+                           .cpu = "A \"fast\" one",
                            .logical_cores = 8,
                            .physical_cores = 4,
                            .caches = {"L1 Data 48K", "L2 Unified 2048K"},
@@ -292,9 +293,11 @@ Json asResults1() {
 TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
   Json json = asResults1();
   for (const char* key : {"counters", "device", "plugin"}) json["cases"][0].erase(key);
+  json["environment"].erase("host");
   const Results results = parseResults(json.dump(), "a.json");
   EXPECT_EQ(results.cases[0].device, "");
   EXPECT_EQ(results.cases[0].plugin, "");
+  EXPECT_EQ(results.environments.at(0).host, "");
   EXPECT_EQ(results.environments.at(0).cpu, everything().environments[0].cpu);
   EXPECT_TRUE(results.complete) << "they did not say";
   EXPECT_TRUE(results.cases[0].isComplete());

@@ -8,6 +8,7 @@
 namespace broadmark {
 
 struct Environment {
+  std::string host;  ///< the machine's name in its network; "" in files that do not tell
   std::string cpu;
   int logical_cores = 0;  ///< that this process may use
   int physical_cores = 0;
