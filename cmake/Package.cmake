@@ -14,8 +14,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to
 
-# What it loads at run time, if there; and what others need to build with the libraries, or to have
-# an OpenCL device without a GPU.
+# What it loads at run time, if there; and what others need to build with the libraries, to have an
+# OpenCL device without a GPU, or to use the Python package.
 set(recommended "")
 set(suggested cmake g++ make libbullet-dev libfmt-dev)
 if(BROADMARK_RENDER)
@@ -23,6 +23,9 @@ if(BROADMARK_RENDER)
 endif()
 if(BROADMARK_INSPECTOR)
   list(APPEND recommended libgl1)
+endif()
+if(BROADMARK_PYTHON)
+  list(APPEND suggested python3-numpy python3-pandas python3-matplotlib node-d3)
 endif()
 if(BROADMARK_ODE)
   list(APPEND suggested libode-dev)

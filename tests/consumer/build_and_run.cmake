@@ -1,5 +1,6 @@
 # Installs Broadmark into a fresh prefix, then configures, builds and runs the project beside this
-# file against it. Arguments: BUILD_DIR, SOURCE_DIR, WORK_DIR, COMPILER.
+# file against it. Arguments: BUILD_DIR, SOURCE_DIR, WORK_DIR, COMPILER; PYTHON: the interpreter that
+# the Python package was installed for, empty if it was left out.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status)
   if(NOT status EQUAL 0)
@@ -30,4 +31,10 @@ file(READ "${WORK_DIR}/results.json" results)
 string(JSON flags GET "${results}" cases 0 conditions plugin flags)
 if(NOT flags MATCHES ", optimised.*: .*-O3")
   message(FATAL_ERROR "the plug-in says that it was built with '${flags}'")
+endif()
+
+if(PYTHON)
+  file(GLOB packages "${WORK_DIR}/prefix/lib/python3*/dist-packages")
+  run(${CMAKE_COMMAND} -E env --unset=BROADMARK "PYTHONPATH=${packages}" "PYTHONDONTWRITEBYTECODE=1"
+    "${PYTHON}" "${SOURCE_DIR}/use_python_package.py" "${WORK_DIR}/prefix")
 endif()

@@ -1,0 +1,53 @@
+"""What the README and the example notebook show works."""
+
+from __future__ import annotations
+
+import pathlib
+import re
+from typing import Any
+
+import pytest
+from conftest import SOURCE_FOLDER
+
+EXAMPLES = SOURCE_FOLDER / "python/examples"
+
+
+def readme_examples() -> list[Any]:
+    text = (SOURCE_FOLDER / "README.md").read_text("utf-8")
+    return re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+
+
+def test_the_readme_has_an_example_of_five_lines() -> None:
+    assert 0 < len(readme_examples()[0].strip().splitlines()) <= 5
+
+
+@pytest.mark.parametrize("example", readme_examples())
+def test_examples_of_the_readme_run(
+    example: str, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    exec(compile(example, "README.md", "exec"), {})
+    for picture in re.findall(r'"(\w+\.png)"', example):
+        assert (tmp_path / picture).stat().st_size > 5000
+
+
+@pytest.mark.parametrize(
+    "notebook", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: str(path.stem)
+)
+def test_notebooks_run(
+    notebook: pathlib.Path, tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    # Whatever a kernel keeps of its own, it keeps here.
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
+    monkeypatch.setenv("PYTHONPATH", str(SOURCE_FOLDER / "python"))
+    monkeypatch.delenv("MPLBACKEND", raising=False)
+    book = nbformat.read(notebook, as_version=4)
+    assert not any(cell.get("outputs") for cell in book.cells), "outputs are not kept"
+    client = nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": tmp_path}})
+    client.execute()
+    shown = [output for cell in book.cells for output in cell.get("outputs", [])]
+    assert sum("image/png" in output.get("data", {}) for output in shown) == 2
