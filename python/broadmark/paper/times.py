@@ -57,7 +57,8 @@ class Times:
         for number, row in best_variants(cases[wanted]).iterrows():
             conditions = results.details[number].get("conditions", {})
             status = row["status"] if row["complete"] else "incomplete"
-            extra = row["allowed_extra"] / row["frames"]
+            extra = float("nan") if row["allowed_extra"] is None else row["allowed_extra"]
+            extra /= row["frames"]
             self.places[row["scene"], row["objects"], row["algorithm"]] = Place(
                 status,
                 row["seconds_per_frame"] if status == "ok" else None,

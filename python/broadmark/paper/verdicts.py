@@ -60,13 +60,8 @@ def _as_markdown(all_verdicts: list[Verdicts]) -> str:
     for one in all_verdicts:
         rows = ["| | claim | verdict | figures |", "|---|---|---|---|"]
         for judgement in one.judgements:
-            figures = [f"{MARKS[p.holds]} {p.figures}" for p in _decisive_first(judgement.parts)]
-            cells = [
-                str(judgement.number),
-                judgement.claim,
-                judgement.verdict,
-                "<br>".join(figures),
-            ]
+            figures = "<br>".join(_lines(judgement.parts))
+            cells = [str(judgement.number), judgement.claim, judgement.verdict, figures]
             rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         blocks += [f"## {one.machine}", "; ".join([*one.conditions, one.summary]), "\n".join(rows)]
     return "\n\n".join(blocks) + "\n"
