@@ -12,4 +12,5 @@ COMMANDS = [
     "figures",
     "figure3",
     "claims",
+    "plot",
 ]

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, MaxNLocator, NullLocator
+from matplotlib.ticker import MaxNLocator, NullLocator
 
-from broadmark.drawing import Style, styles
+from broadmark.drawing import Style, log_scale, styles
 from broadmark.paper.algorithms import (
     BY_ID,
     CAP_SECONDS,
@@ -59,7 +59,7 @@ def curves(times: Times, scene: str) -> list[Curve]:
     found = []
     for algorithm in [*BY_ID, *times.own]:
         shown = times.shown(scene, algorithm)
-        points = [(n / 1000, p.seconds) for n, p in shown.items() if p.seconds is not None]
+        points = [(n / 1000, p.seconds) for n, p in shown.items() if p.seconds]
         timeout = [(n / 1000, place.limit) for n, place in shown.items() if _timed_out(place)][:1]
         if points or timeout:
             parallel = (
@@ -133,7 +133,7 @@ def figure(times: Times, scene: Scene, look: Look) -> Figure:
             handlelength=2.6,
         )
         _set_axes(axes, ours, look)
-    panels[0].set_ylabel("seconds per frame")
+    panels[0].set_ylabel("time per frame" if look.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
     result.supxlabel("; ".join(notes), fontsize=6.5, color="#666666")
     return result
@@ -160,13 +160,12 @@ def _set_axes(axes: Any, ours: list[Curve], look: Look) -> None:
     full = look.paper or look.full_range
     most = max([*measured, MOST_THOUSANDS] if full else measured)
     if look.log:
-        axes.set_xscale("log")
-        axes.set_yscale("log", nonpositive="mask")
+        log_scale(axes, "x")
+        log_scale(axes, "y", "s")
         axes.set_xlim(min(measured) / 1.15, most * 1.15)
         axes.set_ylim(top=MOST_SECONDS)
         ticks = [2.0**k for k in range(-10, 20) if min(measured) <= 2.0**k <= most]
         axes.set_xticks(ticks)
-        axes.xaxis.set_major_formatter(FuncFormatter(lambda n, _: f"{n:g}"))
         axes.xaxis.set_minor_locator(NullLocator())
         axes.grid(True, which="minor", axis="y", linewidth=0.25)
     else:
