@@ -32,6 +32,7 @@ SETTINGS = {
     "svg.hashsalt": "broadmark",
     "svg.fonttype": "none",  # text stays text: small files, words that can be searched
     "pdf.fonttype": 42,
+    "text.parse_math": False,  # a $ in a name is a $
     "savefig.dpi": 160,
     "font.size": 8,
     "axes.titlesize": 9,

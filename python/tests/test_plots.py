@@ -78,6 +78,18 @@ def test_a_line_ends_at_the_first_size_past_the_cap(tmp_path: pathlib.Path) -> N
     assert "time limit crossed" in labels(figure(times, SCENES[0], Look()).axes[0])
 
 
+def test_a_scene_without_a_time_has_no_figure(tmp_path: pathlib.Path, command: Any) -> None:
+    cases = [
+        case("Brownian", 1000, "kd", 0.1, status="mismatch"),
+        case("Gravity", 1000, "a$b$_{c}", 0.1),
+    ]
+    file = write(tmp_path / "a.json", cases)
+    status, out, error = command("figures", file, "-o", tmp_path / "new")
+    assert status == 0 and "Brownian: nothing to draw" in error and "figure5" not in out
+    (svg,) = (tmp_path / "new").iterdir()
+    assert svg.name == "figure7.svg" and ">a$b$_{c}</text>" in svg.read_text()
+
+
 def test_range_follows_the_results_unless_full(tmp_path: pathlib.Path) -> None:
     cases = [case("Brownian", n, id_, 0.01) for n in (1000, 32000) for id_ in ("kd", "kd-mt")]
     file = write(tmp_path / "a.json", cases)

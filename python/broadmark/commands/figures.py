@@ -16,14 +16,16 @@ from broadmark import selection
 from broadmark.drawing import FORMATS, draw
 from broadmark.errors import InputError
 from broadmark.paper.algorithms import SCENES
-from broadmark.paper.figures import Look, figure
+from broadmark.paper.figures import Look, curves, figure
 from broadmark.paper.times import times_by_machine
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="where to put them")
-    parser.add_argument("--format", default="svg", metavar="KIND[,KIND…]", help="svg, pdf, png")
+    parser.add_argument(
+        "--format", default="svg", metavar="KIND[,KIND…]", help="svg (default), pdf, png"
+    )
     parser.add_argument(
         "--paper", action="store_true", help="the paper's curves, faint, behind ours"
     )
@@ -53,8 +55,8 @@ def main(options: argparse.Namespace) -> None:
     for scene in SCENES:
         name = f"figure{scene.figure}" + ("-log" if options.log else "")
         paths = [folder / f"{name}.{kind}" for kind in formats]
-        if not times.sizes(scene.name):
-            print(f"{scene.title}: nothing to draw: no case", file=sys.stderr)
+        if not curves(times, scene.name):
+            print(f"{scene.title}: nothing to draw: no case with a time", file=sys.stderr)
             continue
         draw(paths, functools.partial(figure, times, scene, look))
         for path in paths:

@@ -18,8 +18,10 @@ from broadmark.plots.cases import chosen
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    kinds = "; ".join(f"{name}: {function.__doc__}" for name, function in KINDS.items())
-    parser.add_argument("kind", choices=list(KINDS), metavar="KIND", help=kinds.replace("%", "%%"))
+    parser.add_argument("kind", choices=list(KINDS), metavar="KIND", help="one of those below")
+    parser.epilog = "kinds:\n" + "\n".join(
+        f"  {name:9} {function.__doc__}" for name, function in KINDS.items()
+    )
     selection.add_options(parser)
     parser.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="the picture (.svg, .pdf, .png)"

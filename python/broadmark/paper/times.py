@@ -44,8 +44,8 @@ class Times:
     def __init__(self, machine: str, results: Results, object_type: str = "Cubes") -> None:
         self.machine = machine
         #: OpenCL's devices of the machine, the one that was used first.
-        environment = results.environments.set_index("machine").loc[machine]
-        self.devices: list[str] = environment.get("compute_devices") or []
+        devices = results.environments.set_index("machine").loc[machine].get("compute_devices")
+        self.devices: list[str] = devices if isinstance(devices, list) else []
         cases = results.cases
         wanted = (
             cases["scene"].isin(SCENE_NAMES)
