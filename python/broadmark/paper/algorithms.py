@@ -93,9 +93,3 @@ def table2() -> dict[tuple[str, int, str], float]:
             )
             for row in csv.DictReader(file)
         }
-
-
-@functools.cache
-def sizes() -> list[int]:
-    """Numbers of objects in Table 2."""
-    return sorted({objects for _, objects, _ in table2()})

@@ -48,11 +48,12 @@ def _picture(part: Part, frame: int, folder: str) -> pathlib.Path:
 
 
 def _strip(pictures: list[pathlib.Path], captions: list[str]) -> Figure:
-    figure = Figure(figsize=(3 * len(pictures), 3.2), layout="constrained")
+    figure = Figure(figsize=(3 * len(pictures), 3.3), layout="constrained")
     figure.get_layout_engine().set(w_pad=0.02, h_pad=0.02, wspace=0.01)
     panels = figure.subplots(1, len(pictures), squeeze=False)[0]
     for axes, picture, caption, letter in zip(panels, pictures, captions, string.ascii_lowercase):
         axes.imshow(matplotlib.image.imread(picture), interpolation="antialiased")
         axes.set(xticks=[], yticks=[], xlabel=f"({letter}) {caption}")
         axes.spines[:].set_visible(False)
+        axes.set_anchor("N")
     return figure
