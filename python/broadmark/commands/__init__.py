@@ -8,4 +8,9 @@ A command is a module here: its docstring is the help, `add_options(parser)` dec
 COMMANDS = [
     "read",
     "write",
+    "table2",
+    "figures",
+    "figure3",
+    "claims",
+    "plot",
 ]

@@ -1,0 +1,187 @@
+"""What the paper claims, judged on results: a sentence and a function for each claim.
+
+A claim has parts. It does not hold if one of them does not; else it is not measured if one is not;
+else it holds. Of what "hardly changes" the paper's own numbers are up to 1.75 apart: HARDLY allows 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from broadmark.paper.algorithms import ALGORITHMS, MOST_SECONDS, SINGLE, is_gpu
+from broadmark.paper.evidence import TOLERANCE, Evidence, Part
+
+HARDLY = 2.0
+
+HOLDS, FAILS, UNKNOWN = "holds", "does not hold", "not measured"
+
+TERMS = (
+    f"A number counts as reproduced within a factor of {TOLERANCE:g}, what hardly changes within "
+    f"{HARDLY:g}. The cap is {MOST_SECONDS:g} s a frame, the top of the paper's figures. Figures are "
+    "those at the largest size that all algorithms of a comparison reach."
+)
+
+SINGLES = [algorithm.name for algorithm in ALGORITHMS if algorithm.panel == SINGLE]
+ON_CPU = [algorithm.name for algorithm in ALGORITHMS if not is_gpu(algorithm)]
+GPUS = [algorithm.name for algorithm in ALGORITHMS if is_gpu(algorithm)]
+SLOWEST = ["BF ST", "SAP ST"]
+NEXT = ["DBVT F", "Tracy ST"]
+FASTEST = ["GPU LBVH", "GPU Grid"]
+
+
+def _without(names: list[str], *others: list[str]) -> list[str]:
+    return [name for name in names if not any(name in some for some in others)]
+
+
+def slowest(e: Evidence) -> list[Part]:
+    return e.faster("Brownian", _without(SINGLES, SLOWEST), SLOWEST)
+
+
+def gains_of_vectors_and_threads(e: Evidence) -> list[Part]:
+    return [
+        e.gain_up_to("Brownian", ["BF ST"], ["BF MT"], 40),
+        e.gain_up_to("Brownian", ["SAP ST"], ["SAP MT"], 12),
+    ]
+
+
+def next_slowest(e: Evidence) -> list[Part]:
+    order = e.faster("Brownian", _without(SINGLES, SLOWEST, NEXT), NEXT)
+    return [*order, e.gain_up_to("Brownian", NEXT, ["DBVT D", "CGAL"], 3)]
+
+
+def tracy_threads(e: Evidence) -> list[Part]:
+    return [e.gain("Brownian", "Tracy ST", "Tracy MT", 2.2, 2.2)]
+
+
+def grids(e: Evidence) -> list[Part]:
+    bf, sap = ("Grid BF ST", "Grid BF MT"), ("Grid SAP ST", "Grid SAP MT")
+    return [
+        *(part for i in (0, 1) for part in e.faster("Brownian", [sap[i]], [bf[i]])),
+        *(e.gain("Brownian", *grid, 2, 3, also=[*bf, *sap]) for grid in (bf, sap)),
+    ]
+
+
+def kd_like_grid_sap(e: Evidence) -> list[Part]:
+    return [e.gain("Brownian", "Grid SAP ST", "KD", 1, 1)]
+
+
+def gpu_fastest(e: Evidence) -> list[Part]:
+    names = [algorithm.name for algorithm in ALGORITHMS]
+    return [
+        *e.faster("Brownian", FASTEST, _without(names, FASTEST)),
+        *(e.gain("Brownian", "Grid SAP MT", name, 2, 2) for name in FASTEST),
+        *(e.gain("Brownian", "KD", name, 3, 3) for name in FASTEST),
+    ]
+
+
+def free_fall_favours(e: Evidence) -> list[Part]:
+    gain = ["AxisSweep", "Tracy ST", "DBVT F", "KD"]
+    lose = ["Grid BF ST", "Grid SAP ST", "CGAL", "DBVT D"]
+    same = [*SLOWEST, *GPUS]
+    return [
+        *(e.changes("FreeFall", name, 0, 1) for name in gain),
+        *(e.changes("FreeFall", name, 1, float("inf")) for name in lose),
+        *(e.changes("FreeFall", name, 1 / HARDLY, HARDLY) for name in same),
+    ]
+
+
+def free_fall_a_million(e: Evidence) -> list[Part]:
+    return [
+        e.reaches_a_million("FreeFall", "DBVT F", True),
+        *e.faster("FreeFall", ["KD"], GPUS),
+    ]
+
+
+def gravity_hardest(e: Evidence) -> list[Part]:
+    return [
+        *(e.reaches_a_million("Gravity", name, False) for name in ON_CPU),
+        *(e.changes("Gravity", name, 1 / HARDLY, HARDLY) for name in FASTEST),
+    ]
+
+
+def gpu_sap_fails(e: Evidence) -> list[Part]:
+    return [e.fails_above("GPU SAP", 512_000)]
+
+
+def extra_pairs(e: Evidence) -> list[Part]:
+    return [e.extra_pairs("AxisSweep", 0.05), e.extra_pairs("KD", 0.05)]
+
+
+def assorted_objects(e: Evidence) -> list[Part]:
+    return [
+        *(p for name in ("DBVT F", "DBVT D") for p in e.assorted_takes(name, 2, 3)),
+        *(p for name in ("KD", "Tracy ST", "CGAL") for p in e.assorted_takes(name, 1.2, 1.4)),
+    ]
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A sentence of the paper, and how it is judged."""
+
+    sentence: str
+    parts: Callable[[Evidence], list[Part]]
+
+
+#: In the paper's order.
+CLAIMS = [
+    Claim("Brownian, one thread: BF and SAP are slowest", slowest),
+    Claim(
+        "Brownian: BF gains up to 40 times and SAP up to 12 from AVX and four threads",
+        gains_of_vectors_and_threads,
+    ),
+    Claim(
+        "Brownian, one thread: DBVT F and Tracy come next; DBVT D and CGAL are up to three times "
+        "faster than those",
+        next_slowest,
+    ),
+    Claim("Tracy MT is 2.2 times as fast as Tracy ST", tracy_threads),
+    Claim("Grid SAP beats Grid BF; both gain two to three times from threads", grids),
+    Claim("Brownian: KD is about as fast as Grid SAP on one thread", kd_like_grid_sap),
+    Claim(
+        "Brownian: GPU Grid and GPU LBVH are fastest, twice as fast as the best multi-threaded "
+        "algorithm (Grid SAP MT), three times as fast as KD",
+        gpu_fastest,
+    ),
+    Claim(
+        "Free Fall favours AxisSweep, Tracy, DBVT F and KD; Grid BF, Grid SAP, CGAL and DBVT D "
+        "lose; BF, SAP and the GPU ones hardly change",
+        free_fall_favours,
+    ),
+    Claim(
+        "Free Fall: DBVT F reaches a million objects within the cap; KD beats the GPU algorithms",
+        free_fall_a_million,
+    ),
+    Claim(
+        "Gravity is hardest: no CPU algorithm reaches a million within the cap; the GPU's Grid and "
+        "LBVH hardly notice",
+        gravity_hardest,
+    ),
+    Claim("GPU SAP fails above 512,000", gpu_sap_fails),
+    Claim("AxisSweep and KD report about 5 % more pairs than there are", extra_pairs),
+    Claim(
+        "Assorted objects: DBVT takes two to three times longer, KD, Tracy and CGAL 1.2 to 1.4 times",
+        assorted_objects,
+    ),
+]
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """A claim, judged on the results of one machine."""
+
+    number: int
+    claim: str
+    verdict: str
+    parts: list[Part]
+
+
+def judge(evidence: Evidence) -> list[Judgement]:
+    """All claims."""
+    judgements = []
+    for number, claim in enumerate(CLAIMS, 1):
+        parts = claim.parts(evidence)
+        outcomes = [part.holds for part in parts]
+        verdict = FAILS if False in outcomes else UNKNOWN if None in outcomes else HOLDS
+        judgements.append(Judgement(number, claim.sentence, verdict, parts))
+    return judgements

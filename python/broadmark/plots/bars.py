@@ -1,0 +1,54 @@
+"""Bars: the mean time of a frame by scene, number of bodies and algorithm."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from broadmark.drawing import log_scale
+from broadmark.plots.cases import Cases
+from broadmark.plots.panels import by_scene_and_size
+
+
+def bars(cases: Cases) -> Figure:
+    """mean time of a frame, by scene and number of bodies; lines are 95 % intervals"""
+    looks = cases.looks
+    rows = {label: row for row, label in enumerate(looks)}
+
+    def paint(axes: Any, part: pd.DataFrame) -> None:
+        y = part["label"].map(rows)
+        milliseconds = part["seconds_per_frame"] * 1e3
+        colours = [looks[label].colour for label in part["label"]]
+        axes.barh(y, milliseconds, height=0.75, color=colours)
+        known = part["ci95_low_seconds"].notna()
+        if known.any():
+            low, high = (
+                part.loc[known, f"ci95_{end}_seconds"].astype(float) * 1e3
+                for end in ("low", "high")
+            )
+            axes.hlines(y[known], low.clip(lower=0), high, color="#444444", linewidth=0.8)
+        if cases.log:
+            log_scale(axes, "x")
+            axes.set_xlim(milliseconds.min() / 2, milliseconds.max() * 1.5)
+        else:
+            axes.set_xlim(0, milliseconds.max() * 1.25)  # intervals of few repetitions are cut
+        for row, value in zip(y, milliseconds):
+            axes.annotate(
+                f"{value:.3g}",
+                (1.0, row),
+                xycoords=("axes fraction", "data"),
+                ha="right",
+                va="center",
+                fontsize=5.5,
+                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+            )
+        axes.grid(False, axis="y")
+        axes.set_yticks(list(rows.values()), list(rows), fontsize=7)
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+
+    size = (2.4, 0.6 + 0.15 * len(rows))
+    return by_scene_and_size(
+        cases, paint, size=size, x="milliseconds", y="", legend=False, sharey=True
+    )

@@ -1,0 +1,80 @@
+"""Figures of several panels with one legend below them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import pandas as pd
+from matplotlib.figure import Figure
+
+from broadmark.plots.cases import Cases
+
+#: Draws the cases of a panel.
+Painter = Callable[[Any, pd.DataFrame], None]
+
+NOTE = {"fontsize": 6.5, "color": "#666666"}
+
+
+def by_scene_and_size(cases: Cases, paint: Painter, **about: Any) -> Figure:
+    """A row of panels for each scene, in it a panel for each number of bodies."""
+    table = cases.table
+    rows = [
+        [
+            (
+                f"{scene}, {objects:,} bodies",
+                table[(table["panel"] == scene) & (table["objects"] == objects)],
+            )
+            for objects in sorted(table["objects"].unique())
+        ]
+        for scene in table["panel"].unique()
+    ]
+    return _panels(cases, rows, paint, **about)
+
+
+def by_scene(cases: Cases, paint: Painter, *, stacked: bool = False, **about: Any) -> Figure:
+    """A panel for each scene, beside or below each other."""
+    scenes = cases.table["panel"].unique()
+    row = [(scene, cases.table[cases.table["panel"] == scene]) for scene in scenes]
+    return _panels(cases, [[panel] for panel in row] if stacked else [row], paint, **about)
+
+
+def _panels(
+    cases: Cases,
+    rows: list[list[tuple[str, pd.DataFrame]]],
+    paint: Painter,
+    *,
+    size: tuple[float, float],
+    x: str,
+    y: str,
+    legend: bool,
+    **sharing: Any,
+) -> Figure:
+    """`size` is of a panel, in inches; `x` and `y` are the axes' labels; `sharing` is for subplots."""
+    width = max(size[0] * len(rows[0]) + 0.4, 4)
+    height = size[1] * len(rows) + 0.3
+    labels = list(cases.looks) if legend else []
+    columns = max(1, min(int(width / 1.45), len(labels)))
+    below = 0.32 + 0.17 * math.ceil(len(labels) / columns)
+    figure = Figure(figsize=(width, height + below), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, height_ratios=[height, below])
+    grid = upper.subplots(len(rows), len(rows[0]), squeeze=False, **sharing)
+    handles: dict[str, Any] = {}
+    for row, axes_of_row in zip(rows, grid):
+        for (title, part), axes in zip(row, axes_of_row):
+            axes.set_title(title, loc="left")
+            if not len(part):
+                axes.set_axis_off()
+                continue
+            paint(axes, part)
+            handles |= {line.get_label(): line for line in axes.get_lines()}
+    for axes in grid[-1]:
+        axes.set_xlabel(x)
+    for axes in grid[:, 0]:
+        axes.set_ylabel(y)
+    if legend:
+        shown = [label for label in labels if label in handles]
+        lower.legend([handles[one] for one in shown], shown, loc="upper center", ncol=columns)
+    lower.text(0.5, 0.06 / below, cases.note, ha="center", va="bottom", **NOTE)
+    return figure

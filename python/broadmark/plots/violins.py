@@ -1,0 +1,46 @@
+"""Violins: how the times of frames are distributed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+from broadmark.plots.cases import Cases
+from broadmark.plots.panels import by_scene_and_size
+
+
+def violins(cases: Cases) -> Figure:
+    """distribution of the times of all frames; a dash marks the median"""
+    looks = cases.looks
+    rows = {label: row for row, label in enumerate(looks)}
+    times = {
+        case: frames["total_ns"].to_numpy() / 1e6
+        for case, frames in cases.results.frames.groupby("case")
+        if case in cases.table.index
+    }
+
+    def paint(axes: Any, part: pd.DataFrame) -> None:
+        for case, label in part["label"].items():
+            values = np.log10(times[case]) if cases.log else times[case]
+            body = axes.violinplot(
+                [values], [rows[label]], vert=False, widths=0.9, showextrema=False
+            )
+            body["bodies"][0].set(facecolor=looks[label].colour, alpha=0.75, linewidth=0)
+            axes.plot(np.median(values), rows[label], "|", color="black", markersize=5)
+        if cases.log:
+            axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+            axes.xaxis.set_major_formatter(FuncFormatter(lambda power, _: f"{10**power:g}"))
+        else:
+            axes.set_xlim(left=0)
+        axes.grid(False, axis="y")
+        axes.set_yticks(list(rows.values()), list(rows), fontsize=7)
+        axes.set_ylim(len(rows) - 0.4, -0.6)
+
+    size = (2.4, 0.6 + 0.17 * len(rows))
+    return by_scene_and_size(
+        cases, paint, size=size, x="milliseconds a frame", y="", legend=False, sharey=True
+    )
