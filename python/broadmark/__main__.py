@@ -18,8 +18,8 @@ exit status:
   130  interrupted (Ctrl-C)"""
 
 
-def parser() -> argparse.ArgumentParser:
-    """All commands with their options."""
+def parser(names: list[str]) -> argparse.ArgumentParser:
+    """These commands with their options."""
     summary, _, rest = (broadmark.__doc__ or "").partition("\n")
     top = argparse.ArgumentParser(
         "python3 -m broadmark",
@@ -28,7 +28,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     commands = top.add_subparsers(metavar="COMMAND", required=True)
-    for name in COMMANDS:
+    for name in names:
         module = importlib.import_module(f"broadmark.commands.{name}")
         doc = (module.__doc__ or "").strip()
         command = commands.add_parser(
@@ -44,7 +44,10 @@ def parser() -> argparse.ArgumentParser:
 
 def main(arguments: list[str] | None = None) -> int:
     """Runs one command; bad input is a line on standard error and status 2."""
-    options = parser().parse_args(arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
+    # A command that is called does not wait for what others import.
+    names = [name for name in COMMANDS if name in arguments[:1]] or COMMANDS
+    options = parser(names).parse_args(arguments)
     try:
         return options.main(options) or 0
     except broadmark.InputError as error:
