@@ -48,7 +48,7 @@ class Progress:
     def case(self, recording: Recording, variant: str, outcome: Outcome) -> None:
         seconds = outcome.seconds_per_frame
         mean = f" {short_time(seconds)}" if seconds is not None else ""
-        self.event(f"{recording.name}: {variant}{mean} {outcome.status}")
+        self.event(f"{variant}{mean} {outcome.status}: {recording.name}")
 
     def tick(self, now: bool = False) -> None:
         """Lets the clock of a terminal's line go on."""

@@ -45,36 +45,37 @@ class Runner:
         for _, level in levels(recordings):
             if not bake_only:
                 level = [one for one in level if self.ledger.pending(one)]
-            self._bake(level)
-            for recording in [] if bake_only else level:
-                if not self.folder.is_baked(recording):
-                    continue
+            baked = self._bake(level)
+            for recording in [] if bake_only else baked:
                 try:
                     self._run_recording(recording)
-                except InputError as error:
+                except (InputError, OSError) as error:
                     self._fail(f"{recording.name}: {error}")
 
     def _fail(self, message: str) -> None:
         self.failed = True
         self.progress.complain(message)
 
-    def _bake(self, recordings: list[Recording]) -> None:
-        """The program keeps what is there, after it has read it through."""
+    def _bake(self, recordings: list[Recording]) -> list[Recording]:
+        """Returns those that are as they should be: the program reads through what is there."""
 
         def together(one: Recording) -> tuple[int, str, bool]:
             return one.objects, one.series.variation, one.is_split
 
+        failed: set[Recording] = set()
         needed = sorted(with_sources(recordings), key=together)
         for _, same in itertools.groupby(needed, key=together):
             group = list(same)
             missing = [one for one in group if not self.folder.is_baked(one)]
             if missing:
-                self.progress.event(f"baking {', '.join(one.name for one in missing)}")
+                self.progress.event(f"baking: {_names(missing)}")
             try:
                 with self.estimate.baking(missing):
                     self._bake_together(group)
             except InputError as error:
-                self._fail(f"{', '.join(one.name for one in group)}: {error}")
+                self._fail(f"{_names(group)}: {error}")
+                failed.update(group)
+        return [one for one in recordings if failed.isdisjoint(with_sources([one]))]
 
     def _bake_together(self, recordings: list[Recording]) -> None:
         """Recordings of one folder and of the same kinds."""
@@ -112,7 +113,7 @@ class Runner:
 
     def _run_recording(self, recording: Recording) -> None:
         def waiting() -> None:
-            self.progress.event(f"waiting for another process that runs {recording.name}")
+            self.progress.event(f"waiting for another process that runs it: {recording.name}")
 
         with self.folder.lock(recording, waiting) as lock, self._at_hand(recording) as path:
             self.folder.load(recording, self.ledger)  # another process may have run it meanwhile
@@ -127,6 +128,7 @@ class Runner:
         self, recording: Recording, path: str, selection: Selection, pending: list[str], lock: int
     ) -> None:
         """One call of the program, so that the repetitions of all these cases take turns."""
+        self.progress.event(f"running {len(pending)} cases: {recording.name}")
         attempt = self.folder.new_attempt(recording)
         tail = Tail(attempt)
 
@@ -169,3 +171,7 @@ class Runner:
             except OSError as error:
                 raise InputError(f"--copy-to: {file}: cannot be copied: {error}") from None
             yield copy
+
+
+def _names(recordings: list[Recording]) -> str:
+    return ", ".join(one.name for one in recordings)

@@ -90,6 +90,8 @@ def main(options: argparse.Namespace) -> int:
         failed = runner.failed
     if not options.list and chosen == recordings and merge(folder, ledger):
         print(f"written: {folder.results}")
+    if campaign.title:
+        print(campaign.title)
     print(table(ledger, chosen, folder.is_baked))
     if options.list:
         room = sum(one.bytes for one in missing()) / 1e9
