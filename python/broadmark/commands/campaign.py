@@ -71,8 +71,9 @@ def main(options: argparse.Namespace) -> int:
     else:
         folder.take(campaign)
     ledger = Ledger(recordings, list(variants))
+    concerned = {one.series for one in chosen}  # the cap goes by smaller recordings, too
     for recording in recordings:
-        if any(one.series == recording.series for one in chosen):
+        if recording.series in concerned:
             folder.load(recording, ledger)
     estimate = Estimate(ledger, campaign.options)
 
