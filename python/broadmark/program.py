@@ -8,7 +8,8 @@ import shutil
 import signal
 import subprocess
 import tempfile
-from collections.abc import Iterable
+import time
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from broadmark.errors import InputError
@@ -51,10 +52,58 @@ def call(*arguments: str, accept: tuple[int, ...] = (0,), show: bool = False) ->
     if done.returncode in (-signal.SIGINT, 130):
         raise KeyboardInterrupt
     if done.returncode not in accept:
-        lines = (done.stderr or "").strip().splitlines()
-        message = lines[-1] if lines else f"broadmark ended with status {done.returncode}"
-        raise InputError(message.removeprefix("broadmark: "))
+        raise _refusal(done.returncode, done.stderr or "")
     return done.stdout or ""
+
+
+def follow(
+    *arguments: str,
+    tick: Callable[[], None],
+    accept: tuple[int, ...] = (0,),
+    keep_open: tuple[int, ...] = (),
+) -> None:
+    """Runs the program and calls `tick` a few times a second meanwhile.
+
+    An interruption is passed on to the program, which then keeps what is finished. `keep_open` are
+    files that the program holds, too. Raises InputError as `call` does.
+    """
+    with tempfile.TemporaryFile("w+", errors="replace") as errors:
+        process = subprocess.Popen(
+            [find_program(), *arguments],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=errors,
+            pass_fds=keep_open,
+        )
+        try:
+            while process.poll() is None:
+                tick()
+                time.sleep(0.1)
+        except BaseException:
+            _interrupt(process)
+            raise
+        tick()
+        if process.returncode in (-signal.SIGINT, 130):
+            raise KeyboardInterrupt
+        if process.returncode not in accept:
+            errors.seek(0)
+            raise _refusal(process.returncode, errors.read())
+
+
+def _interrupt(process: subprocess.Popen[bytes]) -> None:
+    """Ends the program: by itself, or at once when that is wished again."""
+    try:
+        process.send_signal(signal.SIGINT)
+        process.wait()
+    except KeyboardInterrupt:
+        process.kill()
+        process.wait()
+
+
+def _refusal(status: int, stderr: str) -> InputError:
+    lines = stderr.strip().splitlines()
+    message = lines[-1] if lines else f"broadmark ended with status {status}"
+    return InputError(message.removeprefix("broadmark: "))
 
 
 def as_options(**options: Any) -> list[str]:

@@ -203,13 +203,18 @@ def _check_lengths(case: dict[str, Any]) -> None:
             raise ValueError(f"{phase}: the same number of frames in all phases is expected")
 
 
+def is_complete(case: dict[str, Any]) -> bool:
+    """Whether a case ran as often as was asked for, or ended by its status."""
+    asked = case.get("conditions", {}).get("repetitions")
+    return case["status"] != "ok" or asked is None or len(case["frames"]["total"]) >= asked
+
+
 def _row(case: dict[str, Any]) -> dict[str, Any]:
     """What the table of cases says of one."""
     recording, conditions = case["recording"], case.get("conditions", {})
     source = recording["source"]
     simulated = isinstance(source, dict)
     times = case["frames"]["total"]
-    asked = conditions.get("repetitions")
     checked = case["checked"]
     processor = case.get("processor", {})
     row = {
@@ -231,8 +236,8 @@ def _row(case: dict[str, Any]) -> dict[str, Any]:
         "status": case["status"],
         "reason": case["reason"],
         "repetitions": len(times),
-        "repetitions_asked": asked,
-        "complete": case["status"] != "ok" or asked is None or len(times) >= asked,
+        "repetitions_asked": conditions.get("repetitions"),
+        "complete": is_complete(case),
         "check": conditions.get("check"),
         **_summary(case["summary"] if times else {}),
         "initialize_seconds": _mean(case["initialize_ns"]) * 1e-9,

@@ -1,0 +1,81 @@
+"""What a campaign file is to the program: options, and the cases and names that it makes of them."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import re
+import tempfile
+
+from broadmark.campaign.description import Campaign, Selection, Values
+from broadmark.campaign.plan import as_text
+from broadmark.errors import InputError
+from broadmark.program import as_options, call
+from broadmark.recordings import write_recording
+
+#: Options of a campaign that are part of its selections; the others tell how cases are measured.
+OF_SELECTIONS = ("plugin", "device")
+
+
+def parameter_options(parameters: Values) -> list[str]:
+    """As the program takes them."""
+    several = {name: ",".join(map(as_text, values)) for name, values in parameters}
+    return as_options(param=several)
+
+
+def selection_options(campaign: Campaign, selection: Selection) -> list[str]:
+    """The program's options that make the cases of a selection."""
+    return [
+        *as_options(algorithm=selection.algorithms, threads=selection.threads, isa=selection.isas),
+        *parameter_options(selection.parameters),
+        *itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))),
+        *as_options(device=campaign.options.get("device")),
+    ]
+
+
+def measuring_options(campaign: Campaign) -> list[str]:
+    """The program's options that tell how each case is measured."""
+    options = campaign.options.items()
+    return as_options(**{name: value for name, value in options if name not in OF_SELECTIONS})
+
+
+def planned_variants(campaign: Campaign) -> dict[str, Selection]:
+    """Every variant once, with the first selection that has it. The program makes them."""
+    with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
+        path = os.path.join(folder, "one.aabbs")
+        write_recording(path, [[[0, 0, 0, 1, 1, 1]]] * 2, name="X", object_type="X")
+        variants: dict[str, Selection] = {}
+        for selection in campaign.selections:
+            try:
+                listed = call("--headless", path, *selection_options(campaign, selection), "--list")
+            except InputError as error:
+                raise InputError(f"{campaign.path}: {selection.where}: {error}") from None
+            for case in listed.splitlines():
+                variants.setdefault(case.removeprefix("X/X/N1/F1/"), selection)
+        return variants
+
+
+def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
+    """What files of recordings begin with, by scene and object type. The program checks what the
+    file says of recordings on the way."""
+    names: dict[tuple[str, str], str] = {}
+    for block in campaign.blocks:
+        try:
+            listed = call(
+                *("bake", "--list", "--quiet", "--output", "recordings that are not there"),
+                *as_options(scenes=block.scenes, object_type=block.object_types),
+                *as_options(objects=block.objects, frames=block.frames, seed=block.seeds),
+                *as_options(engine=",".join(filter(None, block.engines)) or None),
+                *parameter_options(block.parameters),
+            )
+        except InputError as error:
+            raise InputError(f"{campaign.path}: {block.where}: {error}") from None
+        found = re.findall(r"/(([^/ ]+) ([^/ ]+)) N\d+ F\d+frames.*\.aabbs$", listed, re.MULTILINE)
+        names |= {(scene.lower(), kind.lower()): name for name, scene, kind in found}
+    return names
+
+
+def filter_for(variants: list[str]) -> str:
+    """A regular expression that only the ids of these cases match."""
+    names = (re.sub(r"([.*+?^${}()|\[\]\\])", r"\\\1", one) for one in variants)
+    return f"/F[0-9]+/({'|'.join(names)})$"

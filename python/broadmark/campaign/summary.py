@@ -1,0 +1,45 @@
+"""How a campaign stands, as text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from broadmark.campaign.ledger import Ledger
+from broadmark.campaign.plan import Recording
+
+COLUMNS = ["ok", "timeout", "mismatch", "unsupported", "error", "not run", "pending"]
+
+
+def table(
+    ledger: Ledger, recordings: list[Recording], is_baked: Callable[[Recording], bool]
+) -> str:
+    """A row for each recording, and what the cap leaves out."""
+    rows = [["recording", "file", *COLUMNS]]
+    for recording in recordings:
+        counts = ledger.tally(recording)
+        file = "baked" if is_baked(recording) else "to split" if recording.source else "to bake"
+        rows.append([recording.name, file, *(str(counts[name] or "–") for name in COLUMNS)])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    lines = [
+        "  ".join(
+            cell.ljust(width) if i < 2 else cell.rjust(width)
+            for i, (cell, width) in enumerate(zip(row, widths))
+        ).rstrip()
+        for row in rows
+    ]
+    return "\n".join([*lines, *_caps(ledger, recordings)])
+
+
+def _caps(ledger: Ledger, recordings: list[Recording]) -> Iterator[str]:
+    """For each series and size which variants were not run beyond it."""
+    beyond: dict[str, list[str]] = {}
+    for recording in recordings:
+        series = recording.series
+        for variant in ledger.variants:
+            cap = ledger.cap(recording, variant)
+            if cap is not None:
+                place = f"{series.scene} {series.object_type} {series.variation} beyond {cap}"
+                if variant not in beyond.setdefault(place, []):
+                    beyond[place].append(variant)
+    for place, variants in beyond.items():
+        yield f"not run, past the cap: {place}: {', '.join(variants)}"

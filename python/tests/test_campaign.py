@@ -1,0 +1,486 @@
+"""Campaigns on this machine: what is run, when, and what is left of it after an interruption."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from conftest import SOURCE_FOLDER
+
+import broadmark
+from broadmark.campaign.attempts import PART, read_attempt
+from broadmark.campaign.description import read_campaign
+from broadmark.campaign.estimate import Estimate
+from broadmark.campaign.ledger import Ledger, Outcome
+from broadmark.campaign.plan import Recording, planned_recordings
+from broadmark.campaign.slurm import planned_jobs
+
+PATIENCE = 60  # seconds
+
+BLOCK = {"scenes": "brownian", "objects": [20, 40], "frames": 5, "engine": "kinematic"}
+
+
+@pytest.fixture
+def write(tmp_path: pathlib.Path) -> Callable[..., pathlib.Path]:
+    """Writes a campaign: of two small recordings and two variants, but for what is given."""
+
+    def write(**keys: Any) -> pathlib.Path:
+        document = {
+            "schema": "broadmark-campaign/1",
+            "recordings": [BLOCK],
+            "algorithm": ["bf", "kd"],
+        }
+        path = tmp_path / "some campaign.json"
+        path.write_text(json.dumps(document | keys))
+        return path
+
+    return write
+
+
+@pytest.fixture
+def run(tmp_path: pathlib.Path, command: Any) -> Callable[..., tuple[int, str, str]]:
+    """Runs the command on a campaign; its folder is "the output"."""
+
+    def run(file: pathlib.Path, *options: str) -> tuple[int, str, str]:
+        status, out, err = command("campaign", file, "--output", tmp_path / "the output", *options)
+        return int(status), str(out), str(err)
+
+    return run
+
+
+def attempts(folder: pathlib.Path) -> dict[str, bytes]:
+    """All files of results, with their content."""
+    paths = (folder / "the output/runs").glob("*/*.jsonl")
+    return {f"{path.parent.name}/{path.name}": path.read_bytes() for path in paths}
+
+
+def results(folder: pathlib.Path) -> broadmark.Results:
+    return broadmark.read_results(folder / "the output/results.json")
+
+
+def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    blocks = [
+        BLOCK | {"seed": [1, 2], "parameters": {"density": [0.05, 0.1]}, "objects": 20},
+        BLOCK | {"scenes": ["freefall"], "engine": ["kinematic", "bullet"], "objects": 20},
+    ]
+    own = {
+        "algorithm": ["bf*", "kd-mt"],
+        "threads": [1, 2],
+        "parameters": {"kd-mt:margin": [0, 0.1]},
+    }
+    file = write(recordings=blocks, algorithm=["bf", "bf-mt", own], threads=2, repetitions=2)
+    status, out, err = run(file)
+    assert status == 0, err
+    cases = results(tmp_path).cases
+    assert len(cases) == 6 * 10  # recordings, variants
+    assert cases["id"].is_unique and results(tmp_path).partial == []
+    assert set(cases["repetitions"]) == {2} and set(cases["status"]) == {"ok"}
+    ids = set(cases["id"])
+    assert "Brownian/Cubes/N20/F5/s2/density=0.05/engine=kinematic/kd-mt/avx2/t1/margin=0" in {
+        one.replace("avx512", "avx2").replace("neon", "avx2") for one in ids
+    }
+    assert "FreeFall/Cubes/N20/F5/s1/engine=bullet/bf-mt/t2" in ids
+    assert set(cases["seed"]) == {1, 2}
+    assert f"{len(cases)} of {len(cases)} cases" in err  # the last line of progress
+
+    before = attempts(tmp_path)
+    status, out, err = run(file)
+    assert status == 0 and err == "" and attempts(tmp_path) == before
+    assert f"written: {tmp_path / 'the output/results.json'}" in out
+
+
+def test_results_lead_back_to_their_recordings(
+    write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
+    assert run(write(), "--quiet")[2] == ""
+    moved = tmp_path / "moved"
+    (tmp_path / "the output").rename(moved)
+    case = broadmark.read_results(moved / "results.json").cases.iloc[0]
+    again = broadmark.program.call("--headless", str(moved / "results.json"), "--case", case["id"])
+    assert "ok" in again
+
+
+def test_larger_recordings_are_left_out_past_the_cap(
+    write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
+    blocks = [BLOCK | {"objects": [20, 40, 80]}, BLOCK | {"objects": 40, "seed": 2}]
+    file = write(
+        recordings=blocks,
+        algorithm=["time-validator"],
+        parameters={"phase_us": [1, 3000]},
+        time_limit=0.01,
+    )
+    status, out, _ = run(file)
+    assert status == 0  # a limit that is crossed on purpose is no failure
+    cases = results(tmp_path).cases
+    slow = cases[cases["params"] == "phase_us=3000"]
+    assert list(slow["objects"]) == [20, 40] and list(slow["seed"]) == [1, 2]
+    assert set(slow["status"]) == {"timeout"}
+    assert len(cases) - len(slow) == 4
+    rows = {line.split("  ")[0]: line.split()[-7:] for line in out.splitlines()}
+    assert rows["brownian cubes N20 F5 kinematic seed=1"] == ["1", "1", *"–––––"]
+    assert rows["brownian cubes N80 F5 kinematic seed=1"] == ["1", *"––––", "1", "–"]
+    assert (
+        "not run, past the cap: brownian cubes kinematic seed=1 beyond 20: "
+        "time-validator/phase_us=3000" in out
+    )
+    assert results(tmp_path).partial == []
+
+
+def test_what_no_variant_needs_is_not_baked(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    file = write(algorithm=["time-validator"], time_limit=0.001)
+    assert run(file)[0] == 0
+    (recording,) = (tmp_path / "the output/recordings").rglob("*.aabbs")
+    assert " N20 " in recording.name
+
+
+def test_large_recordings_are_split_from_small_ones(
+    write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
+    blocks = [
+        BLOCK | {"objects": 10, "frames": 8},
+        BLOCK | {"objects": [80, 640], "frames": 4, "split": True},
+    ]
+    assert run(write(recordings=blocks))[0] == 0
+    cases = results(tmp_path).cases
+    assert sorted(set(zip(cases["objects"], cases["frames"]))) == [(10, 8), (80, 4), (640, 4)]
+    assert set(cases["status"]) == {"ok"}
+    sidecars = (tmp_path / "the output/recordings").rglob("*N640*.json")
+    (parameters,) = (json.loads(one.read_text())["parameters"] for one in sidecars)
+    assert parameters["engine"] == "splitter"
+
+
+def test_a_campaign_may_grow(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    assert run(write(algorithm=["bf"]))[0] == 0
+    before = attempts(tmp_path)
+    larger = BLOCK | {"objects": [20, 40, 80]}
+    assert run(write(recordings=[larger, larger], algorithm=["bf", "kd"]))[0] == 0
+    assert before.items() < attempts(tmp_path).items()
+    assert len(results(tmp_path).cases) == 6
+
+    kept = (tmp_path / "the output/campaign.json").read_bytes()
+    for change, what in (
+        ({"repetitions": 2}, "its 'repetitions' is None, not 2"),
+        ({"recordings": [BLOCK]}, "it has the recording 'brownian cubes N80 F5 kinematic seed=1'"),
+        ({"algorithm": ["bf"], "recordings": [larger]}, "it runs bf, kd with other"),
+        ({"threads": [1], "recordings": [larger]}, "it runs bf, kd with other"),
+    ):
+        for option in ("--quiet", "--list"):
+            status, _, err = run(write(**change), option)
+            assert status == 2 and f"holds another campaign: {what}" in err, err
+    assert (tmp_path / "the output/campaign.json").read_bytes() == kept
+
+
+def test_the_list_runs_nothing(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    status, out, err = run(write(), "--list")
+    assert status == 0 and not (tmp_path / "the output").exists()
+    assert "brownian cubes N40 F5 kinematic seed=1  to bake" in out
+    assert "0 cases are finished, 4 are to be run; 2 recordings are to be baked" in out
+
+
+def test_one_recording_alone(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    name = "brownian cubes N40 F5 kinematic seed=1"
+    file = write()
+    assert run(file, "--recording", name, "--bake")[0] == 0
+    assert len(list((tmp_path / "the output/recordings").rglob("*.aabbs"))) == 1
+    assert not attempts(tmp_path)
+    copies = tmp_path / "local"
+    copies.mkdir()
+    assert run(file, "--recording", name, "--copy-to", str(copies))[0] == 0
+    assert list(attempts(tmp_path)) == [f"{name}/1.jsonl"]
+    assert not list(copies.iterdir())
+    status, out, err = run(file, "--merge")
+    assert status == 0 and len(results(tmp_path).cases) == 2
+    assert results(tmp_path).partial  # half of the campaign
+    status, _, err = run(file, "--recording", "brownian")
+    assert status == 2 and "none of those that --list shows" in err
+
+
+def test_wrong_answers_do_not_stop_a_campaign(
+    write: Any, run: Any, tmp_path: pathlib.Path, faulty_plugin: str
+) -> None:
+    block = BLOCK | {"objects": [200, 300], "frames": 300, "engine": "bullet"}
+    status, out, _ = run(
+        write(recordings=[block], algorithm=["faulty", "kd"], plugin=faulty_plugin)
+    )
+    assert status == 1
+    assert sorted(results(tmp_path).cases["status"]) == ["mismatch", "mismatch", "ok", "ok"]
+
+
+def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
+    write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
+    file = write()
+    assert run(file, "--bake")[0] == 0
+    broken = next((tmp_path / "the output/recordings").rglob("*N20*.aabbs"))
+    sidecar = broken.with_suffix(".json")
+    sidecar.write_text(sidecar.read_text().replace('"seed": 1', '"seed": 2'))
+    status, _, err = run(file)
+    assert status == 2 and "N20 F5 kinematic seed=1: " in err and "baked before" in err, err
+    assert list(results(tmp_path).cases["objects"]) == [40, 40]
+
+
+# Interruptions, of the real command in a process of its own
+
+
+@pytest.fixture
+def start(tmp_path: pathlib.Path) -> Iterator[Callable[[pathlib.Path], subprocess.Popen[str]]]:
+    """Starts the command as the leader of a group of processes."""
+    started = []
+
+    def start(file: pathlib.Path) -> subprocess.Popen[str]:
+        command = [sys.executable, "-m", "broadmark", "campaign", str(file)]
+        process = subprocess.Popen(
+            [*command, "--output", str(tmp_path / "the output")],
+            env=os.environ | {"PYTHONPATH": str(SOURCE_FOLDER / "python")},
+            stderr=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,
+        )
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        with process:
+            pass  # waits, and closes the pipe
+
+
+def kept_cases(folder: pathlib.Path) -> dict[str, Any]:
+    """The times of all cases that are finished, by id without what the program does not know."""
+    cases = {}
+    for path in (folder / "the output/runs").glob("*/*.jsonl"):
+        for line in read_attempt(path):
+            if line.kind == "case":
+                assert line.content["id"] not in cases
+                cases[line.content["id"]] = line.content["frames"]["total"]
+    return cases
+
+
+@pytest.fixture
+def long_campaign(write: Any) -> pathlib.Path:
+    """Of two recordings, each with two variants that end at once and then one of a second."""
+    path = write(
+        recordings=[BLOCK | {"frames": 100}],
+        algorithm=["bf", "sap", "time-validator"],
+        parameters={"time-validator:phase_us": 3000},
+    )
+    return pathlib.Path(path)
+
+
+def wait_for_cases(folder: pathlib.Path, count: int) -> None:
+    end = time.monotonic() + PATIENCE
+    while len(kept_cases(folder)) < count:
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize(
+    "interruption", ["kill everything", "kill the command", "Ctrl-C", "termination"]
+)
+def test_after_an_interruption_no_finished_case_is_run_again(
+    interruption: str,
+    long_campaign: pathlib.Path,
+    start: Any,
+    run: Any,
+    tmp_path: pathlib.Path,
+) -> None:
+    process = start(long_campaign)
+    wait_for_cases(tmp_path, 2)
+    if interruption == "kill everything":
+        os.killpg(process.pid, signal.SIGKILL)
+    elif interruption == "kill the command":  # the program goes on, and is waited for
+        process.kill()
+    elif interruption == "Ctrl-C":
+        os.killpg(process.pid, signal.SIGINT)
+    else:
+        process.terminate()
+    _, err = process.communicate()
+    if interruption in ("Ctrl-C", "termination"):
+        assert process.returncode == 130
+        assert "cases are finished; the same command goes on" in err
+    before = kept_cases(tmp_path)
+    assert not (tmp_path / "the output/results.json").exists()
+
+    assert run(long_campaign)[0] == 0
+    after = kept_cases(tmp_path)
+    assert before.items() <= after.items() and len(before) < len(after) == 6
+    cases = results(tmp_path).cases
+    assert len(cases) == 6 and cases["id"].is_unique
+    assert results(tmp_path).partial == []
+
+
+@pytest.mark.parametrize(
+    ("text", "instead"),
+    [
+        # Interrupted between two repetitions.
+        ('"repetitions":1', '"repetitions":2'),
+        # The program may see its worker die before it is killed itself: it cannot know why.
+        ('"status":"ok","reason":""', '"status":"error","reason":"killed with SIGKILL (Killed)"'),
+        ('"status":"ok","reason":""', '"status":"error","reason":"crashed with SIGTERM (…)"'),
+    ],
+)
+def test_what_did_not_come_to_its_end_is_run_again(
+    text: str, instead: str, write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
+    file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd", "sap"])
+    assert run(file)[0] == 0
+    path = next((tmp_path / "the output/runs").glob("*/1.jsonl"))
+    lines = path.read_text().splitlines(keepends=True)
+    assert text in lines[2]
+    cut = [*lines[:2], lines[2].replace(text, instead), lines[3], lines[4][:100]]
+    path.with_name("1" + PART).write_text("".join(cut))
+    path.unlink()
+    before = kept_cases(tmp_path)
+    assert len(before) == 1
+    assert run(file)[0] == 0
+    assert before.items() < kept_cases(tmp_path).items()
+    cases = results(tmp_path).cases
+    assert len(cases) == 3 and cases["id"].is_unique and set(cases["status"]) == {"ok"}
+
+
+# Plain values
+
+
+def recordings_of(path: pathlib.Path) -> list[Recording]:
+    return planned_recordings(read_campaign(path))
+
+
+def test_each_recording_is_planned_once_by_size(write: Any) -> None:
+    names = [
+        one.name for one in recordings_of(write(recordings=[BLOCK | {"objects": [40, 20]}, BLOCK]))
+    ]
+    assert names == [f"brownian cubes N{n} F5 kinematic seed=1" for n in (20, 40)]
+
+
+def test_a_split_recording_takes_the_shortest_source_that_suffices(write: Any) -> None:
+    blocks = [
+        BLOCK | {"objects": 10, "frames": [5, 20, 10]},
+        BLOCK | {"objects": [80, 640], "frames": 8, "split": True},
+    ]
+    planned = {(one.objects, one.frames): one for one in recordings_of(write(recordings=blocks))}
+    assert planned[80, 8].source == planned[10, 10] and planned[640, 8].source == planned[80, 8]
+    assert [key for key, one in planned.items() if one.is_split] == [(10, 10), (80, 8)]
+
+
+def test_jobs_wait_for_what_they_need(write: Any) -> None:
+    class Empty:
+        def is_baked(self, recording: Recording) -> bool:
+            return False
+
+    blocks = [
+        BLOCK | {"objects": [10, 20, 30]},
+        BLOCK | {"objects": [80, 160], "split": True},
+        BLOCK | {"objects": 10, "seed": 2},
+    ]
+    ledger = Ledger(recordings_of(write(recordings=blocks)), ["kd"])
+    jobs = planned_jobs(Empty(), ledger, None)  # type: ignore[arg-type]
+    after = {job.name: [(kind, other.name) for kind, other in job.after] for job in jobs}
+    assert after == {
+        "bake-10": [],
+        "run-10": [("aftercorr", "bake-10")],
+        "bake-20": [],
+        "run-20": [("aftercorr", "bake-20"), ("afterany", "run-10")],
+        "bake-30": [],
+        "run-30": [("aftercorr", "bake-30"), ("afterany", "run-20")],
+        "bake-80": [("afterok", "bake-10")],
+        "run-80": [("aftercorr", "bake-80"), ("afterany", "run-30")],
+        "bake-160": [("afterok", "bake-20")],
+        "run-160": [("aftercorr", "bake-160"), ("afterany", "run-80")],
+        "merge": [("afterany", "run-160")],
+    }
+    assert [len(job.recordings) for job in jobs][:2] == [2, 2]
+
+
+def test_time_left_follows_what_is_known(write: Any) -> None:
+    small, large = recordings_of(write(recordings=[BLOCK | {"objects": [1000, 4000]}]))
+    ledger = Ledger([small, large], ["kd"])
+    ledger.add(small, "kd", Outcome("ok", 0.02))
+    estimate = Estimate(ledger, {"repetitions": 3})
+    once = 5 * 3 * 4 * 0.02  # frames, repetitions, four times the bodies
+    assert once < estimate.left([]) < 3 * once
+    assert estimate.left([large]) > estimate.left([])
+    with_timeout = Estimate(ledger, {"repetitions": 3, "time_limit": 0.05})
+    assert with_timeout.left([]) < estimate.left([])  # three frames are enough
+    ledger.add(large, "kd", Outcome("ok", 0.08))
+    assert estimate.left([]) == 0
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"schema": "broadmark-campaign/2"}, "is no campaign"),
+        ({"algorithms": ["kd"]}, "unknown key 'algorithms' (did you mean 'algorithm'?)"),
+        ({"algorithm": "kd"}, 'algorithm: "kd" is not a list with something in it'),
+        ({"algorithm": []}, "algorithm: [] is not a list with something in it"),
+        ({"algorithm": [5]}, "algorithm[0]: an object with algorithm is expected"),
+        ({"algorithm": [{"threads": 1}]}, "algorithm[0]: 'algorithm' is missing"),
+        ({"algorithm": ["no-such"]}, "algorithm: --algorithm: unknown algorithm 'no-such'"),
+        ({"algorithm": None}, "'algorithm' is missing"),
+        ({"threads": [1, "2"]}, 'threads: [1, "2"] is not a whole number from 0 or a list of'),
+        ({"parameters": {"margin": {}}}, "parameters: "),
+        ({"parameters": {"no_such": 1}}, "algorithm: --param: unknown parameter 'no_such'"),
+        ({"repetitions": "often"}, "repetitions: \"often\" is not a whole number or 'auto'"),
+        ({"time_limit": "0.5"}, 'time_limit: "0.5" is not a number'),
+        ({"recordings": [{}]}, "recordings[0]: 'scenes' is missing"),
+        ({"recordings": [5]}, "recordings[0]: an object with scenes, objects, frames is expected"),
+        ({"recordings": [BLOCK | {"objects": True}]}, "recordings[0].objects: true is not"),
+        ({"recordings": [BLOCK | {"scenes": "no"}]}, "recordings[0]: unknown scene 'no'"),
+        ({"recordings": [BLOCK | {"split": 1}]}, "recordings[0].split: 1 is not true or false"),
+        (
+            {"recordings": [BLOCK | {"objects": 80, "split": True}]},
+            "recordings[0]: brownian cubes N80 F5 kinematic seed=1: is split from one of 10 bodies",
+        ),
+        ({"recordings": [BLOCK | {"objects": 12, "split": True}]}, "12 is no multiple of 8"),
+        (
+            {"recordings": [BLOCK | {"objects": [5, 40]}, BLOCK | {"split": True, "objects": 40}]},
+            "recordings[1]: brownian cubes N40 F5 kinematic seed=1 is made by splitting and",
+        ),
+    ],
+)
+def test_bad_files_are_refused(
+    write: Any, run: Any, keys: dict[str, Any], message: str, tmp_path: pathlib.Path
+) -> None:
+    file = write(**keys)
+    status, _, err = run(file)
+    assert status == 2 and f"broadmark: {file}: " in err and message in err, err
+    assert not (tmp_path / "the output").exists()
+
+
+def test_files_that_are_no_json(run: Any, tmp_path: pathlib.Path) -> None:
+    file = tmp_path / "some.json"
+    assert "cannot be read" in run(file)[2]
+    for text in (
+        "",
+        "[]",
+        "{",
+        '{"schema": "broadmark-campaign/1", "schema": "broadmark-campaign/1"}',
+    ):
+        file.write_text(text)
+        status, _, err = run(file)
+        assert status == 2 and str(file) in err
+
+
+def test_the_campaigns_that_come_with_the_program_and_the_documents_are_sound(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
+    document = (SOURCE_FOLDER / "docs/campaigns.md").read_text("utf-8")
+    example = tmp_path / "example.json"
+    example.write_text(document.split("```json\n")[1].split("```")[0])
+    paths = [example, *sorted((SOURCE_FOLDER / "assets/campaigns").glob("*.json"))]
+    assert len(paths) == 3
+    for path in paths:
+        status, out, err = command("campaign", path, "--output", tmp_path / "none", "--list")
+        assert status == 0 and "to bake" in out, err

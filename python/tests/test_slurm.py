@@ -1,0 +1,291 @@
+"""Campaigns as jobs of Slurm: of a real one, with one node, that lives in a folder of the tests."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import getpass
+import json
+import os
+import pathlib
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import broadmark
+from broadmark.campaign import slurm
+from broadmark.campaign.attempts import read_attempt
+
+DAEMONS = ["/usr/sbin/munged", "/usr/sbin/slurmctld", "/usr/sbin/slurmd"]
+PATIENCE = 90  # seconds, for all that is waited for
+
+CONFIGURATION = """\
+ClusterName=test
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={port}
+SlurmdPort={node_port}
+SlurmUser={user}
+SlurmdUser={user}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge,cred_expire=5
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+MpiDefault=none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SlurmdParameters=config_overrides
+SchedulerParameters=batch_sched_delay=0,bf_interval=1,sched_interval=1
+ReturnToService=2
+KillWait=20
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
+PartitionName=main Nodes={host} Default=YES State=UP
+"""
+
+
+def end_with_parent() -> None:
+    """For a child between fork and exec: it is killed when the tests are."""
+    ctypes.CDLL(None).prctl(1, signal.SIGKILL)
+
+
+def free_ports(count: int) -> list[int]:
+    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
+    ports = [int(one.getsockname()[1]) for one in sockets]
+    for one in sockets:
+        one.close()
+    return ports
+
+
+def wait_for(what: str, is_so: Callable[[], Any]) -> Any:
+    end = time.monotonic() + PATIENCE
+    while not (answer := is_so()):
+        assert time.monotonic() < end, f"waited in vain for {what}"
+        time.sleep(0.05)
+    return answer
+
+
+class Cluster:
+    """Slurm with one node."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self.folder = folder
+        self.environment = os.environ | {"SLURM_CONF": f"{folder}/slurm.conf"}
+        self._daemons: list[subprocess.Popen[bytes]] = []
+
+    def start(self) -> None:
+        port, node_port = free_ports(2)
+        host = socket.gethostname().split(".")[0]
+        user = getpass.getuser()
+        (self.folder / "slurm.conf").write_text(
+            CONFIGURATION.format(
+                folder=self.folder, host=host, user=user, port=port, node_port=node_port
+            )
+        )
+        key = self.folder / "key"
+        key.write_bytes(os.urandom(128))
+        key.chmod(0o600)
+        for name in ("state", "spool"):
+            (self.folder / name).mkdir()
+        files = {"key-file": "key", "pid-file": "pid", "seed-file": "seed", "log-file": "log"}
+        munge = [f"--{option}={self.folder}/munge.{name}" for option, name in files.items()]
+        key.rename(self.folder / "munge.key")
+        # --force: the folder lies in one that everybody may write to.
+        self._begin("/usr/sbin/munged", "--foreground", "--force", *munge, f"-S{self.folder}/munge")
+        wait_for("munged", (self.folder / "munge").exists)
+        self._begin("/usr/sbin/slurmctld", "-D", "-i")
+        self._begin("/usr/sbin/slurmd", "-D")
+        wait_for("the node", lambda: "idle" in self.call("sinfo", "--noheader", accept=(0, 1)))
+
+    def call(self, *command: str, accept: tuple[int, ...] = (0,)) -> str:
+        done = subprocess.run(
+            command, env=self.environment, capture_output=True, text=True, check=False
+        )
+        assert done.returncode in accept, (command, done.stdout, done.stderr)
+        return done.stdout
+
+    def jobs(self) -> str:
+        """Those that have not ended."""
+        return self.call("squeue", "--noheader", "--array", "--format=%i %j %T %R")
+
+    def task_that_runs(self, recording: str) -> tuple[str, list[int]]:
+        """The number of the array's task, and its processes."""
+        tasks: dict[str, list[int]] = {}
+        for pid, environment in self._our_processes():
+            variables = dict(one.split("=", 1) for one in environment if "=" in one)
+            if "SLURM_ARRAY_TASK_ID" in variables:
+                task = f"{variables['SLURM_ARRAY_JOB_ID']}_{variables['SLURM_ARRAY_TASK_ID']}"
+                tasks.setdefault(task, []).append(pid)
+        for task, pids in tasks.items():
+            for pid in pids:
+                with contextlib.suppress(OSError):
+                    if recording in pathlib.Path(f"/proc/{pid}/cmdline").read_text().split("\0"):
+                        return task, pids
+        raise AssertionError(f"no job runs {recording}: {self.jobs()}")
+
+    def stop(self) -> None:
+        """Ends whatever was started here, however it is."""
+        if (self.folder / "slurm.conf").exists():
+            subprocess.run(["scancel", "--me"], env=self.environment, check=False, timeout=20)
+        for daemon in reversed(self._daemons):
+            daemon.terminate()
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                daemon.wait(10)
+        for pid, _ in self._our_processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+        for daemon in self._daemons:
+            daemon.wait()
+
+    def _begin(self, *command: str) -> None:
+        with open(self.folder / f"{pathlib.Path(command[0]).name}.log", "wb") as log:
+            self._daemons.append(
+                subprocess.Popen(
+                    command,
+                    env=self.environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=log,
+                    start_new_session=True,
+                    preexec_fn=end_with_parent,
+                )
+            )
+
+    def _our_processes(self) -> Iterator[tuple[int, list[str]]]:
+        """All processes that this cluster's daemons have started, and themselves."""
+        ours = f"SLURM_CONF={self.folder}/slurm.conf"
+        for entry in pathlib.Path("/proc").glob("[0-9]*/environ"):
+            with contextlib.suppress(OSError):
+                environment = entry.read_text(errors="replace").split("\0")
+                if ours in environment:
+                    yield int(entry.parent.name), environment
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[Cluster]:
+    missing = [path for path in DAEMONS if not os.access(path, os.X_OK)]
+    if missing:
+        pytest.skip(f"needs the packages munge and slurm-wlm: {missing[0]} is not there")
+    if os.geteuid() != 0:
+        pytest.skip("Slurm's daemons need root to start jobs")
+    # Not pytest's folder: the path of a socket has 107 bytes at most.
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="bm-slurm-", dir="/tmp"))
+    one = Cluster(folder)
+    try:
+        one.start()
+        yield one
+    finally:
+        one.stop()
+        shutil.rmtree(folder)
+
+
+#: The last variant takes some seconds: by then the others are finished.
+CAMPAIGN = {
+    "schema": "broadmark-campaign/1",
+    "recordings": [
+        {
+            "scenes": "brownian",
+            "objects": 40,
+            "frames": 50,
+            "engine": "kinematic",
+            "seed": [1, 2],
+        },
+        {
+            "scenes": "brownian",
+            "objects": 320,
+            "frames": 50,
+            "engine": "kinematic",
+            "split": True,
+        },
+    ],
+    "algorithm": ["kd", "bf", "time-validator"],
+    "parameters": {"time-validator:phase_us": 15000},
+}
+
+
+@pytest.fixture
+def file(tmp_path: pathlib.Path) -> pathlib.Path:
+    path = tmp_path / "a campaign.json"
+    path.write_text(json.dumps(CAMPAIGN))
+    return path
+
+
+def finished_cases(folder: pathlib.Path, recording: str) -> list[dict[str, Any]]:
+    paths = (folder / "runs" / recording).glob("*.jsonl")
+    return [line.content for one in paths for line in read_attempt(one) if line.kind == "case"]
+
+
+def test_killed_and_requeued_jobs_repeat_no_finished_case(
+    cluster: Cluster,
+    file: pathlib.Path,
+    tmp_path: pathlib.Path,
+    command: Any,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SLURM_CONF", cluster.environment["SLURM_CONF"])
+    local = tmp_path / "local disk"
+    local.mkdir()
+    monkeypatch.setenv("LOCAL_DISK", str(local))  # sbatch hands it to the jobs
+    output = tmp_path / "out put"
+    status, out, err = command(
+        *("campaign", file, "--output", output, "--slurm"),
+        *("--copy-to", "$LOCAL_DISK", "--sbatch", "--job-name='a campaign' --time=5"),
+    )
+    assert status == 0 and out.startswith("submitted: "), err
+
+    before: dict[tuple[int, str], Any] = {}
+    for seed, is_hard in ((1, True), (2, False)):  # killed at once, told to end
+        name = f"brownian cubes N40 F50 kinematic seed={seed}"
+        wait_for(f"{name} in its last case", lambda: len(finished_cases(output, name)) == 2)
+        there = finished_cases(output, name)
+        task, pids = cluster.task_that_runs(name)
+        cluster.call("scontrol", "requeue", task)
+        if is_hard:
+            for pid in pids:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGKILL)
+        before |= {(seed, case["algorithm"]): case["frames"]["total"] for case in there}
+    wait_for("the last job", lambda: not cluster.jobs())
+
+    logs = {path.name: path.read_text() for path in (output / "slurm").glob("*.log")}
+    results = broadmark.read_results(output / "results.json")
+    assert results.partial == [], logs
+    assert len(results.cases) == 9 and results.cases["id"].is_unique, logs
+    assert set(results.cases["status"]) == {"ok"}
+    for case in results.details:
+        key = case["recording"]["seed"], case["algorithm"]
+        if case["recording"]["objects"] == 40 and key in before:
+            assert [list(times) for times in case["frames"]["total"]] == before[key]
+    assert set(results.cases["recording_file"].str.startswith("recordings/")) == {True}
+    assert len(list(local.iterdir())) == 1  # of the job that could not tidy up
+    assert command("campaign", file, "--output", output, "--slurm")[1] == "nothing is left to run\n"
+
+
+def test_what_slurm_refuses_leaves_no_job(
+    cluster: Cluster,
+    file: pathlib.Path,
+    tmp_path: pathlib.Path,
+    command: Any,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv("SLURM_CONF", cluster.environment["SLURM_CONF"])
+    arguments = ("campaign", file, "--output", tmp_path / "out", "--slurm")
+    status, _, err = command(*arguments, "--sbatch=--partition=none")
+    assert status == 2 and "nothing is submitted" in err and "partition" in err
+    assert not cluster.jobs()
+
+    assert command(*arguments, "--list")[0] == 0
+    merge = tmp_path / "out/slurm/merge.sh"
+    merge.unlink()  # the last one
+    with pytest.raises(broadmark.InputError, match="merge.sh"):
+        slurm.submit(tmp_path / "out/slurm/submit")
+    wait_for("the other jobs' end", lambda: not cluster.jobs())
