@@ -335,15 +335,16 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
     fail(fmt::format("unknown relation '{}' (one of: = != < > <= >= ~)", relation));
   }
   const auto start = std::chrono::steady_clock::now();
-  steps_.push_back([this, words, start](Inspector& inspector, InputQueue&) {
-    const std::optional<std::string> now = inspector.value(words[0]);
-    if (now && holds(*now, words[1], words[2])) return true;
-    // It may become so as long as something goes on.
-    const bool idle = !inspector.session().busy();
-    if (secondsSince(start) < (idle ? idle_patience_ : kPatience)) return false;
-    if (!now) fail(fmt::format("unknown value '{}'", words[0]));
-    fail(fmt::format("expected {} {} {}, but it is '{}'", words[0], words[1], words[2], *now));
-  });
+  steps_.push_back(
+      [this, words, start, busy_at = start](Inspector& inspector, InputQueue&) mutable {
+        const std::optional<std::string> now = inspector.value(words[0]);
+        if (now && holds(*now, words[1], words[2])) return true;
+        // It may become so as long as something goes on, and for a while after that.
+        if (inspector.session().busy()) busy_at = std::chrono::steady_clock::now();
+        if (secondsSince(start) < kPatience && secondsSince(busy_at) < idle_patience_) return false;
+        if (!now) fail(fmt::format("unknown value '{}'", words[0]));
+        fail(fmt::format("expected {} {} {}, but it is '{}'", words[0], words[1], words[2], *now));
+      });
 }
 
 void ScriptPlayer::patience(const Words& words, Inspector&) { idle_patience_ = number(words[0]); }
