@@ -151,14 +151,46 @@ class WallContact final : public btCollisionAlgorithm {
   btScalar resting_threshold_;
 };
 
-/// A supported body that has been slow for this long, in seconds, is held still.
+/// A supported body that has been still for this long, in seconds, is held where it is.
 constexpr btScalar kHoldAfter = 0.5F;
 /// A body is supported when contacts carry at least this share of its weight.
 constexpr btScalar kCarriedShare = 0.75F;
 
+/// For how long a body has been still: nearer to one place than the slowest motion that counts as
+/// such would have taken it. Its velocity tells less: few iterations leave each body of a large pile
+/// trembling about its place, faster than slow.
+class Stillness {
+ public:
+  void update(const btRigidBody& body, btScalar time_step) {
+    const btTransform& pose = body.getWorldTransform();
+    const btScalar reach = body.getLinearSleepingThreshold() * kHoldAfter;
+    const btScalar turn = body.getAngularSleepingThreshold() * kHoldAfter;
+    const btQuaternion rotation = pose.getRotation();
+    if (pose.getOrigin().distance2(place_) > reach * reach ||
+        rotation.angleShortestPath(rotation_) > turn) {
+      place_ = pose.getOrigin();
+      rotation_ = rotation;
+      lasted_ = 0;
+    } else {
+      lasted_ += time_step;
+    }
+    pose_ = pose;
+  }
+
+  [[nodiscard]] bool lasts() const { return lasted_ >= kHoldAfter; }
+  /// Where the body was in the last update.
+  [[nodiscard]] const btTransform& pose() const { return pose_; }
+
+ private:
+  btVector3 place_{0, 0, 0};
+  btQuaternion rotation_{0, 0, 0, 1};
+  btTransform pose_{btTransform::getIdentity()};
+  btScalar lasted_ = 0;
+};
+
 /// Bullet's world with a limit on angular speeds, and with piles that come to rest. Without help
 /// they do not: few iterations leave some motion in each body of a large pile, and in Bullet a pile
-/// sleeps only when all of its bodies are slow.
+/// sleeps only when all of its bodies are slow. Each body's user pointer is its Stillness.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -174,12 +206,21 @@ class World final : public btDiscreteDynamicsWorld {
       if (isHeld(body, time_step)) {
         body.setLinearVelocity(btVector3(0, 0, 0));
         body.setAngularVelocity(btVector3(0, 0, 0));
+        body.setCenterOfMassTransform(stillness(body).pose());  // the solver pushes bodies apart
       }
     }
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
+      btRigidBody& body = *m_nonStaticRigidBodies[i];
+      if (body.isActive()) stillness(body).update(body, time_step);
+    }
   }
 
  private:
+  static Stillness& stillness(const btRigidBody& body) {
+    return *static_cast<Stillness*>(body.getUserPointer());
+  }
+
   void limitAngularSpeed(btRigidBody& body) const {
     const btVector3& velocity = body.getAngularVelocity();
     const btScalar speed_squared = velocity.length2();
@@ -188,9 +229,9 @@ class World final : public btDiscreteDynamicsWorld {
     }
   }
 
-  /// Whether the body has been slow for long, and is supported.
-  [[nodiscard]] bool isHeld(const btRigidBody& body, btScalar time_step) const {
-    if (body.getDeactivationTime() < kHoldAfter) return false;
+  /// Whether the body has been still for long, and is supported.
+  [[nodiscard]] static bool isHeld(const btRigidBody& body, btScalar time_step) {
+    if (!body.isActive() || !stillness(body).lasts()) return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
     return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
   }
@@ -203,6 +244,7 @@ class BulletBody final : public PhysicsBody {
   BulletBody(const BodyDescription& description,
              const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
       : shape_(description.shape), world_(world), body_(info) {
+    body_.setUserPointer(&stillness_);
     body_.setLinearVelocity(toBullet(description.linear_velocity));
     body_.setAngularVelocity(toBullet(description.angular_velocity));
     world_.addRigidBody(&body_);
@@ -255,6 +297,7 @@ class BulletBody final : public PhysicsBody {
  private:
   Shape shape_;
   World& world_;
+  Stillness stillness_;
   btRigidBody body_;
 };
 
