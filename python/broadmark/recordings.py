@@ -9,10 +9,9 @@ A box is eight 32-bit floats: min x y z 0, max x y z 0. A record is a box (.aabb
 
 from __future__ import annotations
 
-import contextlib
 import os
 import pathlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from broadmark.errors import InputError
+from broadmark.files import whole_file
 
 Path = str | os.PathLike[str]
 Floats = npt.NDArray[np.float32]
@@ -148,7 +148,7 @@ def write_recording(
         raise InputError(f"{path}: the name of a recording of boxes ends with .aabbs")
     header = np.zeros(1, HEADER)
     header["name"], header["object_type"] = _field("name", name), _field("object type", object_type)
-    with _whole_file(path) as file:
+    with whole_file(path) as file:
         header.tofile(file)
         sets = 0
         bounds: Floats | None = None
@@ -191,19 +191,3 @@ def _field(what: str, text: str) -> bytes:
     if not text.isascii() or not text.isprintable() or not 0 < len(text) < 128:
         raise InputError(f"{what} '{text}': is not 1 to 127 printable ASCII characters")
     return text.encode("ascii")
-
-
-@contextlib.contextmanager
-def _whole_file(path: pathlib.Path) -> Iterator[Any]:
-    """A file that gets its name when it is complete, and is removed when it does not get so far."""
-    partial = path.with_name(path.name + f".{os.getpid()}.partial")
-    try:
-        with open(partial, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from None
-    finally:
-        partial.unlink(missing_ok=True)

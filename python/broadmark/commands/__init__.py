@@ -8,4 +8,5 @@ A command is a module here: its docstring is the help, `add_options(parser)` dec
 COMMANDS = [
     "read",
     "write",
+    "report",
 ]
