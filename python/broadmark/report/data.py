@@ -89,9 +89,8 @@ def _recordings(
     of_case = []
     for case, file in zip(details, files):
         one = case["recording"]
-        key = (one["hash"], one["name"], one["object_type"], one["objects"], one["frames"])
-        if not one["hash"]:
-            key += (str(one["source"]),)
+        source = "" if one["hash"] else str(one["source"])
+        key = (one["hash"], source, one["name"], one["object_type"], one["objects"], one["frames"])
         if key not in known:
             known[key] = len(recordings)
             words = rerun.source_words(one, file)
@@ -134,7 +133,9 @@ def _varying_parameters(details: list[dict[str, Any]]) -> dict[str, Any]:
 
 def _wrong_frames(details: list[dict[str, Any]]) -> dict[int, list[int]]:
     """The first frames with a wrong answer of each case that has any."""
-    frames = {i: sorted({d["frame"] for d in case["differences"]}) for i, case in enumerate(details)}
+    frames = {
+        i: sorted({d["frame"] for d in case["differences"]}) for i, case in enumerate(details)
+    }
     return {i: numbers[:100] for i, numbers in frames.items() if numbers}
 
 

@@ -40,19 +40,20 @@ def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str
             " threads": case["threads"],
             " device": case.get("device") or "",
         }
-        return own | case["params"]
+        return {**own, **case["params"]}
 
-    different = varying(
-        ((case["algorithm"], machine), traits(case)) for case, machine in zip(cases, machines)
-    )
     names: dict[str, set[str]] = defaultdict(set)
-    for (algorithm, _), keys in different.items():  # type: ignore[misc]
-        names[algorithm].update(keys)
+    for machine in set(machines):
+        own = [case for case, number in zip(cases, machines) if number == machine]
+        for algorithm, keys in varying((case["algorithm"], traits(case)) for case in own).items():
+            names[str(algorithm)].update(keys)
 
     def label(case: dict[str, Any]) -> str:
-        told = names[case["algorithm"]]
+        told = names[str(case["algorithm"])]
         plugin = os.path.basename(case.get("plugin") or "")
-        parts = [f"{plugin}:{case['algorithm']}" if " plugin" in told and plugin else case["algorithm"]]
+        parts = [
+            f"{plugin}:{case['algorithm']}" if " plugin" in told and plugin else case["algorithm"]
+        ]
         if " isa" in told:
             parts.append(case["isa"])
         if " threads" in told:

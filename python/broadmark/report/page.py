@@ -28,7 +28,7 @@ FOLDER = pathlib.Path(__file__).parent / "web"
 D3 = pathlib.Path("/usr/share/nodejs/d3/dist/d3.min.js")
 D3_LICENCE = pathlib.Path("/usr/share/doc/node-d3/copyright")
 
-#: The page's own scripts in the order of their need; `broadmark.js` wraps them.
+#: The page's own scripts, each after what it needs to begin with.
 SCRIPTS = [
     *("format", "elements", "cases", "ranking", "filters", "tooltip", "panels", "timeline"),
     *("details", "table", "summary", "ratios", "scaling", "memory", "frames", "failures", "main"),
@@ -67,16 +67,18 @@ def write_report(
 
 def _page(data: dict[str, Any], timelines: str, d3: str) -> str:
     style = (FOLDER / "report.css").read_text("utf-8")
+    dark = (FOLDER / "dark.css").read_text("utf-8")
     own = "\n".join((FOLDER / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
     script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
     template = string.Template((FOLDER / "page.html").read_text("utf-8"))
     return template.substitute(
         policy=(
             f"default-src 'none'; script-src {_hash(d3)} {_hash(script)}; "
-            f"style-src {_hash(style)}; img-src data:; base-uri 'none'; form-action 'none'"
+            f"style-src {_hash(style)} {_hash(dark)}; img-src data:; base-uri 'none'; form-action 'none'"
         ),
         title=_escaped(data["title"]),
         style=style,
+        dark=dark,
         data=_json(data),
         d3=d3,
         script=script,

@@ -64,7 +64,7 @@ def _by_scene(recordings: list[dict[str, Any]]) -> Iterator[tuple[str, list[int]
     for number, one in enumerate(recordings):
         scenes.setdefault(f"{one['scene']} {one['object_type']}", []).append(number)
     for scene, numbers in scenes.items():
-        yield scene, sorted(numbers, key=lambda number: -recordings[number]["objects"])
+        yield scene, sorted(numbers, key=lambda number: -int(recordings[number]["objects"]))
 
 
 def _is_quick(recording: dict[str, Any], source: list[str]) -> bool:

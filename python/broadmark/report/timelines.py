@@ -48,4 +48,4 @@ def _binned(rows: npt.NDArray[np.float64], most_points: int) -> npt.NDArray[np.f
     frames = rows.shape[1]
     edges = np.linspace(0, frames, min(frames, most_points) + 1).astype(int)
     sums = np.add.reduceat(rows, edges[:-1], axis=1)
-    return (sums / np.diff(edges)).astype("<f4")
+    return np.asarray(sums / np.diff(edges), "<f4")
