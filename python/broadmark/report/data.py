@@ -62,7 +62,6 @@ def page_data(results: Results) -> dict[str, Any]:
     columns["checked"] = [int(bool(case["checked"])) for case in details]
     columns["complete"] = [int(one) for one in cases.get("complete", [])]
     columns["frames_run"] = [max(map(len, case["frames"]["total"]), default=0) for case in details]
-    columns["superseded"] = _superseded(list(zip(machines, of_case, variants)))
     columns["counted"] = _texts(map(_counted, details))
     for part, words in (("variant", rerun.variant_words), ("condition", rerun.condition_words)):
         columns[f"{part}_command"] = _texts(shlex.join(words(case)) for case in details)
@@ -99,8 +98,8 @@ def _recordings(
                 {
                     "scene": str(one["name"]),
                     "object_type": str(one["object_type"]),
-                    "objects": one["objects"],
-                    "frames": one["frames"],
+                    "objects": int(one["objects"]),
+                    "frames": int(one["frames"]),
                     "hash": str(one["hash"]),
                     "file": "" if isinstance(one["source"], dict) else str(one["source"]),
                     "words": words,
@@ -110,12 +109,6 @@ def _recordings(
         of_case.append(known[key])
     labels.add_settings(recordings, sources)
     return recordings, of_case
-
-
-def _superseded(keys: list[Any]) -> list[int]:
-    """1 for a case that was run again later: charts show the last."""
-    last = {key: i for i, key in enumerate(keys)}
-    return [int(last[key] != i) for i, key in enumerate(keys)]
 
 
 def _counted(case: dict[str, Any]) -> str:

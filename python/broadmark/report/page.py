@@ -44,22 +44,26 @@ def write_report(
     is no d3 or the file cannot be written; then there is no new file.
     """
     d3, licence = _text_of(D3), _text_of(D3_LICENCE)
-    data = page_data(results)
+    points = points_of_a_case(len(results.details))
+    try:
+        data = page_data(results)
+        lines = "\n".join(timeline(case, points) for case in results.details)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"the results are not as docs/results.md has them: {type(error).__name__} {error}"
+        ) from None
     notes: list[str] = []
     drawn: list[dict[str, Any]] = []
     words = [one.pop("words") for one in data["recordings"]]
     if pictures:
         drawn, notes = draw_pictures(data["recordings"], words)
-    points = points_of_a_case(len(results.details))
     data |= {
         "title": title or "Broadmark results",
         "written": datetime.datetime.now(datetime.timezone.utc).isoformat(" ", "minutes")[:16],
         "pictures": drawn,
         "picture_notes": notes,
-        "points": points,
         "licence": licence,
     }
-    lines = "\n".join(timeline(case, points) for case in results.details)
     with whole_file(path) as file:
         file.write(_page(data, lines, d3).encode("utf-8", "replace"))
     return notes

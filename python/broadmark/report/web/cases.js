@@ -13,7 +13,7 @@ function readCases() {
   }
   for (const one of made) {
     one.on = recordings[one.recording];
-    one.wrong_frames = data.wrong_frames[one.index] || [];
+    one.wrong_frames = ownOf(data.wrong_frames, one.index) || [];
   }
   return made;
 }

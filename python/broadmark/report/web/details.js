@@ -25,11 +25,11 @@ function fillList(dialog, some) {
 }
 
 function fillDetails(dialog, one) {
-  dialog.replaceChildren(
+  const parts = element("div", {},
     dialogHead(nameOf(one), one.on.title),
     element("p", {}, statusMark(one.status), one.reason ? `: ${one.reason}` : "",
             one.complete ? "" : ` (${statusOf(one)})`),
-    ...one.warnings.split("; ").filter(Boolean).map((text) => element("p", { class: "notice" }, text)),
+    one.warnings.split("; ").filter(Boolean).map((text) => element("p", { class: "notice" }, text)),
     facts("figures", figuresOf(one)),
     element("figure", {}),
     element("h3", {}, "Run it again"),
@@ -43,6 +43,7 @@ function fillDetails(dialog, one) {
     copyable("Case", one.id, "id"),
     element("h3", {}, "Particulars"),
     facts("particulars", particularsOf(one)));
+  dialog.replaceChildren(parts);
 }
 
 const joined = (...words) => words.filter(Boolean).join(" ");
@@ -95,7 +96,9 @@ function facts(name, pairs) {
 
 // A text with a button that copies it.
 function copyable(title, text, name) {
-  const code = element("code", { "data-name": name }, text);
+  // A line breaks between options, never in the dashes of one.
+  const words = text.split(/ (?=--)/).flatMap((word) => [" ", element("span", {}, word)]).slice(1);
+  const code = element("code", { "data-name": name }, words);
   return element("div", { class: "copyable" }, element("div", { class: "muted" }, title),
     element("div", { class: "row" }, code, button("Copy", (event) => copy(code, event.target),
                                                    { "aria-label": `Copy: ${title}` })));

@@ -33,10 +33,14 @@ function speak(text) {
 // A status as a word in its colour; its shape says the same to who sees no colours.
 const kStatusMarks = { ok: "✓", mismatch: "≠", timeout: "◔", unsupported: "∅", error: "!" };
 
+// What results name may be called like something that every object has.
+const ownOf = (object, name) => (Object.prototype.hasOwnProperty.call(object, name) ? object[name] : undefined);
+
 function statusMark(status) {
-  const known = status in kStatusMarks ? status : "error";
-  return element("span", { class: `status ${known}` },
-                 element("span", { "aria-hidden": "true" }, kStatusMarks[known]), ` ${status}`);
+  const [word] = status.split(",");  // "ok, 1 of 3 repetitions"
+  const mark = ownOf(kStatusMarks, word);
+  return element("span", { class: `status ${mark ? word : "error"}` },
+                 element("span", { "aria-hidden": "true" }, mark || "!"), ` ${status}`);
 }
 
 // Draws when the element comes near the screen; `drawAll` draws what is still waiting.

@@ -5,7 +5,7 @@ const kFilters = [
   { name: "object_type", label: "Object type", of: (one) => one.on.object_type },
   { name: "objects", label: "Bodies", of: (one) => count(one.on.objects), order: (one) => one.on.objects },
   ...distinct(recordings.flatMap((one) => Object.keys(one.parameters))).sort().map((name) => (
-    { name: `scene ${name}`, label: `Scene's ${name}`, of: (one) => one.on.parameters[name] || "not set" })),
+    { name: `scene ${name}`, label: `Scene's ${name}`, of: (one) => ownOf(one.on.parameters, name) || "not set" })),
   { name: "algorithm", label: "Algorithm", of: (one) => one.algorithm, group: (one) => one.family },
   { name: "threads", label: "Threads", of: (one) => String(one.threads), order: (one) => one.threads },
   { name: "isa", label: "ISA", of: (one) => one.isa || "not vectorised" },
@@ -43,6 +43,8 @@ function textOf(one) {
 
 function applyFilters() {
   const active = kFilters.filter((filter) => filter.allowed);
+  const files = active.find((filter) => filter.name === "file");
+  takeLastRuns(files ? cases.filter((one) => files.allowed.has(one.file)) : cases);
   const words = searched.toLowerCase().split(/\s+/).filter(Boolean);
   shown = cases.filter((one) => active.every((filter) => filter.allowed.has(filter.of(one)))
     && words.every((word) => textOf(one).includes(word)));
@@ -131,19 +133,20 @@ function takeBoxes(filter) {
 }
 
 function showFilters() {
-  let any = searched !== "";
+  const told = searched ? [`“${searched}”`] : [];
   for (const filter of kFilters) {
     for (const option of filter.options) {
       option.box.checked = !filter.allowed || filter.allowed.has(option.text);
     }
     const allowed = filter.allowed;
-    any = any || allowed !== null;
     const what = !allowed ? "all" : allowed.size === 1 ? [...allowed][0] : `${allowed.size} of ${filter.options.length}`;
+    if (allowed) told.push(`${filter.label}: ${[...allowed].join(", ") || "none"}`);
     filter.summary.replaceChildren(element("span", { class: "muted" }, filter.label), " ",
                                    element("span", { class: "chosen" }, what));
     filter.element.classList.toggle("active", allowed !== null);
   }
-  byId("clear").hidden = !any;
-  byId("found").textContent = any
+  byId("clear").hidden = !told.length;
+  byId("found").textContent = told.length
     ? `${count(shown.length)} of ${plural(cases.length, "case")}` : plural(cases.length, "case");
+  byId("filtered").textContent = told.length ? `Filtered: ${byId("found").textContent}. ${told.join("; ")}` : "";
 }

@@ -28,10 +28,13 @@ function bytes(size) {
   return size === 0 ? "0\u00a0KiB" : withUnit(size, kSizes);
 }
 
+const kWhole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
+const kTenths = new Intl.NumberFormat("en", { maximumFractionDigits: 1 });
+
 function count(value) {
   if (value === null || value === undefined) return kNothing;
   if (typeof value !== "number") return String(value);
-  return value.toLocaleString("en", { maximumFractionDigits: value < 100 ? 1 : 0 });
+  return (value < 100 ? kTenths : kWhole).format(value);
 }
 
 function ratio(value) {

@@ -12,21 +12,23 @@ function drawMemory(body) {
   body.append(choice("Bodies", sizes.map((size) => count(size)), sizes.indexOf(chosen),
                      (i) => { bodiesChosen = sizes[i]; refresh(); }));
   const here = some.filter((one) => one.on.objects === chosen);
-  const drawn = here.filter((one) => isTimed(one) && one.peak_bytes !== null);
+  const isDrawn = (one) => isTimed(one) && one.peak_bytes !== null;
+  const drawn = here.filter(isDrawn);
   const place = (one) => ({ x: Math.max(kLeastBytes, one.peak_bytes), y: one[view.measure], one });
   const xDomain = logDomain(drawn.map((one) => place(one).x));
-  const yDomain = logDomain(drawn.map((one) => one[view.measure]));
+  const [low, high] = logDomain(drawn.map((one) => one[view.measure]));
+  const yDomain = [low / 1.4, high];  // room for names
   const x = { domain: xDomain, ticks: powersOfTwo(xDomain), format: (tick) => shortUnit(tick, kSizes), title: "memory" };
   const y = { domain: yDomain, ticks: decades(yDomain), format: (tick) => shortUnit(tick, kTimes) };
   const serieses = distinct(here.sort((a, b) => byRecording(a.on, b.on)).map((one) => one.on.series));
   drawGrid(body, serieses, (panel, series, machine) => {
     const own = here.filter((one) => one.on.series === series && one.machine === machine);
-    const points = own.filter((one) => drawn.includes(one)).map(place);
+    const points = own.filter(isDrawn).map(place);
     const front = frontOf(points);
     drawPanel(panel, {
       kind: "Time against memory", title: series, machine, x, y,
       series: points.map((point) => ({ variant: point.one.variant, points: [point] })), front,
-      labels: spacedLabels(front), note: leftOut(own, points), empty: "Nothing with time and memory here.",
+      labels: spacedLabels(front), note: leftOut(own.filter((one) => !isDrawn(one))), empty: "Nothing with time and memory here.",
     });
   });
 }
@@ -50,9 +52,8 @@ function spacedLabels(front) {
   }).map((point) => ({ x: point.x, y: point.y, text: point.one.variant }));
 }
 
-function leftOut(own, points) {
-  const reasons = d3.nest().key((one) => (one.status !== "ok" ? one.status : "memory not measured"))
-    .entries(own.filter((one) => !points.some((point) => point.one === one)));
+function leftOut(some) {
+  const reasons = d3.nest().key((one) => (one.status !== "ok" ? one.status : "memory not measured")).entries(some);
   return reasons.length
     ? `Not in the chart: ${reasons.map(({ key, values }) => `${values.length} ${key}`).join(", ")}.` : "";
 }

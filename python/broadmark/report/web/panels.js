@@ -87,7 +87,7 @@ function drawPanel(container, chart) {
 function drawPlot(container, chart, gaps) {
   const width = Math.max(260, container.clientWidth);
   const statuses = distinct(gaps.map((gap) => gap.status));
-  const margin = { left: 58, right: 14, top: 10, bottom: 36 + 16 * statuses.length };
+  const margin = { left: 64, right: 14, top: 10, bottom: 36 + 16 * statuses.length };
   const height = Math.round(Math.min(300, width * 0.62)) + 16 * statuses.length;
   const x = d3.scaleLog(chart.x.domain, [margin.left, width - margin.right]);
   const y = d3.scaleLog(chart.y.domain, [height - margin.bottom, margin.top]);
@@ -119,10 +119,10 @@ function drawPlot(container, chart, gaps) {
       targets.push({ node, at, series: series.variant, cases: [point.one], lines: caseLines(point.one) });
     }
   }
-  for (const { x: atX, y: atY, text } of chart.labels || []) {
-    const left = x(atX) > width * 0.72;
-    svg.append("text").attr("class", "point-label").attr("x", x(atX) + (left ? -8 : 8)).attr("y", y(atY) - 6)
-      .attr("text-anchor", left ? "end" : "start").text(text);
+  for (const { x: atX, y: atY, text } of chart.labels || []) {  // below and left of the front is nothing
+    const room = x(atX) - margin.left > 7 * text.length;
+    svg.append("text").attr("class", "point-label").attr("x", x(atX) + (room ? -6 : 0)).attr("y", y(atY) + 16)
+      .attr("text-anchor", room ? "end" : "start").text(text);
   }
   drawGaps(svg, chart, statuses, { x, width, height, margin }, targets);
   container.append(svg.node());
@@ -152,10 +152,10 @@ function drawGaps(svg, chart, statuses, { x, height, margin }, targets) {
   statuses.forEach((status, row) => {
     const at = height - margin.bottom + 42 + 16 * row;
     svg.append("text").attr("class", `gap-title ${status}`).attr("x", margin.left - 7).attr("y", at)
-      .attr("dy", "0.32em").attr("text-anchor", "end").text(kShortStatus[status] || status);
+      .attr("dy", "0.32em").attr("text-anchor", "end").text(ownOf(kShortStatus, status) || status);
     for (const gap of chart.gaps.filter((one) => one.status === status)) {
       const node = svg.append("text").attr("class", `gap ${status}`).attr("x", x(gap.x)).attr("y", at)
-        .attr("dy", "0.32em").attr("text-anchor", "middle").text(`${kStatusMarks[status] || "!"}\u202f${gap.cases.length}`)
+        .attr("dy", "0.32em").attr("text-anchor", "middle").text(`${ownOf(kStatusMarks, status) || "!"}\u202f${gap.cases.length}`)
         .node();
       targets.push({
         node, at: [x(gap.x), at], series: status, cases: gap.cases,

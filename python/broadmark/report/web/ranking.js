@@ -1,13 +1,18 @@
 // Ratios to the best: within one machine and one recording, never across machines.
 
-// The last run of a case, by machine, recording and variant.
+// The last run of each case, by machine, recording and variant: charts show no other.
 const lastRuns = new Map();
 const keyOf = (machine, recording, variant) => `${machine} ${recording} ${variant}`;
-for (const one of cases) {
-  if (!one.superseded) lastRuns.set(keyOf(one.machine, one.recording, one.variant), one);
+
+function takeLastRuns(some) {
+  lastRuns.clear();
+  for (const one of some) lastRuns.set(keyOf(one.machine, one.recording, one.variant), one);
+  for (const one of cases) one.superseded = findCase(one.machine, one.recording, one.variant) !== one;
 }
 
 const findCase = (machine, recording, variant) => lastRuns.get(keyOf(machine, recording, variant));
+
+takeLastRuns(cases);
 
 const distinct = (values) => [...new Set(values)];
 

@@ -1,7 +1,12 @@
 // Ratios to the best: a table per machine, variants by recordings.
 
 const kSteps = [1.0005, 1.25, 2, 4, 8, 16, 64, Infinity];
+const kMostColumns = 24;  // beside each other; the others are a button away
+const kMostRows = 60;
 const kPrintedColumns = 10;
+
+let firstColumn = 0;
+let everyRow = false;
 
 function drawRatios(body) {
   body.replaceChildren();
@@ -16,12 +21,33 @@ function drawRatios(body) {
   for (const ranking of rankings) {
     const holder = element("div", { class: "ranking" });
     if (machines.length > 1) holder.append(element("h3", {}, machines[ranking.machine].name));
-    const step = view.printing ? kPrintedColumns : Infinity;
-    for (let first = 0; first < ranking.recordings.length; first += step) {
-      holder.append(ratioTable(ranking, first, Math.min(first + step, ranking.recordings.length)));
+    const all = ranking.recordings.length;
+    const begin = firstColumn < all ? firstColumn : 0;
+    const end = Math.min(begin + kMostColumns, all);
+    if (all > kMostColumns) holder.append(columnPager(body, begin, end, all));
+    const step = view.printing ? kPrintedColumns : kMostColumns;
+    for (let first = begin; first < end; first += step) {
+      holder.append(ratioTable(ranking, first, Math.min(first + step, end)));
+    }
+    const hidden = everyRow ? 0 : ranking.rows.length - kMostRows;
+    if (hidden > 0) {
+      holder.append(button(`Show ${plural(hidden, "slower variant")}`, () => { everyRow = true; drawRatios(body); }));
     }
     body.append(holder);
   }
+}
+
+// Means are over all recordings, whichever are shown.
+function columnPager(body, begin, end, all) {
+  const turn = (to, title, mark) => button(mark, () => {
+    firstColumn = to;
+    drawRatios(body);
+    const again = body.querySelector(`[aria-label="${title}"]`);
+    if (again) again.focus();
+  }, { "aria-label": title, disabled: to < 0 || to >= all });
+  return element("div", { class: "row pager" },
+    element("span", { class: "muted" }, `Recordings ${begin + 1} to ${end} of ${all}`),
+    turn(begin - kMostColumns, "Previous recordings", "‹"), turn(begin + kMostColumns, "Next recordings", "›"));
 }
 
 // Each machine's own means beside each other: nothing is computed across machines.
@@ -56,7 +82,8 @@ function stepOf(value) {
   return `h${kSteps.findIndex((step) => value <= step)}`;
 }
 
-function ratioTable({ machine, recordings: on, rows }, first, last) {
+function ratioTable({ machine, recordings: on, rows: all }, first, last) {
+  const rows = everyRow ? all : all.slice(0, kMostRows);
   const part = on.slice(first, last);
   const groups = d3.nest().key((one) => one.series).entries(part);
   const table = element("table", { class: "heat-table", role: "grid",
