@@ -1,4 +1,4 @@
-"""The report in a browser: Chromium without a window, driven by selenium."""
+"""What the report shows, and how it answers to pointer and keys."""
 
 from __future__ import annotations
 
@@ -11,102 +11,15 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from browser import Page, start_browser  # skips these tests without selenium
 from report_results import case, standard_cases, write_results
 
-import broadmark
-from broadmark.report import write_report
-
-webdriver = pytest.importorskip("selenium.webdriver", reason="Debian's python3-selenium is missing")
-from selenium.webdriver.chrome.service import Service  # noqa: E402
-from selenium.webdriver.common.by import By  # noqa: E402
-from selenium.webdriver.common.keys import Keys  # noqa: E402
-
-CHROMEDRIVER = pathlib.Path("/usr/bin/chromedriver")
-FLAGS = [
-    *("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run"),
-    *("--disable-background-networking", "--disable-component-update", "--disable-sync"),
-]
-
-
-class Page:
-    """A report in the browser."""
-
-    def __init__(self, driver: Any, folder: pathlib.Path) -> None:
-        self.driver, self.folder = driver, folder
-
-    def show(self, *paths: pathlib.Path, width: int = 1280, dark: bool = False) -> None:
-        """Writes the report of these results and opens it; a width of a phone makes it one."""
-        report = self.folder / "a report.html"
-        write_report(broadmark.read_results(*paths), report, pictures=False)
-        size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
-        self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        colours = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
-        self.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [colours]})
-        self.driver.get(report.as_uri())
-
-    def section(self, name: str) -> Any:
-        """A section, scrolled to and drawn."""
-        found = self.driver.find_element(By.ID, name)
-        self.js("arguments[0].scrollIntoView()", found)
-        self.wait("return document.querySelector(arguments[0]).childElementCount", f"#{name} .body")
-        return found
-
-    def js(self, script: str, *arguments: Any) -> Any:
-        return self.driver.execute_script(script, *arguments)
-
-    def wait(self, script: str, *arguments: Any) -> Any:
-        """Until a script returns something true."""
-        deadline = time.monotonic() + 20
-        while time.monotonic() < deadline:
-            if found := self.js(script, *arguments):
-                return found
-            time.sleep(0.02)
-        raise AssertionError(f"never true: {script}")
-
-    def texts(self, selector: str) -> list[str]:
-        script = "return [...document.querySelectorAll(arguments[0])].map((n) => n.textContent)"
-        return list(self.js(script, selector))
-
-    def find(self, selector: str) -> Any:
-        return self.driver.find_element(By.CSS_SELECTOR, selector)
-
-    def type(self, *keys: str) -> None:
-        for key in keys:
-            self.driver.switch_to.active_element.send_keys(key)
-
-    def filter(self, name: str, *texts: str) -> None:
-        """Only these of a filter."""
-        menu = self.find(f'details.filter[data-filter="{name}"]')
-        menu.find_element(By.TAG_NAME, "summary").click()
-        menu.find_element(By.XPATH, ".//button[text()='none']").click()
-        for text in texts:
-            menu.find_element(By.XPATH, f".//label[span[text()='{text}']]").click()
-        menu.find_element(By.TAG_NAME, "summary").click()
-
-    def ratios(self, table: int = 0) -> dict[str, list[str]]:
-        """The rows of a table of ratios: mean, gaps, and a cell per recording."""
-        self.section("ratios")
-        self.wait("return document.querySelectorAll('table[role=grid]')[arguments[0]]", table)
-        rows = self.js(
-            "return [...document.querySelectorAll('table[role=grid]')[arguments[0]].tBodies[0].rows]"
-            ".map((row) => [...row.cells].map((cell) => cell.textContent))",
-            table,
-        )
-        return {name: cells for name, *cells in rows}
+from selenium.webdriver.common.keys import Keys
 
 
 @pytest.fixture(scope="module")
 def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    if not CHROMEDRIVER.exists():
-        pytest.skip("Debian's chromium-driver is missing")
-    home = str(tmp_path_factory.mktemp("chromium"))
-    options = webdriver.ChromeOptions()
-    for flag in [*FLAGS, f"--user-data-dir={home}/profile"]:
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    environment = {"HOME": home, "XDG_CONFIG_HOME": home, "TMPDIR": home, "PATH": "/usr/bin:/bin"}
-    service = Service(str(CHROMEDRIVER), env=environment)
-    started = webdriver.Chrome(options=options, service=service)
+    started = start_browser(tmp_path_factory.mktemp("chromium"))
     yield started
     started.quit()
 
@@ -219,10 +132,10 @@ def test_tooltips_on_hover_and_focus(opened: Page, standard: pathlib.Path) -> No
     opened.wait("return document.querySelector('#scaling .series .symbol')")
     first = opened.find('#scaling .series[data-variant="bf"] .symbol')
     opened.js("arguments[0].scrollIntoView({block: 'center'})", first)
-    webdriver.ActionChains(opened.driver).move_to_element(first).perform()
+    opened.hover(first)
     tip = opened.find("#tooltip")
     assert tip.is_displayed() and "10.0" in tip.text and "95 %" in tip.text
-    webdriver.ActionChains(opened.driver).move_to_element(opened.find("#search")).perform()
+    opened.hover(opened.find("#search"))
     assert not tip.is_displayed()
 
     opened.js("arguments[0].focus()", first)

@@ -33,14 +33,12 @@ def timeline(case: dict[str, Any], most_points: int) -> str:
     if not frames:
         return ""
     whole = [i for i, length in enumerate(lengths) if length == frames]
-    rows = [
-        np.median([case["frames"][phase][i] for i in whole], axis=0)
-        for phase in PHASES
-        if phase in case["frames"]
-    ]
+    times = [[case["frames"][phase][i] for i in whole] for phase in PHASES]
     pairs = np.asarray(case.get("frame_counts", {}).get("pairs", ()), np.float64)[:frames]
-    rows.append(pairs if len(pairs) == frames else np.full(frames, np.nan))
-    return base64.b64encode(_binned(np.array(rows), most_points).tobytes()).decode("ascii")
+    if len(pairs) != frames:
+        pairs = np.full(frames, np.nan)
+    rows = np.vstack([np.median(times, axis=1), pairs])
+    return base64.b64encode(_binned(rows, most_points).tobytes()).decode("ascii")
 
 
 def _binned(rows: npt.NDArray[np.float64], most_points: int) -> npt.NDArray[np.float32]:

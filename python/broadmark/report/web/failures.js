@@ -32,7 +32,7 @@ function gapLists() {
       .filter((gap) => gap.missing.length);
     if (!gaps.length) return [];
     const where = machines.length > 1 ? ` on ${machines[machine].name}` : "";
-    return [element("details", { class: "gaps" },
+    return [element("details", { class: "more", open: view.printing },
       element("summary", {}, `Not run${where}: ${plural(gaps.length, "variant")} on some of ${plural(on.length, "recording")}`),
       element("ul", { class: "plain" }, gaps.map(({ row, missing }) => element("li", {}, element("b", {}, row.variant),
         missing.length > 6 ? `: on ${missing.length} of ${on.length} recordings`

@@ -8,7 +8,12 @@ function refresh() {
   hideTooltip();
   for (const [name, draw] of Object.entries(kSections)) {
     const body = byId(name).querySelector(".body");
-    drawWhenSeen(body, () => { draw(body); highlight(pinned); });
+    body.setAttribute("aria-busy", "true");
+    drawWhenSeen(body, () => {
+      draw(body);
+      highlight(pinned);
+      body.removeAttribute("aria-busy");
+    });
   }
 }
 
@@ -26,6 +31,10 @@ function useTheme(chosen) {
 
 function usePrinting(printing) {
   view.printing = printing;
+  for (const closed of document.querySelectorAll(printing ? "details.more:not([open])" : "[data-opened]")) {
+    closed.open = printing;
+    closed.toggleAttribute("data-opened", printing);
+  }
   refresh();
   if (printing) drawAll();
 }

@@ -20,6 +20,9 @@ function drawMemory(body) {
   const yDomain = [low / 1.4, high];  // room for names
   const x = { domain: xDomain, ticks: powersOfTwo(xDomain), format: (tick) => shortUnit(tick, kSizes), title: "memory" };
   const y = { domain: yDomain, ticks: decades(yDomain), format: (tick) => shortUnit(tick, kTimes) };
+  const variants = distinct(drawn.map((one) => one.variant));
+  body.append(element("details", { class: "more", open: view.printing || variants.length <= 14 },
+                      element("summary", {}, `Legend (${variants.length})`), drawLegend(variants)));
   const serieses = distinct(here.sort((a, b) => byRecording(a.on, b.on)).map((one) => one.on.series));
   drawGrid(body, serieses, (panel, series, machine) => {
     const own = here.filter((one) => one.on.series === series && one.machine === machine);

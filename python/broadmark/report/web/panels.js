@@ -5,6 +5,8 @@ const kSymbols = [d3.symbolCircle, d3.symbolSquare, d3.symbolTriangle, d3.symbol
                   d3.symbolWye, d3.symbolCross];
 const kColours = 12;
 const kDashes = ["", "6 3", "2 3", "9 3 2 3"];
+let pinned = null;  // the variant whose button in a legend is pressed
+
 const kReach = 26;  // pixels from which the pointer finds a point
 
 // Colour: family; shape: algorithm in it; solid: several threads; dashes: parameters.
@@ -103,7 +105,7 @@ function drawPlot(container, chart, gaps) {
   const clamp = (value) => Math.min(height - margin.bottom, Math.max(margin.top, y(value)));
   for (const series of chart.series) {
     const style = styles.get(series.variant);
-    const group = svg.append("g").attr("class", "series").attr("data-variant", series.variant);
+    const group = svg.append("g").attr("class", series.variant === pinned ? "series lit" : "series").attr("data-variant", series.variant);
     if (chart.lines) {
       group.append("path").attr("class", "line").style("stroke", style.colour)
         .style("stroke-dasharray", style.dash)
@@ -243,7 +245,7 @@ function drawLegend(variants) {
   const families = d3.nest().key((variant) => styles.get(variant).colour).entries(variants);
   return element("div", { class: "legend", role: "group", "aria-label": "Legend" }, families.map((family) => (
     element("span", { class: "family" }, family.values.map((variant) => {
-      const made = button("", () => pin(variant, made), { "aria-pressed": "false" });
+      const made = button("", () => pin(variant, made), { "aria-pressed": String(variant === pinned) });
       const svg = d3.select(made).append("svg").attr("viewBox", "-14 -8 28 16").attr("width", 28)
         .attr("height", 16).attr("aria-hidden", "true");
       const style = styles.get(variant);
@@ -257,8 +259,6 @@ function drawLegend(variants) {
       return made;
     })))));
 }
-
-let pinned = null;
 
 function pin(variant, made) {
   pinned = pinned === variant ? null : variant;

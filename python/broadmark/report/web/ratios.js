@@ -3,7 +3,7 @@
 const kSteps = [1.0005, 1.25, 2, 4, 8, 16, 64, Infinity];
 const kMostColumns = 24;  // beside each other; the others are a button away
 const kMostRows = 60;
-const kPrintedColumns = 10;
+const kPrintedColumns = 12;
 
 let firstColumn = 0;
 let everyRow = false;

@@ -22,8 +22,7 @@ function drawSummary() {
         run.complete ? "" : " (partial)", run.started ? ` began ${run.started}` : "",
         element("code", {}, run.command))))));
   byId("about").append(
-    element("p", {}, "Times are those of the program’s results; ratios are taken within one machine only. Percentages and intervals are as in the results files; ",
-            "frames are shown as medians over repetitions."),
+    element("p", {}, "Times and intervals are those of the results files. Ratios are taken within one machine only."),
     element("details", {}, element("summary", {}, "Charts are drawn by d3"), element("pre", {}, data.licence)));
 }
 
