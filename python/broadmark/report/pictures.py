@@ -10,6 +10,7 @@ import base64
 import contextlib
 import pathlib
 import tempfile
+import textwrap
 from collections.abc import Iterator
 from typing import Any
 
@@ -49,7 +50,7 @@ def draw_pictures(
             try:
                 uri = _drawn(recordings[number], sources[number], frame)
             except InputError as error:
-                reason = str(error)
+                reason = textwrap.shorten(str(error), 120, placeholder=" …")
                 continue
             pictures.append({"recording": number, "frame": frame, "uri": uri})
             break
