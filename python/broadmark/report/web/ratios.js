@@ -1,7 +1,7 @@
 // Ratios to the best: a table per machine, variants by recordings.
 
 const kSteps = [1.0005, 1.25, 2, 4, 8, 16, 64, Infinity];
-const kMostColumns = 24;  // beside each other; the others are a button away
+const kMostColumns = 20;  // beside each other; the others are a button away
 const kMostRows = 60;
 const kPrintedColumns = 12;
 

@@ -31,12 +31,13 @@ function makeTable(name, columns, start) {
         ? `${count(first + 1)} to ${count(first + part.length)} of ${count(keyed.length)}` : "nothing"),
       ...(pages > 1 && !view.printing ? [turn(-1, "Previous page", "‹"), turn(1, "Next page", "›")] : []));
   };
+  // On paper without buttons: Chromium repeats only such heads on every page.
   const header = (column, i) => {
     const sorted = i === state.column;
     const mark = sorted ? (state.descending ? " ▾" : " ▴") : "";
     return element("th", { scope: "col", class: classOf(column),
                            "aria-sort": sorted ? (state.descending ? "descending" : "ascending") : false },
-      button(column.title + mark, () => {
+      view.printing ? column.title + mark : button(column.title + mark, () => {
         state.descending = sorted && !state.descending;
         state.column = i;
         state.page = 0;
