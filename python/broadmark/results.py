@@ -46,6 +46,8 @@ class Results:
     details: list[dict[str, Any]]
     environments: pd.DataFrame  #: a row per machine and build
     partial: list[str] = field(default_factory=list)  #: files of runs that did not come to an end
+    #: A row per file: file, command (its words), started, complete.
+    files: pd.DataFrame = field(default_factory=pd.DataFrame)
 
     @functools.cached_property
     def frames(self) -> pd.DataFrame:
@@ -71,6 +73,7 @@ class Results:
             [self.details[i] for i in cases.index],
             self.environments,
             self.partial,
+            self.files,
         )
 
 
@@ -84,8 +87,13 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
     details: list[dict[str, Any]] = []
     rows: list[dict[str, Any]] = []
     partial: list[str] = []
+    files: list[dict[str, Any]] = []
     for path in paths:
         document = _document(pathlib.Path(path))
+        try:
+            files.append(_file_row(path, document))
+        except TypeError as error:
+            raise InputError(f"{path}: its options are not a list: {error}") from None
         known = [_number_in(environments, one) for one in document.environments]
         if not document.complete:
             partial.append(os.fspath(path))
@@ -107,7 +115,7 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
         cases["machine"] = [machines[number] for number in cases["environment"]]
     table = pd.DataFrame(environments)
     table["machine"] = machines
-    return Results(cases, details, table, partial)
+    return Results(cases, details, table, partial, pd.DataFrame(files))
 
 
 @dataclass
@@ -115,6 +123,17 @@ class _Document:
     environments: list[dict[str, Any]]
     cases: list[dict[str, Any]]
     complete: bool
+    options: list[str]
+
+
+def _file_row(path: str | os.PathLike[str], document: _Document) -> dict[str, Any]:
+    started = [str(one["started"]) for one in document.environments if one.get("started")]
+    return {
+        "file": os.fspath(path),
+        "command": ["broadmark", *map(str, document.options)],
+        "started": min(started, default=""),
+        "complete": document.complete,
+    }
 
 
 def _document(path: pathlib.Path) -> _Document:
@@ -128,17 +147,18 @@ def _document(path: pathlib.Path) -> _Document:
             if not isinstance(head, dict) or head.get("schema") not in SCHEMAS:
                 raise InputError(f"{path}: is no results file: its schema is not {SCHEMAS[0]}")
             if "cases" not in head:
-                return _from_lines(path, file)
+                return _from_lines(path, file, head.get("options", []))
     except (OSError, UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
         raise InputError(f"{path}: cannot be read: {error}") from None
     environments = head.get("environments", [head.get("environment")])
     if not all(isinstance(one, dict) for one in environments + head["cases"]):
         raise InputError(f"{path}: an environment or a case is not an object")
-    return _Document(environments, head["cases"], head.get("complete", True))
+    complete = head.get("complete", True)
+    return _Document(environments, head["cases"], complete, head.get("options", []))
 
 
-def _from_lines(path: pathlib.Path, lines: Iterable[str]) -> _Document:
-    document = _Document([], [], False)
+def _from_lines(path: pathlib.Path, lines: Iterable[str], options: list[str]) -> _Document:
+    document = _Document([], [], False, options)
     for number, line in enumerate(lines, 2):
         try:
             kind, content = next(iter(_parsed(line).items()))

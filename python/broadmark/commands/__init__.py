@@ -8,6 +8,7 @@ A command is a module here: its docstring is the help, `add_options(parser)` dec
 COMMANDS = [
     "read",
     "write",
+    "report",
     "campaign",
     "table2",
     "figures",

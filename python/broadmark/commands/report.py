@@ -1,0 +1,37 @@
+"""Writes results as one HTML page: tables, charts and pictures, without network.
+
+The page opens anywhere, can be filtered and sorted, and shows results of several machines side by
+side. Charts are drawn by d3 (Debian's package node-d3), pictures by the program broadmark.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+from broadmark.report import write_report
+from broadmark.results import read_results
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("results", nargs="+", metavar="RESULTS", help="results (.json, .jsonl)")
+    parser.add_argument(
+        "-o", "--output", default="report.html", metavar="FILE", help="default: %(default)s"
+    )
+    parser.add_argument("--title", default="Broadmark results", help="default: %(default)s")
+    parser.add_argument(
+        "--pictures",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="of the scenes, drawn by the program (default: if it is found)",
+    )
+
+
+def main(options: argparse.Namespace) -> None:
+    results = read_results(*options.results)
+    for note in write_report(
+        results, options.output, title=options.title, pictures=options.pictures
+    ):
+        print(note)
+    size = os.path.getsize(options.output) / 1e6
+    print(f"written: {options.output} ({size:.1f} MB, {len(results.cases)} cases)")

@@ -1,0 +1,114 @@
+"""The page: template, styles, d3, scripts and data in one file.
+
+Nothing in it may be fetched or run but what stands in it: a Content-Security-Policy names the hash of
+every script and style. Data is JSON in an element that is not run, and scripts show it as text only.
+"""
+
+from __future__ import annotations
+
+import base64
+import datetime
+import hashlib
+import json
+import os
+import pathlib
+import string
+from typing import Any
+
+from broadmark.errors import InputError
+from broadmark.files import whole_file
+from broadmark.report.data import page_data
+from broadmark.report.pictures import draw_pictures
+from broadmark.report.timelines import points_of_a_case, timeline
+from broadmark.results import Results
+
+FOLDER = pathlib.Path(__file__).parent / "web"
+
+#: From Debian's package node-d3.
+D3 = pathlib.Path("/usr/share/nodejs/d3/dist/d3.min.js")
+D3_LICENCE = pathlib.Path("/usr/share/doc/node-d3/copyright")
+
+#: The page's own scripts, each after what it needs to begin with.
+SCRIPTS = [
+    *("format", "elements", "cases", "ranking", "filters", "tooltip", "panels", "timeline"),
+    *("details", "table", "summary", "ratios", "scaling", "memory", "frames", "failures", "main"),
+]
+
+
+def write_report(
+    results: Results, path: str | os.PathLike[str], *, title: str = "", pictures: bool = True
+) -> list[str]:
+    """Writes the page, and returns what it lacks: a sentence each.
+
+    `pictures`: draws the scenes, where the program `broadmark` is found. Raises InputError if there
+    is no d3 or the file cannot be written; then there is no new file.
+    """
+    d3, licence = _text_of(D3), _text_of(D3_LICENCE)
+    points = points_of_a_case(len(results.details))
+    try:
+        data = page_data(results)
+        lines = "\n".join(timeline(case, points) for case in results.details)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError(
+            f"the results are not as docs/results.md has them: {type(error).__name__} {error}"
+        ) from None
+    notes: list[str] = []
+    drawn: list[dict[str, Any]] = []
+    words = [one.pop("words") for one in data["recordings"]]
+    if pictures:
+        drawn, notes = draw_pictures(data["recordings"], words)
+    data |= {
+        "title": title or "Broadmark results",
+        "written": datetime.datetime.now(datetime.timezone.utc).isoformat(" ", "minutes")[:16],
+        "pictures": drawn,
+        "picture_notes": notes,
+        "licence": licence,
+    }
+    with whole_file(path) as file:
+        file.write(_page(data, lines, d3).encode("utf-8", "replace"))
+    return notes
+
+
+def _page(data: dict[str, Any], timelines: str, d3: str) -> str:
+    style = (FOLDER / "report.css").read_text("utf-8")
+    dark = (FOLDER / "dark.css").read_text("utf-8")
+    own = "\n".join((FOLDER / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
+    script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
+    template = string.Template((FOLDER / "page.html").read_text("utf-8"))
+    return template.substitute(
+        policy=(
+            f"default-src 'none'; script-src {_hash(d3)} {_hash(script)}; "
+            f"style-src {_hash(style)} {_hash(dark)}; img-src data:; base-uri 'none'; form-action 'none'"
+        ),
+        title=_escaped(data["title"]),
+        style=style,
+        dark=dark,
+        data=_json(data),
+        d3=d3,
+        script=script,
+        timelines=timelines,
+    )
+
+
+def _json(data: Any) -> str:
+    """JSON in which no element can end or begin."""
+    text = json.dumps(data, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e")
+
+
+def _escaped(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+def _hash(script: str) -> str:
+    digest = hashlib.sha256(script.encode("utf-8")).digest()
+    return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
+
+
+def _text_of(path: pathlib.Path) -> str:
+    try:
+        return path.read_text("utf-8")
+    except OSError:
+        raise InputError(
+            f"{path}: is not there: install Debian's package node-d3, whose charts the report uses"
+        ) from None

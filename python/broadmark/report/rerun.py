@@ -1,0 +1,67 @@
+"""Commands that run a case again, quoted for the shell.
+
+A command has three parts, each the same for many cases: what ran on (`source_words`), what ran
+(`variant_words`) and how it was measured (`condition_words`).
+"""
+
+from __future__ import annotations
+
+import pathlib
+from typing import Any
+
+from broadmark.program import as_options
+
+#: Parameters of a simulation that are options of the program; others are given with --param.
+OPTIONS = ("objects", "object_type", "frames", "seed", "density", "engine")
+
+
+def stated_path(results_file: str, stated: str) -> str:
+    """Where a file is that a results file names: there, or beside the results file."""
+    beside = pathlib.Path(results_file).parent / stated
+    return str(beside) if not pathlib.Path(stated).exists() and beside.exists() else stated
+
+
+def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
+    """The recording file that a case ran on, or the simulation with all its parameters."""
+    source = recording["source"]
+    if not isinstance(source, dict):
+        return [stated_path(results_file, str(source))]
+    parameters = dict(source)
+    scene = parameters.pop("scene_file", None)
+    name = stated_path(results_file, scene) if scene else str(recording["name"]).lower()
+    options = {key: parameters.pop(key) for key in OPTIONS if key in parameters}
+    return [name, *as_options(**options), *as_options(param=parameters)]
+
+
+def variant_words(case: dict[str, Any]) -> list[str]:
+    """Algorithm, threads, instruction set and parameters of a case."""
+    algorithm = case["algorithm"]
+    return as_options(
+        plugin=case.get("plugin") or None,
+        algorithm=algorithm,
+        threads=case["threads"],
+        isa=case["isa"] if case.get("vectorised") else None,
+        device=case.get("device") or None,
+        param={f"{algorithm}:{name}": value for name, value in case["params"].items()},
+    )
+
+
+def condition_words(case: dict[str, Any]) -> list[str]:
+    """Check, repetitions and limits of a case."""
+    conditions = case.get("conditions", {})
+    in_process = conditions.get("in_process", False)
+    return as_options(
+        check=conditions.get("check"),
+        warmup=conditions.get("warmup"),
+        repetitions=conditions.get("repetitions"),
+        time_limit=conditions.get("frame_limit_seconds"),
+        hard_limit=None if in_process else conditions.get("call_limit_seconds"),
+        in_process=in_process,
+        pin=conditions.get("pinned", False),
+    )
+
+
+def again_words(case: dict[str, Any], results_file: str) -> list[str]:
+    """Runs a case again from its results file, which checks that the recording is the same."""
+    plugin = as_options(plugin=case.get("plugin") or None)
+    return [results_file, "--case", str(case["id"]), *plugin]

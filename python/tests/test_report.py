@@ -1,0 +1,164 @@
+"""The report as a file: what is in it, and what it is made of."""
+
+from __future__ import annotations
+
+import base64
+import json
+import pathlib
+import re
+import shlex
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import SOURCE_FOLDER
+from report_results import case, standard_cases, write_results
+
+import broadmark
+from broadmark.program import call
+from broadmark.report import page, write_report
+from broadmark.report.data import page_data
+from broadmark.report.timelines import points_of_a_case, timeline
+
+
+def data_of(tmp_path: pathlib.Path, *cases: dict[str, Any]) -> dict[str, Any]:
+    return page_data(broadmark.read_results(write_results(tmp_path / "results.jsonl", list(cases))))
+
+
+def texts(column: dict[str, Any]) -> list[str]:
+    return [column["texts"][code] for code in column["codes"]]
+
+
+def test_the_command_writes_one_file(
+    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+) -> None:
+    report = tmp_path / "a report.html"
+    status, out, _ = command("report", some_results / "results.json", "-o", report)
+    assert status == 0
+    assert re.search(r"written: .*a report\.html \(\d\.\d MB, \d+ cases\)", out)
+    assert [one.name for one in tmp_path.iterdir()] == ["a report.html"]
+    text = report.read_text("utf-8")
+    assert "default-src 'none'" in text and "d3js.org v5" in text and "BSD-3-Clause" in text
+    data = json.loads(text.partition('id="data">')[2].partition("</script>")[0])
+    assert len(data["pictures"]) == 2  # of Brownian and FreeFall
+    assert base64.b64decode(data["pictures"][0]["uri"].partition(",")[2]).startswith(b"\x89PNG")
+
+
+def test_without_the_program_there_are_no_pictures(
+    tmp_path: pathlib.Path, command: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("BROADMARK", "/there/is/no/such")
+    results = write_results(tmp_path / "results.jsonl", standard_cases())
+    report = tmp_path / "report.html"
+    status, out, _ = command("report", results, "-o", report)
+    assert status == 0 and "No pictures of the scenes" in out
+    status, out, _ = command("report", results, "-o", report, "--no-pictures")
+    assert status == 0 and "No pictures" not in out
+
+
+def test_a_recording_that_is_gone_has_no_picture(tmp_path: pathlib.Path) -> None:
+    one = case("sap", 100, 1e-5)
+    one["recording"]["source"] = "gone.aabbs"
+    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", [one]))
+    notes = write_report(results, tmp_path / "report.html")
+    assert len(notes) == 1 and notes[0].startswith("Brownian Cubes: no picture")
+
+
+def test_without_d3_its_package_is_named(
+    tmp_path: pathlib.Path, command: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    results = write_results(tmp_path / "results.jsonl", standard_cases())
+    monkeypatch.setattr(page, "D3", tmp_path / "no.js")
+    status, _, error = command("report", results, "-o", tmp_path / "report.html")
+    assert status == 2 and "node-d3" in error
+    assert [one.name for one in tmp_path.iterdir()] == ["results.jsonl"]
+
+
+def test_commands_run_the_case_again(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    results = broadmark.read_results(some_results / "results.json")
+    (number,) = results.cases.index[results.cases["id"] == "FreeFall/Cubes/N200/F4/s1/kd/avx2"][:1]
+    data = page_data(results)
+    columns = data["columns"]
+    recording = data["recordings"][columns["recording"][number]]
+    condition = texts(columns["condition_command"])[number]
+    assert "--repetitions 2" in condition and "--check full" in condition
+    commands = [
+        f"{recording['command']} {texts(columns['variant_command'])[number]} {condition}",
+        f"{texts(columns['again_command'])[number]} {condition}",
+    ]
+    for i, line in enumerate(commands):
+        file = tmp_path / f"again{i}.json"
+        call("--headless", *shlex.split(line), "--quiet", "--json", str(file))
+        (again,) = broadmark.read_results(file).cases.to_dict("records")
+        for column in ("algorithm", "recording_hash", "params", "isa", "threads", "repetitions"):
+            assert again[column] == results.cases[column][number], column
+
+
+def test_variants_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None:
+    data = data_of(
+        tmp_path,
+        case("sap", 100, 1e-5),
+        case("kd", 100, 1e-5, params={"leaf": "64", "margin": "0"}),
+        case("kd", 100, 1e-5, params={"leaf": "128", "margin": "0"}),
+        case("kd-mt", 100, 1e-5, threads=1),
+        case("kd-mt", 100, 1e-5, threads=2),
+        case("mine", 100, 1e-5, plugin="a/old.so"),
+        case("mine", 100, 1e-5, plugin="a/new.so"),
+    )
+    assert texts(data["columns"]["variant"]) == [
+        *("sap", "kd/leaf=64", "kd/leaf=128", "kd-mt/t1", "kd-mt/t2"),
+        *("old.so:mine", "new.so:mine"),
+    ]
+    assert list(data["parameters"]) == ["leaf"]
+
+
+def test_recordings_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None:
+    def on(objects: int, recording_hash: str, **source: str) -> dict[str, Any]:
+        one = case("sap", objects, 1e-5)
+        one["recording"] |= {"hash": recording_hash, "frames": int(source["frames"])}
+        one["recording"]["source"] = {"objects": str(objects)} | source
+        return one
+
+    seeds = data_of(tmp_path, on(1, "a", frames="4", seed="1"), on(2, "b", frames="4", seed="2"))
+    assert [one["setting"] for one in seeds["recordings"]] == ["seed=1", "seed=2"]
+    sizes = data_of(tmp_path, on(1, "a", frames="4"), on(2, "b", frames="8"))
+    assert [one["setting"] for one in sizes["recordings"]] == ["", ""]
+    frames = data_of(tmp_path, on(1, "a", frames="4"), on(1, "b", frames="8"))
+    assert [one["setting"] for one in frames["recordings"]] == ["4 frames", "8 frames"]
+    unlike = data_of(tmp_path, on(1, "a1", frames="4"), on(1, "b2", frames="4"))
+    assert [one["setting"] for one in unlike["recordings"]] == ["recording a1", "recording b2"]
+
+
+def test_a_timeline_is_means_of_medians() -> None:
+    one = case("sap", 100, 1e-6)
+    frames = np.arange(1000.0)
+    for phase in one["frames"]:
+        one["frames"][phase] = [frames, frames + 2, frames + 1000, frames[:3]]
+    one["frame_counts"]["pairs"] = frames
+    line = timeline(one, 200)
+    points = np.frombuffer(base64.b64decode(line), "<f4").reshape(5, 200)
+    np.testing.assert_allclose(points[0], frames.reshape(200, 5).mean(1) + 2)
+    np.testing.assert_allclose(points[4], frames.reshape(200, 5).mean(1))
+    assert timeline(case("sap", 100, None), 200) == ""
+
+
+def test_many_cases_have_fewer_points() -> None:
+    assert points_of_a_case(1) == 200
+    assert 20 <= points_of_a_case(10_000) < 200
+    assert points_of_a_case(10**9) == 20
+
+
+def test_what_fuzzers_found_makes_a_page_or_is_refused(tmp_path: pathlib.Path) -> None:
+    written = 0
+    for file in sorted((SOURCE_FOLDER / "tests/fuzz/corpus/results").iterdir()):
+        try:
+            write_report(broadmark.read_results(file), tmp_path / "report.html", pictures=False)
+            written += 1
+        except broadmark.InputError:
+            pass
+    assert written > 5
+
+
+def test_nothing_has_a_page(tmp_path: pathlib.Path, command: Any) -> None:
+    results = write_results(tmp_path / "nothing.jsonl", [])
+    assert command("report", results, "-o", tmp_path / "report.html")[0] == 0

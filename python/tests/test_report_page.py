@@ -1,0 +1,326 @@
+"""What the report shows, and how it answers to pointer and keys."""
+
+from __future__ import annotations
+
+import base64
+import json
+import pathlib
+import re
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from browser import Page, start_browser  # skips these tests without selenium
+from report_results import case, standard_cases, write_results
+
+from selenium.webdriver.common.keys import Keys
+
+
+@pytest.fixture(scope="module")
+def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    started = start_browser(tmp_path_factory.mktemp("chromium"))
+    yield started
+    started.quit()
+
+
+@pytest.fixture
+def opened(driver: Any, tmp_path: pathlib.Path) -> Iterator[Page]:
+    """A page; after the test the browser's console must be without a word."""
+    driver.get_log("browser")
+    yield Page(driver, tmp_path)
+    assert driver.get_log("browser") == []
+
+
+@pytest.fixture
+def standard(tmp_path: pathlib.Path) -> pathlib.Path:
+    return write_results(tmp_path / "standard.jsonl", standard_cases())
+
+
+def test_everything_is_drawn(opened: Page, some_results: pathlib.Path) -> None:
+    opened.show(some_results / "results.json")
+    assert opened.texts("#summary .tile")[:2] == ["20 cases", "4 recordings"]
+    for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
+        opened.section(section)
+    assert len(opened.texts("#cases tbody tr")) == 20
+    opened.section("scaling")
+    opened.wait("return document.querySelectorAll('#scaling svg[role=group]').length === 2")
+    assert opened.js("return performance.getEntriesByType('resource').length") == 0
+
+
+def test_a_table_of_ratios_punishes_gaps(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    rows = opened.ratios()
+    # Ratios to the best of each size; a gap counts as twice the slowest: 2 × 3, 2 × 2, 2 × 2.
+    means = {
+        "kd": (3 * 1 * 1) ** (1 / 3),
+        "bf": (1 * 2 * 4) ** (1 / 3),
+        "sap": (2 * 2 * 2) ** (1 / 3),
+    }
+    for name, mean in means.items():
+        assert float(rows[name][0]) == pytest.approx(mean, abs=0.005), name
+    assert rows["kd"][2:] == ["3.00", "1.00", "1.00"]
+    assert rows["bf"][1:] == ["1", "1.00", "2.00", "timeout"]
+    assert rows["faulty"][1:] == ["3", "mismatch", "not run", "not run"]
+    assert rows["tracy"][2] == "error" and rows["cgal"][2] == "unsupported"
+    assert list(rows)[:3] == ["kd", "bf", "sap"]
+
+
+def test_failures_and_gaps_are_listed_with_their_reason(
+    opened: Page, standard: pathlib.Path
+) -> None:
+    opened.show(standard)
+    opened.section("failures")
+    text = " ".join(opened.texts("#failures tbody tr"))
+    for reason in ("over the limit of 0.5 s", "1 missed", "SIGSEGV", "no avx512"):
+        assert reason in text
+    assert "Not run: 3 variants on some of 3 recordings" in opened.texts("#failures summary")
+    opened.section("scaling")
+    opened.wait("return document.querySelector('#scaling svg[role=group]')")
+    assert opened.texts("#scaling text.gap") == ["◔\u202f1", "≠\u202f1", "!\u202f1", "∅\u202f1"]
+    assert "faulty" not in opened.js(  # a wrong answer has no point
+        "return [...document.querySelectorAll('#scaling .series')]"
+        ".filter((n) => n.querySelector('.symbol')).map((n) => n.dataset.variant)"
+    )
+
+
+def test_filters_change_table_charts_and_ratios(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.filter("algorithm", "sap", "kd")
+    assert opened.texts("#found") == ["6 of 12 cases"]
+    assert set(opened.ratios()) == {"sap", "kd"}
+    opened.section("cases")
+    assert len(opened.texts("#cases tbody tr")) == 6
+    opened.section("scaling")
+    opened.wait("return document.querySelectorAll('#scaling .series').length === 2")
+    opened.filter("objects", "100")
+    assert opened.texts("#found") == ["2 of 12 cases"]
+    assert opened.ratios()["sap"][2:] == ["1.00"]  # bf is left out
+    opened.find("#clear").click()
+    assert opened.texts("#found") == ["12 cases"]
+    opened.find("#search").send_keys("sigsegv")
+    opened.wait("return document.querySelector('#found').textContent === '1 of 12 cases'")
+    opened.section("cases")
+    assert opened.texts("#cases tbody tr td:first-child") == ["tracy"]
+    opened.filter("status")
+    for section in ("ratios", "scaling", "memory", "frames", "failures"):
+        assert "No case" in opened.section(section).text
+
+
+def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.filter("status", "ok")
+    assert opened.ratios()["bf"][2:] == ["1.00", "2.00", "timeout"]
+
+
+def test_headers_sort(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.section("cases")
+    times = "return [...document.querySelectorAll('#cases tbody tr')].map((r) => r.cells[5].textContent)"
+    column = "#cases th:nth-child(6)"
+    assert opened.js(times)[:3] == ["5.00\u00a0µs", "10.0\u00a0µs", "20.0\u00a0µs"]
+    assert opened.find(column).get_attribute("aria-sort") == "ascending"
+    opened.find(f"{column} button").send_keys(Keys.ENTER)
+    assert opened.find(column).get_attribute("aria-sort") == "descending"
+    assert opened.js(times)[0] == "80.0\u00a0µs"
+    assert opened.js(times)[-3:] == ["–"] * 3  # what is not known is last
+
+
+def test_tooltips_on_hover_and_focus(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.section("scaling")
+    opened.wait("return document.querySelector('#scaling .series .symbol')")
+    first = opened.find('#scaling .series[data-variant="bf"] .symbol')
+    opened.js("arguments[0].scrollIntoView({block: 'center'})", first)
+    opened.hover(first)
+    tip = opened.find("#tooltip")
+    assert tip.is_displayed() and "10.0" in tip.text and "95 %" in tip.text
+    opened.hover(opened.find("#search"))
+    assert not tip.is_displayed()
+
+    opened.js("arguments[0].focus()", first)
+    assert tip.is_displayed()
+    assert first.get_attribute("aria-describedby") == "tooltip"
+    opened.type(Keys.ARROW_RIGHT)
+    assert "200 bodies" in tip.text and "bf" in tip.text
+    opened.type(Keys.ARROW_DOWN)
+    assert "200 bodies" in tip.text and "kd" in tip.text
+    opened.type(Keys.ENTER)
+    assert opened.find("#details-title").text == "kd"
+
+
+def test_the_grid_is_walked_by_arrow_keys(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.ratios()
+    opened.js("document.querySelector('[role=gridcell]').focus()")
+    opened.type(Keys.ARROW_RIGHT, Keys.ARROW_DOWN)
+    assert "bf" in opened.find("#tooltip").text and "200 bodies" in opened.find("#tooltip").text
+    assert (
+        opened.js("return document.querySelectorAll('[role=gridcell][tabindex=\"0\"]').length") == 1
+    )
+
+
+def test_details_tell_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.section("cases")
+    link = opened.find("#cases tbody tr:first-child button")
+    assert link.text == "faulty"
+    link.send_keys(Keys.ENTER)
+    codes = {
+        name: opened.js(
+            "return document.querySelector(arguments[0]).textContent", f'[data-name="{name}"]'
+        )
+        for name in ("again", "export", "command", "hash", "id")
+    }
+    source = "broadmark --headless brownian --objects 100 --frames 4 --seed 1 --param mass=1"
+    variant = " --algorithm faulty --threads 1 --check full --warmup 0 --repetitions 2"
+    assert codes["command"] == source + variant
+    assert codes["again"].startswith(f"broadmark --headless {standard} --case Brownian/Cubes/N100")
+    assert codes["export"].endswith("--export-case small.aabbs")
+    assert codes["hash"] == f"{100:032x}"
+    assert "1 frame with a wrong answer" in opened.find("#details figure").text
+    opened.type(Keys.ESCAPE)
+    assert not opened.find("#details").is_displayed()
+    assert opened.driver.switch_to.active_element == link
+
+
+def test_a_timeline_follows_keys(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    opened.section("frames")
+    names = opened.texts("#frames .phases > span")
+    assert [name.split("\u00a0")[0].strip() for name in names] == [
+        *("update objects 10.0", "update structures 10.0", "search overlaps 20.0"),
+    ]  # of kd with 400 bodies, the fastest
+    opened.js("document.querySelector('#frames svg').focus()")
+    opened.type(Keys.ARROW_RIGHT)
+    tip = opened.find("#tooltip").text
+    assert "frame 2" in tip and "total 40.0" in tip and "12 pairs" in tip
+
+
+def test_machines_are_never_pooled(opened: Page, standard: pathlib.Path) -> None:
+    slow = [case(a, n, s) for a, n, s in (("bf", 100, 1e-3), ("sap", 100, 4e-3), ("kd", 100, 2e-3))]
+    other = write_results(opened.folder / "other.jsonl", slow, cpu="Another")
+    opened.show(standard, other)
+    assert opened.ratios(0)["sap"][2:] == ["2.00", "2.00", "2.00"]
+    assert opened.ratios(1)["sap"][2:] == ["4.00"]
+    side = opened.texts(".side tbody tr:first-child td")
+    assert len(side) == 6  # mean, rank and gaps on each
+    opened.section("scaling")
+    opened.wait("return document.querySelectorAll('#scaling svg[role=group]').length === 2")
+    titles = opened.texts("#scaling h4 .muted")
+    assert [title.split(",")[0] for title in titles] == ["A processor", "Another"]
+    assert opened.js(
+        "return [...document.querySelectorAll('#scaling svg[role=group]')]"
+        ".map((svg) => svg.querySelectorAll('.symbol').length)"
+    ) == [8, 3]
+
+
+def test_the_summary_warns(opened: Page, standard: pathlib.Path) -> None:
+    disturbed = case("sap", 100, 7e-5)
+    disturbed["conditions"]["warnings"] = ["other programs keep a core busy"]
+    partial = write_results(opened.folder / "cut.jsonl", [disturbed], complete=False)
+    opened.show(standard, partial)
+    notices = " ".join(opened.texts("#summary .notice"))
+    assert "cut.jsonl is partial" in notices
+    assert "other programs keep a core busy (1 case)" in notices
+    assert "1 case was run again later" in notices
+    assert opened.ratios()["sap"][2] == "7.00"  # the last run
+    opened.filter("file", str(standard))
+    assert opened.ratios()["sap"][2] == "2.00"
+
+
+def test_hostile_names_are_only_texts(opened: Page) -> None:
+    evil = [
+        "</script><script>window.hacked=1</script>",
+        "<img src=x onerror=window.hacked=1>",
+        "constructor",
+        "a\u2028b $data ${x} -->",
+    ]
+    hostile = []
+    for i, name in enumerate(evil):
+        one = case(
+            name, 100, 1e-5 * (i + 1), family=name, id=name, params={name: name}, device=name
+        )
+        one["recording"] |= {"name": name, "object_type": name, "hash": name}
+        one["recording"]["source"] = {name: name, "seed": str(i)}
+        one["conditions"]["warnings"] = [name]
+        hostile += [one, {**one, "status": "error", "reason": name, "id": name + "2", "threads": 2}]
+    path = write_results(opened.folder / "hostile.jsonl", hostile, cpu=evil[0])
+    opened.show(path)
+    for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
+        opened.section(section)
+        time.sleep(0.1)
+    opened.find("#cases tbody button").click()
+    assert evil[0] in opened.find("#details").text
+    assert opened.js("return window.hacked") is None
+    assert opened.js("return document.querySelectorAll('img').length") == 0
+    assert len(opened.texts("script")) == 4
+
+
+def test_a_phone_shows_it_without_scrolling_sideways(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard, width=360)
+    for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
+        opened.section(section)
+    assert opened.js("return document.documentElement.scrollWidth") == 360
+    opened.find(".all-filters > summary").click()
+    opened.filter("algorithm", "kd")
+    assert opened.texts("#found") == ["3 of 12 cases"]
+
+
+def test_dark_by_the_system_and_by_the_button(opened: Page, standard: pathlib.Path) -> None:
+    colour = "return getComputedStyle(document.body).backgroundColor"
+    opened.show(standard)
+    light = opened.js(colour)
+    opened.find("#theme").click()
+    dark = opened.js(colour)
+    assert light == "rgb(255, 255, 255)" and dark != light
+    opened.show(standard, dark=True)
+    assert opened.js(colour) == dark
+    opened.find("#theme").click()
+    assert opened.js(colour) == light
+
+
+def test_it_prints_on_a4(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard, dark=True)
+    options = {"preferCSSPageSize": True, "printBackground": True}
+    pdf = base64.b64decode(opened.driver.execute_cdp_cmd("Page.printToPDF", options)["data"])
+    boxes = re.findall(rb"/MediaBox \[0 0 ([\d.]+) ([\d.]+)\]", pdf)
+    assert 2 <= len(boxes) <= 8
+    for width, height in boxes:
+        assert float(width) == pytest.approx(595.3, abs=1.5)
+        assert float(height) == pytest.approx(841.9, abs=1.5)
+
+
+def test_another_time_is_compared(opened: Page, standard: pathlib.Path) -> None:
+    cases = standard_cases()
+    for one in cases:
+        one["summary"]["p95"] = 1e-4 * len(one["algorithm"])
+    opened.show(write_results(standard, cases))
+    opened.find(".found option:nth-child(3)").click()
+    assert opened.ratios()["sap"][2:] == ["1.50", "1.50", "1.50"]
+
+
+def test_ten_thousand_cases_open_quickly(opened: Page) -> None:
+    many = []
+    for i in range(10_000):
+        one = case(f"algorithm{i % 40}", 1000 * (1 + i // 400), 1e-5 * (1 + i % 97))
+        one["recording"]["source"] = f"recording{i // 400}.aabbs"
+        one["id"] = str(i)
+        one["threads"] = 1 + i // 40 % 10
+        many.append(one)
+    opened.show(write_results(opened.folder / "many.jsonl", many))
+    assert opened.texts("#found") == ["10,000 cases"]
+    milliseconds = opened.js("return performance.getEntriesByType('navigation')[0].domComplete")
+    opened.wait("return document.querySelector('table[role=grid]')")
+    print(f"10,000 cases: page complete after {milliseconds:.0f} ms")
+    assert milliseconds < 6000  # two seconds on a machine that does nothing else
+    opened.filter("algorithm", "algorithm7")
+    assert opened.texts("#found") == ["250 of 10,000 cases"]
+
+
+def test_data_cannot_leave_its_element(opened: Page, standard: pathlib.Path) -> None:
+    opened.show(standard)
+    text = (opened.folder / "a report.html").read_text("utf-8")
+    data = text.partition('id="data">')[2].partition("</script>")[0]
+    assert "<" not in data
+    assert json.loads(data)["runs"][0]["file"] == str(standard)
