@@ -11,6 +11,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "broadmark/exclusive_use.h"
 #include "broadmark/scenes/registry.h"
@@ -153,28 +154,32 @@ class WallContact final : public btCollisionAlgorithm {
 
 /// A supported body that has been still for this long, in seconds, is held where it is.
 constexpr btScalar kHoldAfter = 0.5F;
+/// A body is still while it stays nearer to one place than this share of a free fall of that time.
+constexpr btScalar kStillShare = 0.2F;
 /// A body is supported when contacts carry at least this share of its weight.
 constexpr btScalar kCarriedShare = 0.75F;
 
-/// For how long a body has been still: nearer to one place than the slowest motion that counts as
-/// such would have taken it. Its velocity tells less: few iterations leave each body of a large pile
-/// trembling about its place, faster than slow.
+/// For how long a body has been still: near to one place. Its velocity tells less: few iterations
+/// leave each body of a large pile trembling, and sinking slowly into those below.
 class Stillness {
  public:
   void update(const btRigidBody& body, btScalar time_step) {
-    const btTransform& pose = body.getWorldTransform();
-    const btScalar reach = body.getLinearSleepingThreshold() * kHoldAfter;
-    const btScalar turn = body.getAngularSleepingThreshold() * kHoldAfter;
-    const btQuaternion rotation = pose.getRotation();
-    if (pose.getOrigin().distance2(place_) > reach * reach ||
-        rotation.angleShortestPath(rotation_) > turn) {
-      place_ = pose.getOrigin();
-      rotation_ = rotation;
-      lasted_ = 0;
-    } else {
+    pose_ = body.getWorldTransform();
+    const btQuaternion rotation = pose_.getRotation();
+    // What is too slow to count as motion is no motion either.
+    const btScalar slow = body.getLinearSleepingThreshold() * kHoldAfter;
+    const btScalar fall = body.getGravity().length() * kHoldAfter * kHoldAfter / 2;
+    const btScalar reach = std::max(slow, kStillShare * fall);
+    const btScalar turn =
+        reach / body.getLinearSleepingThreshold() * body.getAngularSleepingThreshold();
+    if (pose_.getOrigin().distance2(place_) <= reach * reach &&
+        rotation.angleShortestPath(rotation_) <= turn) {
       lasted_ += time_step;
+      return;
     }
-    pose_ = pose;
+    place_ = pose_.getOrigin();
+    rotation_ = rotation;
+    lasted_ = 0;
   }
 
   [[nodiscard]] bool lasts() const { return lasted_ >= kHoldAfter; }
@@ -200,18 +205,21 @@ class World final : public btDiscreteDynamicsWorld {
 
  protected:
   void integrateTransforms(btScalar time_step) override {
+    held_.clear();
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
       btRigidBody& body = *m_nonStaticRigidBodies[i];
       limitAngularSpeed(body);
       if (isHeld(body, time_step)) {
         body.setLinearVelocity(btVector3(0, 0, 0));
         body.setAngularVelocity(btVector3(0, 0, 0));
-        body.setCenterOfMassTransform(stillness(body).pose());  // the solver pushes bodies apart
+        held_.push_back(&body);
       }
     }
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
+    // To the last bit: the solver pushes bodies apart, and integration rounds.
+    for (btRigidBody* body : held_) body->setCenterOfMassTransform(stillness(*body).pose());
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-      btRigidBody& body = *m_nonStaticRigidBodies[i];
+      const btRigidBody& body = *m_nonStaticRigidBodies[i];
       if (body.isActive()) stillness(body).update(body, time_step);
     }
   }
@@ -237,6 +245,7 @@ class World final : public btDiscreteDynamicsWorld {
   }
 
   btScalar max_angular_speed_;
+  std::vector<btRigidBody*> held_;  ///< in this step
 };
 
 class BulletBody final : public PhysicsBody {
