@@ -7,7 +7,7 @@ import json
 import os
 import pathlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -45,9 +45,12 @@ class Results:
     cases: pd.DataFrame
     details: list[dict[str, Any]]
     environments: pd.DataFrame  #: a row per machine and build
-    partial: list[str] = field(default_factory=list)  #: files of runs that did not come to an end
-    #: A row per file: file, command (its words), started, complete.
-    files: pd.DataFrame = field(default_factory=pd.DataFrame)
+    files: pd.DataFrame  #: a row per file: file, command (its words), started, complete
+
+    @property
+    def partial(self) -> list[str]:
+        """The files of runs that did not come to an end."""
+        return [one.file for one in self.files.itertuples() if not one.complete]
 
     @functools.cached_property
     def frames(self) -> pd.DataFrame:
@@ -72,7 +75,6 @@ class Results:
             cases.reset_index(drop=True).assign(case=range(len(cases))),
             [self.details[i] for i in cases.index],
             self.environments,
-            self.partial,
             self.files,
         )
 
@@ -86,7 +88,6 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
     environments: list[dict[str, Any]] = []
     details: list[dict[str, Any]] = []
     rows: list[dict[str, Any]] = []
-    partial: list[str] = []
     files: list[dict[str, Any]] = []
     for path in paths:
         document = _document(pathlib.Path(path))
@@ -95,8 +96,6 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
         except TypeError as error:
             raise InputError(f"{path}: its options are not a list: {error}") from None
         known = [_number_in(environments, one) for one in document.environments]
-        if not document.complete:
-            partial.append(os.fspath(path))
         for case in document.cases:
             try:
                 _check_lengths(case)
@@ -115,7 +114,7 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
         cases["machine"] = [machines[number] for number in cases["environment"]]
     table = pd.DataFrame(environments)
     table["machine"] = machines
-    return Results(cases, details, table, partial, pd.DataFrame(files))
+    return Results(cases, details, table, pd.DataFrame(files))
 
 
 @dataclass
