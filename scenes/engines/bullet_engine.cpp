@@ -182,6 +182,9 @@ class Stillness {
     lasted_ = 0;
   }
 
+  /// The body was moved or launched from outside.
+  void end() { lasted_ = 0; }
+
   [[nodiscard]] bool lasts() const { return lasted_ >= kHoldAfter; }
   /// Where the body was in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
@@ -301,7 +304,10 @@ class BulletBody final : public PhysicsBody {
   /// Whether it has recently moved too fast to fall asleep.
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// Does nothing to a frozen body.
-  void wake() { body_.activate(); }
+  void wake() {
+    stillness_.end();
+    body_.activate();
+  }
 
  private:
   Shape shape_;
