@@ -9,7 +9,7 @@ import argparse
 
 import pandas as pd
 
-from broadmark.results import read_results
+from broadmark import selection
 
 COLUMNS = [
     *("scene", "object_type", "objects", "algorithm", "isa", "threads", "params"),
@@ -18,15 +18,13 @@ COLUMNS = [
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("results", nargs="+", metavar="FILE", help="results (.json, .jsonl)")
+    selection.add_options(parser)
     parser.add_argument("--csv", metavar="FILE", help="write all columns of the cases")
     parser.add_argument("--csv-frames", metavar="FILE", help="write a row per frame")
 
 
 def main(options: argparse.Namespace) -> None:
-    results = read_results(*options.results)
-    for path in results.partial:
-        print(f"{path}: partial: its run did not come to an end")
+    results = selection.read_selected(options)
     if options.csv:
         results.cases.to_csv(options.csv, index=False)
     if options.csv_frames:
