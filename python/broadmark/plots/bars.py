@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from broadmark.drawing import log_scale
 from broadmark.plots.cases import Cases
-from broadmark.plots.panels import by_scene_and_size
+from broadmark.plots.panels import by_scene_and_size, label_rows
 
 
 def bars(cases: Cases) -> Figure:
@@ -44,9 +44,7 @@ def bars(cases: Cases) -> Figure:
                 fontsize=5.5,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
             )
-        axes.grid(False, axis="y")
-        axes.set_yticks(list(rows.values()), list(rows), fontsize=7)
-        axes.set_ylim(len(rows) - 0.4, -0.6)
+        label_rows(axes, list(rows))
 
     size = (2.4, 0.6 + 0.15 * len(rows))
     return by_scene_and_size(

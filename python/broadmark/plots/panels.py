@@ -40,6 +40,13 @@ def by_scene(cases: Cases, paint: Painter, *, stacked: bool = False, **about: An
     return _panels(cases, [[panel] for panel in row] if stacked else [row], paint, **about)
 
 
+def label_rows(axes: Any, labels: list[str]) -> None:
+    """Rows instead of a y axis: a label at 0, 1, …, from above."""
+    axes.grid(False, axis="y")
+    axes.set_yticks(range(len(labels)), labels, fontsize=7)
+    axes.set_ylim(len(labels) - 0.4, -0.6)
+
+
 def _panels(
     cases: Cases,
     rows: list[list[tuple[str, pd.DataFrame]]],

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from broadmark.plots.cases import Cases
-from broadmark.plots.panels import by_scene_and_size
+from broadmark.plots.panels import by_scene_and_size, label_rows
 
 
 def violins(cases: Cases) -> Figure:
@@ -36,9 +36,7 @@ def violins(cases: Cases) -> Figure:
             axes.xaxis.set_major_formatter(FuncFormatter(lambda power, _: f"{10**power:g}"))
         else:
             axes.set_xlim(left=0)
-        axes.grid(False, axis="y")
-        axes.set_yticks(list(rows.values()), list(rows), fontsize=7)
-        axes.set_ylim(len(rows) - 0.4, -0.6)
+        label_rows(axes, list(rows))
 
     size = (2.4, 0.6 + 0.17 * len(rows))
     return by_scene_and_size(
