@@ -11,6 +11,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
@@ -159,26 +160,17 @@ constexpr btScalar kStillShare = 0.2F;
 /// A body is supported when contacts carry at least this share of its weight.
 constexpr btScalar kCarriedShare = 0.75F;
 
-/// For how long a body has been still: near to one place. Its velocity tells less: few iterations
-/// leave each body of a large pile trembling, and sinking slowly into those below.
+/// For how long a body has been still: all of it near to one place. Its velocity tells less: few
+/// iterations leave each body of a large pile trembling, and sinking slowly into those below.
 class Stillness {
  public:
   void update(const btRigidBody& body, btScalar time_step) {
     pose_ = body.getWorldTransform();
-    const btQuaternion rotation = pose_.getRotation();
-    // What is too slow to count as motion is no motion either.
-    const btScalar slow = body.getLinearSleepingThreshold() * kHoldAfter;
-    const btScalar fall = body.getGravity().length() * kHoldAfter * kHoldAfter / 2;
-    const btScalar reach = std::max(slow, kStillShare * fall);
-    const btScalar turn =
-        reach / body.getLinearSleepingThreshold() * body.getAngularSleepingThreshold();
-    if (pose_.getOrigin().distance2(place_) <= reach * reach &&
-        rotation.angleShortestPath(rotation_) <= turn) {
+    if (distance(body, pose_, place_) <= reachOf(body)) {
       lasted_ += time_step;
       return;
     }
-    place_ = pose_.getOrigin();
-    rotation_ = rotation;
+    place_ = pose_;
     lasted_ = 0;
   }
 
@@ -189,16 +181,61 @@ class Stillness {
   /// Where the body was in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
 
+  /// Whether its velocities would take a still body away from its place.
+  static bool isEnded(const btRigidBody& body) {
+    btScalar speed = body.getLinearVelocity().length();
+    const btVector3 extents = halfExtents(body);
+    for (int axis = 0; axis < 3; ++axis) {
+      const btVector3 arm = body.getWorldTransform().getBasis().getColumn(axis);
+      speed += extents[axis] * body.getAngularVelocity().cross(arm).length();
+    }
+    return speed * kHoldAfter > reachOf(body);
+  }
+
  private:
-  btVector3 place_{0, 0, 0};
-  btQuaternion rotation_{0, 0, 0, 1};
+  /// How far a still body may be from its place.
+  static btScalar reachOf(const btRigidBody& body) {
+    // What is too slow to count as motion is no motion either.
+    const btScalar slow = body.getLinearSleepingThreshold() * kHoldAfter;
+    const btScalar fall = body.getGravity().length() * kHoldAfter * kHoldAfter / 2;
+    return std::max(slow, kStillShare * fall);
+  }
+
+  static btVector3 halfExtents(const btRigidBody& body) {
+    btVector3 min;
+    btVector3 max;
+    body.getCollisionShape()->getAabb(btTransform::getIdentity(), min, max);
+    return (max - min) / 2;
+  }
+
+  /// An upper bound of how far any point of the body is between two poses.
+  static btScalar distance(const btRigidBody& body, const btTransform& a, const btTransform& b) {
+    btScalar sum = a.getOrigin().distance(b.getOrigin());
+    const btVector3 extents = halfExtents(body);
+    for (int axis = 0; axis < 3; ++axis) {
+      sum += extents[axis] * a.getBasis().getColumn(axis).distance(b.getBasis().getColumn(axis));
+    }
+    return sum;
+  }
+
+  btTransform place_{btTransform::getIdentity()};
   btTransform pose_{btTransform::getIdentity()};
   btScalar lasted_ = 0;
 };
 
+/// What the world knows of a body beyond what Bullet does. Each body's user pointer leads to its
+/// own.
+struct Rest {
+  Stillness stillness;
+  bool held = false;       ///< in the last step: still and supported
+  bool disturbed = false;  ///< in this step: touches a body that is not still
+};
+
 /// Bullet's world with a limit on angular speeds, and with piles that come to rest. Without help
 /// they do not: few iterations leave some motion in each body of a large pile, and in Bullet a pile
-/// sleeps only when all of its bodies are slow. Each body's user pointer is its Stillness.
+/// sleeps only when all of its bodies are slow. Here a body that is still and supported is held
+/// where it is. While only such bodies touch it, it is fixed, too: the solver takes it for a wall.
+/// So a pile becomes solid bit by bit, and few iterations are enough for the rest of it.
 class World final : public btDiscreteDynamicsWorld {
  public:
   World(btDispatcher* dispatcher, btBroadphaseInterface* broad_phase, btConstraintSolver* solver,
@@ -206,30 +243,67 @@ class World final : public btDiscreteDynamicsWorld {
       : btDiscreteDynamicsWorld(dispatcher, broad_phase, solver, configuration),
         max_angular_speed_(max_angular_speed) {}
 
+  /// Support may have gone: the next step fixes no body.
+  void releaseAll() { release_all_ = true; }
+
  protected:
+  void solveConstraints(btContactSolverInfo& settings) override {
+    findDisturbed();
+    const bool release_all = std::exchange(release_all_, false);
+    forEachBody([&](btRigidBody& body) {
+      if (release_all || rest(body).disturbed) rest(body).held = false;
+      if (!rest(body).held) return;
+      setShareOfImpulses(body, 0);
+      body.clearForces();
+    });
+    btDiscreteDynamicsWorld::solveConstraints(settings);
+    forEachBody([](btRigidBody& body) { setShareOfImpulses(body, 1); });
+  }
+
   void integrateTransforms(btScalar time_step) override {
-    held_.clear();
-    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-      btRigidBody& body = *m_nonStaticRigidBodies[i];
+    forEachBody([&](btRigidBody& body) {
       limitAngularSpeed(body);
-      if (isHeld(body, time_step)) {
-        body.setLinearVelocity(btVector3(0, 0, 0));
-        body.setAngularVelocity(btVector3(0, 0, 0));
-        held_.push_back(&body);
-      }
-    }
+      bool& held = rest(body).held;
+      held = held || mayBeHeld(body, time_step);
+      if (!held) return;
+      body.setLinearVelocity(btVector3(0, 0, 0));
+      body.setAngularVelocity(btVector3(0, 0, 0));
+    });
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
-    // To the last bit: the solver pushes bodies apart, and integration rounds.
-    for (btRigidBody* body : held_) body->setCenterOfMassTransform(stillness(*body).pose());
-    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) {
-      const btRigidBody& body = *m_nonStaticRigidBodies[i];
-      if (body.isActive()) stillness(body).update(body, time_step);
-    }
+    forEachBody([&](btRigidBody& body) {
+      // To the last bit: the solver pushes bodies apart, and integration rounds.
+      if (rest(body).held) body.setCenterOfMassTransform(rest(body).stillness.pose());
+      if (body.isActive()) rest(body).stillness.update(body, time_step);
+    });
   }
 
  private:
-  static Stillness& stillness(const btRigidBody& body) {
-    return *static_cast<Stillness*>(body.getUserPointer());
+  template <class Action>
+  void forEachBody(const Action& action) {
+    for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) action(*m_nonStaticRigidBodies[i]);
+  }
+
+  static Rest& rest(const btCollisionObject& body) {
+    return *static_cast<Rest*>(body.getUserPointer());
+  }
+
+  static void setShareOfImpulses(btRigidBody& body, btScalar share) {
+    body.setLinearFactor(btVector3(share, share, share));
+    body.setAngularFactor(share);
+  }
+
+  void findDisturbed() {
+    forEachBody([](btRigidBody& body) { rest(body).disturbed = false; });
+    btDispatcher& contacts = *getDispatcher();
+    for (int i = 0; i < contacts.getNumManifolds(); ++i) {
+      const btPersistentManifold& contact = *contacts.getManifoldByIndexInternal(i);
+      if (contact.getNumContacts() == 0) continue;
+      const btCollisionObject& a = *contact.getBody0();
+      const btCollisionObject& b = *contact.getBody1();
+      if (a.isStaticObject() || b.isStaticObject()) continue;
+      if (!rest(a).stillness.lasts()) rest(b).disturbed = true;
+      if (!rest(b).stillness.lasts()) rest(a).disturbed = true;
+    }
   }
 
   void limitAngularSpeed(btRigidBody& body) const {
@@ -241,14 +315,14 @@ class World final : public btDiscreteDynamicsWorld {
   }
 
   /// Whether the body has been still for long, and is supported.
-  [[nodiscard]] static bool isHeld(const btRigidBody& body, btScalar time_step) {
-    if (!body.isActive() || !stillness(body).lasts()) return false;
+  [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
+    if (!body.isActive() || !rest(body).stillness.lasts() || Stillness::isEnded(body)) return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
     return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
   }
 
   btScalar max_angular_speed_;
-  std::vector<btRigidBody*> held_;  ///< in this step
+  bool release_all_ = false;
 };
 
 class BulletBody final : public PhysicsBody {
@@ -256,7 +330,7 @@ class BulletBody final : public PhysicsBody {
   BulletBody(const BodyDescription& description,
              const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
       : shape_(description.shape), world_(world), body_(info) {
-    body_.setUserPointer(&stillness_);
+    body_.setUserPointer(&rest_);
     body_.setLinearVelocity(toBullet(description.linear_velocity));
     body_.setAngularVelocity(toBullet(description.angular_velocity));
     world_.addRigidBody(&body_);
@@ -305,14 +379,15 @@ class BulletBody final : public PhysicsBody {
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// Does nothing to a frozen body.
   void wake() {
-    stillness_.end();
+    rest_.stillness.end();
+    world_.releaseAll();
     body_.activate();
   }
 
  private:
   Shape shape_;
   World& world_;
-  Stillness stillness_;
+  Rest rest_;
   btRigidBody body_;
 };
 

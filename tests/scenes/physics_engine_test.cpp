@@ -9,6 +9,7 @@
 #include <memory>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "broadmark/scenes/registry.h"
 #include "entries.h"
@@ -111,6 +112,32 @@ TEST_P(RigidEngineTest, AStackComesToRestWithBodiesOfTheRightSize) {
     EXPECT_NEAR(lower.pose().position[1], -4 + height, 0.02);
     EXPECT_NEAR(upper.pose().position[1], -4 + 2 * height + 0.5F, 0.03);
   }
+}
+
+TEST_P(RigidEngineTest, ABodyAtRestIsPushedAway) {
+  auto engine = makeFloor(0);
+  PhysicsBody& resting = addCube(*engine, {0, 0.5F, 0});
+  PhysicsBody& fast = addCube(*engine, {-9, 0.5F, 0});
+  step(*engine, 40);
+  fast.setVelocity({15, 0, 0}, {});
+  step(*engine, 60);
+  EXPECT_GT(resting.pose().position[0], 0.3);
+}
+
+TEST_P(RigidEngineTest, ALeverAtRestTipsUnderALoad) {
+  auto engine = makeFloor(0);
+  addCube(*engine, {0, 0.5F, 0});
+  PhysicsBody& lever =
+      engine->addBody({.shape = BoxShape{{2, 0.1F, 0.5F}}, .pose = {.position = {0, 1.1F, 0}}});
+  step(*engine, 40);
+  ASSERT_NEAR(lever.pose().position[1], 1.1, 0.02);
+  addCube(*engine, {1.4F, 1.9F, 0});
+  float turned = 0;
+  for (int i = 0; i < 60; ++i) {
+    engine->step();
+    turned = std::max(turned, std::abs(lever.pose().rotation[2]));
+  }
+  EXPECT_GT(turned, 0.1);
 }
 
 TEST_P(RigidEngineTest, SpheresTouchAtTheSumOfTheirRadii) {
@@ -284,6 +311,24 @@ TEST_P(PhysicsEngineTest, DampingTakesItsShareOfTheVelocityPerSecond) {
   step(*engine, 30);
   EXPECT_NEAR(body.linearVelocity()[0], 6, 0.1);
   EXPECT_NEAR(body.angularVelocity()[2], 3.5, 0.1);
+}
+
+// Bodies of Bullet that are at rest are held in place, but only while something carries them.
+TEST(BulletEngine, AStackThatLosesItsLowestBodyFalls) {
+  const auto engine = entryOf(engineEntries(), "bullet", "engine").create({});
+  engine->setGravity({0, -10, 0});
+  engine->addWall({.normal = {0, 1, 0}, .offset = 0});
+  std::vector<PhysicsBody*> stack;
+  for (int i = 0; i < 5; ++i) {
+    const float height = 0.5F + static_cast<float>(i);
+    stack.push_back(&engine->addBody({.shape = kUnitCube, .pose = {.position = {0, height, 0}}}));
+  }
+  for (int i = 0; i < 25; ++i) engine->step();  // at rest, not asleep
+  stack[0]->setPose({.position = {9, 0.5F, 0}});
+  for (int i = 0; i < 60; ++i) engine->step();
+  for (int i = 1; i < 5; ++i) {
+    EXPECT_NEAR(stack[i]->pose().position[1], i - 0.5, 0.05) << "cube " << i;
+  }
 }
 
 TEST(KinematicEngine, BouncesAsHighAsTheRestitutionTells) {
