@@ -79,7 +79,7 @@ TEST_F(Sweep, ShardsDivideItsCases) {
 TEST_F(Sweep, OneBadValueIsNamed) {
   expectRefusal(with(kSmall, {"--param", "objects_per_leaf=9,x"}), {"objects_per_leaf", "'x'"});
   expectRefusal(with(kSmall, {"--seed", "1,x"}), {"seed", "'x'"});
-  expectRefusal(with(kSmall, {"--engine", "bullet,od"}), {"'od'", "'ode'"});
+  expectRefusal(with(kSmall, {"--engine", "kinematic,bulet"}), {"'bulet'", "'bullet'"});
   expectRefusal(with(kSmall, {"--param", "kdd:margin=1"}), {"--param", "'kdd'"});
   expectRefusal({"duel", "brownian", "--seed", "1,2", "sap", "kd"}, {"2 recordings"});
 }
