@@ -211,10 +211,9 @@ void SessionParser::Parts::addPictures() {
   const auto set_frame = [this](const std::string& text) {
     options.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
   };
-  CLI::Option* frame =
-      addValue(app, "--frame", "K", set_frame,
-               "frame of the screenshot, 0 being the initial pose (default: the last); of the "
-               "inspector: where it opens");
+  std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
+  if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";
+  CLI::Option* frame = addValue(app, "--frame", "K", set_frame, frame_help);
   tag(frame, kNone);
   showWith(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
