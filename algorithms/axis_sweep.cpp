@@ -41,10 +41,24 @@ unsigned position(float value, bool is_max) {
   return (sortKey(value + 0.0F) & ~1U) | static_cast<unsigned>(is_max);
 }
 
+/// Where on every axis the box of a body that is absent is kept: above all floats, and each body
+/// for itself, as far as there are positions.
+unsigned absentPosition(std::uint32_t body, bool is_max) {
+  constexpr unsigned kAboveInfinity = 0xFF80'0002;
+  constexpr unsigned kPlaces = 0x003F'0000;
+  return (kAboveInfinity + 2 * (body % kPlaces)) | static_cast<unsigned>(is_max);
+}
+
+unsigned position(const Aabb& box, std::uint32_t body, int axis, bool is_max) {
+  if (isEmpty(box)) return absentPosition(body, is_max);
+  return position((is_max ? box.max : box.min)[axis], is_max);
+}
+
 /// Bullet's sweep with our positions and our beginning. The handle of a body is its number + 1;
 /// handle 0 is Bullet's sentinel at both ends of each axis.
 class Sweep final : public bt32BitAxisSweep3 {
  public:
+  /// Forms no pairs yet.
   explicit Sweep(std::span<const Aabb> boxes)
       : bt32BitAxisSweep3({0, 0, 0}, {1, 1, 1}, static_cast<unsigned>(boxes.size()), nullptr,
                           /*disableRaycastAccelerator=*/true) {
@@ -57,7 +71,6 @@ class Sweep final : public bt32BitAxisSweep3 {
       handle.m_collisionFilterMask = btBroadphaseProxy::AllFilter;
     }
     for (int axis = 0; axis < 3; ++axis) placeEdges(boxes, axis);
-    findPairs();
   }
 
   /// Brings one body up to date.
@@ -68,8 +81,8 @@ class Sweep final : public bt32BitAxisSweep3 {
       unsigned& max_edge = handle.m_maxEdges[axis];
       const unsigned min_edge_before = min_edge;
       const unsigned max_edge_before = max_edge;
-      const unsigned min = position(box.min[axis], false);
-      const unsigned max = position(box.max[axis], true);
+      const unsigned min = position(box, body, axis, false);
+      const unsigned max = position(box, body, axis, true);
       const unsigned min_before = std::exchange(m_pEdges[axis][min_edge].m_pos, min);
       const unsigned max_before = std::exchange(m_pEdges[axis][max_edge].m_pos, max);
       // Growth before shrinkage: an end never passes the body's own other end.
@@ -81,7 +94,24 @@ class Sweep final : public bt32BitAxisSweep3 {
     }
   }
 
-  /// Pairs tested by the constructor.
+  /// Sweeps once: two intervals meet where the one that begins later begins.
+  void findFirstPairs() {
+    const int axis = bestAxis();
+    for (unsigned i = 1; i <= m_numHandles; ++i) {
+      Handle* const handle = getHandle(i);
+      for (unsigned e = handle->m_minEdges[axis] + 1; e < handle->m_maxEdges[axis]; ++e) {
+        const Edge& edge = m_pEdges[axis][e];
+        if (edge.IsMax() != 0) continue;
+        ++tests_;
+        Handle* const other = getHandle(edge.m_handle);
+        if (testOverlap2D(handle, other, (axis + 1) % 3, (axis + 2) % 3)) {
+          m_pairCache->addOverlappingPair(handle, other);
+        }
+      }
+    }
+  }
+
+  /// Pairs tested by findFirstPairs().
   [[nodiscard]] std::uint64_t tests() const { return tests_; }
   /// Swaps in all moves so far.
   [[nodiscard]] std::uint64_t swaps() const { return swaps_; }
@@ -100,7 +130,7 @@ class Sweep final : public bt32BitAxisSweep3 {
         const bool is_max = edge.IsMax() != 0;
         if (edgeOf(edge, axis) != i) return "a body does not know its edge";
         const Aabb& box = boxes[edge.m_handle - 1];
-        if (edge.m_pos != position((is_max ? box.max : box.min)[axis], is_max)) {
+        if (edge.m_pos != position(box, edge.m_handle - 1, axis, is_max)) {
           return "an edge is not where its box ends";
         }
       }
@@ -121,8 +151,8 @@ class Sweep final : public bt32BitAxisSweep3 {
     Edge* end = first;
     const Edge sentinel = *first;
     for (unsigned i = 1; i <= m_numHandles; ++i) {
-      *end++ = {position(boxes[i - 1].min[axis], false), i};
-      *end++ = {position(boxes[i - 1].max[axis], true), i};
+      *end++ = {position(boxes[i - 1], i - 1, axis, false), i};
+      *end++ = {position(boxes[i - 1], i - 1, axis, true), i};
     }
     std::sort(first, end, [](const Edge& a, const Edge& b) { return a.m_pos < b.m_pos; });
     *end = sentinel;
@@ -140,23 +170,6 @@ class Sweep final : public bt32BitAxisSweep3 {
     return sum;
   }
 
-  /// Sweeps once: two intervals meet where the one that begins later begins.
-  void findPairs() {
-    const int axis = bestAxis();
-    for (unsigned i = 1; i <= m_numHandles; ++i) {
-      Handle* const handle = getHandle(i);
-      for (unsigned e = handle->m_minEdges[axis] + 1; e < handle->m_maxEdges[axis]; ++e) {
-        const Edge& edge = m_pEdges[axis][e];
-        if (edge.IsMax() != 0) continue;
-        ++tests_;
-        Handle* const other = getHandle(edge.m_handle);
-        if (testOverlap2D(handle, other, (axis + 1) % 3, (axis + 2) % 3)) {
-          m_pairCache->addOverlappingPair(handle, other);
-        }
-      }
-    }
-  }
-
   std::uint64_t tests_ = 0;
   std::uint64_t swaps_ = 0;
 };
@@ -167,6 +180,8 @@ class AxisSweep final : public BulletBroadPhase {
     BulletBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
     sweep_ = std::make_unique<Sweep>(boxes());
+    filterPairs(*sweep_->getOverlappingPairCache());
+    sweep_->findFirstPairs();
   }
 
   void updateStructures() override {
@@ -212,7 +227,9 @@ std::vector<Algorithm> variants() {
   return {{.id = "axis-sweep",
            .family = "AxisSweep",
            .summary = "Bullet's incremental sweep and prune on three axes",
-           .traits = {.incremental = true, .max_objects = kMaxObjects},
+           .traits = {.incremental = true,
+                      .changing_worlds = ChangingWorlds::native,
+                      .max_objects = kMaxObjects},
            .description = {.principle = "sorting",
                            .optimisations = "incremental, pairs in a hash table",
                            .time = "O(n + s + k), s swaps of interval ends",

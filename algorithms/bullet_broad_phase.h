@@ -17,21 +17,25 @@ class BulletBroadPhase : public BoxBroadPhase {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
+    wanted_.filter = scene.filter;
     moved_.resize(boxes().size());
     std::iota(moved_.begin(), moved_.end(), 0U);
   }
 
   void updateObjects(const Frame& frame) final {
-    moved_.clear();
-    for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
-      if (frame.boxes[body] != boxes()[body]) moved_.push_back(body);
-    }
+    moved_.assign(frame.changed->begin(), frame.changed->end());
     BoxBroadPhase::updateObjects(frame);
   }
 
  protected:
-  /// The bodies whose boxes differ from those of the frame before; after initialize() all.
+  /// The bodies whose boxes differ from those of the frame before, which came and went included;
+  /// after initialize() all.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
+
+  /// Has Bullet form only pairs that are wanted.
+  void filterPairs(btOverlappingPairCache& cache) {
+    if (!wanted_.filter.wantsAll()) cache.setOverlapFilterCallback(&wanted_);
+  }
 
   /// Adds those of the library's pairs for which keep(a, b).
   template <class Keep>
@@ -44,10 +48,20 @@ class BulletBroadPhase : public BoxBroadPhase {
     }
   }
 
- private:
   static std::uint32_t bodyOf(const btBroadphaseProxy& proxy) {
     return static_cast<std::uint32_t>(proxy.m_uniqueId) - 1;
   }
+
+ private:
+  struct Wanted final : btOverlapFilterCallback {
+    CollisionFilter filter;
+
+    bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+      return filter.wanted(bodyOf(*a), bodyOf(*b));
+    }
+  };
+
+  Wanted wanted_;
 
   std::vector<std::uint32_t> moved_;
 };

@@ -67,7 +67,7 @@ std::vector<Algorithm> variants() {
   return {{.id = "cgal",
            .family = "CGAL",
            .summary = "CGAL's box_self_intersection_d, from scratch every frame",
-           .traits = {.library_allocates = true},
+           .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
            .description = {.principle = "tree",
                            .optimisations = "streamed in place, small subproblems scanned",
                            .time = "O(n log³ n + k)",

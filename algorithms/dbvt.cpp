@@ -19,6 +19,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -68,7 +69,9 @@ class Dbvt final : public BulletBroadPhase {
   Dbvt& operator=(const Dbvt&) = delete;
   ~Dbvt() override {
     // destroyProxy would search all pairs for each of them.
-    for (btDbvtProxy* const proxy : proxies_) btAlignedFree(proxy);
+    for (btDbvtProxy* const proxy : proxies_) {
+      if (proxy != nullptr) btAlignedFree(proxy);
+    }
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
@@ -81,11 +84,10 @@ class Dbvt final : public BulletBroadPhase {
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
-    proxies_.reserve(boxes().size());
-    for (const Aabb& box : boxes()) {
-      proxies_.push_back(static_cast<btDbvtProxy*>(tree_.createProxy(
-          vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
-          btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr)));
+    filterPairs(*tree_.m_paircache);
+    proxies_.resize(boxes().size(), nullptr);
+    for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
+      if (!isEmpty(boxes()[body])) create(body);
     }
     updatePairs();
   }
@@ -94,7 +96,13 @@ class Dbvt final : public BulletBroadPhase {
     const MarginInForce in_force(static_cast<float>(margin_));
     const unsigned updates_before = tree_.m_updates_done;
     reinsertions_ = 0;
+    destroyVanished();
     for (const std::uint32_t body : moved()) {
+      if (isEmpty(boxes()[body])) continue;
+      if (proxies_[body] == nullptr) {
+        create(body);
+        continue;
+      }
       if (proxies_[body]->stage == Tree::STAGECOUNT) ++reinsertions_;  // out of the tree at rest
       move(body);
     }
@@ -115,6 +123,9 @@ class Dbvt final : public BulletBroadPhase {
 
   [[nodiscard]] std::string validate() const override {
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
+      if ((proxies_[body] == nullptr) != isEmpty(boxes()[body]))
+        return "a body came or went unseen";
+      if (proxies_[body] == nullptr) continue;
       if (!contains(leafOf(body), boxes()[body])) return "a box has left its leaf";
       if (reachesTooFar(body)) return "a leaf reaches beyond the margin";
     }
@@ -132,6 +143,35 @@ class Dbvt final : public BulletBroadPhase {
   }
   [[nodiscard]] bool reachesTooFar(std::uint32_t body) const {
     return !contains(enlarged(boxes()[body], margin()), leafOf(body));
+  }
+
+  void create(std::uint32_t body) {
+    tree_.m_gid = static_cast<int>(body);  // the proxy's number is the next one
+    const Aabb& box = boxes()[body];
+    proxies_[body] = static_cast<btDbvtProxy*>(
+        tree_.createProxy(vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
+                          btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr));
+  }
+
+  /// For each proxy that it destroys Bullet would go through all pairs: here that is done once.
+  void destroyVanished() {
+    const auto has_vanished = [this](std::uint32_t body) {
+      return isEmpty(boxes()[body]) && proxies_[body] != nullptr;
+    };
+    if (std::ranges::none_of(moved(), has_vanished)) return;
+    btOverlappingPairCache& pairs = *tree_.m_paircache;
+    for (int i = pairs.getNumOverlappingPairs(); i-- > 0;) {
+      const btBroadphasePair pair = pairs.getOverlappingPairArray()[i];
+      if (isEmpty(boxes()[bodyOf(*pair.m_pProxy0)]) || isEmpty(boxes()[bodyOf(*pair.m_pProxy1)])) {
+        pairs.removeOverlappingPair(pair.m_pProxy0, pair.m_pProxy1, nullptr);
+      }
+    }
+    btNullPairCache none;
+    tree_.m_paircache = &none;
+    for (const std::uint32_t body : moved()) {
+      if (has_vanished(body)) tree_.destroyProxy(std::exchange(proxies_[body], nullptr), nullptr);
+    }
+    tree_.m_paircache = &pairs;
   }
 
   void move(std::uint32_t body) {
@@ -164,7 +204,7 @@ class Dbvt final : public BulletBroadPhase {
 
   double margin_ = 0.05;  ///< Bullet's default
   Tree tree_;
-  std::vector<btDbvtProxy*> proxies_;  ///< by body; owned
+  std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
   std::uint64_t reinsertions_ = 0;     ///< this frame's
 };
 
@@ -175,6 +215,7 @@ std::vector<Algorithm> variants() {
       .family = "DBVT",
       .traits = {.incremental = true,
                  .library_allocates = true,
+                 .changing_worlds = ChangingWorlds::native,
                  .max_objects = 0x7FFF'FFFE,
                  .exclusive = std::string(kBulletTreeMargin)},
       .description = {.principle = "tree",

@@ -338,6 +338,7 @@ Algorithm variant(const Kind& kind) {
                      " in each" + (kind.parallel ? ", on several threads" : ""),
           .traits = {.parallel = kind.parallel,
                      .vectorised = true,
+                     .changing_worlds = ChangingWorlds::compacted,
                      .max_objects = kMaxMarkedBodies - 1},
           .description = {.principle = sweeps ? "grid, sorting" : "grid",
                           .optimisations = sweeps ? "axis per cell, bucket sort" : "",

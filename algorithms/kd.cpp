@@ -59,36 +59,33 @@ class Kd final : public BroadPhase {
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     team_ = &execution.team();
     world_ = scene.world;
+    filter_ = scene.filter;
     boxes_.assign(first.boxes.begin(), first.boxes.end());
-    stored_ = boxes_;
-    for (Aabb& box : stored_) box = enlarged(box, static_cast<float>(margin_));
+    for (const Aabb& box : boxes_) stored_.push_back(storedFor(box));
     moving_.resize(stored_.size());
     for (int worker = 0; worker < team_->size(); ++worker) workers_.emplace_back(execution.isa());
+    for (Worker& worker : workers_) {
+      worker.moved.reserve(stored_.size() / workers_.size() + 1);
+      worker.arrived.reserve(stored_.size() / workers_.size() + 1);
+    }
     runs_.resize(workers_.size());
     tree_.build(stored_, static_cast<std::size_t>(objects_per_leaf_), *team_);
   }
 
   void updateObjects(const Frame& frame) override {
-    const auto margin = static_cast<float>(margin_);
-    forWorkers([&](Worker& worker, Range part) {
-      worker.moved = 0;
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        const Aabb box = frame.boxes[i];
-        const bool moves = !isStill(box, stored_[i], margin);
-        if (moves) stored_[i] = enlarged(box, margin);
-        moving_[i] = moves ? 1 : 0;
-        worker.moved += moving_[i];
-      }
-      // Without a margin stored boxes are the boxes.
-      if (margin > 0) {
-        std::copy_n(frame.boxes.data() + part.begin, part.end - part.begin,
-                    boxes_.data() + part.begin);
+    const std::span<const std::uint32_t> changed = *frame.changed;
+    forgetMoved();
+    team_->run([&](int part) {
+      Worker& worker = workers_[static_cast<std::size_t>(part)];
+      const auto [begin, end] = share(changed.size(), team_->size(), part);
+      for (const std::uint32_t body : changed.subspan(begin, end - begin)) {
+        takeOver(worker, body, frame.boxes[body]);
       }
     });
     moved_ = 0;
-    for (const Worker& worker : workers_) moved_ += worker.moved;
+    for (const Worker& worker : workers_) moved_ += worker.moved.size() + worker.arrived.size();
     // Before the first search there are no pairs to keep.
-    incremental_ = searched_ && 2 * moved_ < stored_.size();
+    incremental_ = searched_ && 2 * moved_ < tree_.size();
   }
 
   /// Drops the pairs that are searched for again.
@@ -98,8 +95,7 @@ class Kd final : public BroadPhase {
         if (moved_ > 0) worker.pairs.retain([this](Pair p) { return isKept(p); });
       } else {
         worker.pairs.clear();
-        std::fill(moving_.begin() + static_cast<std::ptrdiff_t>(part.begin),
-                  moving_.begin() + static_cast<std::ptrdiff_t>(part.end), std::uint8_t{1});
+        fillMoving(part, 1);
       }
       worker.kept = worker.pairs.size();
     });
@@ -108,17 +104,19 @@ class Kd final : public BroadPhase {
   void updateStructures() override {
     tree_.beginUpdate(!incremental_);
     if (incremental_ && moved_ > 0) {
-      forWorkers([this](Worker&, Range part) {
-        for (std::size_t i = part.begin; i < part.end; ++i) {
-          if (moving_[i] != 0) tree_.touch(static_cast<std::uint32_t>(i));
+      team_->run([this](int part) {
+        for (const std::uint32_t body : workers_[static_cast<std::size_t>(part)].moved) {
+          tree_.touch(body);
         }
       });
     }
+    for (const Worker& worker : workers_) tree_.admit(worker.arrived);
     tree_.update();
   }
 
   void searchOverlaps() override {
-    const Searcher::Scene scene = {tree_, stored_, moving_};
+    const Searcher::Scene scene = {tree_, stored_, moving_,
+                                   filter_.wantsAll() ? nullptr : &filter_};
     team_->run([&](int part) {
       Worker& worker = workers_[static_cast<std::size_t>(part)];
       worker.searcher.search(scene, part, team_->size(), worker.pairs);
@@ -152,11 +150,45 @@ class Kd final : public BroadPhase {
     explicit Worker(Isa isa) : searcher(isa) {}
 
     Searcher searcher;
-    PairBuffer pairs;   ///< of stored boxes; kept from frame to frame
-    PairBuffer answer;  ///< those of them that overlap, if there is a margin
-    std::size_t moved = 0;
+    PairBuffer pairs;                    ///< of stored boxes; kept from frame to frame
+    PairBuffer answer;                   ///< those of them that overlap, if there is a margin
+    std::vector<std::uint32_t> moved;    ///< in this frame: bodies in the tree, vanished ones too
+    std::vector<std::uint32_t> arrived;  ///< in this frame: bodies not yet in the tree
     std::size_t kept = 0;
   };
+
+  [[nodiscard]] Aabb storedFor(const Aabb& box) const {
+    return isEmpty(box) ? Tree::kGone : enlarged(box, static_cast<float>(margin_));
+  }
+
+  /// Marks no body as moving.
+  void forgetMoved() {
+    forWorkers([this](Worker& worker, Range part) {
+      if (incremental_) {
+        for (const std::uint32_t body : worker.moved) moving_[body] = 0;
+        for (const std::uint32_t body : worker.arrived) moving_[body] = 0;
+      } else {
+        fillMoving(part, 0);
+      }
+      worker.moved.clear();
+      worker.arrived.clear();
+    });
+  }
+
+  void fillMoving(Range bodies, std::uint8_t value) {
+    std::fill(moving_.begin() + static_cast<std::ptrdiff_t>(bodies.begin),
+              moving_.begin() + static_cast<std::ptrdiff_t>(bodies.end), value);
+  }
+
+  void takeOver(Worker& worker, std::uint32_t body, const Aabb& box) {
+    const auto margin = static_cast<float>(margin_);
+    if (margin > 0) boxes_[body] = box;  // without a margin stored boxes are the boxes
+    const bool is_there = tree_.holds(body);
+    if (is_there && isStill(box, stored_[body], margin)) return;
+    stored_[body] = storedFor(box);
+    moving_[body] = 1;
+    (is_there ? worker.moved : worker.arrived).push_back(body);
+  }
 
   /// Calls work(worker, its share of the bodies) for all workers at once.
   template <class Work>
@@ -189,8 +221,9 @@ class Kd final : public BroadPhase {
 
   ThreadTeam* team_ = nullptr;
   Aabb world_;
+  CollisionFilter filter_;
   std::vector<Aabb> boxes_;           ///< of this frame, if there is a margin
-  std::vector<Aabb> stored_;          ///< of when each body last moved, enlarged
+  std::vector<Aabb> stored_;          ///< of when each body last moved, enlarged; or kGone
   std::vector<std::uint8_t> moving_;  ///< 1: the pairs of this body are searched for
   std::size_t moved_ = 0;
   bool searched_ = false;
@@ -205,7 +238,7 @@ class Kd final : public BroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "KD",
-      .traits = {.incremental = true},
+      .traits = {.incremental = true, .changing_worlds = ChangingWorlds::native},
       .description = {
           .principle = "tree",
           .optimisations = "incremental tree and pairs",

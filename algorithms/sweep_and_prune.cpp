@@ -219,6 +219,7 @@ class SweepAndPrune final : public PairBroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "SAP",
+      .traits = {.changing_worlds = ChangingWorlds::compacted},
       .description = {
           .principle = "sorting",
           .optimisations = "axis by variance, radix sort",

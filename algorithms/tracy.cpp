@@ -18,6 +18,7 @@
 // Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
 // AABB Insertion and Removal", IEEE VR 2009.
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -70,6 +71,7 @@ class Tracy final : public BroadPhase {
 
     bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
     bodies_.boxes[kNow] = bodies_.boxes[kBefore];
+    bodies_.filter = scene.filter;
     for (std::vector<CellRange>& ranges : bodies_.ranges) ranges.resize(count);
     bodies_.moved.assign((count + kWordBits - 1) / kWordBits, 0);
 
@@ -85,8 +87,11 @@ class Tracy final : public BroadPhase {
   void updateObjects(const Frame& frame) override {
     team_->run([&](int worker) {
       const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
-      for (std::size_t word = begin; word < end; ++word) {
-        bodies_.moved[word] = takeOver(frame.boxes, word * kWordBits);
+      std::fill(bodies_.moved.begin() + static_cast<std::ptrdiff_t>(begin),
+                bodies_.moved.begin() + static_cast<std::ptrdiff_t>(end), 0);
+      for (auto body = std::ranges::lower_bound(*frame.changed, begin * kWordBits);
+           body != frame.changed->end() && *body < end * kWordBits; ++body) {
+        takeOver(*body, frame.boxes[*body]);
       }
     });
   }
@@ -142,17 +147,9 @@ class Tracy final : public BroadPhase {
 
   Worker& workerOf(int worker) { return workers_[static_cast<std::size_t>(worker)]; }
 
-  /// Takes over the boxes of the bodies of one word of bits; which of them have moved.
-  std::uint64_t takeOver(std::span<const Aabb> boxes, std::size_t begin) {
-    const std::size_t end = std::min(begin + kWordBits, boxes.size());
-    std::uint64_t moved = 0;
-    for (std::size_t body = begin; body < end; ++body) {
-      Aabb& now = bodies_.boxes[kNow][body];
-      if (boxes[body] == now) continue;
-      bodies_.boxes[kBefore][body] = std::exchange(now, boxes[body]);
-      moved |= std::uint64_t{1} << (body - begin);
-    }
-    return moved;
+  void takeOver(std::uint32_t body, const Aabb& box) {
+    bodies_.boxes[kBefore][body] = std::exchange(bodies_.boxes[kNow][body], box);
+    bodies_.moved[body / kWordBits] |= std::uint64_t{1} << body % kWordBits;
   }
 
   /// Calls visit(body) for the bodies of a worker's share that have moved.
@@ -379,13 +376,14 @@ std::string Tracy::validate() const {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  const Algorithm family = {.family = "Tracy",
-                            .traits = {.incremental = true},
-                            .description = {.principle = "grid, sorting",
-                                            .optimisations = "segmented interval lists",
-                                            .time = "O(n + s), s swaps of endpoints",
-                                            .space = "O(n + k)",
-                                            .source = "Tracy, Buss and Woods 2009"}};
+  const Algorithm family = {
+      .family = "Tracy",
+      .traits = {.incremental = true, .changing_worlds = ChangingWorlds::native},
+      .description = {.principle = "grid, sorting",
+                      .optimisations = "segmented interval lists",
+                      .time = "O(n + s), s swaps of endpoints",
+                      .space = "O(n + k)",
+                      .source = "Tracy, Buss and Woods 2009"}};
   const auto create = [] { return std::make_unique<Tracy>(); };
   return {
       variantOf(family, create, "tracy", "incremental sweep and prune in the cells of a grid"),

@@ -78,7 +78,7 @@ fs::path MovieMaker::make(const fs::path& path, const PictureProgress& progress)
   removeOlder(folder);
   for (std::uint32_t number = 0; number < pictures(scene); ++number) {
     const Frame frame = recording.at(number * options_.every);
-    const std::vector<Pair> pairs = sweptPairs(frame.boxes);
+    const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
     const PairRun run = pairs;
     writePng(picturePath(folder, number),
              drawFrame(*context_, scene, frame, {&run, 1}, options_.picture.width,

@@ -32,7 +32,14 @@ void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execu
 }
 
 void BoxBroadPhase::updateObjects(const Frame& frame) {
-  boxes_.assign(frame.boxes.begin(), frame.boxes.end());
+  // Few boxes one by one, many in one go.
+  constexpr std::size_t kFew = 8;
+  if (!frame.changed || boxes_.size() != frame.boxes.size() ||
+      kFew * frame.changed->size() > boxes_.size()) {
+    boxes_.assign(frame.boxes.begin(), frame.boxes.end());
+  } else {
+    for (const std::uint32_t body : *frame.changed) boxes_[body] = frame.boxes[body];
+  }
 }
 
 void SimdBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {

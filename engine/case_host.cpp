@@ -8,6 +8,8 @@
 
 #include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
+#include "changed_bodies.h"
+#include "compacted_world.h"
 
 namespace broadmark {
 namespace {
@@ -41,6 +43,10 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   return times;
 }
 
+bool isChangingWorld(const SceneInfo& scene) {
+  return !scene.all_present || !scene.filter.wantsAll();
+}
+
 void requireRunnable(const Case& run, const SceneInfo& scene) {
   const AlgorithmTraits& traits = run.algorithm.traits;
   if (traits.vectorised && !isaSupported(run.isa)) {
@@ -50,6 +56,10 @@ void requireRunnable(const Case& run, const SceneInfo& scene) {
     throw UnsupportedError(
         fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
   }
+  if (isChangingWorld(scene) && traits.changing_worlds == ChangingWorlds::unknown) {
+    throw UnsupportedError(scene.all_present ? "does not know which pairs are wanted"
+                                             : "does not know bodies that come and go");
+  }
 }
 
 CounterVisitor into(Counts& counts) {
@@ -57,6 +67,9 @@ CounterVisitor into(Counts& counts) {
 }
 
 }  // namespace
+
+LocalHost::LocalHost(Case run, bool pin)
+    : case_(std::move(run)), pin_(pin), changed_bodies_(std::make_unique<ChangedBodies>()) {}
 
 LocalHost::~LocalHost() {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
@@ -74,10 +87,18 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   if (usable_cores_.empty()) usable_cores_ = usableCores();
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
   if (pin_) pinThreads();
-  instance_ = makeInstance(case_);
+  instance_ = makeInstanceFor(scene);
+  const Frame whole = changed_bodies_->complete(first);
   const auto start = Clock::now();
-  instance_->initialize(scene, first, *execution_);
+  instance_->initialize(scene, whole, *execution_);
   return nanoseconds(Clock::now() - start);
+}
+
+std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) const {
+  std::unique_ptr<BroadPhase> instance = makeInstance(case_);
+  const bool compacted = case_.algorithm.traits.changing_worlds == ChangingWorlds::compacted;
+  if (!compacted || !isChangingWorld(scene)) return instance;
+  return std::make_unique<CompactedWorld>(std::move(instance));
 }
 
 void LocalHost::pinThreads() {
@@ -97,8 +118,9 @@ FrameTimes LocalHost::runCounted(const Frame& frame) {
 }
 
 FrameRun LocalHost::step(const Frame& frame) {
+  const Frame whole = changed_bodies_->complete(frame);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  FrameRun run{.times = runCounted(frame)};
+  FrameRun run{.times = runCounted(whole), .changed_bodies = whole.changed->size()};
   // Asked once: whoever looks at the answer sees the same one.
   answer_ = instance_->overlaps();
   run.pairs = pairCount(answer_);

@@ -62,6 +62,7 @@ bool CaseRun::attempt(Call&& call) {
 
 bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   stop();
+  filter_ = scene.filter;
   frame_ = first.index;
   frames_ = 0;
   total_ns_ = 0;
@@ -93,11 +94,13 @@ std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle
   if (policy_.check == CheckMode::hash && margin_ == 0) {
     PairDigest digest;
     if (!attempt([&] { digest = host_->digest(); })) return std::nullopt;
-    if (digest == oracle.pairDigest(frame.boxes)) return FrameDifference{.frame = frame.index};
+    if (digest == oracle.pairDigest(frame.boxes, filter_))
+      return FrameDifference{.frame = frame.index};
   }
   PairRuns answer;
   if (!attempt([&] { answer = host_->answer(); })) return std::nullopt;
-  FrameDifference difference = findDifference(answer, oracle.pairs(frame.boxes), frame, margin_);
+  FrameDifference difference =
+      findDifference(answer, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));
   }

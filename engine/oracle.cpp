@@ -4,7 +4,7 @@
 // touches); within a strip they are sorted along the longest axis and swept. A pair that shares
 // several strips is reported only in the one that holds the larger of its two lower ends, so
 // nothing is reported twice and nothing is lost: that strip belongs to both bodies whenever they
-// overlap. O(n log n) plus the candidates of the sweeps.
+// overlap. Each world is swept for itself. O(n log n) plus the candidates of the sweeps.
 
 #include "broadmark/oracle.h"
 
@@ -14,7 +14,9 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace broadmark {
 namespace {
@@ -33,19 +35,23 @@ std::uint64_t mixed(Pair pair) {
 /// strips that their ends fall into; ends are clamped, never dropped.
 class Strips {
  public:
+  /// Of the boxes that are not empty, of which there is one.
   Strips(std::span<const Aabb> boxes, int axis) : axis_(axis) {
     double edges = 0;
-    double high = boxes.front().max[axis];
-    low_ = boxes.front().min[axis];
+    std::size_t count = 0;
+    double high = -std::numeric_limits<double>::infinity();
+    low_ = -high;
     for (const Aabb& box : boxes) {
+      if (isEmpty(box)) continue;
+      ++count;
       low_ = std::min<double>(low_, box.min[axis]);
       high = std::max<double>(high, box.max[axis]);
       edges += static_cast<double>(box.max[axis]) - box.min[axis];
     }
     // Wide enough that a typical body touches little more than one strip.
-    const double mean_edge = edges / static_cast<double>(boxes.size());
-    const double wanted = std::min((high - low_) / std::max(4 * mean_edge, 1e-300),
-                                   static_cast<double>(boxes.size()) / 32);
+    const double mean_edge = edges / static_cast<double>(count);
+    const double wanted =
+        std::min((high - low_) / std::max(4 * mean_edge, 1e-300), static_cast<double>(count) / 32);
     count_ = static_cast<std::uint32_t>(std::clamp(wanted, 1.0, 65536.0));
     scale_ = high > low_ ? count_ / (high - low_) : 0;
   }
@@ -71,8 +77,8 @@ class Strips {
 
 /// The axes, longest extent of all boxes first.
 std::array<int, 3> axesByExtent(std::span<const Aabb> boxes) {
-  Aabb bounds = boxes.front();
-  for (const Aabb& box : boxes) bounds = merged(bounds, box);
+  Aabb bounds = kEmptyBox;
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);  // an empty one changes nothing
   std::array<int, 3> axes = {0, 1, 2};
   std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) {
     return static_cast<double>(bounds.max[axis]) - bounds.min[axis];
@@ -90,12 +96,14 @@ StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
   StripContents contents;
   contents.start.resize(strips.count() + 1);
   for (const Aabb& box : boxes) {
+    if (isEmpty(box)) continue;
     for (auto s = strips.first(box); s <= strips.last(box); ++s) ++contents.start[s + 1];
   }
   std::partial_sum(contents.start.begin(), contents.start.end(), contents.start.begin());
   contents.bodies.resize(contents.start.back());
   std::vector<std::size_t> next(contents.start.begin(), contents.start.end() - 1);
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    if (isEmpty(boxes[body])) continue;
     for (auto s = strips.first(boxes[body]); s <= strips.last(boxes[body]); ++s) {
       contents.bodies[next[s]++] = body;
     }
@@ -120,33 +128,39 @@ PairDigest digest(PairRuns runs) {
   return result;
 }
 
-std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes) {
+std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < boxes.size(); ++a) {
     for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
-      if (overlaps(boxes[a], boxes[b])) pairs.push_back({a, b});
+      if (overlaps(boxes[a], boxes[b]) && filter.wanted(a, b)) pairs.push_back({a, b});
     }
   }
   return pairs;
 }
 
-std::vector<Pair> sweptPairs(std::span<const Aabb> boxes) {
+std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
   std::vector<Pair> pairs;
-  if (boxes.empty()) return pairs;
+  if (std::ranges::all_of(boxes, isEmpty)) return pairs;
   const std::array<int, 3> axes = axesByExtent(boxes);
   const int sweep_axis = axes[0];
   const Strips strips(boxes, axes[1]);
   StripContents contents = fill(strips, boxes);
+  const std::span<const std::uint32_t> worlds = filter.worlds();
+  const auto worldOf = [&](std::uint32_t body) { return worlds.empty() ? 0 : worlds[body]; };
 
   for (std::uint32_t s = 0; s < strips.count(); ++s) {
     const std::span bodies(contents.bodies.data() + contents.start[s],
                            contents.start[s + 1] - contents.start[s]);
-    std::ranges::sort(bodies, {}, [&](std::uint32_t body) { return boxes[body].min[sweep_axis]; });
+    std::ranges::sort(bodies, {}, [&](std::uint32_t body) {
+      return std::pair(worldOf(body), boxes[body].min[sweep_axis]);
+    });
     for (auto i = bodies.begin(); i != bodies.end(); ++i) {
       const Aabb& a = boxes[*i];
-      for (auto j = i + 1; j != bodies.end() && boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
+      for (auto j = i + 1; j != bodies.end() && worldOf(*j) == worldOf(*i) &&
+                           boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
            ++j) {
-        if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s) {
+        if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&
+            filter.wanted(*i, *j)) {
           pairs.push_back(orderedPair(*i, *j));
         }
       }
@@ -156,11 +170,15 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes) {
   return pairs;
 }
 
-Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, bool with_pairs) {
-  const auto [place, is_new] = answers_.try_emplace(hashOf(std::as_bytes(boxes)));
+Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                             bool with_pairs) {
+  // An answer keeps its filter, so no other can get the same address.
+  const auto [place, is_new] = answers_.try_emplace(
+      std::pair(hashOf(std::as_bytes(boxes)), filter.address()), Answer{.filter = filter});
   Answer& answer = place->second;
   if (!is_new && (answer.pairs || !with_pairs)) return answer;
-  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes) : sweptPairs(boxes);
+  scratch_ =
+      boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter) : sweptPairs(boxes, filter);
   const PairRun run = scratch_;
   answer.digest = digest({&run, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);
@@ -171,12 +189,14 @@ Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, bool with_pairs) {
   return answer;
 }
 
-std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes) {
-  const Answer& answer = find(boxes, true);
+std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  const Answer& answer = find(boxes, filter, true);
   return answer.pairs ? *answer.pairs : scratch_;
 }
 
-PairDigest Oracle::pairDigest(std::span<const Aabb> boxes) { return find(boxes, false).digest; }
+PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  return find(boxes, filter, false).digest;
+}
 
 std::string mismatchText(const FrameDifference& difference) {
   return fmt::format("{} missed, {} false, {} invalid", difference.missed_count,
@@ -184,7 +204,7 @@ std::string mismatchText(const FrameDifference& difference) {
 }
 
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
-                               float margin) {
+                               float margin, const CollisionFilter& filter) {
   FrameDifference difference{.frame = frame.index};
   std::vector<Pair> given;
   given.reserve(pairCount(answer));
@@ -213,7 +233,8 @@ FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, con
       ++expected;
       continue;
     }
-    if (overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
+    if (filter.wanted(pair.a, pair.b) &&
+        overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
       note(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
     } else {
       note(difference.false_count, difference.false_pairs, pair);

@@ -12,12 +12,11 @@ namespace {
 /// Counts what happens in the frames of one pass.
 class FrameCounter {
  public:
-  /// `result` outlives this. `first` is the initial pose.
-  FrameCounter(CaseResult& result, const Frame& first)
+  /// `result` outlives this.
+  explicit FrameCounter(CaseResult& result)
       : result_(result),
         is_first_pass_(result.repetitions.empty()),
-        number_(static_cast<int>(result.repetitions.size()) + 1),
-        boxes_(first.boxes.begin(), first.boxes.end()) {}
+        number_(static_cast<int>(result.repetitions.size()) + 1) {}
 
   /// The frame that was run last; the next one counts as another.
   void count(const Frame& frame, CaseRun& run, Oracle& oracle) {
@@ -25,7 +24,7 @@ class FrameCounter {
     FrameCounts& counts = result_.frames[passed_++];
     auto difference = run.check(frame, oracle);
     if (difference) keepWorst(counts, *difference);
-    if (is_first_pass_ && run.answered()) countWork(counts, frame, run);
+    if (is_first_pass_ && run.answered()) countWork(counts, run);
     if (!difference || !difference->isMismatch()) return;
     difference->repetition = number_;
     result_.differences.push_back(std::move(*difference));
@@ -46,25 +45,15 @@ class FrameCounter {
   }
 
   /// Counts of pairs and of work, in the first pass: the others do the same.
-  void countWork(FrameCounts& counts, const Frame& frame, CaseRun& run) {
+  void countWork(FrameCounts& counts, CaseRun& run) {
     counts[FrameCount::pairs] = run.pairs();
-    counts[FrameCount::changed_bodies] = changedSince(frame.boxes);
+    counts[FrameCount::changed_bodies] = run.changedBodies();
     const std::size_t before = passed_ - 1;
     addToMean(result_.pairs_mean, run.pairs(), before);
     result_.pairs_max = std::max(result_.pairs_max, run.pairs());
     for (const auto& [name, count] : run.counters()) {
       addToMean(result_.counters[name], count, before);
     }
-  }
-
-  std::uint64_t changedSince(std::span<const Aabb> boxes) {
-    std::uint64_t changed = 0;
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      if (boxes[i] == boxes_[i]) continue;
-      boxes_[i] = boxes[i];
-      ++changed;
-    }
-    return changed;
   }
 
   /// Takes one more value into the mean of `count_before`.
@@ -75,8 +64,7 @@ class FrameCounter {
   CaseResult& result_;
   bool is_first_pass_;
   int number_;
-  std::vector<Aabb> boxes_;  ///< of the frame before
-  std::size_t passed_ = 0;   ///< frames
+  std::size_t passed_ = 0;  ///< frames
 };
 
 /// All frames of one pass; false when cancelled.
@@ -106,7 +94,7 @@ Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& orac
   Pass pass;
   pass.repetition.frames.reserve(source.scene().frames);
   const Frame first = source.rewind();
-  FrameCounter counter(result, first);
+  FrameCounter counter(result);
   if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
   pass.repetition.initialize_ns = run.initializeNanoseconds();
   pass.finished = runFrames(pass.repetition, counter, run, source, oracle, hooks);

@@ -80,7 +80,7 @@ FrameStatistics frameStatistics(const SceneInfo& scene, const Frame& frame,
   figures.median_extent = quantile(extents, 0.5);
   figures.max_extent = max;
 
-  figures.pairs_per_body = static_cast<double>(sweptPairs(boxes).size()) / bodies;
+  figures.pairs_per_body = static_cast<double>(sweptPairs(boxes, scene.filter).size()) / bodies;
   if (before.empty()) return figures;
   const auto still =
       std::ranges::count(std::views::iota(std::size_t{0}, boxes.size()), true,

@@ -23,6 +23,7 @@ SubRecording::SubRecording(IndexedFrames& whole, Part part, std::string name)
   scene_.name = std::move(name);
   scene_.objects = static_cast<std::uint32_t>(part_.bodies.size());
   scene_.frames = static_cast<std::uint32_t>(part_.frames.size() - 1);
+  scene_.filter = whole.scene().filter.of(part_.bodies);
   boxes_.resize(scene_.objects);
 }
 

@@ -183,6 +183,11 @@ void Searcher::addPairs() {
     const bool listed_moves = hit.a >= s.listed_moving && hit.a < s.own_still;
     count += own_moves || (listed_moves && hit.b >= s.own_still) ? 1 : 0;
   }
+  if (scene_->filter != nullptr) {
+    Pair* const end = std::remove_if(
+        room, room + count, [this](Pair pair) { return !scene_->filter->wanted(pair.a, pair.b); });
+    count = static_cast<std::size_t>(end - room);
+  }
   pairs_->advance(count);
 }
 

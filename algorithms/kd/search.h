@@ -25,8 +25,9 @@ class Searcher {
   /// What is searched. All borrowed.
   struct Scene {
     const Tree& tree;
-    std::span<const Aabb> boxes;           ///< one per body
-    std::span<const std::uint8_t> moving;  ///< one per body: 1 if its pairs are wanted
+    std::span<const Aabb> boxes;              ///< one per body
+    std::span<const std::uint8_t> moving;     ///< one per body: 1 if its pairs are searched for
+    const CollisionFilter* filter = nullptr;  ///< null: all pairs are wanted
   };
 
   /// Adds every pair of overlapping bodies at least one of which moves, in the part-th of `parts`

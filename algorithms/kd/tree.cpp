@@ -57,11 +57,15 @@ void Tree::build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, Thre
   workers_.resize(static_cast<std::size_t>(team.size()));
   if (!root_.isLeaf()) nodes_.releaseChildren(root_);
   root_ = {};
-  root_.own = root_.size = static_cast<std::uint32_t>(boxes.size());
-  bodies_.resize(boxes.size());
-  std::iota(bodies_.begin(), bodies_.end(), 0U);
-  homes_.assign(boxes.size(), &root_);
+  bodies_.clear();
+  bodies_.reserve(boxes.size());
+  homes_.assign(boxes.size(), nullptr);
+  std::vector<std::uint32_t> there;
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    if (boxes[body] != kGone) there.push_back(body);
+  }
   beginUpdate(true);
+  admit(there);
   update();
 }
 
@@ -76,12 +80,19 @@ void Tree::touch(std::uint32_t body) {
   if (!touched.load(std::memory_order_relaxed)) touched.store(true, std::memory_order_relaxed);
 }
 
+void Tree::admit(std::span<const std::uint32_t> bodies) {
+  if (bodies.empty()) return;
+  bodies_.insert(bodies_.end(), bodies.begin(), bodies.end());
+  giveToLeft(root_, 0, bodies.size(), workers_[0]);
+}
+
 void Tree::update() {
   summarise(root_);
   nodes_.reserve();
   const std::size_t parts = team_->size() == 1 ? 1 : workers_.size() * kTasksPerWorker;
-  grain_ = boxes_.size() / parts;
+  grain_ = bodies_.size() / parts;
   refitAll();
+  expelGone();
   settleAll();
   summarise(root_);
 }
@@ -217,6 +228,22 @@ void Tree::letEscape(Node& node, const Place& place, Worker& worker) {
   node.own -= node.escaped;
   node.size -= node.escaped;
   node.own_touched = node.touched = true;
+}
+
+/// No cell holds a box of kGone, so by now all of these are the root's own.
+void Tree::expelGone() {
+  if (!root_.own_touched) return;
+  const std::size_t begin = root_.isLeaf() ? 0 : root_.left().size;
+  const std::size_t end = begin + root_.own;
+  std::uint32_t* const gone = std::partition(
+      at(begin), at(end), [this](std::uint32_t body) { return boxes_[body] != kGone; });
+  const auto count = static_cast<std::uint32_t>(at(end) - gone);
+  if (count == 0) return;
+  for (const std::uint32_t* body = gone; body != at(end); ++body) homes_[*body] = nullptr;
+  rotate(end - count, end, bodies_.size(), workers_[0]);
+  bodies_.resize(bodies_.size() - count);
+  root_.own -= count;
+  root_.size -= count;
 }
 
 void Tree::settleAll() {

@@ -53,19 +53,28 @@ struct UpdateCounts {
 
 class Tree {
  public:
-  /// Puts all bodies into a new tree. `boxes`, one per body, and `team` must outlive the tree;
-  /// leaves are split when they hold more than `objects_per_leaf`.
+  /// Puts all bodies that are there into a new tree. `boxes`, one per body, and `team` must outlive
+  /// the tree; leaves are split when they hold more than `objects_per_leaf`.
   void build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, ThreadTeam& team);
 
-  /// An update is: beginUpdate, touch for every body whose box has changed, update.
+  /// The box of a body that is not there.
+  static constexpr Aabb kGone = {{Cell::kFar, Cell::kFar, Cell::kFar, 0},
+                                 {Cell::kFar, Cell::kFar, Cell::kFar, 0}};
+
+  /// An update is: beginUpdate, touch for every body in the tree whose box has changed, admit for
+  /// those that are new, update. Bodies in the tree whose box is kGone leave it.
   /// `all`: as if all bodies were touched.
   void beginUpdate(bool all);
   /// May be called by several workers at once.
   void touch(std::uint32_t body);
+  void admit(std::span<const std::uint32_t> bodies);
+  /// Whether the body is in the tree.
+  [[nodiscard]] bool holds(std::uint32_t body) const { return homes_[body] != nullptr; }
+  [[nodiscard]] std::size_t size() const { return bodies_.size(); }
   void update();
 
   [[nodiscard]] const Node& root() const { return root_; }
-  /// The array of bodies that nodes own slices of.
+  /// The array of bodies that nodes own slices of: all in the tree.
   [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
   /// Of the last update.
   [[nodiscard]] UpdateCounts counts() const;
@@ -115,6 +124,8 @@ class Tree {
   void adoptEscaped(Node& node, const Place& place, Worker& worker);
   void letEscape(Node& node, const Place& place, Worker& worker);
 
+  void expelGone();
+
   // Top-down.
   void settleAll();
   void settle(Node& node, const Place& place, Worker& worker, bool defer_small);
@@ -142,7 +153,7 @@ class Tree {
   ThreadTeam* team_ = nullptr;
   Node root_;
   std::vector<std::uint32_t> bodies_;  ///< that nodes own slices of
-  std::vector<Node*> homes_;           ///< the node that a body is own of
+  std::vector<Node*> homes_;  ///< by body: the node that it is own of; null: not in the tree
   std::vector<Worker> workers_;
   std::vector<Task> tasks_;  ///< subtrees for one worker each, in the order of their slices
   std::size_t grain_ = 0;    ///< a subtree with no more bodies than this is one task

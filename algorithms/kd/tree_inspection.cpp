@@ -47,11 +47,17 @@ void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int l
 
 std::string Tree::validate() const {
   if (root_.size != bodies_.size()) return "the root does not hold all bodies";
-  std::vector<char> seen(bodies_.size(), 0);
+  std::vector<char> seen(boxes_.size(), 0);
   for (const std::uint32_t body : bodies_) {
     if (body >= seen.size() || seen[body] != 0)
       return fmt::format("body {} is lost or twice", body);
     seen[body] = 1;
+  }
+  for (std::uint32_t body = 0; body < seen.size(); ++body) {
+    const bool is_there = boxes_[body] != kGone;
+    if (is_there != (seen[body] != 0) || is_there != holds(body)) {
+      return fmt::format("body {} came or went unseen", body);
+    }
   }
   return validateNode(root_, {});
 }

@@ -19,6 +19,7 @@ void report(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
 void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bodies,
                  const Bodies& all, CellWork& work) {
   position_ = position;
+  filter_ = all.filter.wantsAll() ? nullptr : &all.filter;
   size_ = static_cast<std::uint32_t>(bodies.size());
   if (bodies.empty()) return;
   capacity_ = std::max(kFewestSlots, std::bit_ceil(size_));
@@ -215,11 +216,11 @@ bool Cell::reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment wi
 }
 
 void Cell::reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  report(work.begun, bodies_[p], bodies_[q]);
+  if (isWanted(p, q)) report(work.begun, bodies_[p], bodies_[q]);
 }
 
 void Cell::reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  report(work.ended, bodies_[p], bodies_[q]);
+  if (isWanted(p, q)) report(work.ended, bodies_[p], bodies_[q]);
 }
 
 /// For the next frame, now is before.

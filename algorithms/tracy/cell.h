@@ -31,6 +31,7 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/collision_filter.h"
 #include "broadmark/pair.h"
 #include "tracy/grid.h"
 #include "tracy/segmented_list.h"
@@ -45,6 +46,7 @@ struct Bodies {
   std::array<std::vector<Aabb>, 2> boxes;        ///< by moment; what has not moved: kNow only
   std::array<std::vector<CellRange>, 2> ranges;  ///< likewise
   std::vector<std::uint64_t> moved;              ///< a bit per body
+  CollisionFilter filter;
 
   [[nodiscard]] bool hasMoved(std::uint32_t body) const {
     return (moved[body / 64] >> body % 64 & 1) != 0;
@@ -133,6 +135,9 @@ class Cell {
   [[nodiscard]] bool isOurs(std::uint32_t p, std::uint32_t q, Moment moment) const {
     return (crossings_[p][moment] & crossings_[q][moment] & kCrossesBelow) == 0;
   }
+  [[nodiscard]] bool isWanted(std::uint32_t p, std::uint32_t q) const {
+    return filter_ == nullptr || filter_->wanted(bodies_[p], bodies_[q]);
+  }
 
   void sortOutMoved(const Bodies& all, CellWork& work);
   [[nodiscard]] bool jumps(std::uint32_t slot) const;
@@ -156,6 +161,7 @@ class Cell {
   void grow();
 
   CellPosition position_{};
+  const CollisionFilter* filter_ = nullptr;  ///< null: every pair is wanted
   std::uint32_t size_ = 0;
   std::uint32_t capacity_ = 0;         ///< slots that the lists have room for
   std::vector<std::uint32_t> bodies_;  ///< by slot, kNobody where it is free

@@ -20,7 +20,7 @@ constexpr Crossing crossesBelow(int axis) { return static_cast<Crossing>(1 << ax
 constexpr Crossing crossesAbove(int axis) { return static_cast<Crossing>(8 << axis); }
 constexpr Crossing kCrossesBelow = crossesBelow(0) | crossesBelow(1) | crossesBelow(2);
 
-/// A block of cells, both corners included.
+/// A block of cells, both corners included; none at all if low is above high.
 struct CellRange {
   CellPosition low{};
   CellPosition high{};
@@ -33,6 +33,7 @@ struct CellRange {
     return inside;
   }
   [[nodiscard]] std::uint64_t size() const {
+    if (low[0] > high[0]) return 0;
     std::uint64_t cells = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       cells *= static_cast<std::uint64_t>(high[axis] - low[axis]) + 1;
@@ -72,6 +73,7 @@ class Grid {
   }
 
   [[nodiscard]] CellRange range(const Aabb& box) const {
+    if (isEmpty(box)) return {.low = {1, 1, 1}, .high = {0, 0, 0}};
     CellRange cells;
     for (int axis = 0; axis < 3; ++axis) {
       cells.low[axis] = cellOf(box.min[axis], axis);

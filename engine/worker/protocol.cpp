@@ -136,17 +136,55 @@ Json toJson(const SceneInfo& scene) {
           {"object_type", scene.object_type},
           {"objects", scene.objects},
           {"frames", scene.frames},
-          {"world", {scene.world.min, scene.world.max}}};
+          {"world", {scene.world.min, scene.world.max}},
+          {"all_present", scene.all_present}};
 }
 
 SceneInfo sceneFrom(const Json& json) {
   SceneInfo scene{.name = json.at("name").get<std::string>(),
                   .object_type = json.at("object_type").get<std::string>(),
                   .objects = json.at("objects").get<std::uint32_t>(),
-                  .frames = json.at("frames").get<std::uint32_t>()};
+                  .frames = json.at("frames").get<std::uint32_t>(),
+                  .all_present = json.at("all_present").get<bool>()};
   json.at("world").at(0).get_to(scene.world.min);
   json.at("world").at(1).get_to(scene.world.max);
   return scene;
+}
+
+Json writeFilter(const CollisionFilter& filter, const SharedMemory& memory, std::uint64_t offset) {
+  if (filter.wantsAll()) return nullptr;
+  // Tags first: so each array begins where its items may.
+  offset = memory.write(filter.tags(), offset);
+  offset = memory.write(filter.worlds(), offset);
+  memory.write(filter.layers(), offset);
+  return {{"matrix", filter.matrix().rows()},
+          {"tags", !filter.tags().empty()},
+          {"worlds", !filter.worlds().empty()},
+          {"layers", !filter.layers().empty()}};
+}
+
+CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::uint64_t offset,
+                           std::size_t bodies) {
+  if (json.is_null()) return {};
+  std::vector<BodyGroups> groups(bodies);
+  const auto read = [&]<class Item>(const char* name, Item BodyGroups::*part) {
+    if (!json.at(name).get<bool>()) return;
+    std::vector<Item> items;
+    memory.read(items, bodies, offset);
+    offset += bodies * sizeof(Item);
+    for (std::size_t i = 0; i < bodies; ++i) groups[i].*part = items[i];
+  };
+  read("tags", &BodyGroups::tags);
+  read("worlds", &BodyGroups::world);
+  read("layers", &BodyGroups::layer);
+  LayerMatrix matrix;
+  const auto rows = json.at("matrix").get<std::vector<std::uint32_t>>();
+  for (std::size_t a = 0; a < std::min(rows.size(), LayerMatrix::kLayers); ++a) {
+    for (std::size_t b = 0; b < LayerMatrix::kLayers; ++b) {
+      if ((rows[a] >> b & 1) != 0) matrix.set(a, b);
+    }
+  }
+  return {groups, matrix};
 }
 
 Json toJson(const FrameTimes& times) {

@@ -1,16 +1,20 @@
 // What a process says to its worker process, and hears from it.
 //
 // A message is one JSON object in one packet. At first the worker says who it is:
-//   {"protocol": 1, "program": "0.1.0"}
+//   {"protocol": 2, "program": "0.1.0"}
 // Then it answers one call after the other, with what stands behind the arrow or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
 //   call        says                                              answer
 //   case        algorithm, plugin, isa, threads, device,
 //               parameters {}, memory_limit_bytes (0: none), pin  {}
-//   start       scene {name, object_type, objects, frames, world} initialize_ns, pinned
-//               and bodies: the boxes of frame 0 are shared
-//   step        frame, bodies: its boxes are shared               times_ns {}, pairs
+//   start       scene {name, object_type, objects, frames, world, initialize_ns, pinned
+//               all_present}, filter (null: all pairs are wanted)
+//               and whether changed bodies are known: shared are
+//               the boxes of frame 0, then what the filter has of
+//               layers, worlds, tags
+//   step        frame, changed: so many numbers of bodies, then   times_ns {}, pairs,
+//               their boxes, are shared; null: all boxes are      changed_bodies
 //   digest                                                        count, hash
 //   answer                                                        pairs: so many are shared
 //   counters, setup                                               counts {}
@@ -35,7 +39,7 @@
 
 namespace broadmark::worker {
 
-inline constexpr int kProtocolVersion = 1;
+inline constexpr int kProtocolVersion = 2;
 
 // The worker's descriptors.
 inline constexpr int kChannelDescriptor = 3;
@@ -109,8 +113,13 @@ Json toJson(const Case&);
 Case caseFrom(
     const Json&,
     const std::function<Algorithm(const std::string& id, const std::string& plugin)>& find);
+/// All but the filter, which is too large for a message.
 Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);
+/// Writes the filter's arrays from `offset` on; what there is of them.
+Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offset);
+CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
+                           std::size_t bodies);
 Json toJson(const FrameTimes&);
 FrameTimes timesFrom(const Json&);
 Json toJson(const ProcessorCounts&);

@@ -89,23 +89,38 @@ class Server {
     return *host_;
   }
 
-  /// The boxes in shared memory, as a frame in this process's own.
-  Frame takeFrame(const Json& message, std::uint32_t index) {
-    frames_.read(boxes_, message.at("bodies").get<std::size_t>());
-    return {index, boxes_};
-  }
-
   Json start(const Json& message) {
-    const Frame first = takeFrame(message, 0);
+    SceneInfo scene = worker::sceneFrom(message.at("scene"));
+    frames_.read(boxes_, scene.objects);
+    scene.filter = worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb),
+                                      scene.objects);
+    Frame first{0, boxes_};
+    if (message.at("knows_changed").get<bool>()) first.changed.emplace();
     if (!measured_) peak_before_ = peakBytes();
-    const std::int64_t initialize_ns = host().start(worker::sceneFrom(message.at("scene")), first);
+    const std::int64_t initialize_ns = host().start(scene, first);
     return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
   }
 
+  /// The frame in shared memory, in this process's own.
+  Frame takeFrame(const Json& message) {
+    const auto index = message.at("frame").get<std::uint32_t>();
+    if (message.at("changed").is_null()) {
+      frames_.read(boxes_, boxes_.size());
+      return {index, boxes_};
+    }
+    frames_.read(changed_, message.at("changed").get<std::size_t>());
+    frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < changed_.size(); ++i) {
+      boxes_.at(changed_[i]) = changed_boxes_[i];
+    }
+    return {index, boxes_, changed_};
+  }
+
   Json step(const Json& message) {
-    const Frame frame = takeFrame(message, message.at("frame").get<std::uint32_t>());
-    const FrameRun run = host().step(frame);
-    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
+    const FrameRun run = host().step(takeFrame(message));
+    return {{"times_ns", worker::toJson(run.times)},
+            {"pairs", run.pairs},
+            {"changed_bodies", run.changed_bodies}};
   }
 
   Json digest(const Json& /*message*/) {
@@ -150,7 +165,9 @@ class Server {
   const AlgorithmFinder& find_;
   SharedMemory frames_{FileDescriptor(worker::kFramesDescriptor)};
   SharedMemory answers_{FileDescriptor(worker::kAnswersDescriptor)};
-  std::vector<Aabb> boxes_;
+  std::vector<Aabb> boxes_;  ///< of the last frame
+  std::vector<std::uint32_t> changed_;
+  std::vector<Aabb> changed_boxes_;
   std::optional<LocalHost> host_;
   bool measured_ = false;
   std::optional<std::uint64_t> peak_before_;

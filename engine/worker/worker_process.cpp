@@ -144,9 +144,11 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
   processor_counts_ = {};
   open();
   return talk([&](Link& link) {
-    link.frames.write(first.boxes);
-    const Json started = link.call(
-        {{"call", "start"}, {"scene", worker::toJson(scene)}, {"bodies", first.boxes.size()}});
+    const std::uint64_t end = link.frames.write(first.boxes);
+    const Json started = link.call({{"call", "start"},
+                                    {"scene", worker::toJson(scene)},
+                                    {"filter", worker::writeFilter(scene.filter, link.frames, end)},
+                                    {"knows_changed", first.changed.has_value()}});
     pinned_ = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   });
@@ -154,12 +156,24 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
 
 FrameRun WorkerProcess::step(const Frame& frame) {
   return talk([&](Link& link) {
-    link.frames.write(frame.boxes);
-    const Json run =
-        link.call({{"call", "step"}, {"frame", frame.index}, {"bodies", frame.boxes.size()}});
+    Json message = {{"call", "step"}, {"frame", frame.index}, {"changed", nullptr}};
+    if (frame.changed) {
+      shareChanged(link.frames, frame);
+      message["changed"] = frame.changed->size();
+    } else {
+      link.frames.write(frame.boxes);
+    }
+    const Json run = link.call(message);
     return FrameRun{.times = worker::timesFrom(run.at("times_ns")),
-                    .pairs = run.at("pairs").get<std::uint64_t>()};
+                    .pairs = run.at("pairs").get<std::uint64_t>(),
+                    .changed_bodies = run.at("changed_bodies").get<std::uint64_t>()};
   });
+}
+
+void WorkerProcess::shareChanged(const SharedMemory& memory, const Frame& frame) {
+  changed_boxes_.clear();
+  for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
+  memory.write(std::span<const Aabb>(changed_boxes_), memory.write(*frame.changed));
 }
 
 void WorkerProcess::stop() {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "algorithms/runs.h"
 
 namespace broadmark::tests {
@@ -34,10 +36,12 @@ TEST_P(HonestClocks, AnswerDoesNotDependOnBoxesAfterwards) {
       std::vector<Aabb> boxes = frames[0];
       run.start(scene, boxes);
       scramble(boxes);
+      std::vector<std::uint32_t> all(boxes.size());
+      std::iota(all.begin(), all.end(), 0U);
       BroadPhase& algorithm = run.broadPhase();
       for (std::uint32_t i = 1; i < frames.size(); ++i) {
         boxes = frames[i];
-        algorithm.updateObjects({i, boxes});
+        algorithm.updateObjects({i, boxes, all});
         scramble(boxes);
         algorithm.cleanCache();
         algorithm.updateStructures();

@@ -100,7 +100,7 @@ inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
   scene.frames = static_cast<std::uint32_t>(frames.size() - 1);
   scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};
   for (const std::vector<Aabb>& boxes : frames) {
-    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);
+    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);  // or an empty one
   }
   return scene;
 }
@@ -171,11 +171,12 @@ class TestRun {
 
 /// Whether an answer has all the right pairs, and no false ones.
 inline testing::AssertionResult isRight(PairRuns answer, const std::vector<Pair>& right,
-                                        const Frame& frame, float margin = 0) {
+                                        const Frame& frame, float margin = 0,
+                                        const CollisionFilter& filter = {}) {
   const PairRun right_run = right;
   // Much quicker, and enough where no extra pair is allowed.
   if (margin == 0 && digest(answer) == digest({&right_run, 1})) return testing::AssertionSuccess();
-  const FrameDifference difference = findDifference(answer, right, frame, margin);
+  const FrameDifference difference = findDifference(answer, right, frame, margin, filter);
   if (!difference.isMismatch()) return testing::AssertionSuccess();
   auto failure = testing::AssertionFailure()
                  << mismatchText(difference) << " of " << right.size() << " pairs";

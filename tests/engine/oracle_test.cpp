@@ -9,6 +9,7 @@
 #include <random>
 
 #include "engine/helpers.h"
+#include "support/changing_worlds.h"
 #include "support/inputs.h"
 
 namespace broadmark::tests {
@@ -64,6 +65,17 @@ TEST(Sweep, CopesWithTheLargestFloats) {
   }
 }
 
+TEST(Sweep, EqualsBruteForceWhateverIsWantedAndPresent) {
+  for (const std::size_t n : {1, 2, 40, 400}) {
+    for (const auto& [name, filter] : filters(n)) {
+      for (const Presence& present : {Presence(presences::random), Presence(presences::never)}) {
+        const auto boxes = framesWith({"clustered", inputs::clustered}, n, 1, present)[0];
+        EXPECT_EQ(sweptPairs(boxes, filter), bruteForcePairs(boxes, filter)) << name;
+      }
+    }
+  }
+}
+
 TEST(Digest, IsTheSameInAnyOrderAndSplit) {
   std::vector<Pair> pairs = bruteForcePairs(inputs::clustered(100, 1, 1));
   const PairDigest expected = digestOf(pairs);
@@ -112,6 +124,31 @@ TEST(Oracle, AnswersForTheBoxesItIsGiven) {
   EXPECT_EQ(oracle.pairDigest(apart).count, 0U);
   EXPECT_EQ(oracle.pairDigest(three).count, 2U);
   EXPECT_EQ(oracle.pairs(three).size(), 2U);
+}
+
+// Nor must the answer of another filter.
+TEST(Oracle, AnswersForTheFilterItIsGiven) {
+  Oracle oracle;
+  const std::vector<Aabb> boxes = chain(3);
+  const CollisionFilter none(std::vector<BodyGroups>(3), LayerMatrix());
+  EXPECT_EQ(oracle.pairs(boxes).size(), 2U);
+  EXPECT_EQ(oracle.pairs(boxes, none).size(), 0U);
+  EXPECT_EQ(oracle.pairDigest(boxes, none).count, 0U);
+  EXPECT_EQ(oracle.pairDigest(boxes).count, 2U);
+}
+
+// Bodies that are absent, and pairs that are not wanted: any answer with them is wrong.
+TEST(Difference, CallsPairsFalseThatAreNotWanted) {
+  std::vector<Aabb> boxes = chain(4);
+  boxes[3] = kEmptyBox;
+  const std::vector<BodyGroups> bodies = {{.layer = 1}, {.layer = 1}, {}, {}};
+  const CollisionFilter filter(bodies, LayerMatrix().set(0, 1));
+  const std::vector<Pair> answer = {{0, 1}, {1, 2}, {2, 3}};
+  const PairRun run = answer;
+  const FrameDifference difference = findDifference({&run, 1}, bruteForcePairs(boxes, filter),
+                                                    {.index = 1, .boxes = boxes}, 10, filter);
+  EXPECT_EQ(difference.false_count, 2U);
+  EXPECT_EQ(difference.missed_count + difference.allowed_extra_count, 0U);
 }
 
 TEST(Difference, NothingWhenAllIsRight) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace broadmark {
 
@@ -24,6 +25,14 @@ constexpr bool overlaps(const Aabb& a, const Aabb& b) {
           in_order(a.min[1], b.max[1]) & in_order(b.min[1], a.max[1]) &
           in_order(a.min[2], b.max[2]) & in_order(b.min[2], a.max[2])) != 0;
 }
+
+/// The box of a body that is absent: it overlaps nothing, itself included.
+inline constexpr Aabb kEmptyBox = [] {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  return Aabb{{kInfinity, kInfinity, kInfinity, 0}, {-kInfinity, -kInfinity, -kInfinity, 0}};
+}();
+
+constexpr bool isEmpty(const Aabb& box) { return box.min[0] > box.max[0]; }
 
 /// The box grown by `margin` on every side.
 constexpr Aabb enlarged(Aabb box, float margin) {

@@ -12,6 +12,17 @@
 
 namespace broadmark {
 
+/// How an algorithm takes part in worlds in which bodies come and go, or not all pairs are wanted.
+enum class ChangingWorlds {
+  /// Not at all: such worlds are not for it.
+  unknown,
+  /// Each frame may have another number of bodies, and is looked at as a whole: bodies that are
+  /// absent are left out for it, and pairs that are not wanted are taken out of its answer.
+  compacted,
+  /// By itself.
+  native
+};
+
 /// What holds for every instance of an algorithm: runs, lists and tests derive from it.
 struct AlgorithmTraits {
   bool parallel = false;     ///< uses as many threads as it is given
@@ -22,6 +33,8 @@ struct AlgorithmTraits {
   bool finds_pairs = true;
   /// A library that it calls allocates in a steady state; the algorithm cannot prevent that.
   bool library_allocates = false;
+  /// What it makes of bodies that are absent, and of pairs that are not wanted.
+  ChangingWorlds changing_worlds = ChangingWorlds::unknown;
   /// Largest number of bodies it can handle.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
   /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two

@@ -19,6 +19,8 @@
 
 namespace broadmark {
 
+class ChangedBodies;
+
 /// What an algorithm counted, by name.
 using Counts = std::map<std::string, std::uint64_t>;
 
@@ -26,6 +28,7 @@ using Counts = std::map<std::string, std::uint64_t>;
 struct FrameRun {
   FrameTimes times;
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included
+  std::uint64_t changed_bodies = 0;
 };
 
 /// Holds at most one instance of a case's algorithm, and calls it.
@@ -72,7 +75,7 @@ class LocalHost final : public CaseHost {
   /// With `pin`, each of the case's threads is bound to a core of its own, chosen anew for every
   /// pass; unless they are more than the cores, or a device's driver has threads, too. That goes
   /// for the calling thread as well, which so stays: for a process that does nothing else.
-  explicit LocalHost(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
+  explicit LocalHost(Case run, bool pin = false);
   ~LocalHost() override;
   LocalHost(const LocalHost&) = delete;
   LocalHost& operator=(const LocalHost&) = delete;
@@ -93,6 +96,7 @@ class LocalHost final : public CaseHost {
 
  private:
   FrameTimes runCounted(const Frame& frame);
+  std::unique_ptr<BroadPhase> makeInstanceFor(const SceneInfo& scene) const;
   void pinThreads();
 
   Case case_;
@@ -104,6 +108,7 @@ class LocalHost final : public CaseHost {
   std::optional<Execution> execution_;
   ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
+  std::unique_ptr<ChangedBodies> changed_bodies_;
   PairRuns answer_;
 };
 

@@ -84,6 +84,7 @@ class CaseRun {
   /// Of the last frame.
   [[nodiscard]] const FrameTimes& times() const { return last_.times; }
   [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
+  [[nodiscard]] std::uint64_t changedBodies() const { return last_.changed_bodies; }
   /// As CaseHost::peakBytes().
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
   /// As CaseHost::processorCounts().
@@ -117,6 +118,7 @@ class CaseRun {
   bool ended_early_ = false;  ///< some pass, by a failure or a limit: reason_ says which
   Status status_ = Status::ok;
   std::string reason_;
+  CollisionFilter filter_;   ///< of the present scene
   std::uint32_t frame_ = 0;  ///< that was begun last
   std::int64_t initialize_ns_ = 0;
   FrameRun last_;

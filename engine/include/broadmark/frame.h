@@ -9,28 +9,36 @@
 #include <vector>
 
 #include "broadmark/aabb.h"
+#include "broadmark/collision_filter.h"
 
 namespace broadmark {
 
 /// Longest name of a scene or an object type, in characters: what a recording's header holds.
 inline constexpr std::size_t kLongestName = 127;
 
-/// What is known of a scene before its first frame: a recording's header.
+/// What is known of a scene before its first frame: a recording's header. A body's id is a slot
+/// below `objects`; in each frame it is present or absent.
 struct SceneInfo {
   std::string name;         ///< "FreeFall"; printable ASCII, at most kLongestName characters
   std::string object_type;  ///< "Cubes"; likewise
   std::uint32_t objects = 0;
   std::uint32_t frames = 0;  ///< the initial pose not counted
   Aabb world = {};           ///< bodies may poke out a little
+  bool all_present = true;   ///< no body is ever absent
+  CollisionFilter filter = {};
 
   friend bool operator==(const SceneInfo&, const SceneInfo&) = default;
 };
 
-/// The boxes of one moment. Body id = position. Borrowed: valid until the next call to the source
-/// of the frame.
+/// The boxes of one moment. Borrowed: valid until the next call to the source of the frame.
 struct Frame {
-  std::uint32_t index = 0;  ///< 0 is the initial pose, 1…F are the frames that count
-  std::span<const Aabb> boxes;
+  std::uint32_t index = 0;      ///< 0 is the initial pose, 1…F are the frames that count
+  std::span<const Aabb> boxes;  ///< by body id; kEmptyBox: absent
+  /// The bodies that moved, appeared or vanished since the frame before, ascending: those whose
+  /// boxes differ. Nothing when the source does not know: an algorithm always gets them, found out
+  /// before the clock starts. A source knows in all of its frames or in none; in frame 0 there are
+  /// none.
+  std::optional<std::span<const std::uint32_t>> changed = {};
 };
 
 /// Where frames come from, one after the other: a recording, or a live simulation. Who runs a case

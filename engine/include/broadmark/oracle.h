@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -24,41 +25,44 @@ struct PairDigest {
 };
 PairDigest digest(PairRuns);
 
-/// All overlapping pairs, ascending, by testing each body against each: O(n²). The definition.
-std::vector<Pair> bruteForcePairs(std::span<const Aabb>);
+/// All overlapping pairs that are wanted, ascending, by testing each body against each: O(n²). The
+/// definition.
+std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {});
 
-/// All overlapping pairs, ascending, by an exact sweep within strips of the second axis:
-/// O(n log n + candidates). Tested against bruteForcePairs.
-std::vector<Pair> sweptPairs(std::span<const Aabb>);
+/// The same by an exact sweep within strips of the second axis: O(n log n + candidates). Tested
+/// against bruteForcePairs.
+std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {});
 
 /// The right answer for any boxes, computed once and kept while it fits in a budget. An answer is
-/// found again by the boxes' hash: two scenes may share an oracle, and equal frames share an
-/// answer.
+/// found again by the boxes' hash and the filter: two scenes may share an oracle, and equal frames
+/// share an answer.
 class Oracle {
  public:
   explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30) : budget_bytes_(budget_bytes) {}
 
-  /// The overlapping pairs of these boxes, ascending; valid until the next call.
-  std::span<const Pair> pairs(std::span<const Aabb> boxes);
-  PairDigest pairDigest(std::span<const Aabb> boxes);
+  /// The overlapping pairs of these boxes that are wanted, ascending; valid until the next call.
+  std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
+  PairDigest pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
 
  private:
   struct Answer {
+    CollisionFilter filter;
     PairDigest digest;
     std::optional<std::vector<Pair>> pairs;  ///< nothing when they did not fit in the budget
   };
   /// The pairs asked for are in the answer, or else in scratch_.
-  Answer& find(std::span<const Aabb> boxes, bool with_pairs);
+  Answer& find(std::span<const Aabb> boxes, const CollisionFilter& filter, bool with_pairs);
 
-  std::map<HashValue, Answer> answers_;
+  std::map<std::pair<HashValue, const void*>, Answer> answers_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
 };
 
 /// How an answer differs from the right one in one frame.
 ///
-/// An extra pair was reported though the two boxes do not overlap: it is *allowed* when they do
-/// once enlarged by the algorithm's margin, else it is *false*. An invalid pair is a duplicate, has
+/// An extra pair was reported though the two boxes do not overlap, or are not wanted: it is
+/// *allowed* when they are wanted and overlap once enlarged by the algorithm's margin, else it is
+/// *false*. An invalid pair is a duplicate, has
 /// a >= b, or names a body that does not exist.
 struct FrameDifference {
   /// At most this many pairs of each kind are listed; the counts are always complete.
@@ -85,6 +89,6 @@ std::string mismatchText(const FrameDifference&);
 /// Compares an answer with the right pairs (ascending) of these boxes. `margin` as in
 /// BroadPhase::margin().
 FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
-                               float margin = 0);
+                               float margin = 0, const CollisionFilter& = {});
 
 }  // namespace broadmark

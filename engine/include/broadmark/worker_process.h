@@ -18,6 +18,10 @@
 
 namespace broadmark {
 
+namespace worker {
+class SharedMemory;
+}
+
 struct WorkerOptions {
   /// What to start: a program, and the arguments that make it call serveCase().
   std::vector<std::string> command;
@@ -58,6 +62,7 @@ class WorkerProcess final : public CaseHost {
 
   /// Starts the process, if there is none.
   void open();
+  void shareChanged(const worker::SharedMemory& memory, const Frame& frame);
   /// Calls talk(link); drops the link when its process has ended.
   template <class Talk>
   auto talk(Talk&& talk);
@@ -68,6 +73,7 @@ class WorkerProcess final : public CaseHost {
   std::optional<std::uint64_t> peak_bytes_;
   ProcessorCounts processor_counts_;
   bool pinned_ = false;
+  std::vector<Aabb> changed_boxes_;
   std::vector<Pair> answer_;
   PairRun answer_run_;
 };

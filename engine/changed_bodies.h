@@ -1,0 +1,25 @@
+// Which bodies' boxes differ from those of the frame before.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "broadmark/frame.h"
+
+namespace broadmark {
+
+/// Completes frames whose source does not know what changed. Keeps a copy of the boxes. A steady
+/// state allocates nothing.
+class ChangedBodies {
+ public:
+  /// The frame, with what changed since the last call for a frame of this source, or nothing for
+  /// its frame 0. Valid until the next call.
+  Frame complete(const Frame& frame);
+
+ private:
+  std::vector<Aabb> before_;
+  std::vector<std::uint32_t> changed_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,102 @@
+// Which pairs of bodies are wanted at all, wherever they are.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace broadmark {
+
+/// Which layers collide with which: bit b of row a. Symmetric.
+class LayerMatrix {
+ public:
+  static constexpr std::size_t kLayers = 32;
+
+  /// No layer collides with any.
+  constexpr LayerMatrix() = default;
+  /// Every layer collides with every one.
+  static LayerMatrix all();
+
+  LayerMatrix& set(std::size_t a, std::size_t b, bool collide = true);
+  [[nodiscard]] bool collide(std::size_t a, std::size_t b) const {
+    return (rows_[a] >> b & 1) != 0;
+  }
+  [[nodiscard]] const std::array<std::uint32_t, kLayers>& rows() const { return rows_; }
+
+  friend bool operator==(const LayerMatrix&, const LayerMatrix&) = default;
+
+ private:
+  std::array<std::uint32_t, kLayers> rows_{};
+};
+
+/// A body's layer, world and tags, which do not change during a run.
+struct BodyGroups {
+  static constexpr std::uint32_t kNoTag = std::numeric_limits<std::uint32_t>::max();
+  using Tags = std::array<std::uint32_t, 3>;
+  static constexpr Tags kNoTags = {kNoTag, kNoTag, kNoTag};
+
+  std::uint8_t layer = 0;   ///< below LayerMatrix::kLayers
+  std::uint32_t world = 0;  ///< only bodies of one world meet
+  Tags tags = kNoTags;      ///< bodies that share a tag do not meet: a mesh's vertex, a ragdoll
+
+  friend bool operator==(const BodyGroups&, const BodyGroups&) = default;
+};
+
+/// The predicate wanted(a, b) over all bodies of a scene. By default all pairs are wanted. Cheap to
+/// copy: copies share what they hold, which never changes.
+class CollisionFilter {
+ public:
+  CollisionFilter() = default;
+  /// A body for each in `bodies`. Throws std::invalid_argument for a layer that does not exist.
+  CollisionFilter(std::span<const BodyGroups> bodies, const LayerMatrix& matrix);
+
+  /// Whether the overlap of these two bodies counts; symmetric, a != b.
+  [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
+    return data_ == nullptr || data_->wanted(a, b);
+  }
+  /// Whether every pair is wanted, for certain.
+  [[nodiscard]] bool wantsAll() const { return data_ == nullptr; }
+
+  /// The same for copies of one filter, and for no other while it exists.
+  [[nodiscard]] const void* address() const { return data_.get(); }
+
+  /// As given; default values beyond what was given.
+  [[nodiscard]] BodyGroups groupsOf(std::uint32_t body) const;
+  [[nodiscard]] LayerMatrix matrix() const;
+  /// One per body; empty where all are in layer 0, in world 0, without tags.
+  [[nodiscard]] std::span<const std::uint8_t> layers() const;
+  [[nodiscard]] std::span<const std::uint32_t> worlds() const;
+  [[nodiscard]] std::span<const BodyGroups::Tags> tags() const;
+
+  /// The filter of some of the bodies, in this order.
+  [[nodiscard]] CollisionFilter of(std::span<const std::uint32_t> bodies) const;
+
+  friend bool operator==(const CollisionFilter& a, const CollisionFilter& b);
+
+ private:
+  struct Data {
+    LayerMatrix matrix;
+    std::vector<std::uint8_t> layers;
+    std::vector<std::uint32_t> worlds;
+    std::vector<BodyGroups::Tags> tags;
+
+    [[nodiscard]] bool wanted(std::uint32_t a, std::uint32_t b) const {
+      const std::size_t layer_a = layers.empty() ? 0 : layers[a];
+      const std::size_t layer_b = layers.empty() ? 0 : layers[b];
+      if (!matrix.collide(layer_a, layer_b)) return false;
+      if (!worlds.empty() && worlds[a] != worlds[b]) return false;
+      return tags.empty() || !shareTag(tags[a], tags[b]);
+    }
+    static bool shareTag(const BodyGroups::Tags& a, const BodyGroups::Tags& b);
+
+    friend bool operator==(const Data&, const Data&) = default;
+  };
+
+  std::shared_ptr<const Data> data_;  ///< null: every pair is wanted
+};
+
+}  // namespace broadmark

@@ -1,0 +1,111 @@
+// What every listed algorithm must do where bodies come and go, and not all pairs are wanted: the
+// right pairs, in every way it can be run, frame after frame.
+
+#include <gtest/gtest.h>
+
+#include <list>
+#include <string>
+#include <utility>
+
+#include "algorithms/runs.h"
+#include "support/changing_worlds.h"
+
+namespace broadmark::tests {
+namespace {
+
+struct NamedPresence {
+  std::string name;
+  Presence present;
+};
+
+std::vector<NamedPresence> everyPresence() {
+  return {{"always", presences::always},         {"never", presences::never},
+          {"random", presences::random},         {"seldom", presences::seldom},
+          {"all or none", presences::allOrNone}, {"growing", presences::growing},
+          {"shrinking", presences::shrinking}};
+}
+
+class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> {
+ protected:
+  void SetUp() override {
+    for (const Configuration& way : configurations(GetParam())) {
+      runs_.emplace_back(describe(GetParam(), way), TestRun(GetParam(), way));
+    }
+  }
+
+  /// Runs all configurations over the frames and checks every answer.
+  void check(const ChangingWorld& world) {
+    SceneInfo scene = sceneOf(world.frames);
+    scene.all_present = false;
+    scene.filter = world.filter;
+    std::vector<std::vector<Pair>> right;
+    for (const auto& boxes : world.frames) right.push_back(bruteForcePairs(boxes, world.filter));
+    for (auto& [name, run] : runs_) {
+      SCOPED_TRACE(name + " on " + world.name + ", n = " + std::to_string(scene.objects));
+      try {
+        run.start(scene, world.frames[0]);
+        for (std::uint32_t i = 1; i < world.frames.size(); ++i) {
+          const PairRuns answer = run.step(world.frames[i]);
+          ASSERT_TRUE(isRight(answer, right[i], {i, world.frames[i]}, run.margin(), world.filter))
+              << "in frame " << i;
+          ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
+        }
+      } catch (const UnsupportedError& error) {
+        GTEST_SKIP() << error.what();
+      } catch (const std::exception& error) {
+        FAIL() << error.what();
+      }
+    }
+  }
+
+ private:
+  std::list<std::pair<std::string, TestRun>> runs_;  ///< one per configuration, with its name
+};
+
+TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
+  constexpr std::uint32_t kFrames = 8;
+  constexpr inputs::Input kInputs[] = {
+      {"drifting", inputs::drifting}, {"clustered", inputs::clustered}, {"still", inputs::still}};
+  std::size_t turn = 0;
+  for (const std::size_t n : {0, 1, 2, 17, 150}) {
+    for (const auto& [filter_name, filter] : filters(n)) {
+      for (const auto& [presence_name, present] : everyPresence()) {
+        const inputs::Input& input = kInputs[turn++ % std::size(kInputs)];
+        check({std::string(input.name) + ", " + filter_name + ", " + presence_name, filter,
+               framesWith(input, n, kFrames, present)});
+        if (HasFatalFailure() || IsSkipped()) return;
+      }
+    }
+  }
+}
+
+// So many bodies that every structure divides them.
+TEST_P(EveryAlgorithmInChangingWorlds, FindsThemAmongManyBodies) {
+  constexpr std::size_t kMany = 1500;
+  const std::vector<NamedPresence> presences = everyPresence();
+  std::size_t turn = 0;
+  for (const auto& [filter_name, filter] : filters(kMany)) {
+    const auto& [presence_name, present] = presences[turn++ % presences.size()];
+    check({filter_name + ", " + presence_name, filter,
+           framesWith({"drifting", inputs::drifting}, kMany, 5, present)});
+    if (HasFatalFailure() || IsSkipped()) return;
+  }
+}
+
+// Whatever the boxes are like.
+TEST_P(EveryAlgorithmInChangingWorlds, FindsThemOnEveryInput) {
+  constexpr std::size_t kSome = 120;
+  const std::vector<NamedFilter> all = filters(kSome);
+  for (const inputs::Input& input : inputs::kAll) {
+    check({std::string(input.name), all.back().filter,
+           framesWith(input, kSome, 6, presences::random)});
+    if (HasFatalFailure() || IsSkipped()) return;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithmInChangingWorlds,
+                         testing::ValuesIn(pairFinders()),
+                         [](const auto& tested) { return testName(tested.param); });
+
+}  // namespace
+}  // namespace broadmark::tests

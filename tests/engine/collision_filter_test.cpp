@@ -1,0 +1,64 @@
+// Which pairs are wanted.
+
+#include "broadmark/collision_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace broadmark {
+namespace {
+
+constexpr std::uint32_t kNoTag = BodyGroups::kNoTag;
+
+TEST(LayerMatrix, IsSymmetric) {
+  LayerMatrix matrix;
+  matrix.set(0, 31).set(5, 5);
+  EXPECT_TRUE(matrix.collide(0, 31) && matrix.collide(31, 0) && matrix.collide(5, 5));
+  EXPECT_FALSE(matrix.collide(0, 0) || matrix.collide(5, 6));
+  EXPECT_FALSE(LayerMatrix::all().set(3, 4, false).collide(4, 3));
+  EXPECT_TRUE(LayerMatrix::all().collide(31, 31));
+}
+
+TEST(CollisionFilter, WantsAllUnlessToldOtherwise) {
+  EXPECT_TRUE(CollisionFilter().wantsAll());
+  EXPECT_TRUE(CollisionFilter().wanted(3, 400));
+  const std::vector<BodyGroups> usual(2);
+  EXPECT_TRUE(CollisionFilter(usual, LayerMatrix::all()).wantsAll());
+  EXPECT_EQ(CollisionFilter(usual, LayerMatrix::all()), CollisionFilter());
+  EXPECT_FALSE(CollisionFilter(usual, LayerMatrix()).wanted(0, 1));
+}
+
+TEST(CollisionFilter, GoesByLayersWorldsAndTags) {
+  const std::vector<BodyGroups> bodies = {
+      {.layer = 0},
+      {.layer = 1},
+      {.layer = 1, .world = 7},
+      {.layer = 1, .world = 7, .tags = {4, kNoTag, 9}},
+      {.layer = 1, .world = 7, .tags = {kNoTag, 9, kNoTag}},
+  };
+  const CollisionFilter filter(bodies, LayerMatrix().set(0, 1).set(1, 1));
+  EXPECT_TRUE(filter.wanted(0, 1));
+  EXPECT_FALSE(filter.wanted(1, 2)) << "another world";
+  EXPECT_TRUE(filter.wanted(2, 3));
+  EXPECT_FALSE(filter.wanted(3, 4)) << "a tag in common";
+  EXPECT_TRUE(filter.wanted(2, 4)) << "to have no tag is not to share one";
+  for (std::uint32_t body = 0; body < 5; ++body) EXPECT_EQ(filter.groupsOf(body), bodies[body]);
+}
+
+TEST(CollisionFilter, OfSomeBodiesIsAsThatOfAll) {
+  const std::vector<BodyGroups> bodies = {{.layer = 2}, {.world = 3}, {.layer = 2, .world = 3}, {}};
+  const CollisionFilter all(bodies, LayerMatrix().set(0, 2));
+  const std::vector<std::uint32_t> some = {1, 2};
+  EXPECT_EQ(all.of(some).wanted(0, 1), all.wanted(1, 2));
+  EXPECT_EQ(all.of(some), CollisionFilter(std::vector{bodies[1], bodies[2]}, all.matrix()));
+  EXPECT_FALSE(all.of(some) == all);
+}
+
+TEST(CollisionFilter, RefusesLayersBeyondTheLast) {
+  const std::vector<BodyGroups> bodies = {{.layer = 32}};
+  EXPECT_THROW(CollisionFilter(bodies, LayerMatrix::all()), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace broadmark
