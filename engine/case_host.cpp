@@ -8,7 +8,6 @@
 
 #include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
-#include "changed_bodies.h"
 #include "compacted_world.h"
 
 namespace broadmark {
@@ -68,9 +67,6 @@ CounterVisitor into(Counts& counts) {
 
 }  // namespace
 
-LocalHost::LocalHost(Case run, bool pin)
-    : case_(std::move(run)), pin_(pin), changed_bodies_(std::make_unique<ChangedBodies>()) {}
-
 LocalHost::~LocalHost() {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   instance_.reset();
@@ -88,9 +84,8 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
   if (pin_) pinThreads();
   instance_ = makeInstanceFor(scene);
-  const Frame whole = changed_bodies_->complete(first);
   const auto start = Clock::now();
-  instance_->initialize(scene, whole, *execution_);
+  instance_->initialize(scene, first, *execution_);
   return nanoseconds(Clock::now() - start);
 }
 
@@ -118,9 +113,8 @@ FrameTimes LocalHost::runCounted(const Frame& frame) {
 }
 
 FrameRun LocalHost::step(const Frame& frame) {
-  const Frame whole = changed_bodies_->complete(frame);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  FrameRun run{.times = runCounted(whole), .changed_bodies = whole.changed->size()};
+  FrameRun run{.times = runCounted(frame)};
   // Asked once: whoever looks at the answer sees the same one.
   answer_ = instance_->overlaps();
   run.pairs = pairCount(answer_);

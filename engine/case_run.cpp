@@ -68,7 +68,8 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   total_ns_ = 0;
   initialize_ns_ = 0;
   has_instance_ = true;  // for stop(), however far it comes
-  if (!attempt([&] { initialize_ns_ = host_->start(scene, first); })) return false;
+  if (!attempt([&] { initialize_ns_ = host_->start(scene, changed_bodies_.complete(first)); }))
+    return false;
   if (seconds(initialize_ns_) <= policy_.initialize_limit_seconds) return true;
   fail(Status::timeout, fmt::format("initialisation took {:.3g} s: over the limit of {:.3g} s",
                                     seconds(initialize_ns_), policy_.initialize_limit_seconds));
@@ -78,7 +79,9 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
 
 bool CaseRun::step(const Frame& frame) {
   frame_ = frame.index;
-  if (!attempt([&] { last_ = host_->step(frame); })) return false;
+  const Frame complete = changed_bodies_.complete(frame);
+  changed_count_ = complete.changed->size();
+  if (!attempt([&] { last_ = host_->step(complete); })) return false;
   ++frames_;
   total_ns_ += last_.times[Phase::total];
   const double mean_s = seconds(total_ns_) / frames_;

@@ -1,6 +1,6 @@
 // Comparing boxes with those of the frame before.
 
-#include "changed_bodies.h"
+#include "broadmark/changed_bodies.h"
 
 namespace broadmark {
 

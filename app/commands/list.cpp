@@ -64,9 +64,12 @@ void printParagraph(const std::string& text) {
 
 const char* inChangingWorlds(const Algorithm& algorithm) {
   switch (algorithm.traits.changing_worlds) {
-    case ChangingWorlds::native: return "by itself";
-    case ChangingWorlds::compacted: return "absent bodies and unwanted pairs are kept from it";
-    case ChangingWorlds::unknown: break;
+    case ChangingWorlds::native:
+      return "by itself";
+    case ChangingWorlds::compacted:
+      return "absent bodies and unwanted pairs are kept from it";
+    case ChangingWorlds::unknown:
+      break;
   }
   return "not at all";
 }
@@ -74,10 +77,10 @@ const char* inChangingWorlds(const Algorithm& algorithm) {
 /// What the columns have no room for, in sentences.
 std::string detailsOf(const Algorithm& algorithm) {
   const AlgorithmDescription& description = algorithm.description;
-  std::string text = fmt::format(
-      "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. {}", algorithm.id,
-      algorithm.summary, optimisationsOf(algorithm), description.time, description.space,
-      inChangingWorlds(algorithm), description.source);
+  std::string text =
+      fmt::format("{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. {}",
+                  algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
+                  description.space, inChangingWorlds(algorithm), description.source);
   std::vector<std::string_view> original;
   for (const OriginalId& id : originalIds()) {
     if (id.algorithm == algorithm.id) original.push_back(id.name);

@@ -9,12 +9,11 @@
 //   case        algorithm, plugin, isa, threads, device,
 //               parameters {}, memory_limit_bytes (0: none), pin  {}
 //   start       scene {name, object_type, objects, frames, world, initialize_ns, pinned
-//               all_present}, filter (null: all pairs are wanted)
-//               and whether changed bodies are known: shared are
-//               the boxes of frame 0, then what the filter has of
-//               layers, worlds, tags
-//   step        frame, changed: so many numbers of bodies, then   times_ns {}, pairs,
-//               their boxes, are shared; null: all boxes are      changed_bodies
+//               all_present}, filter (null: all pairs are wanted);
+//               shared are the boxes of frame 0, then what the
+//               filter has of tags, worlds, layers
+//   step        frame, changed: the numbers of so many bodies,    times_ns {}, pairs
+//               then their boxes, are shared
 //   digest                                                        count, hash
 //   answer                                                        pairs: so many are shared
 //   counters, setup                                               counts {}

@@ -94,33 +94,27 @@ class Server {
     frames_.read(boxes_, scene.objects);
     scene.filter = worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb),
                                       scene.objects);
-    Frame first{0, boxes_};
-    if (message.at("knows_changed").get<bool>()) first.changed.emplace();
+    changed_.resize(boxes_.size());  // now, as it is none of the algorithm's memory
+    changed_boxes_.resize(boxes_.size());
     if (!measured_) peak_before_ = peakBytes();
+    const Frame first{0, boxes_, std::span<const std::uint32_t>()};
     const std::int64_t initialize_ns = host().start(scene, first);
     return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
   }
 
   /// The frame in shared memory, in this process's own.
   Frame takeFrame(const Json& message) {
-    const auto index = message.at("frame").get<std::uint32_t>();
-    if (message.at("changed").is_null()) {
-      frames_.read(boxes_, boxes_.size());
-      return {index, boxes_};
-    }
     frames_.read(changed_, message.at("changed").get<std::size_t>());
     frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
     for (std::size_t i = 0; i < changed_.size(); ++i) {
       boxes_.at(changed_[i]) = changed_boxes_[i];
     }
-    return {index, boxes_, changed_};
+    return {message.at("frame").get<std::uint32_t>(), boxes_, changed_};
   }
 
   Json step(const Json& message) {
     const FrameRun run = host().step(takeFrame(message));
-    return {{"times_ns", worker::toJson(run.times)},
-            {"pairs", run.pairs},
-            {"changed_bodies", run.changed_bodies}};
+    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
@@ -150,7 +144,10 @@ class Server {
   Json stop(const Json& /*message*/) {
     if (!measured_) measure();
     host().stop();
-    std::vector<Aabb>().swap(boxes_);  // others run while this waits for its next pass
+    // Others run while this waits for its next pass.
+    std::vector<Aabb>().swap(boxes_);
+    std::vector<Aabb>().swap(changed_boxes_);
+    std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
             {"processor", worker::toJson(host().processorCounts())}};
   }

@@ -145,10 +145,10 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
   open();
   return talk([&](Link& link) {
     const std::uint64_t end = link.frames.write(first.boxes);
-    const Json started = link.call({{"call", "start"},
-                                    {"scene", worker::toJson(scene)},
-                                    {"filter", worker::writeFilter(scene.filter, link.frames, end)},
-                                    {"knows_changed", first.changed.has_value()}});
+    const Json started =
+        link.call({{"call", "start"},
+                   {"scene", worker::toJson(scene)},
+                   {"filter", worker::writeFilter(scene.filter, link.frames, end)}});
     pinned_ = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   });
@@ -156,17 +156,11 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
 
 FrameRun WorkerProcess::step(const Frame& frame) {
   return talk([&](Link& link) {
-    Json message = {{"call", "step"}, {"frame", frame.index}, {"changed", nullptr}};
-    if (frame.changed) {
-      shareChanged(link.frames, frame);
-      message["changed"] = frame.changed->size();
-    } else {
-      link.frames.write(frame.boxes);
-    }
-    const Json run = link.call(message);
+    shareChanged(link.frames, frame);
+    const Json run =
+        link.call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
     return FrameRun{.times = worker::timesFrom(run.at("times_ns")),
-                    .pairs = run.at("pairs").get<std::uint64_t>(),
-                    .changed_bodies = run.at("changed_bodies").get<std::uint64_t>()};
+                    .pairs = run.at("pairs").get<std::uint64_t>()};
   });
 }
 

@@ -15,6 +15,7 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/case_host.h"
+#include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
@@ -140,19 +141,21 @@ class TestRun {
  public:
   explicit TestRun(const Algorithm& algorithm, const Configuration& way = {},
                    const ParameterValues& parameters = {})
-      : run_(caseOf(algorithm, way, parameters)), host_(std::make_unique<LocalHost>(run_)) {}
+      : run_(caseOf(algorithm, way, parameters)),
+        host_(std::make_unique<LocalHost>(run_)),
+        changed_bodies_(std::make_unique<ChangedBodies>()) {}
 
   /// Begins a pass. Throws UnsupportedError.
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
     index_ = 0;
-    host_->start(scene, {0, first});
+    host_->start(scene, changed_bodies_->complete({0, first}));
     return *this;
   }
   TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
   /// Runs the four phases on the next frame.
   PairRuns step(const std::vector<Aabb>& boxes) {
-    times_ = host_->step({++index_, boxes}).times;
+    times_ = host_->step(changed_bodies_->complete({++index_, boxes})).times;
     return broadPhase().overlaps();
   }
 
@@ -165,6 +168,7 @@ class TestRun {
  private:
   Case run_;
   std::unique_ptr<LocalHost> host_;
+  std::unique_ptr<ChangedBodies> changed_bodies_;
   FrameTimes times_;
   std::uint32_t index_ = 0;
 };

@@ -19,6 +19,7 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/case_host.h"
+#include "broadmark/changed_bodies.h"
 #include "broadmark/statistics.h"
 
 namespace broadmark::benchmarks {
@@ -59,7 +60,7 @@ class Contest {
   /// Throws InputError (parameters) and UnsupportedError.
   void add(std::string name, const Case& entered, const HostMaker& make_host = makeLocalHost) {
     Contestant added = {std::move(name), make_host(entered, {}), makeInstance(entered)->margin()};
-    added.host->start(scene_, {0, frames_[0]});
+    added.host->start(scene_, changed_bodies_.complete({0, frames_[0]}));
     contestants_.push_back(std::move(added));
   }
 
@@ -71,9 +72,10 @@ class Contest {
       const auto index = static_cast<std::uint32_t>(round + 2);
       // Nobody always comes first.
       std::ranges::shuffle(order, random);
+      const Frame frame = changed_bodies_.complete({index, boxesOf(index)});
       for (const std::size_t turn : order) {
         Contestant& contestant = contestants_[turn];
-        const FrameRun run = contestant.host->step({index, boxesOf(index)});
+        const FrameRun run = contestant.host->step(frame);
         if (round < 0) continue;
         const std::int64_t ns = run.times[Phase::total];
         contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
@@ -108,6 +110,7 @@ class Contest {
 
   SceneInfo scene_;
   std::span<const std::vector<Aabb>> frames_;
+  ChangedBodies changed_bodies_;
   std::vector<Contestant> contestants_;
 };
 

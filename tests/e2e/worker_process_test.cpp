@@ -12,6 +12,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/case_run.h"
 #include "engine/helpers.h"
+#include "support/changing_worlds.h"
 #include "support/places.h"
 
 namespace broadmark::tests {
@@ -24,11 +25,13 @@ WorkerOptions thisProgram() { return {.command = {places::program(), "worker"}};
 
 std::vector<Pair> sortedAnswer(CaseHost& host) { return sorted(host.answer()); }
 
-std::vector<std::vector<Aabb>> movingClusters() {
-  std::vector<std::vector<Aabb>> frames;
-  for (std::uint32_t frame = 0; frame < 4; ++frame)
-    frames.push_back(inputs::clustered(300, frame, 1));
-  return frames;
+/// Clusters that move: all bodies and pairs; some of both.
+std::vector<ChangingWorld> movingClusters() {
+  constexpr std::size_t kBodies = 300;
+  constexpr inputs::Input kInput = {"clustered", inputs::clustered};
+  return {{"plain", {}, framesOf(kInput, kBodies, 4)},
+          {"changing", filters(kBodies).back().filter,
+           framesWith(kInput, kBodies, 4, presences::random)}};
 }
 
 class WorkerHost : public ::testing::TestWithParam<Algorithm> {};
@@ -37,17 +40,21 @@ TEST_P(WorkerHost, AnswersAsInThisProcess) {
   const Case run = makeCase(GetParam(), bestIsa(), 2, "", {});
   LocalHost here(run);
   WorkerProcess there(run, thisProgram());
-  const std::vector<std::vector<Aabb>> frames = movingClusters();
-  const SceneInfo scene = sceneOf(frames);
-  for (int pass = 0; pass < 2; ++pass) {
+  for (const ChangingWorld& world : movingClusters()) {
+    const std::vector<std::vector<Aabb>>& frames = world.frames;
+    SceneInfo scene = sceneOf(frames);
+    scene.filter = world.filter;
+    scene.all_present = world.name == "plain";
+    ChangedBodies changed_bodies;
+    const Frame first = changed_bodies.complete({0, frames[0]});
     try {
-      here.start(scene, {0, frames[0]});
+      here.start(scene, first);
     } catch (const UnsupportedError&) {
       GTEST_SKIP() << "cannot run here";
     }
-    EXPECT_GE(there.start(scene, {0, frames[0]}), 0);
+    EXPECT_GE(there.start(scene, first), 0);
     for (std::uint32_t index = 1; index < frames.size(); ++index) {
-      const Frame frame{index, frames[index]};
+      const Frame frame = changed_bodies.complete({index, frames[index]});
       const FrameRun run_here = here.step(frame);
       const FrameRun run_there = there.step(frame);
       EXPECT_EQ(run_there.pairs, run_here.pairs);
@@ -93,7 +100,7 @@ TEST(WorkerProcess, TakesScenesOfAnySize) {
       boxes.push_back({{x, 0, 0, 0}, {x + 1, 1, 1, 0}});
     }
     host.start(sceneOf({boxes, boxes}), {0, boxes});
-    EXPECT_EQ(host.step({1, boxes}).pairs, 0U);
+    EXPECT_EQ(host.step({1, boxes, std::span<const std::uint32_t>()}).pairs, 0U);
     EXPECT_TRUE(sorted(host.answer()).empty());
     host.stop();
   }

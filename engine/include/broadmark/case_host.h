@@ -19,8 +19,6 @@
 
 namespace broadmark {
 
-class ChangedBodies;
-
 /// What an algorithm counted, by name.
 using Counts = std::map<std::string, std::uint64_t>;
 
@@ -28,10 +26,9 @@ using Counts = std::map<std::string, std::uint64_t>;
 struct FrameRun {
   FrameTimes times;
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included
-  std::uint64_t changed_bodies = 0;
 };
 
-/// Holds at most one instance of a case's algorithm, and calls it.
+/// Holds at most one instance of a case's algorithm, and calls it. Its frames say what changed.
 ///
 /// Every call throws what the algorithm throws. A host outside this process also throws HostError
 /// when that ended, HardLimitError when a call took too long, and Cancelled; then the instance is
@@ -75,7 +72,7 @@ class LocalHost final : public CaseHost {
   /// With `pin`, each of the case's threads is bound to a core of its own, chosen anew for every
   /// pass; unless they are more than the cores, or a device's driver has threads, too. That goes
   /// for the calling thread as well, which so stays: for a process that does nothing else.
-  explicit LocalHost(Case run, bool pin = false);
+  explicit LocalHost(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
   ~LocalHost() override;
   LocalHost(const LocalHost&) = delete;
   LocalHost& operator=(const LocalHost&) = delete;
@@ -108,7 +105,6 @@ class LocalHost final : public CaseHost {
   std::optional<Execution> execution_;
   ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
-  std::unique_ptr<ChangedBodies> changed_bodies_;
   PairRuns answer_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "broadmark/case.h"
 #include "broadmark/case_host.h"
+#include "broadmark/changed_bodies.h"
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
 #include "broadmark/status.h"
@@ -84,7 +85,8 @@ class CaseRun {
   /// Of the last frame.
   [[nodiscard]] const FrameTimes& times() const { return last_.times; }
   [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
-  [[nodiscard]] std::uint64_t changedBodies() const { return last_.changed_bodies; }
+  /// Bodies that changed in the last frame.
+  [[nodiscard]] std::uint64_t changedBodies() const { return changed_count_; }
   /// As CaseHost::peakBytes().
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
   /// As CaseHost::processorCounts().
@@ -118,7 +120,9 @@ class CaseRun {
   bool ended_early_ = false;  ///< some pass, by a failure or a limit: reason_ says which
   Status status_ = Status::ok;
   std::string reason_;
-  CollisionFilter filter_;   ///< of the present scene
+  CollisionFilter filter_;  ///< of the present scene
+  ChangedBodies changed_bodies_;
+  std::uint64_t changed_count_ = 0;
   std::uint32_t frame_ = 0;  ///< that was begun last
   std::int64_t initialize_ns_ = 0;
   FrameRun last_;
