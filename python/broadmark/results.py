@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import functools
+import gzip
 import json
 import os
 import pathlib
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TextIO
 
 import numpy as np
 import pandas as pd
@@ -135,9 +137,15 @@ def _file_row(path: str | os.PathLike[str], document: _Document) -> dict[str, An
     }
 
 
+def _opened(path: pathlib.Path) -> TextIO:
+    if path.suffix == ".gz":
+        return gzip.open(path, "rt", encoding="utf-8")
+    return open(path, encoding="utf-8")
+
+
 def _document(path: pathlib.Path) -> _Document:
     try:
-        with open(path, encoding="utf-8") as file:
+        with _opened(path) as file:
             first = file.readline()
             try:
                 head = _parsed(first)
@@ -147,7 +155,7 @@ def _document(path: pathlib.Path) -> _Document:
                 raise InputError(f"{path}: is no results file: its schema is not {SCHEMAS[0]}")
             if "cases" not in head:
                 return _from_lines(path, file, head.get("options", []))
-    except (OSError, UnicodeDecodeError, json.JSONDecodeError, RecursionError) as error:
+    except (OSError, EOFError, zlib.error, ValueError, RecursionError) as error:
         raise InputError(f"{path}: cannot be read: {error}") from None
     environments = head.get("environments", [head.get("environment")])
     if not all(isinstance(one, dict) for one in environments + head["cases"]):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import pathlib
 
@@ -71,6 +72,20 @@ def test_a_file_that_was_cut_is_partial(some_results: pathlib.Path, tmp_path: pa
     assert (
         0 < len(results.cases) < len(broadmark.read_results(some_results / "results.jsonl").cases)
     )
+
+
+def test_compressed_files_are_read(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    plain = some_results / "results.json"
+    compressed = tmp_path / "results.json.gz"
+    compressed.write_bytes(gzip.compress(plain.read_bytes()))
+    expected = broadmark.read_results(plain)
+    found = broadmark.read_results(compressed)
+    pd.testing.assert_frame_equal(
+        found.cases.drop(columns="file"), expected.cases.drop(columns="file")
+    )
+    compressed.write_bytes(compressed.read_bytes()[:-20])
+    with pytest.raises(broadmark.InputError, match="results.json.gz: cannot be read"):
+        broadmark.read_results(compressed)
 
 
 def test_the_first_version_is_read() -> None:
