@@ -3,6 +3,7 @@
 
 #include "broadmark/worker_process.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 #include "support/places.h"
+#include "worker/protocol.h"
 
 namespace broadmark::tests {
 namespace {
@@ -137,10 +139,12 @@ std::string ending(const std::string& script) {
   CaseRun run(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), {},
               [&](const Case& one, CancelQuery) {
                 return std::make_unique<WorkerProcess>(
-                    one, WorkerOptions{.command = {"/bin/sh", "-c",
-                                                   "printf '{\"protocol\": 1}' >&3; " + script},
-                                       .hard_limit = std::chrono::milliseconds(300),
-                                       .begin_limit = std::chrono::seconds(3)});
+                    one,
+                    WorkerOptions{.command = {"/bin/sh", "-c",
+                                              fmt::format("printf '{{\"protocol\": {}}}' >&3; {}",
+                                                          worker::kProtocolVersion, script)},
+                                  .hard_limit = std::chrono::milliseconds(300),
+                                  .begin_limit = std::chrono::seconds(3)});
               });
   EXPECT_FALSE(run.start(sceneOf({boxes, boxes}), {0, boxes}));
   EXPECT_NE(run.status(), Status::ok);
