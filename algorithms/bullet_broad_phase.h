@@ -62,7 +62,6 @@ class BulletBroadPhase : public BoxBroadPhase {
   };
 
   Wanted wanted_;
-
   std::vector<std::uint32_t> moved_;
 };
 

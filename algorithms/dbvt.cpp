@@ -84,6 +84,7 @@ class Dbvt final : public BulletBroadPhase {
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
+    all_present_ = scene.all_present;
     filterPairs(*tree_.m_paircache);
     proxies_.resize(boxes().size(), nullptr);
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
@@ -96,7 +97,7 @@ class Dbvt final : public BulletBroadPhase {
     const MarginInForce in_force(static_cast<float>(margin_));
     const unsigned updates_before = tree_.m_updates_done;
     reinsertions_ = 0;
-    destroyVanished();
+    if (!all_present_) destroyVanished();
     for (const std::uint32_t body : moved()) {
       if (isEmpty(boxes()[body])) continue;
       if (proxies_[body] == nullptr) {
@@ -203,6 +204,7 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   double margin_ = 0.05;  ///< Bullet's default
+  bool all_present_ = true;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
   std::uint64_t reinsertions_ = 0;     ///< this frame's

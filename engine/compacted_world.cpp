@@ -1,3 +1,5 @@
+// Numbers without gaps, and back.
+
 #include "compacted_world.h"
 
 #include <algorithm>
