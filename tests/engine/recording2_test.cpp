@@ -362,7 +362,7 @@ TEST(BadRecording2, HeadersOfOtherThings) {
   const Bytes whole = smallRecording();
   const std::pair<std::string_view, std::string_view> all[] = {
       {"broadmark-recording/2", "broadmark-recording/3"},
-      {"\"objects\": 3", "\"objects\": 4"},
+      {"\"objects\": 3", "\"objects\": 9"},
       {"\"objects\": 3", "\"objects\":-3"},
       {"\"frames\": 2", "\"frames\": 9"},
       {"\"frames\": 2", "\"frames\": 1"},
@@ -371,7 +371,6 @@ TEST(BadRecording2, HeadersOfOtherThings) {
       {"\"Changing\"", "\"Chang\\ng\""},
       {"\"Changing\"", "\"Ch\\u0001\""},
       {"\"groups\"", "\"gruops\""},
-      {"\"layers\"", "\"worlds\""},
       {"\"layers\"", "\"nobody\""},
       {"\"world\"", "\"earth\""},
       {"\"source\": null", "\"source\": 1234"},
