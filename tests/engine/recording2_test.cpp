@@ -1,0 +1,463 @@
+// .broadmark recordings: what is written comes back, in any order; and everything that may be wrong
+// with a file.
+
+#include "broadmark/recording2.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "broadmark/sub_recording.h"
+#include "engine/recording_bytes.h"
+#include "support/changing_worlds.h"
+#include "support/inputs.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::ElementsAreArray;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::StartsWith;
+
+using Frames = std::vector<std::vector<Aabb>>;
+
+constexpr std::uint32_t kBodies = 60;
+
+/// Boxes of which some change, come and go in each frame.
+Frames changingFrames(std::uint32_t bodies, std::uint32_t frames, int share_of_changes,
+                      bool all_present) {
+  inputs::Random random(bodies, frames);
+  Frames all(1);
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    all[0].push_back(inputs::boxAt(random.inCube(5), random.inCube(1)));
+  }
+  while (all.size() <= frames) {
+    all.push_back(all.back());
+    for (Aabb& box : all.back()) {
+      if (random.integer(1, 100) > share_of_changes) continue;
+      box = inputs::boxAt(random.inCube(5), random.inCube(1));
+      if (!all_present && random.integer(0, 2) == 0) box = kEmptyBox;
+    }
+  }
+  return all;
+}
+
+SceneInfo sceneOf(const Frames& frames, bool all_present = false, CollisionFilter filter = {}) {
+  return {.name = "Changing",
+          .object_type = "Boxes",
+          .objects = static_cast<std::uint32_t>(frames[0].size()),
+          .frames = static_cast<std::uint32_t>(frames.size() - 1),
+          .world = unitBox(0),
+          .all_present = all_present,
+          .filter = std::move(filter)};
+}
+
+std::string write(const std::filesystem::path& path, const SceneInfo& scene, const Frames& frames,
+                  const RecordingOrigin& origin = {}) {
+  RecordingWriter writer(path, scene, origin);
+  for (const auto& boxes : frames) writer.write(boxes);
+  return writer.finish();
+}
+
+/// What Frame::changed has to be.
+std::vector<std::uint32_t> changesIn(const Frames& frames, std::uint32_t frame) {
+  std::vector<std::uint32_t> changed;
+  for (std::uint32_t body = 0; frame > 0 && body < frames[frame].size(); ++body) {
+    if (frames[frame][body] != frames[frame - 1][body]) changed.push_back(body);
+  }
+  return changed;
+}
+
+void expectFrame(const Frame& frame, const Frames& frames, std::uint32_t index) {
+  EXPECT_EQ(frame.index, index);
+  EXPECT_THAT(frame.boxes, ElementsAreArray(frames[index])) << "frame " << index;
+  ASSERT_TRUE(frame.changed);
+  EXPECT_THAT(*frame.changed, ElementsAreArray(changesIn(frames, index))) << "frame " << index;
+}
+
+TEST(Recording2, WhatIsWrittenIsReadBackInAnyOrder) {
+  const TemporaryDirectory directory;
+  for (const bool all_present : {true, false}) {
+    for (const int share : {0, 2, 30, 100}) {
+      const Frames frames = changingFrames(kBodies, 40, share, all_present);
+      const SceneInfo scene = sceneOf(frames, all_present);
+      const auto path = directory / "a.broadmark";
+      const std::string hash = write(path, scene, frames);
+
+      Recording2Reader reader(path);
+      EXPECT_EQ(reader.scene(), scene);
+      EXPECT_EQ(reader.hash(), hash);
+      EXPECT_EQ(reader.bytes(), std::filesystem::file_size(path));
+      for (int pass = 0; pass < 2; ++pass) {
+        expectFrame(reader.rewind(), frames, 0);
+        for (std::uint32_t f = 1; f <= 40; ++f) expectFrame(reader.next().value(), frames, f);
+        EXPECT_FALSE(reader.next());
+      }
+      inputs::Random random(1, 1);
+      for (int i = 0; i < 300; ++i) {
+        const auto f = static_cast<std::uint32_t>(random.integer(0, 40));
+        expectFrame(reader.at(f), frames, f);
+        if (i % 7 == 0) expectFrame(reader.at(f), frames, f);
+      }
+    }
+  }
+}
+
+TEST(Recording2, KeepsWhatPairsAreWanted) {
+  const TemporaryDirectory directory;
+  const Frames frames = changingFrames(kBodies, 3, 10, false);
+  for (const auto& [name, filter] : filters(kBodies)) {
+    const SceneInfo scene = sceneOf(frames, true, filter);
+    const auto path = directory / "a.broadmark";
+    if (!filter.wantsAll()) {
+      EXPECT_EQ(recordingExtension(scene), ".broadmark");
+      EXPECT_THAT(inputErrorOf([&] { write(directory / "a.aabbs", scene, frames); }),
+                  AllOf(HasSubstr("a.aabbs"), HasSubstr(".broadmark")));
+    }
+    const SceneInfo changing = sceneOf(frames, false, filter);
+    write(path, changing, frames);
+    EXPECT_EQ(Recording2Reader(path).scene(), changing) << name;
+  }
+}
+
+TEST(Recording2, SaysWhereItComesFrom) {
+  const TemporaryDirectory directory;
+  const Frames frames = changingFrames(3, 1, 10, true);
+  const RecordingOrigin origin = {"city.csv", "{\n \"scene\": \"city\"\n}\n"};
+  write(directory / "a.broadmark", sceneOf(frames), frames, origin);
+  EXPECT_EQ(Recording2Reader(directory / "a.broadmark").origin(), origin);
+  write(directory / "b.broadmark", sceneOf(frames), frames);
+  EXPECT_EQ(openRecordingFile(directory / "b.broadmark")->origin(), RecordingOrigin());
+}
+
+TEST(Recording2, NoBodiesOrNoFrames) {
+  for (const auto& [bodies, count] :
+       std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 0}, {0, 7}, {3, 0}, {1, 600}}) {
+    const Frames frames = changingFrames(bodies, count, 0, true);
+    RecordingWriter writer(sceneOf(frames));
+    for (const auto& boxes : frames) writer.write(boxes);
+    const auto reader = writer.finishTemporary();
+    EXPECT_EQ(reader->scene(), sceneOf(frames));
+    expectFrame(reader->at(count), frames, count);
+    expectFrame(reader->rewind(), frames, 0);
+  }
+}
+
+TEST(Recording2, AStillWorldIsSmall) {
+  const TemporaryDirectory directory;
+  const Frames still(101, changingFrames(1000, 0, 0, true)[0]);
+  write(directory / "a.broadmark", sceneOf(still, true), still);
+  write(directory / "a.aabbs", sceneOf(still, true), still);
+  EXPECT_LT(std::filesystem::file_size(directory / "a.broadmark"),
+            std::filesystem::file_size(directory / "a.aabbs") / 90);
+  const Frames moving = changingFrames(1000, 100, 100, true);
+  write(directory / "b.broadmark", sceneOf(moving, true), moving);
+  EXPECT_LT(std::filesystem::file_size(directory / "b.broadmark"),
+            std::filesystem::file_size(directory / "a.aabbs") * 4 / 5);
+}
+
+// To the bit: what is converted back is the same file.
+TEST(Recording2, TellsZeroesApart) {
+  const TemporaryDirectory directory;
+  Frames frames(3, {Aabb{{0, 0, 0, 0}, {1, 1, 1, 0}}});
+  frames[1][0].min[1] = -0.0F;
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Recording2Reader reader(directory / "a.broadmark");
+  EXPECT_FALSE(std::signbit(reader.at(0).boxes[0].min[1]));
+  EXPECT_TRUE(std::signbit(reader.at(1).boxes[0].min[1]));
+  EXPECT_FALSE(std::signbit(reader.at(2).boxes[0].min[1]));
+}
+
+TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
+  const TemporaryDirectory directory;
+  const Frames frames = changingFrames(kBodies, 9, 40, false);
+  const CollisionFilter filter = filters(kBodies)[1].filter;
+  write(directory / "a.broadmark", sceneOf(frames, false, filter), frames);
+  Recording2Reader whole(directory / "a.broadmark");
+  const Part part{.bodies = {1, 5, 30, 31, 59}, .frames = {2, 3, 7}};
+  writePart(directory / "b.broadmark", whole, part);
+  Recording2Reader reader(directory / "b.broadmark");
+  EXPECT_EQ(reader.scene().filter, filter.of(part.bodies));
+  Frames expected;
+  for (const std::uint32_t frame : part.frames) {
+    expected.emplace_back();
+    for (const std::uint32_t body : part.bodies) expected.back().push_back(frames[frame][body]);
+  }
+  for (std::uint32_t f = 0; f < 3; ++f) expectFrame(reader.at(f), expected, f);
+}
+
+TEST(Recording2, IsTakenOnlyWhereAabbsDoesNotDo) {
+  const Frames frames = changingFrames(2, 1, 0, true);
+  EXPECT_EQ(recordingFileName(sceneOf(frames, true)), "Changing Boxes N2 F1frames.aabbs");
+  EXPECT_EQ(recordingFileName(sceneOf(frames, false)), "Changing Boxes N2 F1frames.broadmark");
+  EXPECT_THAT(recordingExtensions(), ElementsAre(".aabbs", ".broadmark", ".posrot"));
+  EXPECT_THAT(inputErrorOf([&] { RecordingWriter writer("a.posrot", sceneOf(frames)); }),
+              AllOf(HasSubstr("a.posrot"), HasSubstr(".aabbs or .broadmark")));
+}
+
+/// Frame 0 has bodies 0 to 2; in frame 1 body 1 has moved, in frame 2 body 2 is gone.
+Bytes smallRecording() {
+  const TemporaryDirectory directory;
+  Frames frames(1, chain(3));
+  frames.push_back(frames[0]);
+  frames[1][1] = unitBox(5);
+  frames.push_back(frames[1]);
+  frames[2][2] = kEmptyBox;
+  write(directory / "a.broadmark", sceneOf(frames, false, filters(3)[1].filter), frames);
+  return bytesOf(directory / "a.broadmark");
+}
+
+Recording2Reader readerOf(const Bytes& bytes) {
+  return tests::readerOf<Recording2Reader>(bytes, "test.broadmark");
+}
+std::string faultOf(const Bytes& bytes) {
+  return tests::faultOf<Recording2Reader>(bytes, "test.broadmark");
+}
+
+template <class T>
+T get(const Bytes& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+template <class T>
+void put(Bytes& bytes, std::size_t offset, T value) {
+  std::memcpy(bytes.data() + offset, &value, sizeof value);
+}
+
+constexpr std::size_t kEntryBytes = 32;
+
+std::size_t indexOf(const Bytes& bytes) {
+  return get<std::uint64_t>(bytes, bytes.size() - kEntryBytes);
+}
+std::size_t frameOf(const Bytes& bytes, std::uint32_t frame) {
+  return get<RecordedFrame>(bytes, indexOf(bytes) + kEntryBytes * frame).offset;
+}
+
+/// Puts the right checksums to spoilt bytes: as somebody's own writer would.
+Bytes sealed(Bytes bytes) {
+  const std::size_t index = indexOf(bytes);
+  const auto raw = std::as_bytes(std::span(bytes));
+  for (std::size_t at = index; at + kEntryBytes < bytes.size(); at += kEntryBytes) {
+    auto entry = get<RecordedFrame>(bytes, at);
+    const std::size_t end = at + 2 * kEntryBytes < bytes.size()
+                                ? get<RecordedFrame>(bytes, at + kEntryBytes).offset
+                                : index;
+    entry.hash = hashOf(raw.subspan(entry.offset, end - entry.offset));
+    put(bytes, at, entry);
+  }
+  Hasher hasher;
+  hasher.add(raw.first(frameOf(bytes, 0)));
+  hasher.add(raw.subspan(index, bytes.size() - kEntryBytes - index));
+  put(bytes, bytes.size() - 24, hasher.value());
+  return bytes;
+}
+
+/// With another text, as long, in the header.
+Bytes withHeader(Bytes bytes, std::string_view text, std::string_view other) {
+  const auto found = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
+  EXPECT_EQ(text.size(), other.size());
+  EXPECT_NE(found, bytes.end()) << text;
+  if (found != bytes.end()) std::ranges::copy(other, found);
+  return sealed(std::move(bytes));
+}
+
+TEST(BadRecording2, TooShortOrTooLong) {
+  const Bytes whole = smallRecording();
+  EXPECT_EQ(readerOf(whole).at(2).boxes[2], kEmptyBox);
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    EXPECT_THAT(faultOf(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))),
+                StartsWith("test.broadmark: "));
+  }
+  Bytes longer = whole;
+  longer.insert(longer.end(), 32, 0);
+  EXPECT_THAT(faultOf(longer), HasSubstr("does not end as a recording 2"));
+}
+
+TEST(BadRecording2, AnyWrongByteIsNoticed) {
+  const Bytes whole = smallRecording();
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    Bytes bytes = whole;
+    bytes[at] ^= 0x10;
+    EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: ")) << "byte " << at;
+  }
+}
+
+TEST(BadRecording2, DamagedFramesAreNamed) {
+  Bytes bytes = smallRecording();
+  const std::size_t at = frameOf(bytes, 1);
+  bytes[at + 40] ^= 1;
+  EXPECT_THAT(faultOf(bytes), HasSubstr("frame 1 (bytes " + std::to_string(at) + " to " +
+                                        std::to_string(at + 63) + "): damaged"));
+  EXPECT_THAT(inputErrorOf([&] { readerOf(bytes).at(2); }), HasSubstr("frame 1"));
+  EXPECT_EQ(readerOf(bytes).at(0).boxes.size(), 3U);
+  bytes[at] = 99;  // also where the ids are nonsense
+  EXPECT_THAT(faultOf(bytes), HasSubstr("damaged"));
+}
+
+TEST(BadRecording2, IdsAndBoxesAreNamedWithTheirPlace) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const Bytes whole = smallRecording();
+  const auto spoilt = [&](std::uint32_t frame, std::size_t offset, auto value) {
+    Bytes bytes = whole;
+    put(bytes, frameOf(bytes, frame) + offset, value);
+    return faultOf(sealed(std::move(bytes)));
+  };
+  const auto byte = [&](std::uint32_t frame, std::size_t offset) {
+    return "byte " + std::to_string(frameOf(whole, frame) + offset);
+  };
+  EXPECT_THAT(spoilt(1, 0, 3U), AllOf(HasSubstr("frame 1, " + byte(1, 0)), HasSubstr("body 3"),
+                                      HasSubstr("below 3")));
+  EXPECT_THAT(spoilt(1, 32, kNan),
+              HasSubstr("frame 1, body 1 (" + byte(1, 32) + "): the box is not a number"));
+  EXPECT_THAT(spoilt(1, 44, kInfinity), HasSubstr("frame 1, body 1 (" + byte(1, 32)));
+  EXPECT_THAT(spoilt(2, 32, 1.0F), HasSubstr("frame 2, body 2 (" + byte(2, 32)))
+      << "neither there nor absent";
+  EXPECT_THAT(spoilt(0, 28, 9.0F),
+              HasSubstr("frame 0, body 1 (" + byte(0, 24) + "): the box is inverted"));
+}
+
+TEST(BadRecording2, AFrameThatWasReadHalfwayIsForgotten) {
+  const TemporaryDirectory directory;
+  Frames frames(3, chain(40));
+  for (const int body : {3, 7}) frames[2][body] = unitBox(9);
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  put(bytes, frameOf(bytes, 2) + 32 + 24, std::numeric_limits<float>::infinity());
+  Recording2Reader reader = readerOf(sealed(bytes));
+  expectFrame(reader.at(1), frames, 1);
+  EXPECT_THAT(inputErrorOf([&] { reader.next(); }), HasSubstr("frame 2, body 7"));
+  expectFrame(reader.at(1), frames, 1);
+}
+
+TEST(BadRecording2, IdsAscend) {
+  const TemporaryDirectory directory;
+  Frames frames(2, chain(40));
+  frames[1][3] = unitBox(9);
+  frames[1][7] = unitBox(9);
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  put(bytes, frameOf(bytes, 1) + 4, 3U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 3 among the changed ones"));
+  put(bytes, frameOf(bytes, 1) + 4, 2U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 2 among the changed ones"));
+}
+
+// Who believes that nothing else has changed misses pairs.
+TEST(BadRecording2, AKeyFrameChangesOnlyWhatItNames) {
+  const TemporaryDirectory directory;
+  Frames frames(3, chain(4));
+  for (int body = 0; body < 3; ++body) frames[2][body] = unitBox(9);
+  for (int body = 1; body < 4; ++body) frames[1][body] = unitBox(7);
+  frames[2][3] = frames[1][3];
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  const auto entry = get<RecordedFrame>(bytes, indexOf(bytes) + 2 * kEntryBytes);
+  ASSERT_EQ(entry.key, 2U);
+  ASSERT_EQ(entry.changed, 3U);
+  put(bytes, frameOf(bytes, 2) + 32 + 3 * 24, 7.5F);
+  bytes = sealed(bytes);
+  EXPECT_THAT(faultOf(bytes),
+              AllOf(HasSubstr("frame 2, body 3"), HasSubstr("not among the changed")));
+}
+
+TEST(BadRecording2, HeadersOfOtherThings) {
+  const Bytes whole = smallRecording();
+  const std::pair<std::string_view, std::string_view> all[] = {
+      {"broadmark-recording/2", "broadmark-recording/3"},
+      {"\"objects\": 3", "\"objects\": 9"},
+      {"\"objects\": 3", "\"objects\":-3"},
+      {"\"frames\": 2", "\"frames\": 9"},
+      {"\"frames\": 2", "\"frames\": 1"},
+      {"\"frames\": 2", "\"frames\":\"\""},
+      {"\"all_present\": false", "\"all_present\": 0    "},
+      {"\"Changing\"", "\"Chang\\ng\""},
+      {"\"Changing\"", "\"Ch\\u0001\""},
+      {"\"groups\"", "\"gruops\""},
+      {"\"layers\"", "\"nobody\""},
+      {"\"world\"", "\"earth\""},
+      {"\"source\": null", "\"source\": 1234"},
+      {"\"scene_parameters\": null", "\"scene_parameters\": 1234"},
+      {"{", "["},
+  };
+  for (const auto& [text, other] : all) {
+    EXPECT_THAT(faultOf(withHeader(whole, text, other)), StartsWith("test.broadmark: "))
+        << text << " -> " << other;
+  }
+}
+
+TEST(BadRecording2, AbsurdCountsTakeNoMemory) {
+  Bytes bytes = smallRecording();
+  put(bytes, 8, std::uint64_t{1} << 62);
+  EXPECT_THAT(faultOf(bytes), HasSubstr("byte 8: a header of 4611686018427387904 bytes"));
+  bytes = smallRecording();
+  bytes = withHeader(bytes, "\"objects\": 3,\n", "\"objects\":42e8");
+  EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: "));
+  bytes = smallRecording();
+  put(bytes, indexOf(bytes) + 8, std::numeric_limits<std::uint32_t>::max());
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("index: frame 0 cannot be"));
+}
+
+TEST(BadRecording2, AnIndexThatLeadsNowhere) {
+  const Bytes whole = smallRecording();
+  const std::size_t entry = indexOf(whole) + kEntryBytes;
+  const auto spoilt = [&](int offset, auto value) {
+    Bytes bytes = whole;
+    put(bytes, entry + static_cast<std::size_t>(offset), value);
+    Hasher hasher;  // of the index, which leads elsewhere
+    hasher.add(std::as_bytes(std::span(bytes)).first(frameOf(whole, 0)));
+    hasher.add(std::as_bytes(std::span(bytes)).subspan(indexOf(whole), 3 * kEntryBytes));
+    put(bytes, bytes.size() - 24, hasher.value());
+    return faultOf(bytes);
+  };
+  EXPECT_THAT(spoilt(0, std::uint64_t{7}), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(0, std::uint64_t{1} << 63), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(8, 0U), HasSubstr("index: frame 2"));
+  EXPECT_THAT(spoilt(8, 4U), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(12, 2U), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(12, 1U), HasSubstr("index: frame 2"));
+  EXPECT_THAT(spoilt(-20, 1U), HasSubstr("index: frame 0")) << "the first one is a key frame";
+}
+
+TEST(Recording2Writer, LeavesNothingUnlessFinished) {
+  const TemporaryDirectory directory;
+  const Frames frames = changingFrames(2, 1, 0, true);
+  {
+    RecordingWriter writer(directory / "a.broadmark", sceneOf(frames));
+    writer.write(frames[0]);
+    EXPECT_THROW(writer.write(chain(3)), std::logic_error);
+    EXPECT_THROW(writer.finish(), std::logic_error);
+    EXPECT_FALSE(std::filesystem::exists(directory / "a.broadmark"));
+  }
+  EXPECT_TRUE(directory.empty());
+}
+
+TEST(Recording2Writer, RefusesBoxesThatNoReaderWouldTake) {
+  const Frames frames = changingFrames(2, 1, 0, true);
+  RecordingWriter writer(SceneInfo{.objects = 2, .frames = 1, .all_present = false});
+  std::vector<Aabb> boxes = frames[0];
+  boxes[1].max[2] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(inputErrorOf([&] { writer.write(boxes); }),
+              HasSubstr("frame 0, body 1: the box is infinite"));
+  boxes[1] = kEmptyBox;
+  writer.write(boxes);
+  writer.write(boxes);
+  EXPECT_EQ(writer.finishTemporary()->at(1).boxes[1], kEmptyBox);
+
+  const TemporaryDirectory directory;
+  RecordingWriter full(directory / "a.broadmark", sceneOf(frames, true));
+  EXPECT_THAT(inputErrorOf([&] { full.write(boxes); }), HasSubstr("all are present"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests
