@@ -17,12 +17,6 @@ namespace broadmark {
 namespace scenes {
 namespace {
 
-/// The cube ± side/2.
-Aabb worldBox(double side) {
-  const auto half = static_cast<float>(side / 2);
-  return {{-half, -half, -half, 0}, {half, half, half, 0}};
-}
-
 class BuiltinSimulation final : public PhysicsSimulation {
  public:
   explicit BuiltinSimulation(const SceneEntry& entry)
@@ -42,25 +36,29 @@ class BuiltinSimulation final : public PhysicsSimulation {
   }
 
   [[nodiscard]] SceneInfo describe() const override {
-    return {.name = listing().name,
-            .object_type = objectType().listing.name,
-            .objects = static_cast<std::uint32_t>(settings_.objects),
-            .frames = static_cast<std::uint32_t>(settings_.frames),
-            .world = worldBox(settings_.side())};
+    SceneInfo info{.name = listing().name,
+                   .object_type = objectType().listing.name,
+                   .objects = static_cast<std::uint32_t>(settings_.objects),
+                   .frames = static_cast<std::uint32_t>(settings_.frames),
+                   .world = settings_.world()};
+    scene_->describe(settings_, info);
+    return info;
   }
 
   [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() override {
     return engine_parameters_.create(settings_.engine.value, settings_.physics);
   }
 
+  [[nodiscard]] LayerMatrix pushing(const SceneInfo& info) const override {
+    return scene_->pushing(info);
+  }
+
   void start() override {
     random_ = Random(static_cast<std::uint64_t>(settings_.seed));
-    const ObjectType type = objectType();
+    running_type_ = objectType();
     scene_->prepare(settings_, random_);
-    for (std::size_t i = 0; i < scene().objects; ++i) {
-      addBody(scene_->body(i, settings_, type, random_));
-    }
     Stage stage = makeStage();
+    scene_->populate(stage);
     scene_->start(stage);
   }
 
@@ -69,11 +67,12 @@ class BuiltinSimulation final : public PhysicsSimulation {
     scene_->act(stage, frame);
   }
 
-  Stage makeStage() { return {settings_, *engine(), bodies(), random_}; }
+  Stage makeStage() { return {settings_, running_type_, engine(), bodies(), random_}; }
 
   std::unique_ptr<Scene> scene_;
   Settings settings_;
   ChosenEngine engine_parameters_;
+  ObjectType running_type_;
   Random random_{0};
 };
 
