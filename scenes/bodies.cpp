@@ -52,7 +52,7 @@ Frame Bodies::record(std::uint32_t frame) {
       poses_[id] = body->pose();
       box = tightBox(body->shape(), poses_[id]);
     }
-    if (box != boxes_[id]) changed_.push_back(id);
+    if (!sameBits(box, boxes_[id])) changed_.push_back(id);
     boxes_[id] = box;
   }
   std::erase_if(ids_, [this](std::uint32_t id) { return bodies_[id] == nullptr; });

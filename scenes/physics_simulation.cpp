@@ -50,8 +50,7 @@ std::span<const Aabb> PhysicsSimulation::unturnedBoxes() {
   const auto boxes = bodies_->boxes();
   unturned_.assign(boxes.begin(), boxes.end());
   for (const std::uint32_t id : bodies_->inEngine()) {
-    unturned_[id] =
-        tightBox((*bodies_)[id]->shape(), {.position = bodies_->poses()[id].position});
+    unturned_[id] = tightBox((*bodies_)[id]->shape(), {.position = bodies_->poses()[id].position});
   }
   return unturned_;
 }

@@ -29,16 +29,16 @@ struct BodyKey {
   std::size_t numbers;  ///< length of its array of numbers; 0: its value is not an array
 };
 constexpr std::array<BodyKey, 11> kBodyKeys = {{{"box", 3},
-                                               {"sphere", 0},
-                                               {"position", 3},
-                                               {"rotation", 4},
-                                               {"velocity", 3},
-                                               {"angular_velocity", 3},
-                                               {"mass", 0},
-                                               {"frozen", 0},
-                                               {"layer", 0},
-                                               {"appears", 0},
-                                               {"vanishes", 0}}};
+                                                {"sphere", 0},
+                                                {"position", 3},
+                                                {"rotation", 4},
+                                                {"velocity", 3},
+                                                {"angular_velocity", 3},
+                                                {"mass", 0},
+                                                {"frozen", 0},
+                                                {"layer", 0},
+                                                {"appears", 0},
+                                                {"vanishes", 0}}};
 
 std::vector<std::string> namesOfBodyKeys() {
   std::vector<std::string> names;

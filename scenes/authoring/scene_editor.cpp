@@ -224,7 +224,8 @@ void SceneEditor::setAngularVelocity(const Vec3& angular) {
 }
 
 void SceneEditor::setLayer(std::uint8_t layer) {
-  changeBodies("set the layer of", &AuthoredBody::layer, [&](const AuthoredBody&) { return layer; });
+  changeBodies("set the layer of", &AuthoredBody::layer,
+               [&](const AuthoredBody&) { return layer; });
 }
 
 void SceneEditor::setAppears(std::uint32_t frame) {

@@ -1,5 +1,5 @@
-// Where engines keep their bodies: each stays at its address until it is removed, and memory is used
-// again. Adding and removing take constant time.
+// Where engines keep their bodies: each stays at its address until it is removed, and memory is
+// used again. Adding and removing take constant time.
 #pragma once
 
 #include <cstddef>

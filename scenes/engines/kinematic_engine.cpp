@@ -185,9 +185,7 @@ class KinematicEngine final : public PhysicsEngine {
     return bodies_.add(description);
   }
 
-  void removeBody(PhysicsBody& body) override {
-    bodies_.remove(static_cast<KinematicBody&>(body));
-  }
+  void removeBody(PhysicsBody& body) override { bodies_.remove(static_cast<KinematicBody&>(body)); }
 
   void addWall(const HalfSpace& wall) override { world_.walls.push_back(wall); }
 

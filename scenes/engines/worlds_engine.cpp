@@ -50,7 +50,8 @@ class WorldsEngine final : public PhysicsEngine {
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    return std::ranges::all_of(worlds_, [](const auto& world) { return world.second->allAsleep(); });
+    return std::ranges::all_of(worlds_,
+                               [](const auto& world) { return world.second->allAsleep(); });
   }
 
  private:

@@ -127,9 +127,8 @@ class Shooter final : public Scene {
   /// A body of `size` times the usual size, anywhere in the world.
   static BodyDescription describeBody(std::size_t id, double size, Stage& stage) {
     const Settings& settings = stage.settings;
-    BodyDescription body{
-        .shape = stage.object_type.shape(id, size * settings.scale, stage.random),
-        .mass = settings.mass};
+    BodyDescription body{.shape = stage.object_type.shape(id, size * settings.scale, stage.random),
+                         .mass = settings.mass};
     body.pose.position = anywhereInside(body.shape, settings.side(), stage.random);
     return body;
   }

@@ -6,8 +6,8 @@
 
 namespace broadmark::scenes {
 
-/// A random size from 1 to `most` (at least 1). Of bodies twice as large there are an eighth as many:
-/// large and small ones fill about the same room.
+/// A random size from 1 to `most` (at least 1). Of bodies twice as large there are an eighth as
+/// many: large and small ones fill about the same room.
 double sizeOfMany(double most, Random&);
 
 /// A random place at which a body is inside a world of this side, however it is turned.

@@ -80,7 +80,7 @@ class Worlds final : public Scene {
   std::int64_t bodies_per_world_ = 20;
   std::int64_t episode_ = 100;
   std::size_t world_size_ = 1;
-  Settings one_;  ///< of a copy
+  Settings one_;                         ///< of a copy
   std::vector<BodyDescription> starts_;  ///< by body
 };
 

@@ -136,8 +136,7 @@ TEST(ShooterScene, ProjectilesMeetCharactersAndTheLevelAlone) {
 }
 
 TEST(WorldScene, OnlyTheMoversTakeTime) {
-  auto simulation =
-      sceneWith("world", {{"objects", "20000"}, {"frames", "10"}, {"movers", "30"}});
+  auto simulation = sceneWith("world", {{"objects", "20000"}, {"frames", "10"}, {"movers", "30"}});
   const SceneInfo scene = simulation->scene();
   EXPECT_TRUE(scene.all_present);
   EXPECT_EQ(bodiesIn(scene, 1).size(), 30U);

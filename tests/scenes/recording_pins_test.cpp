@@ -108,8 +108,8 @@ double movingShare(const std::vector<Aabb>& before, const std::vector<Aabb>& aft
 Statistics statisticsOf(const Frames& frames, const CollisionFilter& filter) {
   Statistics statistics;
   for (const auto& boxes : frames) {
-    statistics.pairs +=
-        static_cast<double>(bruteForcePairs(boxes, filter).size()) / static_cast<double>(frames.size());
+    statistics.pairs += static_cast<double>(bruteForcePairs(boxes, filter).size()) /
+                        static_cast<double>(frames.size());
   }
   statistics.mean_edge = meanEdge(frames);
   statistics.height_1 = meanHeight(presentIn(frames[1]));

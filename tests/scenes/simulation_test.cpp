@@ -84,7 +84,8 @@ TEST_P(EveryScene, SaysExactlyWhatChangedAndWhoIsAbsent) {
   ChangedBodies found;
   found.complete({frame.index, frame.boxes});
   while (const auto next = simulation->next()) {
-    EXPECT_THAT(*next->changed, testing::ElementsAreArray(*found.complete({next->index, next->boxes}).changed));
+    EXPECT_THAT(*next->changed,
+                testing::ElementsAreArray(*found.complete({next->index, next->boxes}).changed));
     if (all_present) EXPECT_TRUE(std::ranges::none_of(next->boxes, isEmpty));
   }
 }
