@@ -2,11 +2,15 @@
 
 #include "broadmark/scenes/simulation.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cctype>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "broadmark/recording.h"
 #include "broadmark/scenes/scene.h"
 #include "engines/chosen_engine.h"
 #include "engines/replay.h"
@@ -93,7 +97,22 @@ std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneListi
   return nullptr;
 }
 
+/// Throws InputError when the engine replays recordings that cannot hold the scene.
+void requireReplayable(const SceneEntry& scene, const std::string& engine) {
+  for (const ReplayEntry& entry : replayEntries()) {
+    if (entry.listing.id != engine) continue;
+    if (fitsAabbs(BuiltinSimulation(scene).scene())) continue;
+    const auto& extensions = entry.extensions;
+    if (std::ranges::find(extensions, kBroadmarkExtension) != extensions.end()) continue;
+    throw InputError(fmt::format(
+        "--engine {}: cannot replay {}: {} recordings hold neither absent bodies nor layers or "
+        "worlds",
+        engine, scene.listing.id, fmt::join(extensions, " and ")));
+  }
+}
+
 std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::string& engine) {
+  requireReplayable(scene, engine);
   if (auto replay = replayBy(engine, scene.listing)) return replay;
   auto simulation = std::make_unique<BuiltinSimulation>(scene);
   if (engine.empty()) return simulation;

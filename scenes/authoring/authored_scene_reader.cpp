@@ -164,7 +164,7 @@ class SceneReader final : public JsonEvents {
       scene_.collide = {};
     } else if (in_ == In::scene && key_ == "triggers") {
       in_ = In::triggers;
-    } else if (const std::size_t wanted = numbersOf(key_); wanted > 0) {
+    } else if (const std::size_t wanted = numbersOf(key_); in_ != In::numbers && wanted > 0) {
       around_ = in_;
       in_ = In::numbers;
       wanted_ = wanted;
@@ -273,7 +273,7 @@ class SceneReader final : public JsonEvents {
   bool number(float value, double exact) {
     if (in_ == In::numbers) {
       if (read_ == wanted_) refuse();
-      if (around_ == In::collide) layer(exact);
+      if (around_ == In::collide) value = layer(exact);
       numbers_[read_++] = value;
     } else if (in_ == In::triggers) {
       scene_.triggers |= std::uint32_t{1} << layer(exact);

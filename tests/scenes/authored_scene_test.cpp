@@ -194,6 +194,8 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
       {sceneText(R"("sphere": "1", )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("sphere": [1], )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("box": 1, )" + position), {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("box": [[1, 1, 1]], )" + position),
+       {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [1, null, 1])"), {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [0, 1, 1], )" + position), {"body 1", "size", "1e-06"}},
       {sceneText(R"("sphere": -1, )" + position), {"body 1", "size"}},

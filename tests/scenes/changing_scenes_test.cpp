@@ -16,7 +16,7 @@ namespace {
 using testing::Each;
 using testing::HasSubstr;
 
-std::size_t presentIn(const Boxes& boxes) {
+std::size_t populationOf(const Boxes& boxes) {
   return boxes.size() - static_cast<std::size_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
@@ -45,12 +45,12 @@ TEST(FountainScene, PopulationRisesAndFallsAndIdsAreUsedAgain) {
     EXPECT_FALSE(simulation->scene().all_present);
     EXPECT_TRUE(simulation->scene().filter.wantsAll());
     const Frames frames = allFrames(*simulation);
-    EXPECT_EQ(presentIn(frames[0]), 25U);
+    EXPECT_EQ(populationOf(frames[0]), 25U);
     std::size_t least = 100;
     std::size_t most = 0;
     for (std::size_t i = 60; i < frames.size(); ++i) {
-      least = std::min(least, presentIn(frames[i]));
-      most = std::max(most, presentIn(frames[i]));
+      least = std::min(least, populationOf(frames[i]));
+      most = std::max(most, populationOf(frames[i]));
     }
     EXPECT_LT(least, 40U);
     EXPECT_GT(most, 60U);
@@ -65,7 +65,7 @@ TEST(FountainScene, PopulationRisesAndFallsAndIdsAreUsedAgain) {
 TEST(FountainScene, BodiesAreThrownUpAndFall) {
   auto simulation = sceneWith("fountain", {{"objects", "200"}, {"frames", "120"}, {"filled", "0"}});
   const Frames frames = allFrames(*simulation);
-  EXPECT_EQ(presentIn(frames[0]), 0U) << "an empty world";
+  EXPECT_EQ(populationOf(frames[0]), 0U) << "an empty world";
   const Aabb& world = simulation->scene().world;
   double highest = world.min[1];
   double last = 0;
@@ -143,7 +143,7 @@ TEST(WorldScene, OnlyTheMoversTakeTime) {
   const auto movers = bodiesIn(scene, 1);
   EXPECT_FALSE(scene.filter.matrix().collide(0, 0));
   EXPECT_TRUE(scene.filter.matrix().collide(0, 1));
-  EXPECT_EQ(presentIn(boxesOf(simulation->rewind())), 20000U);
+  EXPECT_EQ(populationOf(boxesOf(simulation->rewind())), 20000U);
   while (const auto frame = simulation->next()) {
     EXPECT_THAT(*frame->changed, testing::ElementsAreArray(movers));
   }
@@ -207,7 +207,7 @@ TEST(ChangingScenes, BecomeAuthoredScenesOfTheBodiesThatAreThere) {
   auto fountain = sceneWith("fountain", {{"objects", "60"}, {"frames", "30"}});
   const Frames frames = allFrames(*fountain);
   const scenes::AuthoredScene scene = scenes::sceneFromFrame(*fountain, 30);
-  EXPECT_EQ(scene.bodies.size(), presentIn(frames[30]));
+  EXPECT_EQ(scene.bodies.size(), populationOf(frames[30]));
 
   auto shooter = sceneWith("shooter", {{"objects", "100"}, {"frames", "30"}});
   const scenes::AuthoredScene level = scenes::sceneFromFrame(*shooter, 30);
