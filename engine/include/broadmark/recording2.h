@@ -42,6 +42,9 @@ class Recording2Reader final : public Recording {
 
   /// Reads header and index, and checks that they are whole.
   void open();
+  /// Of this size; returns where the frames begin.
+  std::uint64_t readHeader(std::uint64_t size, std::uint64_t index_offset);
+  void readIndex(std::uint64_t offset);
   void checkIndex(std::uint64_t begin, std::uint64_t end) const;
   /// Makes `boxes_` those of a frame: a key frame, or the one after `current_`.
   void readFrame(std::uint32_t index);
