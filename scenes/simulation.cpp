@@ -2,9 +2,6 @@
 
 #include "broadmark/scenes/simulation.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cctype>
 
@@ -89,31 +86,19 @@ void requireEngine(const std::string& id) {
   }
 }
 
-/// A replay by the engine of this id; null if it is not one that replays recordings.
-std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneListing& scene) {
+/// A replay by the engine of this id; null if it is not one that replays recordings. `scene` may be
+/// null: none in particular.
+std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneEntry* scene) {
   for (const ReplayEntry& entry : replayEntries()) {
-    if (entry.listing.id == engine) return makeReplay(scene, entry);
+    if (entry.listing.id != engine) continue;
+    if (scene == nullptr) return makeReplay({}, entry, {});
+    return makeReplay(scene->listing, entry, recordingExtension(BuiltinSimulation(*scene).scene()));
   }
   return nullptr;
 }
 
-/// Throws InputError when the engine replays recordings that cannot hold the scene.
-void requireReplayable(const SceneEntry& scene, const std::string& engine) {
-  for (const ReplayEntry& entry : replayEntries()) {
-    if (entry.listing.id != engine) continue;
-    if (fitsAabbs(BuiltinSimulation(scene).scene())) continue;
-    const auto& extensions = entry.extensions;
-    if (std::ranges::find(extensions, kBroadmarkExtension) != extensions.end()) continue;
-    throw InputError(fmt::format(
-        "--engine {}: cannot replay {}: {} recordings hold neither absent bodies nor layers or "
-        "worlds",
-        engine, scene.listing.id, fmt::join(extensions, " and ")));
-  }
-}
-
 std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::string& engine) {
-  requireReplayable(scene, engine);
-  if (auto replay = replayBy(engine, scene.listing)) return replay;
+  if (auto replay = replayBy(engine, &scene)) return replay;
   auto simulation = std::make_unique<BuiltinSimulation>(scene);
   if (engine.empty()) return simulation;
   requireEngine(engine);
@@ -131,7 +116,7 @@ std::string lowerCase(std::string text) {
 }  // namespace scenes
 
 std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
-  if (auto replay = scenes::replayBy(id, {})) return replay;
+  if (auto replay = scenes::replayBy(id, nullptr)) return replay;
   scenes::requireEngine(id);
   return scenes::entryOf(scenes::engineEntries(), id, "engine").create({});
 }
