@@ -17,6 +17,7 @@
 #include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
+#include "packed_box.h"
 #include "recording_file.h"
 
 namespace broadmark {
@@ -37,9 +38,6 @@ struct End {
   HashValue hash;  ///< of the index, after all that comes before the first frame
   std::array<char, 8> magic = kMagic;
 };
-
-/// A box in the file: min x y z, max x y z.
-using PackedBox = std::array<float, 6>;
 
 constexpr std::uint64_t kAlignment = 32;
 static_assert(sizeof(Start) == 16 && sizeof(RecordedFrame) == kAlignment &&
@@ -69,14 +67,6 @@ struct Layout {
     return idBytes() + aligned(sizeof(PackedBox) * rows);
   }
 };
-
-PackedBox packed(const Aabb& box) {
-  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
-}
-
-Aabb unpacked(const PackedBox& box) {
-  return {{box[0], box[1], box[2], 0}, {box[3], box[4], box[5], 0}};
-}
 
 bool isRecordable(const Aabb& box, bool all_present) {
   return isSound(box) || (!all_present && box == kEmptyBox);
@@ -210,7 +200,8 @@ Aabb worldIn(const JsonFields& fields) {
     right = number.is_number();
     if (right) numbers[i] = static_cast<float>(number.get<double>());
   }
-  const Aabb world = unpacked(numbers);
+  Aabb world;
+  BoxCorners(std::as_bytes(std::span(numbers)).data()).put(world);
   if (!right || !isSound(world)) {
     throw InputError(fmt::format(
         "{}: two corners of three finite numbers, min <= max, are expected", fields.path("world")));
@@ -549,6 +540,7 @@ template <class Take>
 void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
   const RecordedFrame& frame = index_[index];
   const Layout layout(frame.changed, frame.key == index, scene().objects);
+  const bool may_be_empty = !scene().all_present;
   std::uint64_t offset = frame.offset + layout.idBytes();
   for (std::uint64_t first = 0; first < layout.rows; first += kPieceRows) {
     const std::uint64_t rows = std::min(kPieceRows, layout.rows - first);
@@ -557,49 +549,45 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
     hasher_.add(raw);
     offset += raw.size();
     for (std::uint64_t row = 0; row < rows; ++row) {
-      PackedBox box;
-      std::memcpy(box.data(), raw.data() + sizeof box * row, sizeof box);
-      take(first + row, unpacked(box));
+      const BoxCorners box(raw.data() + sizeof(PackedBox) * row);
+      if (!box.isRight(may_be_empty)) failAt(index, first + row, box);
+      take(first + row, box);
     }
   }
 }
 
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
   // Who relies on `changed` misses what changed without being named.
-  const bool check_others = follows && changed_ < scene().objects;
-  const bool all_present = scene().all_present;
-  std::uint32_t listed = 0;
-  readRows(index, [&](std::uint64_t body, const Aabb& box) {
-    if (!isRecordable(box, all_present)) {
-      failAt(index, static_cast<std::uint32_t>(body), body, "the box " + faultOf(box, all_present));
-    }
-    if (check_others) {
+  if (follows && changed_ < scene().objects) {
+    readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body,
+                                                   const BoxCorners& box) mutable {
       if (listed < changed_ && ids_[listed] == body) {
         ++listed;
-      } else if (box != boxes_[body]) {
-        failAt(index, static_cast<std::uint32_t>(body), body,
-               "differs from the frame before, but is not among the changed bodies");
+      } else if (!box.is(boxes_[body])) {
+        failAt(index, body, "differs from the frame before, but is not among the changed bodies");
       }
-    }
-    boxes_[body] = box;
-  });
+      box.put(boxes_[body]);
+    });
+  } else {
+    readRows(index, [&](std::uint64_t body, const BoxCorners& box) { box.put(boxes_[body]); });
+  }
 }
 
 void Recording2Reader::readChangedBoxes(std::uint32_t index) {
-  const bool all_present = scene().all_present;
-  readRows(index, [&](std::uint64_t row, const Aabb& box) {
-    if (!isRecordable(box, all_present)) {
-      failAt(index, ids_[row], row, "the box " + faultOf(box, all_present));
-    }
-    boxes_[ids_[row]] = box;
-  });
+  readRows(index, [&](std::uint64_t row, const BoxCorners& box) { box.put(boxes_[ids_[row]]); });
 }
 
-void Recording2Reader::failAt(std::uint32_t index, std::uint32_t body, std::uint64_t row,
-                              const std::string& what) {
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box) {
+  Aabb unpacked;
+  box.put(unpacked);
+  failAt(index, row, "the box " + faultOf(unpacked, scene().all_present));
+}
+
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const std::string& what) {
   const RecordedFrame& frame = index_[index];
-  const Layout layout(frame.changed, frame.key == index, scene().objects);
-  fail(index, fmt::format("body {} (byte {}): {}", body,
+  const bool whole = frame.key == index;
+  const Layout layout(frame.changed, whole, scene().objects);
+  fail(index, fmt::format("body {} (byte {}): {}", whole ? row : ids_[row],
                           frame.offset + layout.idBytes() + sizeof(PackedBox) * row, what));
 }
 

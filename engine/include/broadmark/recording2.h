@@ -16,6 +16,8 @@
 
 namespace broadmark {
 
+class BoxCorners;
+
 /// What the index of a recording 2 says of a frame, as it lies in the file.
 struct RecordedFrame {
   std::uint64_t offset;   ///< where it begins
@@ -51,13 +53,13 @@ class Recording2Reader final : public Recording {
   void readIds(std::uint32_t index);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
-  /// Hands pieces of the packed boxes of a frame to take(floats, first row, rows).
+  /// Hands the boxes of a frame to take(row, BoxCorners).
   template <class Take>
   void readRows(std::uint32_t index, Take&& take);
   /// Throws InputError: a wrong checksum if that is so, else what is said.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
-  [[noreturn]] void failAt(std::uint32_t index, std::uint32_t body, std::uint64_t row,
-                           const std::string& what);
+  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
+  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box);
 
   RecordingOrigin origin_;
   std::vector<RecordedFrame> index_;
