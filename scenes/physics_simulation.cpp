@@ -35,15 +35,15 @@ Frame PhysicsSimulation::rewind() {
 std::optional<Frame> PhysicsSimulation::next() {
   if (!engine_) rewind();
   if (index_ == info_.frames) return {};
+  // Not before: until now the bodies had to be those of the frame handed out last.
+  if (index_ > 0) act(index_);
   ++index_;
   if (!engine_->allAsleep()) {
     engine_->step();
     freezeEscapees();
   }
   comeAndGo(index_);
-  const Frame frame = bodies_->record(index_);
-  act(index_);
-  return frame;
+  return bodies_->record(index_);
 }
 
 std::span<const Aabb> PhysicsSimulation::unturnedBoxes() {

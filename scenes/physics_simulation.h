@@ -38,7 +38,7 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   virtual void start() = 0;
   /// Called before frame `frame`, 1 or later, is recorded: bodies come and go.
   virtual void comeAndGo(std::uint32_t /*frame*/) {}
-  /// Called after frame `frame` has been recorded.
+  /// Called after frame `frame`, 1 or later, when the next one is asked for.
   virtual void act(std::uint32_t /*frame*/) {}
 
   // Both only once the first frame is asked for.

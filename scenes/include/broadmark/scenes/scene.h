@@ -51,7 +51,8 @@ class Scene : public Parametrised {
   /// Called when all bodies are in their initial pose. By default gravity points down.
   virtual void start(Stage& stage);
 
-  /// Called after frame `frame` has been recorded. Bodies that it adds move before the next frame.
+  /// Called after frame `frame`, 1 or later, when the next one is asked for. Bodies that it adds
+  /// move before that is recorded.
   virtual void act(Stage&, std::uint32_t /*frame*/) {}
 };
 
