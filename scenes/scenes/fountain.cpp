@@ -89,7 +89,7 @@ class Fountain final : public Scene {
   }
 
   std::int64_t lifetime_ = 150;
-  std::int64_t period_ = 200;
+  std::int64_t period_ = 400;
   double spread_ = 0.2;
   double filled_ = 0.25;
   Lifetimes lifetimes_;

@@ -38,9 +38,9 @@ TEST(FountainScene, PopulationRisesAndFallsAndIdsAreUsedAgain) {
   for (const std::string engine : {"bullet", "ode", "kinematic", "boids"}) {
     SCOPED_TRACE(engine);
     auto simulation = sceneWith("fountain", {{"objects", "100"},
-                                             {"frames", "170"},
-                                             {"lifetime", "40"},
-                                             {"period", "60"},
+                                             {"frames", "190"},
+                                             {"lifetime", "30"},
+                                             {"period", "90"},
                                              {"engine", engine}});
     EXPECT_FALSE(simulation->scene().all_present);
     EXPECT_TRUE(simulation->scene().filter.wantsAll());
@@ -56,9 +56,11 @@ TEST(FountainScene, PopulationRisesAndFallsAndIdsAreUsedAgain) {
     EXPECT_GT(most, 60U);
     int arrivals = 0;
     for (std::size_t i = 1; i < frames.size(); ++i) {
-      arrivals += isEmpty(frames[i - 1][0]) && !isEmpty(frames[i][0]) ? 1 : 0;
+      for (std::size_t id = 0; id < 100; ++id) {
+        arrivals += isEmpty(frames[i - 1][id]) && !isEmpty(frames[i][id]) ? 1 : 0;
+      }
     }
-    EXPECT_GT(arrivals, 1) << "id 0 is used again";
+    EXPECT_GT(arrivals, 100) << "more than there are ids";
   }
 }
 
@@ -66,16 +68,12 @@ TEST(FountainScene, BodiesAreThrownUpAndFall) {
   auto simulation = sceneWith("fountain", {{"objects", "200"}, {"frames", "120"}, {"filled", "0"}});
   const Frames frames = allFrames(*simulation);
   EXPECT_EQ(populationOf(frames[0]), 0U) << "an empty world";
-  const Aabb& world = simulation->scene().world;
-  double highest = world.min[1];
-  double last = 0;
-  for (const Boxes& boxes : frames) {
-    if (isEmpty(boxes[0])) continue;
-    last = centreOf(boxes[0])[1];
-    highest = std::max(highest, last);
-  }
-  EXPECT_GT(highest, 0) << "half the height of the world";
-  EXPECT_LT(last, world.min[1] + 5);
+  std::size_t first = 0;
+  while (isEmpty(frames[first][0])) ++first;
+  const auto height = [&](std::size_t after) { return centreOf(frames[first + after][0])[1]; };
+  const double side = 2.0 * simulation->scene().world.max[0];
+  EXPECT_GT(height(20), height(0) + 0.2 * side);
+  EXPECT_LT(height(70), height(20));
 }
 
 TEST(ShooterScene, HasFourLayers) {
@@ -183,7 +181,7 @@ TEST(WorldsScene, CopiesAreAtTheSamePlaceAndMoveAsIfAlone) {
 
 TEST(WorldsScene, ACopyStartsAgainAfterAnEpisode) {
   const Frames frames = allFrames(*sceneWith(
-      "worlds", {{"objects", "40"}, {"frames", "45"}, {"episode", "20"}, {"gravity", "0"}}));
+      "worlds", {{"objects", "40"}, {"frames", "45"}, {"episode", "20"}, {"engine", "kinematic"}}));
   // Moved back after frame 20: then the same way again.
   for (std::size_t body = 0; body < 20; ++body) {
     EXPECT_EQ(frames[21][body], frames[41][body]);
@@ -199,7 +197,7 @@ TEST(SpotScene, AllBodiesAreAtOnePlaceAndThenApart) {
     const Frames frames = allFrames(*simulation);
     for (std::size_t i = 0; i <= 6; ++i) EXPECT_THAT(frames[i], Each(frames[0][0])) << i;
     EXPECT_EQ(pairsAmong(frames[6]), 80U * 79 / 2);
-    EXPECT_LT(pairsAmong(frames[40]), 20U) << engine;
+    EXPECT_LT(pairsAmong(frames[40]), 100U) << engine;
   }
 }
 
