@@ -47,7 +47,7 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
       BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
       job.simulation = std::move(simulation);
       job.paths = recordingPaths(options.output, job.scene, swept, options.scene.recorders);
-      requireApart(*job.simulation, job.paths);
+      requireBakeable(*job.simulation, job.paths);
       if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
     }
   }
@@ -82,6 +82,12 @@ void requireWritable(const BakePlan& plan) {
 
 }  // namespace
 
+std::uint64_t leastBytes(const fs::path& path, SceneInfo scene) {
+  // What changes from frame to frame is not known yet.
+  if (path.extension() == kBroadmarkExtension) scene.frames = 0;
+  return recordingBytes(scene);
+}
+
 std::size_t BakePlan::recordings() const {
   std::size_t sum = 0;
   for (const BakeJob& job : pending) sum += job.paths.size();
@@ -90,7 +96,9 @@ std::size_t BakePlan::recordings() const {
 
 std::uint64_t BakePlan::bytes() const {
   std::uint64_t sum = 0;
-  for (const BakeJob& job : pending) sum += job.paths.size() * recordingBytes(job.scene);
+  for (const BakeJob& job : pending) {
+    for (const fs::path& path : job.paths) sum += leastBytes(path, job.scene);
+  }
   return sum;
 }
 

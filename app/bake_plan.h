@@ -24,6 +24,9 @@ struct BakeOptions {
   bool force = false;  ///< also what is already there
 };
 
+/// The size of a recording that is to be written: exact, but for .broadmark, which will be larger.
+std::uint64_t leastBytes(const std::filesystem::path& path, SceneInfo scene);
+
 /// A batch before it begins.
 struct BakePlan {
   std::vector<BakeJob> pending;  ///< only with the recordings that are to be written
@@ -31,7 +34,7 @@ struct BakePlan {
 
   /// How many recordings are to be written.
   [[nodiscard]] std::size_t recordings() const;
-  /// Their size on the disc, without the sidecars.
+  /// Their leastBytes() on the disc, without the sidecars.
   [[nodiscard]] std::uint64_t bytes() const;
 };
 

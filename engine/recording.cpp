@@ -24,7 +24,7 @@ class AabbsFile final : public BoxRecordingFile {
  public:
   AabbsFile(const std::filesystem::path& path, const SceneInfo& scene) : file_(path, scene) {}
 
-  void write(std::span<const Aabb> boxes) override { file_.append(boxes, "box"); }
+  void write(const Frame& frame) override { file_.append(frame.boxes, "box"); }
   std::string finish() override { return file_.finish(); }
   std::unique_ptr<Recording> finishTemporary() override {
     return std::make_unique<RecordingReader>(file_.finishTemporary(), file_.name());
@@ -97,15 +97,10 @@ std::string_view recordingExtension(const SceneInfo& scene) {
 
 void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
   const Kind& kind = kindOf(path.extension());
-  if (kind.write == nullptr) {
-    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
-                                 fmt::join(boxRecordingExtensions(), " or ")));
-  }
-  if (kind.extension == kAabbsExtension && !fitsAabbs(scene)) {
-    throw InputError(fmt::format(
-        "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
-        path.string(), kAabbsExtension, kBroadmarkExtension));
-  }
+  if (kind.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
+  throw InputError(fmt::format(
+      "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
+      path.string(), kind.extension, kBroadmarkExtension));
 }
 
 std::string recordingFileName(const SceneInfo& scene) {
@@ -198,8 +193,13 @@ std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
                                  const RecordingOrigin& origin) {
+  const Kind& kind = kindOf(path.extension());
+  if (kind.write == nullptr) {
+    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
+                                 fmt::join(boxRecordingExtensions(), " or ")));
+  }
   requireHolds(path, scene);
-  file_ = kindOf(path.extension()).write(path, scene, origin);
+  file_ = kind.write(path, scene, origin);
 }
 
 RecordingWriter::RecordingWriter(const SceneInfo& scene)
@@ -207,7 +207,9 @@ RecordingWriter::RecordingWriter(const SceneInfo& scene)
 
 RecordingWriter::~RecordingWriter() = default;
 
-void RecordingWriter::write(std::span<const Aabb> boxes) { file_->write(boxes); }
+void RecordingWriter::write(std::span<const Aabb> boxes) { file_->write({.boxes = boxes}); }
+
+void RecordingWriter::write(const Frame& frame) { file_->write(frame); }
 
 std::string RecordingWriter::finish() { return file_->finish(); }
 
@@ -224,7 +226,7 @@ bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& 
 
 bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress) {
   return recordAll(
-      source, [&](const Frame& frame) { writer.write(frame.boxes); }, progress);
+      source, [&](const Frame& frame) { writer.write(frame); }, progress);
 }
 
 }  // namespace broadmark

@@ -34,10 +34,12 @@ class Recording2File final : public BoxRecordingFile {
     appendBlock();
   }
 
-  void write(std::span<const Aabb> boxes) override {
+  void write(const Frame& given) override {
+    const std::span<const Aabb> boxes = given.boxes;
     requireBodies(boxes.size(), scene_, file_->name());
-    requireRecordable(boxes);
-    const Frame frame = changes_.complete({static_cast<std::uint32_t>(index_.size()), boxes});
+    const auto index = static_cast<std::uint32_t>(index_.size());
+    const Frame frame = changes_.complete({index, boxes, given.changed});
+    requireRecordable(frame);
     const auto ids = frame.changed.value_or(std::span<const std::uint32_t>());
     const std::uint32_t key = keyOf(frame.index, ids.size());
     const bool whole = key == frame.index;
@@ -65,15 +67,18 @@ class Recording2File final : public BoxRecordingFile {
   }
 
  private:
-  void requireRecordable(std::span<const Aabb> boxes) const {
-    bool sound = true;
-    for (const Aabb& box : boxes) sound &= isRecordable(box, scene_.all_present);
-    if (sound) return;
-    const auto broken = std::ranges::find_if_not(
-        boxes, [&](const Aabb& box) { return isRecordable(box, scene_.all_present); });
-    throw InputError(fmt::format("{}: frame {}, body {}: the box {}", file_->name(), index_.size(),
-                                 broken - boxes.begin(),
-                                 recordingFault(*broken, scene_.all_present)));
+  /// Looks at what has changed since the frame before, which was recordable.
+  void requireRecordable(const Frame& frame) const {
+    const auto require = [&](std::size_t body) {
+      if (isRecordable(frame.boxes[body], scene_.all_present)) return;
+      throw InputError(fmt::format("{}: frame {}, body {}: the box {}", file_->name(), frame.index,
+                                   body, recordingFault(frame.boxes[body], scene_.all_present)));
+    };
+    if (frame.index == 0) {
+      for (std::size_t body = 0; body < frame.boxes.size(); ++body) require(body);
+    } else {
+      for (const std::uint32_t body : *frame.changed) require(body);
+    }
   }
 
   /// The key frame of the next frame, in which so many bodies changed.

@@ -134,7 +134,8 @@ class BoxRecordingFile {
  public:
   virtual ~BoxRecordingFile() = default;
 
-  virtual void write(std::span<const Aabb> boxes) = 0;
+  /// The next frame, whatever its index.
+  virtual void write(const Frame&) = 0;
   virtual std::string finish() = 0;
   virtual std::unique_ptr<Recording> finishTemporary() = 0;
 };

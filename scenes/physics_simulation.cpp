@@ -1,6 +1,8 @@
 #include "physics_simulation.h"
 
+#include "authoring/from_frame.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "engines/worlds_engine.h"
 
 namespace broadmark::scenes {
 namespace {
@@ -22,34 +24,33 @@ const SceneInfo& PhysicsSimulation::scene() const {
 
 Frame PhysicsSimulation::rewind() {
   info_ = describe();
-  bodies_.clear();
-  masses_.clear();
-  engine_ = createEngine();
-  addWalls();
-  bodies_.reserve(info_.objects);
-  masses_.reserve(info_.objects);
+  bodies_.reset();
+  makeEngine();
+  bodies_.emplace(*engine_, info_);
   start();
   index_ = 0;
-  return record();
+  return bodies_->record(index_);
 }
 
 std::optional<Frame> PhysicsSimulation::next() {
   if (!engine_) rewind();
   if (index_ == info_.frames) return {};
+  // Not before: until now the bodies had to be those of the frame handed out last.
+  if (index_ > 0) act(index_);
   ++index_;
   if (!engine_->allAsleep()) {
     engine_->step();
     freezeEscapees();
   }
-  const Frame frame = record();
-  act(index_);
-  return frame;
+  comeAndGo(index_);
+  return bodies_->record(index_);
 }
 
 std::span<const Aabb> PhysicsSimulation::unturnedBoxes() {
-  unturned_.resize(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    unturned_[i] = tightBox(bodies_[i]->shape(), {.position = poses_[i].position});
+  const auto boxes = bodies_->boxes();
+  unturned_.assign(boxes.begin(), boxes.end());
+  for (const std::uint32_t id : bodies_->inEngine()) {
+    unturned_[id] = tightBox((*bodies_)[id]->shape(), {.position = bodies_->poses()[id].position});
   }
   return unturned_;
 }
@@ -61,23 +62,42 @@ AuthoredScene PhysicsSimulation::authoredScene() {
       .world = info_.world,
       .parameters = AuthoredParameters(parameterValues(*this), engine_->gravity()).values(),
       .bodies = {}};
-  scene.bodies.reserve(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const PhysicsBody& body = *bodies_[i];
-    scene.bodies.push_back({.shape = body.shape(),
-                            .mass = masses_[i],
-                            .frozen = body.frozen(),
-                            .pose = body.pose(),
-                            .linear_velocity = body.linearVelocity(),
-                            .angular_velocity = body.angularVelocity()});
+  takeCollisions(scene, info_.filter);
+  const LayerMatrix layers = pushing(info_);
+  for (std::uint32_t id = 0; id < bodies_->size(); ++id) {
+    const std::uint8_t layer = info_.filter.groupsOf(id).layer;
+    bool pushes = layers.rows()[layer] != 0;
+    if (const PhysicsBody* body = (*bodies_)[id]) {
+      scene.bodies.push_back({.shape = body->shape(),
+                              .mass = bodies_->massOf(id),
+                              .frozen = body->frozen(),
+                              .pose = body->pose(),
+                              .linear_velocity = body->linearVelocity(),
+                              .angular_velocity = body->angularVelocity(),
+                              .layer = layer});
+    } else if (const Aabb& box = bodies_->boxes()[id]; !isEmpty(box)) {
+      scene.bodies.push_back(bodyIn(box, info_.object_type));
+      scene.bodies.back().frozen = true;
+      scene.bodies.back().layer = layer;
+      pushes = false;
+    } else {
+      continue;
+    }
+    if (!pushes) scene.triggers |= std::uint32_t{1} << layer;
   }
   return scene;
 }
 
-PhysicsBody& PhysicsSimulation::addBody(const BodyDescription& description) {
-  bodies_.push_back(&engine_->addBody(description));
-  masses_.push_back(description.mass);
-  return *bodies_.back();
+void PhysicsSimulation::makeEngine() {
+  if (info_.filter.worlds().empty()) {
+    engine_ = createEngine();
+  } else {
+    engine_ = makeWorlds([this] { return createEngine(); });
+  }
+  const LayerMatrix layers = pushing(info_);
+  const bool all_push = info_.filter.layers().empty() && layers.collide(0, 0);
+  if (!all_push) engine_->setLayers(layers);
+  addWalls();
 }
 
 void PhysicsSimulation::addWalls() {
@@ -92,19 +112,11 @@ void PhysicsSimulation::addWalls() {
 }
 
 void PhysicsSimulation::freezeEscapees() {
-  for (PhysicsBody* body : bodies_) {
-    if (!body->frozen() && !contains(info_.world, body->pose().position)) body->freeze();
+  for (const std::uint32_t id : bodies_->inEngine()) {
+    PhysicsBody* body = (*bodies_)[id];
+    if (body == nullptr || body->frozen()) continue;
+    if (!contains(info_.world, body->pose().position)) body->freeze();
   }
-}
-
-Frame PhysicsSimulation::record() {
-  boxes_.resize(bodies_.size());
-  poses_.resize(bodies_.size());
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    poses_[i] = bodies_[i]->pose();
-    boxes_[i] = tightBox(bodies_[i]->shape(), poses_[i]);
-  }
-  return {index_, boxes_};
 }
 
 }  // namespace broadmark::scenes

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "broadmark/scenes/authored_scene.h"
+#include "broadmark/scenes/bodies.h"
 #include "broadmark/scenes/physics_engine.h"
 #include "broadmark/scenes/simulation.h"
 
@@ -23,35 +24,36 @@ class PhysicsSimulation : public Simulation, public SceneSource {
   Frame rewind() override;
   std::optional<Frame> next() override;
   std::span<const Aabb> unturnedBoxes() override;
-  std::span<const Pose> poses() override { return poses_; }
+  std::span<const Pose> poses() override { return bodies_->poses(); }
   [[nodiscard]] AuthoredScene authoredScene() override;
 
  protected:
   /// The scene that the present parameters describe.
   [[nodiscard]] virtual SceneInfo describe() const = 0;
   [[nodiscard]] virtual std::unique_ptr<PhysicsEngine> createEngine() = 0;
-  /// Adds all bodies to the engine, which has only walls yet, and sets the forces.
+  /// Which layers push each other.
+  [[nodiscard]] virtual LayerMatrix pushing(const SceneInfo&) const = 0;
+  /// Adds the bodies of the initial pose to the engine, which has only walls yet, and sets the
+  /// forces.
   virtual void start() = 0;
-  /// Called after frame `frame` has been recorded.
+  /// Called before frame `frame`, 1 or later, is recorded: bodies come and go.
+  virtual void comeAndGo(std::uint32_t /*frame*/) {}
+  /// Called after frame `frame`, 1 or later, when the next one is asked for.
   virtual void act(std::uint32_t /*frame*/) {}
 
-  PhysicsBody& addBody(const BodyDescription&);
-  /// The running engine; null before the first frame.
-  [[nodiscard]] PhysicsEngine* engine() const { return engine_.get(); }
-  [[nodiscard]] std::span<PhysicsBody* const> bodies() const { return bodies_; }
+  // Both only once the first frame is asked for.
+  [[nodiscard]] PhysicsEngine& engine() { return *engine_; }
+  [[nodiscard]] Bodies& bodies() { return *bodies_; }
 
  private:
+  void makeEngine();
   void addWalls();
   void freezeEscapees();
-  Frame record();
 
   mutable SceneInfo info_;
   std::unique_ptr<PhysicsEngine> engine_;
-  std::vector<PhysicsBody*> bodies_;
-  std::vector<double> masses_;
-  std::vector<Aabb> boxes_;
+  std::optional<Bodies> bodies_;
   std::vector<Aabb> unturned_;
-  std::vector<Pose> poses_;
   std::uint32_t index_ = 0;
 };
 

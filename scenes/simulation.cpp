@@ -7,6 +7,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
+#include "broadmark/recording.h"
 #include "broadmark/scenes/scene.h"
 #include "engines/chosen_engine.h"
 #include "engines/replay.h"
@@ -16,12 +17,6 @@
 namespace broadmark {
 namespace scenes {
 namespace {
-
-/// The cube ± side/2.
-Aabb worldBox(double side) {
-  const auto half = static_cast<float>(side / 2);
-  return {{-half, -half, -half, 0}, {half, half, half, 0}};
-}
 
 class BuiltinSimulation final : public PhysicsSimulation {
  public:
@@ -42,25 +37,29 @@ class BuiltinSimulation final : public PhysicsSimulation {
   }
 
   [[nodiscard]] SceneInfo describe() const override {
-    return {.name = listing().name,
-            .object_type = objectType().listing.name,
-            .objects = static_cast<std::uint32_t>(settings_.objects),
-            .frames = static_cast<std::uint32_t>(settings_.frames),
-            .world = worldBox(settings_.side())};
+    SceneInfo info{.name = listing().name,
+                   .object_type = objectType().listing.name,
+                   .objects = static_cast<std::uint32_t>(settings_.objects),
+                   .frames = static_cast<std::uint32_t>(settings_.frames),
+                   .world = settings_.world()};
+    scene_->describe(settings_, info);
+    return info;
   }
 
   [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() override {
     return engine_parameters_.create(settings_.engine.value, settings_.physics);
   }
 
+  [[nodiscard]] LayerMatrix pushing(const SceneInfo& info) const override {
+    return scene_->pushing(info);
+  }
+
   void start() override {
     random_ = Random(static_cast<std::uint64_t>(settings_.seed));
-    const ObjectType type = objectType();
+    running_type_ = objectType();
     scene_->prepare(settings_, random_);
-    for (std::size_t i = 0; i < scene().objects; ++i) {
-      addBody(scene_->body(i, settings_, type, random_));
-    }
     Stage stage = makeStage();
+    scene_->populate(stage);
     scene_->start(stage);
   }
 
@@ -69,11 +68,12 @@ class BuiltinSimulation final : public PhysicsSimulation {
     scene_->act(stage, frame);
   }
 
-  Stage makeStage() { return {settings_, *engine(), bodies(), random_}; }
+  Stage makeStage() { return {settings_, running_type_, engine(), bodies(), random_}; }
 
   std::unique_ptr<Scene> scene_;
   Settings settings_;
   ChosenEngine engine_parameters_;
+  ObjectType running_type_;
   Random random_{0};
 };
 
@@ -86,16 +86,19 @@ void requireEngine(const std::string& id) {
   }
 }
 
-/// A replay by the engine of this id; null if it is not one that replays recordings.
-std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneListing& scene) {
+/// A replay by the engine of this id; null if it is not one that replays recordings. `scene` may be
+/// null: none in particular.
+std::unique_ptr<Simulation> replayBy(const std::string& engine, const SceneEntry* scene) {
   for (const ReplayEntry& entry : replayEntries()) {
-    if (entry.listing.id == engine) return makeReplay(scene, entry);
+    if (entry.listing.id != engine) continue;
+    if (scene == nullptr) return makeReplay({}, entry, {});
+    return makeReplay(scene->listing, entry, recordingExtension(BuiltinSimulation(*scene).scene()));
   }
   return nullptr;
 }
 
 std::unique_ptr<Simulation> simulationOf(const SceneEntry& scene, const std::string& engine) {
-  if (auto replay = replayBy(engine, scene.listing)) return replay;
+  if (auto replay = replayBy(engine, &scene)) return replay;
   auto simulation = std::make_unique<BuiltinSimulation>(scene);
   if (engine.empty()) return simulation;
   requireEngine(engine);
@@ -113,7 +116,7 @@ std::string lowerCase(std::string text) {
 }  // namespace scenes
 
 std::unique_ptr<Parametrised> engineParameters(const std::string& id) {
-  if (auto replay = scenes::replayBy(id, {})) return replay;
+  if (auto replay = scenes::replayBy(id, nullptr)) return replay;
   scenes::requireEngine(id);
   return scenes::entryOf(scenes::engineEntries(), id, "engine").create({});
 }

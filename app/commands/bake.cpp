@@ -58,11 +58,13 @@ int listPlan(const BakePlan& plan) {
   };
   for (const fs::path& path : plan.kept) print("kept ", fs::file_size(path), path);
   for (const BakeJob& job : plan.pending) {
-    for (const fs::path& path : job.paths) print("bake ", recordingBytes(job.scene), path);
+    for (const fs::path& path : job.paths) print("bake ", leastBytes(path, job.scene), path);
   }
-  fmt::print("{}: {} to bake ({}), {} kept\n",
+  const bool exact =
+      std::ranges::all_of(plan.pending, [](const BakeJob& job) { return fitsAabbs(job.scene); });
+  fmt::print("{}: {} to bake ({}{}), {} kept\n",
              counted(plan.kept.size() + plan.recordings(), "recording"), plan.recordings(),
-             counted(plan.bytes(), "byte"), plan.kept.size());
+             exact ? "" : "at least ", counted(plan.bytes(), "byte"), plan.kept.size());
   return 0;
 }
 

@@ -16,7 +16,8 @@ SceneInfo infoOf(const scenes::AuthoredScene& scene) {
           .object_type = scenes::objectTypeName(scene),
           .objects = static_cast<std::uint32_t>(scene.bodies.size()),
           .frames = 0,
-          .world = scene.world};
+          .world = scene.world,
+          .filter = scenes::collisionFilterOf(scene)};
 }
 
 }  // namespace

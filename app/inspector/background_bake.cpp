@@ -49,7 +49,7 @@ void BackgroundBake::start(std::unique_ptr<Simulation> simulation, fs::path path
 }
 
 void BackgroundBake::bakeOne(BakeJob job) {
-  requireApart(*job.simulation, job.paths);
+  requireBakeable(*job.simulation, job.paths);
   task_.update([&](Report& report) { report.items = {{.path = job.paths.front()}}; });
   std::vector<BakeJob> jobs;
   jobs.push_back(std::move(job));

@@ -89,6 +89,10 @@ void addAuthored(Values& values, Session& session) {
   values["author.body.angular_velocity"] = vec(body.angular_velocity);
   values["author.body.mass"] = fmt::format("{:.6g}", body.mass);
   values["author.body.frozen"] = yes(body.frozen);
+  values["author.body.layer"] = std::to_string(body.layer);
+  values["author.body.appears"] = std::to_string(body.appears);
+  values["author.body.vanishes"] =
+      body.vanishes == scenes::kNever ? "never" : std::to_string(body.vanishes);
   const auto* box = std::get_if<scenes::BoxShape>(&body.shape);
   values["author.body.shape"] = box ? "box" : "sphere";
   values["author.body.size"] =

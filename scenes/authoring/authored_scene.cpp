@@ -75,7 +75,19 @@ std::string faultOfBody(const AuthoredBody& body) {
   if (!isWithin(body.angular_velocity, kMostSpeed)) {
     return outOfRange("angular_velocity", kMostSpeed);
   }
+  if (body.layer >= LayerMatrix::kLayers) return faultOfLayer("layer");
+  if (body.appears > kMostFrames) {
+    return fmt::format("appears: a frame from 0 to {} is expected", kMostFrames);
+  }
+  if (body.vanishes <= body.appears || (body.vanishes > kMostFrames && body.vanishes != kNever)) {
+    return fmt::format("vanishes: a frame from {} to {} is expected: it appears in frame {}",
+                       body.appears + 1, kMostFrames, body.appears);
+  }
   return {};
+}
+
+std::string faultOfLayer(std::string_view key) {
+  return fmt::format("{}: a layer from 0 to {} is expected", key, LayerMatrix::kLayers - 1);
 }
 
 std::string faultOfName(std::string_view name) {
@@ -131,6 +143,12 @@ std::string objectTypeName(const AuthoredScene& scene) {
   });
   const std::string id = cubes ? "cubes" : spheres ? "spheres" : "assorted";
   return entryOf(objectTypes(), id, "object type").listing.name;
+}
+
+CollisionFilter collisionFilterOf(const AuthoredScene& scene) {
+  std::vector<BodyGroups> bodies(scene.bodies.size());
+  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i].layer = scene.bodies[i].layer;
+  return {bodies, scene.collide};
 }
 
 std::vector<Aabb> boxesOf(const AuthoredScene& scene) {

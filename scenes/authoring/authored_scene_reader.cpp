@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
+#include "authoring/faults.h"
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
 #include "broadmark/scenes/authored_scene.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/scenes/simulation.h"
 #include "scene_parameters.h"
 
 namespace broadmark::scenes {
@@ -25,14 +28,17 @@ struct BodyKey {
   std::string_view name;
   std::size_t numbers;  ///< length of its array of numbers; 0: its value is not an array
 };
-constexpr std::array<BodyKey, 8> kBodyKeys = {{{"box", 3},
-                                               {"sphere", 0},
-                                               {"position", 3},
-                                               {"rotation", 4},
-                                               {"velocity", 3},
-                                               {"angular_velocity", 3},
-                                               {"mass", 0},
-                                               {"frozen", 0}}};
+constexpr std::array<BodyKey, 11> kBodyKeys = {{{"box", 3},
+                                                {"sphere", 0},
+                                                {"position", 3},
+                                                {"rotation", 4},
+                                                {"velocity", 3},
+                                                {"angular_velocity", 3},
+                                                {"mass", 0},
+                                                {"frozen", 0},
+                                                {"layer", 0},
+                                                {"appears", 0},
+                                                {"vanishes", 0}}};
 
 std::vector<std::string> namesOfBodyKeys() {
   std::vector<std::string> names;
@@ -124,7 +130,7 @@ class SceneReader final : public JsonEvents {
     switch (in_) {
       case In::scene:
         if (stated(key)) fail(fmt::format("'{}' is stated twice", onOneLine(key)));
-        require(key, {"schema", "name", "world", "parameters", "bodies"});
+        require(key, {"schema", "name", "world", "parameters", "collide", "triggers", "bodies"});
         scene_keys_.push_back(key);
         break;
       case In::world:
@@ -153,7 +159,12 @@ class SceneReader final : public JsonEvents {
   bool start_array(std::size_t) override {
     if (in_ == In::scene && key_ == "bodies") {
       in_ = In::bodies;
-    } else if (const std::size_t wanted = numbersOf(key_); wanted > 0) {
+    } else if (in_ == In::scene && key_ == "collide") {
+      in_ = In::collide;
+      scene_.collide = {};
+    } else if (in_ == In::scene && key_ == "triggers") {
+      in_ = In::triggers;
+    } else if (const std::size_t wanted = numbersOf(key_); in_ != In::numbers && wanted > 0) {
       around_ = in_;
       in_ = In::numbers;
       wanted_ = wanted;
@@ -165,7 +176,7 @@ class SceneReader final : public JsonEvents {
   }
 
   bool end_array() override {
-    if (in_ == In::bodies) {
+    if (in_ != In::numbers) {
       in_ = In::scene;
       return true;
     }
@@ -176,7 +187,7 @@ class SceneReader final : public JsonEvents {
   }
 
  private:
-  enum class In { nothing, scene, world, parameters, bodies, body, numbers };
+  enum class In { nothing, scene, world, parameters, collide, triggers, bodies, body, numbers };
 
   [[nodiscard]] bool stated(std::string_view key) const {
     return std::ranges::find(scene_keys_, key) != scene_keys_.end();
@@ -220,6 +231,10 @@ class SceneReader final : public JsonEvents {
       wanted = "an array of four numbers";
     } else if (in == In::body) {
       wanted = key_ == "frozen" ? "true or false" : "a number";
+    } else if (key_ == "collide") {
+      wanted = "an array of pairs of layers, each [a, b],";
+    } else if (key_ == "triggers") {
+      wanted = "an array of layers";
     } else if (key_ == "world" || key_ == "parameters") {
       wanted = "an object";
     } else if (key_ == "bodies") {
@@ -237,6 +252,7 @@ class SceneReader final : public JsonEvents {
   /// The length of the array of numbers under a key; 0: its value is not one.
   [[nodiscard]] std::size_t numbersOf(const std::string& key) const {
     if (object() == In::world) return 3;
+    if (object() == In::collide) return 2;
     if (object() != In::body) return 0;
     const std::size_t index = indexOfBodyKey(key);
     return index == kBodyKeys.size() ? 0 : kBodyKeys[index].numbers;
@@ -257,7 +273,16 @@ class SceneReader final : public JsonEvents {
   bool number(float value, double exact) {
     if (in_ == In::numbers) {
       if (read_ == wanted_) refuse();
+      if (around_ == In::collide) value = layer(exact);
       numbers_[read_++] = value;
+    } else if (in_ == In::triggers) {
+      scene_.triggers |= std::uint32_t{1} << layer(exact);
+    } else if (in_ == In::body && key_ == "layer") {
+      body_.layer = layer(exact);
+    } else if (in_ == In::body && key_ == "appears") {
+      body_.appears = frame(exact);
+    } else if (in_ == In::body && key_ == "vanishes") {
+      body_.vanishes = frame(exact);
     } else if (in_ == In::body && key_ == "sphere") {
       body_.shape = SphereShape{value};
     } else if (in_ == In::body && key_ == "mass") {
@@ -268,10 +293,28 @@ class SceneReader final : public JsonEvents {
     return true;
   }
 
+  /// The layer of this number.
+  [[nodiscard]] std::uint8_t layer(double number) const {
+    if (!(number >= 0 && number < LayerMatrix::kLayers) || number != std::floor(number)) {
+      fail(faultOfLayer(key_));
+    }
+    return static_cast<std::uint8_t>(number);
+  }
+
+  /// The frame of this number.
+  [[nodiscard]] std::uint32_t frame(double number) const {
+    if (!(number >= 0 && number <= kMostFrames) || number != std::floor(number)) {
+      fail(fmt::format("{}: a frame from 0 to {} is expected", key_, kMostFrames));
+    }
+    return static_cast<std::uint32_t>(number);
+  }
+
   /// Stores the array that has just been read.
   void keepNumbers() {
     const Vec3 vector = {numbers_[0], numbers_[1], numbers_[2]};
-    if (in_ == In::world) {
+    if (in_ == In::collide) {
+      scene_.collide.set(static_cast<std::size_t>(vector[0]), static_cast<std::size_t>(vector[1]));
+    } else if (in_ == In::world) {
       world_keys_ |= key_ == "min" ? 1U : 2U;
       auto& corner = key_ == "min" ? scene_.world.min : scene_.world.max;
       std::ranges::copy(vector, corner.begin());

@@ -1,12 +1,15 @@
 // Authored scenes to JSON, straight from the bodies: scenes may have millions of them. O(length).
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <bit>
 #include <cmath>
 #include <iterator>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "authoring/faults.h"
 #include "broadmark/json_fields.h"
@@ -65,6 +68,13 @@ void append(Text& text, const AuthoredBody& body) {
     fmt::format_to(std::back_inserter(text), ", \"mass\": {}", body.mass);
   }
   if (body.frozen) text.append(std::string_view(", \"frozen\": true"));
+  const auto append_unless = [&](unsigned usual, std::string_view key, unsigned value) {
+    if (value == usual) return;
+    fmt::format_to(std::back_inserter(text), ", \"{}\": {}", key, value);
+  };
+  append_unless(standard.layer, "layer", body.layer);
+  append_unless(standard.appears, "appears", body.appears);
+  append_unless(standard.vanishes, "vanishes", body.vanishes);
   text.push_back('}');
 }
 
@@ -78,6 +88,23 @@ void appendParameters(Text& text, const ParameterValues& stated) {
     fmt::format_to(std::back_inserter(text), "{}\"{}\": {}", separator, name, value.dump());
     separator = ", ";
   }
+}
+
+/// Which layers collide and which are triggers, unless all collide and none is.
+void appendLayers(Text& text, const AuthoredScene& scene) {
+  std::vector<std::string> pairs;
+  std::vector<std::size_t> triggers;
+  for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
+    if ((scene.triggers >> a & 1) != 0) triggers.push_back(a);
+    for (std::size_t b = a; b < LayerMatrix::kLayers; ++b) {
+      if (scene.collide.collide(a, b)) pairs.push_back(fmt::format("[{}, {}]", a, b));
+    }
+  }
+  const auto out = std::back_inserter(text);
+  if (scene.collide != LayerMatrix::all()) {
+    fmt::format_to(out, ",\n\"collide\": [{}]", fmt::join(pairs, ", "));
+  }
+  if (!triggers.empty()) fmt::format_to(out, ",\n\"triggers\": [{}]", fmt::join(triggers, ", "));
 }
 
 }  // namespace
@@ -94,7 +121,9 @@ std::string formatAuthoredScene(const AuthoredScene& scene) {
   append(text, "max", std::span(scene.world.max).first(3));
   text.append(std::string_view("},\n\"parameters\": {"));
   appendParameters(text, scene.parameters);
-  text.append(std::string_view("},\n\"bodies\": ["));
+  text.push_back('}');
+  appendLayers(text, scene);
+  text.append(std::string_view(",\n\"bodies\": ["));
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     text.append(std::string_view(i == 0 ? "\n" : ",\n"));
     append(text, scene.bodies[i]);

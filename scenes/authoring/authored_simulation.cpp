@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <span>
 
 #include "authoring/faults.h"
+#include "authoring/from_frame.h"
 #include "broadmark/error.h"
 #include "broadmark/hasher.h"
 #include "broadmark/scenes/registry.h"
@@ -23,6 +25,8 @@ SceneListing listingOf(const AuthoredScene& scene) {
           .name = scene.name,
           .summary = "bodies placed in the scene editor"};
 }
+
+bool staysForGood(const AuthoredBody& body) { return body.appears == 0 && body.vanishes == kNever; }
 
 class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument {
  public:
@@ -67,47 +71,66 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
             .object_type = objectTypeName(scene_),
             .objects = static_cast<std::uint32_t>(scene_.bodies.size()),
             .frames = parameters_.frames(),
-            .world = scene_.world};
+            .world = scene_.world,
+            .all_present = std::ranges::all_of(scene_.bodies, staysForGood),
+            .filter = collisionFilterOf(scene_)};
   }
 
   [[nodiscard]] std::unique_ptr<PhysicsEngine> createEngine() override {
     return parameters_.createEngine();
   }
 
-  void start() override {
-    for (const AuthoredBody& body : scene_.bodies) {
-      PhysicsBody& added = addBody({.shape = body.shape,
-                                    .mass = body.mass,
-                                    .pose = body.pose,
-                                    .linear_velocity = body.linear_velocity,
-                                    .angular_velocity = body.angular_velocity});
-      if (body.frozen) added.freeze();
+  /// Those that collide, but for triggers.
+  [[nodiscard]] LayerMatrix pushing(const SceneInfo&) const override {
+    LayerMatrix layers = scene_.collide;
+    for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
+      if ((scene_.triggers >> a & 1) == 0) continue;
+      for (std::size_t b = 0; b < LayerMatrix::kLayers; ++b) layers.set(a, b, false);
     }
-    engine()->setGravity(parameters_.gravity());
+    return layers;
+  }
+
+  void start() override {
+    changes_.clear();
+    for (std::size_t id = 0; id < scene_.bodies.size(); ++id) {
+      const AuthoredBody& body = scene_.bodies[id];
+      if (body.appears > 0) changes_.emplace(body.appears, id);
+      if (body.vanishes != kNever) changes_.emplace(body.vanishes, id);
+    }
+    for (std::size_t id = 0; id < scene_.bodies.size(); ++id) {
+      if (scene_.bodies[id].appears == 0) bringOn(id);
+    }
+    engine().setGravity(parameters_.gravity());
+  }
+
+  void comeAndGo(std::uint32_t frame) override {
+    const auto [first, last] = changes_.equal_range(frame);
+    for (auto change = first; change != last; ++change) {
+      const std::size_t id = change->second;
+      if (scene_.bodies[id].appears == frame) {
+        bringOn(id);
+      } else {
+        bodies().remove(id);
+      }
+    }
+  }
+
+  void bringOn(std::size_t id) {
+    const AuthoredBody& body = scene_.bodies[id];
+    PhysicsBody& added = bodies().add(id, {.shape = body.shape,
+                                           .mass = body.mass,
+                                           .pose = body.pose,
+                                           .linear_velocity = body.linear_velocity,
+                                           .angular_velocity = body.angular_velocity});
+    if (body.frozen) added.freeze();
   }
 
   AuthoredScene scene_;
   std::filesystem::path file_;
   AuthoredParameters parameters_;
   std::string hash_;
+  std::multimap<std::uint32_t, std::size_t> changes_;  ///< who comes or goes in which frame
 };
-
-/// A body that fills this box; a sphere if the object type says so.
-AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
-  AuthoredBody body;
-  Vec3 half;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float edge = box.max[axis] - box.min[axis];
-    body.pose.position[axis] = box.min[axis] + edge / 2;
-    half[axis] = std::max(edge, kLeastEdge) / 2;  // a body has some thickness
-  }
-  if (object_type == "Spheres") {
-    body.shape = SphereShape{half[0]};
-  } else {
-    body.shape = BoxShape{half};
-  }
-  return body;
-}
 
 /// Moves a source from its initial pose to frame `index`.
 Frame advance(FrameSource& source, Frame initial, std::uint32_t index) {
@@ -129,6 +152,30 @@ std::vector<Aabb> unturnedBoxes(PoseSource* source) {
 }
 
 }  // namespace
+
+AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
+  AuthoredBody body;
+  Vec3 half;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float edge = box.max[axis] - box.min[axis];
+    body.pose.position[axis] = box.min[axis] + edge / 2;
+    half[axis] = std::max(edge, kLeastEdge) / 2;  // a body has some thickness
+  }
+  if (object_type == "Spheres") {
+    body.shape = SphereShape{half[0]};
+  } else {
+    body.shape = BoxShape{half};
+  }
+  return body;
+}
+
+void takeCollisions(AuthoredScene& scene, const CollisionFilter& filter) {
+  if (!filter.worlds().empty() || !filter.tags().empty()) {
+    throw InputError(fmt::format(
+        "{}: its bodies have worlds or tags, which an authored scene cannot state", scene.name));
+  }
+  if (!filter.wantsAll()) scene.collide = filter.matrix();
+}
 
 AuthoredParameters::AuthoredParameters(const ParameterValues& stated)
     : engine_(choiceOf(engineEntries())), engine_parameters_(std::make_unique<ChosenEngine>()) {
@@ -193,6 +240,7 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
   // Gravity is not known: the bodies stay where they are.
   AuthoredScene scene{
       .name = info.name, .world = info.world, .parameters = {{"gravity_y", "0"}}, .bodies = {}};
+  takeCollisions(scene, info.filter);
   if (frame > 0 && !unturned.empty()) {
     const auto posed = poses->poses();
     for (std::size_t i = 0; i < unturned.size(); ++i) {
@@ -200,7 +248,11 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
       scene.bodies.back().pose = posed[i];
     }
   } else {
-    for (const Aabb& box : wanted.boxes) scene.bodies.push_back(bodyIn(box, info.object_type));
+    for (std::uint32_t id = 0; id < wanted.boxes.size(); ++id) {
+      if (isEmpty(wanted.boxes[id])) continue;
+      scene.bodies.push_back(bodyIn(wanted.boxes[id], info.object_type));
+      scene.bodies.back().layer = info.filter.groupsOf(id).layer;
+    }
   }
   requireSound(scene);
   return scene;

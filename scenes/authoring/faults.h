@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 #include "broadmark/scenes/authored_scene.h"
 
@@ -11,6 +13,9 @@ namespace broadmark::scenes {
 void requireSound(const AuthoredBody&, std::size_t id);
 /// Throws InputError when any part of the scene but its parameters is wrong.
 void requireSound(const AuthoredScene&);
+
+/// What is wrong with a number that is no layer, and what would be right.
+std::string faultOfLayer(std::string_view key);
 
 /// The edges of a box, or three times the diameter of a sphere.
 Vec3 edgesOf(const Shape&);

@@ -223,6 +223,21 @@ void SceneEditor::setAngularVelocity(const Vec3& angular) {
                [&](const AuthoredBody&) { return angular; });
 }
 
+void SceneEditor::setLayer(std::uint8_t layer) {
+  changeBodies("set the layer of", &AuthoredBody::layer,
+               [&](const AuthoredBody&) { return layer; });
+}
+
+void SceneEditor::setAppears(std::uint32_t frame) {
+  changeBodies("set the first frame of", &AuthoredBody::appears,
+               [&](const AuthoredBody&) { return frame; });
+}
+
+void SceneEditor::setVanishes(std::uint32_t frame) {
+  changeBodies("set the last frame of", &AuthoredBody::vanishes,
+               [&](const AuthoredBody&) { return frame; });
+}
+
 void SceneEditor::setName(std::string name) {
   const std::string fault = faultOfName(name);
   changeScene("rename the scene", &AuthoredScene::name, std::move(name), fault);

@@ -12,11 +12,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "engines/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::boids_engine {
@@ -47,10 +47,12 @@ std::array<float, 4> headingAlong(const Vector3f& velocity) {
   return {rotation.x(), rotation.y(), rotation.z(), rotation.w()};
 }
 
-class Boid final : public PhysicsBody {
+class Boid : public PhysicsBody {
  public:
   explicit Boid(const BodyDescription& description)
-      : shape_(description.shape), pose_(description.pose) {
+      : shape_(description.shape),
+        pose_(description.pose),
+        size_(2.0 / 3 * double{halfExtents(description.shape, {}).sum()}) {
     launch(toEigen(description.linear_velocity));
   }
 
@@ -71,6 +73,8 @@ class Boid final : public PhysicsBody {
 
   [[nodiscard]] Vector3f position() const { return toEigen(pose_.position); }
   [[nodiscard]] const Vector3f& velocity() const { return velocity_; }
+  /// The mean edge of its box while it is unturned.
+  [[nodiscard]] double size() const { return size_; }
   /// The launch speed, which it tends to keep.
   [[nodiscard]] float cruisingSpeed() const { return cruising_speed_; }
 
@@ -95,6 +99,7 @@ class Boid final : public PhysicsBody {
 
   Shape shape_;
   Pose pose_;
+  double size_;
   Vector3f velocity_ = Vector3f::Zero();
   float cruising_speed_ = 0;
   bool frozen_ = false;
@@ -186,10 +191,12 @@ class BoidsEngine final : public PhysicsEngine {
     visit({"max_speed", "largest speed, as a multiple of that at launch", &max_speed_, 1, 100});
   }
 
+  /// Boids pass through each other, whatever their layers.
+  void setLayers(const LayerMatrix&) override {}
   PhysicsBody& addBody(const BodyDescription& description) override {
-    size_sum_ += 2.0 / 3 * double{halfExtents(description.shape, {}).sum()};
-    return boids_.emplace_back(description);
+    return bodies_.add(description);
   }
+  void removeBody(PhysicsBody& body) override { bodies_.remove(static_cast<Boid&>(body)); }
   void addWall(const HalfSpace& wall) override { walls_.push_back(wall); }
   void setGravity(const Vec3& gravity) override { gravity_ = toEigen(gravity); }
   [[nodiscard]] Vec3 gravity() const override { return fromEigen(gravity_); }
@@ -197,6 +204,8 @@ class BoidsEngine final : public PhysicsEngine {
   void step() override {
     const auto seconds =
         static_cast<float>(settings_.time_step / static_cast<double>(settings_.substeps));
+    boids_.clear();
+    bodies_.each([this](Boid& boid) { boids_.push_back(&boid); });
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       steer(seconds);
       fly(seconds);
@@ -204,7 +213,7 @@ class BoidsEngine final : public PhysicsEngine {
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    return std::ranges::all_of(boids_, &Boid::asleep);
+    return bodies_.all([](const Boid& boid) { return boid.asleep(); });
   }
 
  private:
@@ -212,14 +221,18 @@ class BoidsEngine final : public PhysicsEngine {
   void steer(float seconds) {
     if (boids_.empty()) return;
     positions_.clear();
-    for (const Boid& boid : boids_) positions_.push_back(boid.position());
-    const auto body_size = static_cast<float>(size_sum_ / static_cast<double>(boids_.size()));
+    double size_sum = 0;
+    for (const Boid* boid : boids_) {
+      positions_.push_back(boid->position());
+      size_sum += boid->size();
+    }
+    const auto body_size = static_cast<float>(size_sum / static_cast<double>(boids_.size()));
     const float sight = static_cast<float>(sight_) * body_size;
     const float elbow_room = std::min(static_cast<float>(elbow_room_) * body_size, sight);
     cells_.rebuild(positions_, sight);
     velocities_.resize(boids_.size());
     for (std::size_t i = 0; i < boids_.size(); ++i) {
-      const Boid& boid = boids_[i];
+      const Boid& boid = *boids_[i];
       if (boid.asleep()) continue;
       const Vector3f acceleration =
           gravity_ + boid.cruisingSpeed() * (amongOthers(i, sight, elbow_room) + offTheWalls(boid));
@@ -229,7 +242,7 @@ class BoidsEngine final : public PhysicsEngine {
 
   /// The three rules: an acceleration per cruising speed.
   [[nodiscard]] Vector3f amongOthers(std::size_t self, float sight, float elbow_room) const {
-    const Boid& boid = boids_[self];
+    const Boid& boid = *boids_[self];
     Vector3f away = Vector3f::Zero();
     Vector3f velocities = Vector3f::Zero();
     Vector3f ways = Vector3f::Zero();
@@ -240,8 +253,8 @@ class BoidsEngine final : public PhysicsEngine {
       const float distance = way.norm();
       if (other == self || distance > sight) return true;
       if (distance < elbow_room && distance > 0) away -= way * (1 / distance - 1 / elbow_room);
-      if (!boids_[other].asleep()) {
-        velocities += boids_[other].velocity();
+      if (!boids_[other]->asleep()) {
+        velocities += boids_[other]->velocity();
         ways += way;
         ++leaders;
       }
@@ -282,9 +295,9 @@ class BoidsEngine final : public PhysicsEngine {
 
   void fly(float seconds) {
     for (std::size_t i = 0; i < boids_.size(); ++i) {
-      if (boids_[i].asleep()) continue;
-      boids_[i].fly(velocities_[i], seconds);
-      keepInside(boids_[i]);
+      if (boids_[i]->asleep()) continue;
+      boids_[i]->fly(velocities_[i], seconds);
+      keepInside(*boids_[i]);
     }
   }
 
@@ -317,10 +330,10 @@ class BoidsEngine final : public PhysicsEngine {
   double min_speed_ = 0.7;
   double max_speed_ = 1.4;
 
-  std::deque<Boid> boids_;  ///< a deque, because scenes keep references
+  BodyPool<Boid> bodies_;
+  std::vector<Boid*> boids_;  ///< all bodies, while the engine steps
   std::vector<HalfSpace> walls_;
   Vector3f gravity_ = Vector3f::Zero();
-  double size_sum_ = 0;  ///< of mean edges of unturned bodies
   CellTable cells_;
   std::vector<Vector3f> positions_;   ///< by boid, before any has moved
   std::vector<Vector3f> velocities_;  ///< by boid, as decided by steer()

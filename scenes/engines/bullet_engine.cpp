@@ -11,11 +11,13 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
 #include "broadmark/scenes/registry.h"
+#include "engines/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::bullet_engine {
@@ -226,9 +228,32 @@ class Stillness {
 /// What the world knows of a body beyond what Bullet does. Each body's user pointer leads to its
 /// own.
 struct Rest {
+  std::uint8_t layer = 0;
   Stillness stillness;
   bool held = false;       ///< in the last step: still and supported
   bool disturbed = false;  ///< in this step: touches a body that is not still
+};
+
+/// Lets only those bodies meet whose layers collide. All meet the walls.
+class LayerFilter final : public btOverlapFilterCallback {
+ public:
+  explicit LayerFilter(const LayerMatrix& layers) : layers_(layers) {}
+
+  bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
+    const Rest* rest_a = restOf(*a);
+    const Rest* rest_b = restOf(*b);
+    if (rest_a == nullptr || rest_b == nullptr) return true;
+    return layers_.collide(rest_a->layer, rest_b->layer);
+  }
+
+ private:
+  /// Null: a wall.
+  static const Rest* restOf(const btBroadphaseProxy& proxy) {
+    const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
+    return static_cast<const Rest*>(object.getUserPointer());
+  }
+
+  LayerMatrix layers_;
 };
 
 /// Bullet's world with a limit on angular speeds, and with piles that come to rest. Without help
@@ -245,6 +270,18 @@ class World final : public btDiscreteDynamicsWorld {
 
   /// Support may have gone: the next step fixes no body.
   void releaseAll() { release_all_ = true; }
+
+  /// Wakes the bodies that touch this one, and holds them no longer. The others that they carry
+  /// follow as soon as these move.
+  void releaseThoseAt(const btRigidBody& body) {
+    btDispatcher& contacts = *getDispatcher();
+    for (int i = 0; i < contacts.getNumManifolds(); ++i) {
+      const btPersistentManifold& contact = *contacts.getManifoldByIndexInternal(i);
+      if (contact.getNumContacts() == 0) continue;
+      if (contact.getBody0() == &body) release(*contact.getBody1());
+      if (contact.getBody1() == &body) release(*contact.getBody0());
+    }
+  }
 
  protected:
   void solveConstraints(btContactSolverInfo& settings) override {
@@ -287,6 +324,13 @@ class World final : public btDiscreteDynamicsWorld {
     return *static_cast<Rest*>(body.getUserPointer());
   }
 
+  static void release(const btCollisionObject& body) {
+    if (body.isStaticObject()) return;
+    rest(body).held = false;
+    rest(body).stillness.end();
+    body.activate();
+  }
+
   static void setShareOfImpulses(btRigidBody& body, btScalar share) {
     body.setLinearFactor(btVector3(share, share, share));
     body.setAngularFactor(share);
@@ -325,11 +369,12 @@ class World final : public btDiscreteDynamicsWorld {
   bool release_all_ = false;
 };
 
-class BulletBody final : public PhysicsBody {
+class BulletBody : public PhysicsBody {
  public:
   BulletBody(const BodyDescription& description,
              const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
       : shape_(description.shape), world_(world), body_(info) {
+    rest_.layer = description.layer;
     body_.setUserPointer(&rest_);
     body_.setLinearVelocity(toBullet(description.linear_velocity));
     body_.setAngularVelocity(toBullet(description.angular_velocity));
@@ -375,6 +420,11 @@ class BulletBody final : public PhysicsBody {
     body_.forceActivationState(ISLAND_SLEEPING);
   }
 
+  /// Leaves the world, and wakes the bodies that it touches.
+  void leave() {
+    world_.releaseThoseAt(body_);
+    world_.removeRigidBody(&body_);
+  }
   /// Whether it has recently moved too fast to fall asleep.
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// Does nothing to a frozen body.
@@ -390,6 +440,15 @@ class BulletBody final : public PhysicsBody {
   Rest rest_;
   btRigidBody body_;
 };
+
+/// Bullet sets aside room for thousands of contacts at once: too much where there are thousands of
+/// worlds. Beyond this room it takes memory as it needs it.
+btDefaultCollisionConstructionInfo littleRoom() {
+  btDefaultCollisionConstructionInfo info;
+  info.m_defaultMaxPersistentManifoldPoolSize = 64;
+  info.m_defaultMaxCollisionAlgorithmPoolSize = 64;
+  return info;
+}
 
 class BulletEngine final : public PhysicsEngine {
  public:
@@ -425,6 +484,12 @@ class BulletEngine final : public PhysicsEngine {
   BulletEngine(const BulletEngine&) = delete;
   BulletEngine& operator=(const BulletEngine&) = delete;
 
+  void setLayers(const LayerMatrix& layers) override {
+    if (layers == LayerMatrix::all()) return;
+    layer_filter_.emplace(layers);
+    broad_phase_.getOverlappingPairCache()->setOverlapFilterCallback(&*layer_filter_);
+  }
+
   PhysicsBody& addBody(const BodyDescription& description) override {
     btCollisionShape& shape =
         std::visit([this](const auto& kind) -> btCollisionShape& { return collisionShape(kind); },
@@ -439,7 +504,13 @@ class BulletEngine final : public PhysicsEngine {
     info.m_linearDamping = static_cast<btScalar>(settings_.linear_damping);
     info.m_angularDamping = static_cast<btScalar>(settings_.angular_damping);
     setSleepingThresholds(info);
-    return bodies_.emplace_back(description, info, world_);
+    return bodies_.add(description, info, world_);
+  }
+
+  void removeBody(PhysicsBody& body) override {
+    auto& bullet_body = static_cast<BulletBody&>(body);
+    bullet_body.leave();
+    bodies_.remove(bullet_body);
   }
 
   void addWall(const HalfSpace& half_space) override {
@@ -453,7 +524,8 @@ class BulletEngine final : public PhysicsEngine {
 
   void setGravity(const Vec3& gravity) override {
     if (toBullet(gravity) == world_.getGravity()) return;
-    for (BulletBody& body : bodies_) body.wake();  // Bullet changes only bodies that are awake
+    // Bullet changes only bodies that are awake.
+    bodies_.each([](BulletBody& body) { body.wake(); });
     world_.setGravity(toBullet(gravity));
   }
 
@@ -471,7 +543,7 @@ class BulletEngine final : public PhysicsEngine {
   [[nodiscard]] bool allAsleep() const override {
     // When all bodies are ready to sleep, Bullet lets them sleep in the next step, except those
     // that touch nothing.
-    return std::ranges::none_of(bodies_, &BulletBody::restless);
+    return bodies_.all([](const BulletBody& body) { return !body.restless(); });
   }
 
  private:
@@ -503,15 +575,16 @@ class BulletEngine final : public PhysicsEngine {
   btScalar material_restitution_ = 0;
   WallContact<btBoxShape>::CreateFunc box_wall_contact_;
   WallContact<btSphereShape>::CreateFunc sphere_wall_contact_;
-  btDefaultCollisionConfiguration configuration_;
+  btDefaultCollisionConfiguration configuration_{littleRoom()};
   btCollisionDispatcher dispatcher_{&configuration_};
+  std::optional<LayerFilter> layer_filter_;
   btDbvtBroadphase broad_phase_;
   btSequentialImpulseConstraintSolver solver_;
   std::map<Vec3, btBoxShape> box_shapes_;
   std::map<float, btSphereShape> sphere_shapes_;
   std::deque<HalfSpaceShape> wall_shapes_;
   std::deque<btCollisionObject> walls_;
-  std::deque<BulletBody> bodies_;
+  BodyPool<BulletBody> bodies_;
   // Last member, destroyed first: its destructor still uses everything in the world.
   World world_{&dispatcher_, &broad_phase_, &solver_, &configuration_,
                static_cast<btScalar>(settings_.max_angular_speed)};

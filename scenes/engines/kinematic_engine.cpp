@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "engines/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::kinematic_engine {
@@ -52,7 +52,7 @@ struct World {
   std::int64_t substeps_to_sleep = 0;
 };
 
-class KinematicBody final : public PhysicsBody {
+class KinematicBody : public PhysicsBody {
  public:
   explicit KinematicBody(const BodyDescription& body)
       : shape_(body.shape),
@@ -178,34 +178,39 @@ class KinematicEngine final : public PhysicsEngine {
     world_.substeps_to_sleep = static_cast<std::int64_t>(std::ceil(kTimeToSleep / time));
   }
 
+  /// Bodies pass through each other, whatever their layers.
+  void setLayers(const LayerMatrix&) override {}
+
   PhysicsBody& addBody(const BodyDescription& description) override {
-    return bodies_.emplace_back(description);
+    return bodies_.add(description);
   }
+
+  void removeBody(PhysicsBody& body) override { bodies_.remove(static_cast<KinematicBody&>(body)); }
 
   void addWall(const HalfSpace& wall) override { world_.walls.push_back(wall); }
 
   void setGravity(const Vec3& gravity) override {
     if (gravity == world_.gravity) return;
     world_.gravity = gravity;
-    for (KinematicBody& body : bodies_) body.wake();
+    bodies_.each([](KinematicBody& body) { body.wake(); });
   }
 
   [[nodiscard]] Vec3 gravity() const override { return world_.gravity; }
 
   void step() override {
-    for (KinematicBody& body : bodies_) {
+    bodies_.each([this](KinematicBody& body) {
       for (std::int64_t i = 0; i < substeps_ && !body.asleep(); ++i) body.move(world_);
-    }
+    });
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    return std::ranges::all_of(bodies_, &KinematicBody::asleep);
+    return bodies_.all([](const KinematicBody& body) { return body.asleep(); });
   }
 
  private:
   std::int64_t substeps_;
   World world_;
-  std::deque<KinematicBody> bodies_;
+  BodyPool<KinematicBody> bodies_;
 };
 
 }  // namespace

@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
+#include "engines/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::ode_engine {
@@ -47,6 +47,8 @@ struct Destroy {
 using World = std::unique_ptr<dxWorld, Destroy<dWorldDestroy>>;
 using Space = std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>>;
 using JointGroup = std::unique_ptr<dxJointGroup, Destroy<dJointGroupDestroy>>;
+using Body = std::unique_ptr<dxBody, Destroy<dBodyDestroy>>;
+using Geom = std::unique_ptr<dxGeom, Destroy<dGeomDestroy>>;
 
 /// The library must be initialised once, before its first use.
 void initialiseOde() {
@@ -118,25 +120,29 @@ void setMass(dMass& mass, double total, const SphereShape& sphere) {
   dMassSetSphereTotal(&mass, total, sphere.radius);
 }
 
-class OdeBody final : public PhysicsBody {
+class OdeBody : public PhysicsBody {
  public:
-  OdeBody(const BodyDescription& description, dWorldID world, dSpaceID space)
+  /// `collides_with`: the layers whose bodies it pushes.
+  OdeBody(const BodyDescription& description, dWorldID world, dSpaceID space,
+          std::uint32_t collides_with)
       : shape_(description.shape), body_(dBodyCreate(world)) {
     std::visit(
         [&](const auto& shape) {
           dMass mass;
           setMass(mass, description.mass, shape);
-          dBodySetMass(body_, &mass);
+          dBodySetMass(body_.get(), &mass);
           // The diagonal of three rows of four.
           mean_inertia_ = (mass.I[0] + mass.I[5] + mass.I[10]) / 3 / mass.mass;
-          geom_ = makeGeom(space, shape);
+          geom_.reset(makeGeom(space, shape));
           wall_points_ = wallPoints(shape);
           point_radius_ = pointRadius(shape);
           bounding_radius_ = boundingRadius(shape);
         },
         shape_);
-    dGeomSetBody(geom_, body_);
-    dGeomSetData(geom_, this);
+    dGeomSetBody(geom_.get(), body_.get());
+    dGeomSetData(geom_.get(), this);
+    dGeomSetCategoryBits(geom_.get(), std::uint32_t{1} << description.layer);
+    dGeomSetCollideBits(geom_.get(), collides_with);
     setPose(description.pose);
     setVelocity(description.linear_velocity, description.angular_velocity);
   }
@@ -145,34 +151,38 @@ class OdeBody final : public PhysicsBody {
 
   [[nodiscard]] Pose pose() const override {
     if (frozen_) return frozen_pose_;
-    const dReal* q = dBodyGetQuaternion(body_);  // w x y z
-    return {fromOde(dBodyGetPosition(body_)),
+    const dReal* q = dBodyGetQuaternion(body_.get());  // w x y z
+    return {fromOde(dBodyGetPosition(body_.get())),
             {static_cast<float>(q[1]), static_cast<float>(q[2]), static_cast<float>(q[3]),
              static_cast<float>(q[0])}};
   }
 
-  [[nodiscard]] Vec3 linearVelocity() const override { return fromOde(dBodyGetLinearVel(body_)); }
-  [[nodiscard]] Vec3 angularVelocity() const override { return fromOde(dBodyGetAngularVel(body_)); }
+  [[nodiscard]] Vec3 linearVelocity() const override {
+    return fromOde(dBodyGetLinearVel(body_.get()));
+  }
+  [[nodiscard]] Vec3 angularVelocity() const override {
+    return fromOde(dBodyGetAngularVel(body_.get()));
+  }
 
   void setPose(const Pose& pose) override {
     const Vec3& p = pose.position;
     const auto& q = pose.rotation;
     const dQuaternion quaternion = {q[3], q[0], q[1], q[2]};
     // The geom moves its body along; that of a frozen body has none.
-    dGeomSetPosition(geom_, p[0], p[1], p[2]);
-    dGeomSetQuaternion(geom_, quaternion);
+    dGeomSetPosition(geom_.get(), p[0], p[1], p[2]);
+    dGeomSetQuaternion(geom_.get(), quaternion);
     frozen_pose_ = pose;
     wake();
   }
 
   void setVelocity(const Vec3& linear, const Vec3& angular) override {
     if (frozen_) return;
-    dBodySetLinearVel(body_, linear[0], linear[1], linear[2]);
-    dBodySetAngularVel(body_, angular[0], angular[1], angular[2]);
+    dBodySetLinearVel(body_.get(), linear[0], linear[1], linear[2]);
+    dBodySetAngularVel(body_.get(), angular[0], angular[1], angular[2]);
     wake();
   }
 
-  [[nodiscard]] bool asleep() const override { return dBodyIsEnabled(body_) == 0; }
+  [[nodiscard]] bool asleep() const override { return dBodyIsEnabled(body_.get()) == 0; }
   [[nodiscard]] bool frozen() const override { return frozen_; }
 
   void freeze() override {
@@ -180,13 +190,13 @@ class OdeBody final : public PhysicsBody {
     frozen_pose_ = pose();
     frozen_ = true;
     // A geom without a body is an immovable obstacle. It stays where it is.
-    dGeomSetBody(geom_, nullptr);
+    dGeomSetBody(geom_.get(), nullptr);
     stop();
   }
 
   /// Does nothing to a frozen body.
   void wake() {
-    if (!frozen_) dBodyEnable(body_);
+    if (!frozen_) dBodyEnable(body_.get());
     slow_time_ = 0;
   }
 
@@ -194,31 +204,32 @@ class OdeBody final : public PhysicsBody {
   /// ignores bodies that touch nothing.
   void rest(double sleep_threshold, double time) {
     if (asleep()) return;
-    const dReal* v = dBodyGetLinearVel(body_);
-    const dReal* w = dBodyGetAngularVel(body_);
+    const dReal* v = dBodyGetLinearVel(body_.get());
+    const dReal* w = dBodyGetAngularVel(body_.get());
     const double energy = (dCalcVectorDot3(v, v) + mean_inertia_ * dCalcVectorDot3(w, w)) / 2;
     slow_time_ = energy < sleep_threshold ? slow_time_ + time : 0;
     if (slow_time_ >= kTimeToSleep) stop();
   }
 
   /// The body that contacts act on; null: immovable.
-  [[nodiscard]] dBodyID dynamicBody() const { return frozen_ ? nullptr : body_; }
+  [[nodiscard]] dBodyID dynamicBody() const { return frozen_ ? nullptr : body_.get(); }
+  [[nodiscard]] dGeomID geom() const { return geom_.get(); }
 
   /// Calls add(point, distance) for each point of the body that may reach the wall within `time`:
   /// its position, and its distance to the wall (negative: behind it).
   template <class Add>
   void visitWallPoints(const HalfSpace& wall, double time, const Add& add) const {
     const dVector3 normal = {wall.normal[0], wall.normal[1], wall.normal[2]};
-    const dReal* centre = dBodyGetPosition(body_);
+    const dReal* centre = dBodyGetPosition(body_.get());
     const double height = dCalcVectorDot3(normal, centre) - wall.offset - bounding_radius_;
-    const dReal* turning = dBodyGetAngularVel(body_);
-    const double speed = std::max(0.0, -dCalcVectorDot3(normal, dBodyGetLinearVel(body_))) +
+    const dReal* turning = dBodyGetAngularVel(body_.get());
+    const double speed = std::max(0.0, -dCalcVectorDot3(normal, dBodyGetLinearVel(body_.get()))) +
                          dCalcVectorLength3(turning) * bounding_radius_;
     const double reach = kRestingDepth + time * speed;
     if (height > reach) return;
     for (const Vec3& local : wall_points_) {
       dVector3 point;
-      dBodyGetRelPointPos(body_, local[0], local[1], local[2], point);
+      dBodyGetRelPointPos(body_.get(), local[0], local[1], local[2], point);
       const double distance = dCalcVectorDot3(normal, point) - wall.offset - point_radius_;
       if (distance > reach) continue;
       for (int axis = 0; axis < 3; ++axis) point[axis] -= point_radius_ * normal[axis];
@@ -228,14 +239,14 @@ class OdeBody final : public PhysicsBody {
 
  private:
   void stop() {
-    dBodySetLinearVel(body_, 0, 0, 0);
-    dBodySetAngularVel(body_, 0, 0, 0);
-    dBodyDisable(body_);
+    dBodySetLinearVel(body_.get(), 0, 0, 0);
+    dBodySetAngularVel(body_.get(), 0, 0, 0);
+    dBodyDisable(body_.get());
   }
 
   Shape shape_;
-  dBodyID body_;            ///< owned by the world
-  dGeomID geom_ = nullptr;  ///< owned by the space
+  Body body_;
+  Geom geom_;
   std::vector<Vec3> wall_points_;
   double point_radius_ = 0;  ///< of a ball around each wall point
   double bounding_radius_ = 0;
@@ -265,8 +276,21 @@ class OdeEngine final : public PhysicsEngine {
     dWorldSetAngularDampingThreshold(world, 0);
   }
 
+  void setLayers(const LayerMatrix& layers) override { layers_ = layers; }
+
   PhysicsBody& addBody(const BodyDescription& description) override {
-    return bodies_.emplace_back(description, world_.get(), space_.get());
+    return bodies_.add(description, world_.get(), space_.get(), layers_.rows()[description.layer]);
+  }
+
+  void removeBody(PhysicsBody& body) override {
+    auto& ode_body = static_cast<OdeBody&>(body);
+    // Contacts are not kept from step to step: all that are near may have leant on it.
+    const dGeomID space_as_geom = reinterpret_cast<dGeomID>(space_.get());
+    dSpaceCollide2(ode_body.geom(), space_as_geom, nullptr, [](void*, dGeomID a, dGeomID b) {
+      static_cast<OdeBody*>(dGeomGetData(a))->wake();
+      static_cast<OdeBody*>(dGeomGetData(b))->wake();
+    });
+    bodies_.remove(ode_body);
   }
 
   void addWall(const HalfSpace& wall) override { walls_.push_back(wall); }
@@ -275,7 +299,7 @@ class OdeEngine final : public PhysicsEngine {
     if (gravity == gravity_) return;
     gravity_ = gravity;
     dWorldSetGravity(world_.get(), gravity[0], gravity[1], gravity[2]);
-    for (OdeBody& body : bodies_) body.wake();
+    bodies_.each([](OdeBody& body) { body.wake(); });
   }
 
   [[nodiscard]] Vec3 gravity() const override { return gravity_; }
@@ -284,9 +308,9 @@ class OdeEngine final : public PhysicsEngine {
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       // Sleeping bodies, too: a body that is awake wakes those that it touches, and these need
       // their support in the same step.
-      for (const OdeBody& body : bodies_) {
+      bodies_.each([this](const OdeBody& body) {
         if (!body.frozen()) touchWalls(body);
-      }
+      });
       dSpaceCollide(space_.get(), this, [](void* engine, dGeomID a, dGeomID b) {
         static_cast<OdeEngine*>(engine)->touch(a, b);
       });
@@ -295,12 +319,12 @@ class OdeEngine final : public PhysicsEngine {
         dWorldQuickStep(world_.get(), time_);
       }
       dJointGroupEmpty(contacts_.get());
-      for (OdeBody& body : bodies_) body.rest(settings_.sleep_threshold, time_);
+      bodies_.each([this](OdeBody& body) { body.rest(settings_.sleep_threshold, time_); });
     }
   }
 
   [[nodiscard]] bool allAsleep() const override {
-    return std::ranges::all_of(bodies_, &OdeBody::asleep);
+    return bodies_.all([](const OdeBody& body) { return body.asleep(); });
   }
 
  private:
@@ -359,11 +383,12 @@ class OdeEngine final : public PhysicsEngine {
   double time_;  ///< of a substep, in seconds
   unsigned long random_ = 0;
   Vec3 gravity_{};
+  LayerMatrix layers_ = LayerMatrix::all();
   World world_;
   Space space_;
   JointGroup contacts_;
   std::vector<HalfSpace> walls_;
-  std::deque<OdeBody> bodies_;
+  BodyPool<OdeBody> bodies_;
 };
 
 }  // namespace

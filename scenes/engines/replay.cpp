@@ -49,9 +49,10 @@ std::optional<Candidate> candidateOf(const fs::path& path, const std::string& sc
 
 class ReplaySimulation final : public Simulation {
  public:
-  ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine)
+  ReplaySimulation(const SceneListing& scene, const ReplayEntry& engine, std::string_view needed)
       : Simulation(scene),
         entry_(engine),
+        needed_(needed),
         object_type_(choiceOf(objectTypes())),
         engine_{engine.listing.id, {engine.listing.id}} {}
 
@@ -129,6 +130,14 @@ class ReplaySimulation final : public Simulation {
   /// The wanted recording: the shortest that is long enough, or the longest when all frames are
   /// wanted; among equals that with the preferred extension.
   [[nodiscard]] Candidate find() const {
+    const auto& extensions = entry_.extensions;
+    if (needed_ == kBroadmarkExtension &&
+        std::ranges::find(extensions, needed_) == extensions.end()) {
+      throw InputError(fmt::format(
+          "--engine {}: cannot replay {}: {} recordings hold neither absent bodies nor layers or "
+          "worlds",
+          engine_.value, listing().id, fmt::join(extensions, " and ")));
+    }
     if (input_.empty()) {
       throw InputError(
           fmt::format("--engine {}: name the recording to replay, or its directory, with --input",
@@ -223,6 +232,7 @@ class ReplaySimulation final : public Simulation {
   }
 
   ReplayEntry entry_;
+  std::string_view needed_;
   std::int64_t objects_ = 1000;
   std::int64_t frames_ = 0;
   Choice object_type_;
@@ -235,8 +245,9 @@ class ReplaySimulation final : public Simulation {
 
 }  // namespace
 
-std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine) {
-  return std::make_unique<ReplaySimulation>(scene, engine);
+std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
+                                       std::string_view needed) {
+  return std::make_unique<ReplaySimulation>(scene, engine, needed);
 }
 
 }  // namespace broadmark::scenes

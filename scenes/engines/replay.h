@@ -28,6 +28,8 @@ struct ReplayEntry {
 std::vector<ReplayEntry> replayEntries();
 
 /// A replay of a built-in scene: a simulation whose parameters say which recording it reads.
-std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine);
+/// `needed`: the extension of recordings that can hold the scene.
+std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
+                                       std::string_view needed);
 
 }  // namespace broadmark::scenes

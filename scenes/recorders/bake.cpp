@@ -114,7 +114,8 @@ std::string bakedParameters(const fs::path& recording) {
   return sidecar.empty() ? std::string() : formatJson(Json(sidecar));
 }
 
-void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
+void requireBakeable(Simulation& simulation, const std::vector<fs::path>& paths) {
+  for (const fs::path& path : paths) requireHolds(path, simulation.scene());
   const fs::path input = simulation.input();
   const auto place = [](const fs::path& path) { return sidecarPath(fs::weakly_canonical(path)); };
   std::set<fs::path> taken;
@@ -129,7 +130,7 @@ void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
 
 bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
           const FrameProgress& progress) {
-  requireApart(simulation, paths);
+  requireBakeable(simulation, paths);
   std::vector<std::unique_ptr<scenes::Recorder>> recorders;
   for (const fs::path& path : paths) {
     recorders.push_back(recorderOf(path).create(path, simulation.scene(), originOf(simulation)));

@@ -14,7 +14,7 @@ class BoxRecorder final : public Recorder {
               const RecordingOrigin& origin)
       : writer_(path, scene, origin) {}
 
-  void record(const Frame& frame, PoseSource&) override { writer_.write(frame.boxes); }
+  void record(const Frame& frame, PoseSource&) override { writer_.write(frame); }
   std::string finish() override { return writer_.finish(); }
 
  private:

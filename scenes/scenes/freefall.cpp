@@ -2,6 +2,7 @@
 // at the end.
 
 #include <cmath>
+#include <cstdint>
 
 #include "broadmark/scenes/scene.h"
 #include "broadmark/scenes/simulation.h"
@@ -27,8 +28,9 @@ class FreeFall final : public Scene {
 
   void act(Stage& stage, std::uint32_t frame) override {
     if (!freeze_slow_ || frame < freeze_after_) return;
-    for (PhysicsBody* body : stage.bodies) {
-      if (!body->frozen() && isSlow(*body)) body->freeze();
+    for (const std::uint32_t id : stage.bodies.inEngine()) {
+      PhysicsBody& body = *stage.bodies[id];
+      if (!body.frozen() && isSlow(body)) body.freeze();
     }
   }
 

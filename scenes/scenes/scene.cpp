@@ -12,6 +12,12 @@ BodyDescription Scene::body(std::size_t index, const Settings& settings, const O
   return body;
 }
 
+void Scene::populate(Stage& stage) {
+  for (std::size_t i = 0; i < stage.bodies.size(); ++i) {
+    stage.bodies.add(i, body(i, stage.settings, stage.object_type, stage.random));
+  }
+}
+
 void Scene::start(Stage& stage) {
   const Settings& settings = stage.settings;
   stage.engine.setGravity({0, -static_cast<float>(settings.gravity * settings.side()), 0});

@@ -52,4 +52,9 @@ double Settings::side() const {
   return std::cbrt(bodies * scale * scale * scale / density);
 }
 
+Aabb Settings::world() const {
+  const auto half = static_cast<float>(side() / 2);
+  return {{-half, -half, -half, 0}, {half, half, half, 0}};
+}
+
 }  // namespace broadmark::scenes

@@ -18,6 +18,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -185,6 +186,9 @@ class PlainBullet final : public PhysicsEngine {
     return body;
   }
 
+  void setLayers(const LayerMatrix&) override {}
+  void removeBody(PhysicsBody&) override {}  // the scenes that run here keep all bodies
+
   void addWall(const HalfSpace& wall) override {
     auto& shape = wall_shapes_.emplace_back(toBullet(wall.normal), wall.offset);
     btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, &shape);
@@ -267,12 +271,9 @@ class Contestant {
         engine_->addWall(wall);
       }
     }
-    const ObjectType cubes = objectTypes().front();
-    for (std::int64_t i = 0; i < objects; ++i) {
-      bodies_.push_back(
-          &engine_->addBody(scene_->body(static_cast<std::size_t>(i), settings_, cubes, random_)));
-    }
+    bodies_.emplace(*engine_, SceneInfo{.objects = static_cast<std::uint32_t>(objects)});
     Stage stage = makeStage();
+    scene_->populate(stage);
     scene_->start(stage);
   }
 
@@ -289,14 +290,15 @@ class Contestant {
   [[nodiscard]] PhysicsEngine& engine() { return *engine_; }
 
  private:
-  Stage makeStage() { return {settings_, *engine_, bodies_, random_}; }
+  Stage makeStage() { return {settings_, cubes_, *engine_, *bodies_, random_}; }
 
   std::string name_;
   std::unique_ptr<Scene> scene_;
   Settings settings_;
   Random random_{1};
   std::unique_ptr<PhysicsEngine> engine_;
-  std::vector<PhysicsBody*> bodies_;
+  const ObjectType cubes_ = objectTypes().front();
+  std::optional<Bodies> bodies_;
   double seconds_ = 0;
 };
 

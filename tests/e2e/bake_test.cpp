@@ -63,8 +63,8 @@ TEST_F(Bake, ThreadsChangeNothing) {
   for (const std::string threads : {"1", "3"}) {
     runQuietly({"bake", "--objects", "150,300,50", "--frames", "25", "--output", threads,
                 "--threads", threads});
-    for (const auto& entry : fs::directory_iterator(file(threads + "/Recordings_AABBs"))) {
-      if (entry.path().extension() != ".aabbs") continue;
+    for (const auto& entry : fs::recursive_directory_iterator(file(threads))) {
+      if (entry.is_directory() || entry.path().extension() == ".json") continue;
       const auto [known, first] = hashes.emplace(entry.path().filename(), readFile(entry.path()));
       EXPECT_EQ(first, threads == "1") << entry.path();
       EXPECT_TRUE(known->second == readFile(entry.path())) << entry.path();

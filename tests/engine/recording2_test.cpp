@@ -442,6 +442,20 @@ TEST(Recording2Writer, LeavesNothingUnlessFinished) {
   EXPECT_TRUE(directory.empty());
 }
 
+TEST(Recording2Writer, TakesASourcesWordForWhatChanged) {
+  const TemporaryDirectory directory;
+  for (const int share : {0, 2, 100}) {
+    const Frames frames = changingFrames(kBodies, 40, share, false);
+    const SceneInfo scene = sceneOf(frames);
+    RecordingWriter writer(directory / "told.broadmark", scene);
+    for (std::uint32_t f = 0; f <= 40; ++f) {
+      const std::vector<std::uint32_t> changed = changesIn(frames, f);
+      writer.write(Frame{f, frames[f], changed});
+    }
+    EXPECT_EQ(writer.finish(), write(directory / "found.broadmark", scene, frames)) << share;
+  }
+}
+
 TEST(Recording2Writer, RefusesBoxesThatNoReaderWouldTake) {
   const Frames frames = changingFrames(2, 1, 0, true);
   RecordingWriter writer(SceneInfo{.objects = 2, .frames = 1, .all_present = false});

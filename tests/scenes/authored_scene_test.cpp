@@ -56,6 +56,8 @@ AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
   std::mt19937 random(seed);
   AuthoredScene scene{.name = "Any \"scene\" \\", .parameters = {{"gravity_x", "0.1"}}};
   scene.world = {{-1e9F, -0.0F, 1e-40F, 0}, {0.1F, 3, 1e9F, 0}};
+  scene.collide.set(random() % 32, random() % 32, false);
+  scene.triggers = static_cast<std::uint32_t>(random()) | 1U;
   for (std::size_t i = 0; i < bodies; ++i) {
     AuthoredBody body;
     if (random() % 2 == 0) {
@@ -72,6 +74,9 @@ AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
     }
     body.linear_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
     body.angular_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
+    body.layer = static_cast<std::uint8_t>(random() % 32);
+    if (random() % 2 == 0) body.appears = random() % 1000;
+    if (random() % 2 == 0) body.vanishes = body.appears + 1 + random() % 1000;
     scene.bodies.push_back(body);
   }
   return scene;
@@ -106,7 +111,7 @@ TEST(AuthoredScene, SurvivesARoundTripBitForBit) {
 
 TEST(AuthoredScene, WritesOneBodyALine) {
   const std::string text = formatAuthoredScene(anyScene(1, 57));
-  EXPECT_EQ(std::ranges::count(text, '\n'), 57 + 8);
+  EXPECT_EQ(std::ranges::count(text, '\n'), 57 + 10);
 }
 
 TEST(AuthoredScene, LeavesOutWhatHasItsDefault) {
@@ -127,6 +132,28 @@ TEST(AuthoredScene, LeavesOutWhatHasItsDefault) {
 ]
 }
 )");
+}
+
+TEST(AuthoredScene, WritesLayersAndWhenBodiesComeAndGo) {
+  AuthoredScene scene{.name = "Layers",
+                      .collide = LayerMatrix().set(0, 1).set(2, 1),
+                      .triggers = 1U << 2,
+                      .bodies = {{.layer = 1, .appears = 3, .vanishes = 8}}};
+  EXPECT_EQ(formatAuthoredScene(scene),
+            R"({
+"schema": "broadmark-scene/1",
+"name": "Layers",
+"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
+"parameters": {},
+"collide": [[0, 1], [1, 2]],
+"triggers": [2],
+"bodies": [
+{"box": [1, 1, 1], "position": [0, 0, 0], "layer": 1, "appears": 3, "vanishes": 8}
+]
+}
+)");
+  scene.collide = {};
+  EXPECT_EQ(parseAuthoredScene(formatAuthoredScene(scene), "again"), scene) << "none collides";
 }
 
 TEST(AuthoredScene, KeysMayComeInAnyOrder) {
@@ -167,6 +194,8 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
       {sceneText(R"("sphere": "1", )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("sphere": [1], )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("box": 1, )" + position), {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("box": [[1, 1, 1]], )" + position),
+       {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [1, null, 1])"), {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [0, 1, 1], )" + position), {"body 1", "size", "1e-06"}},
       {sceneText(R"("sphere": -1, )" + position), {"body 1", "size"}},
@@ -177,6 +206,25 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
        {"body 1", "rotation: an array of four numbers"}},
       {sceneText(R"("sphere": 1, "mass": 0, )" + position), {"body 1", "mass"}},
       {sceneText(R"("sphere": 1, "frozen": 1, )" + position), {"body 1", "frozen: true or false"}},
+      {sceneText(R"("sphere": 1, "layer": 32, )" + position), {"body 1", "layer", "from 0 to 31"}},
+      {sceneText(R"("sphere": 1, "layer": 0.5, )" + position), {"body 1", "layer", "from 0 to 31"}},
+      {sceneText(R"("sphere": 1, "layer": "level", )" + position), {"body 1", "layer: a number"}},
+      {sceneText(R"("sphere": 1, "appears": -1, )" + position), {"body 1", "appears", "1000000"}},
+      {sceneText(R"("sphere": 1, "appears": 5, "vanishes": 5, )" + position),
+       {"body 1", "vanishes", "from 6", "appears in frame 5"}},
+      {sceneText(R"("sphere": 1, "vanishes": 1000001, )" + position), {"body 1", "vanishes"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("collide": 3, )"),
+       {"collide", "an array of pairs of layers"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("collide": [1, 2], )"),
+       {"collide", "an array of pairs of layers"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("collide": [[1, 2, 3]], )"),
+       {"collide", "an array of pairs of layers"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("collide": [[1, 32]], )"),
+       {"collide", "from 0 to 31"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("triggers": [[1]], )"),
+       {"triggers", "an array of layers"}},
+      {sceneText(R"("sphere": 1, )" + position, R"("triggers": [-1], )"),
+       {"triggers", "from 0 to 31"}},
       {sceneText(R"("sphere": 1, "velocity": [0, 1e7, 0], )" + position), {"body 1", "velocity"}},
       {sceneText(R"("sphere": 1, "positon": [0, 0, 0])"), {"body 1", "'positon'", "'position'"}},
       {sceneText(R"("sphere": 1, )" + position, R"("parameters": {"objects": 5}, )"),
@@ -241,6 +289,54 @@ TEST(AuthoredSimulation, GravityPointsWhereItIsSaid) {
   const auto way = tests::way(frames[0][2], frames[3][2]);
   EXPECT_NEAR(way[0], 0.5 * 0.1 + 9 * 0.1 * 0.1 / 2, 0.02);
   EXPECT_NEAR(way[1], 0, 1e-4);
+}
+
+TEST(AuthoredSimulation, BodiesAppearWhereTheyAreStatedAndVanish) {
+  for (const EngineEntry& engine : engineEntries()) {
+    AuthoredScene scene = fallingScene();
+    scene.parameters["engine"] = engine.listing.id;
+    scene.bodies[1].appears = 4;
+    scene.bodies[2].vanishes = 7;
+    scene.bodies[3].appears = 4;
+    scene.bodies[3].vanishes = 5;
+    scene.bodies[4].appears = 21;  // after the last frame
+    const auto simulation = makeAuthoredSimulation(scene);
+    EXPECT_FALSE(simulation->scene().all_present);
+    const auto frames = allFrames(*simulation);
+    const auto starts = boxesOf(scene);
+    for (std::uint32_t frame = 0; frame <= 20; ++frame) {
+      SCOPED_TRACE(engine.listing.id + " " + std::to_string(frame));
+      EXPECT_EQ(isEmpty(frames[frame][1]), frame < 4);
+      EXPECT_EQ(isEmpty(frames[frame][2]), frame >= 7);
+      EXPECT_EQ(isEmpty(frames[frame][3]), frame != 4);
+      EXPECT_TRUE(isEmpty(frames[frame][4]));
+      EXPECT_FALSE(isEmpty(frames[frame][5]));
+    }
+    EXPECT_EQ(frames[4][1], starts[1]);
+    EXPECT_NE(frames[5][1], starts[1]);
+    EXPECT_EQ(frames[4][3], starts[3]);
+    EXPECT_EQ(allFrames(*simulation), frames) << "rewound";
+  }
+  EXPECT_TRUE(makeAuthoredSimulation(fallingScene())->scene().all_present);
+}
+
+TEST(AuthoredSimulation, LayersCollideAsStatedAndTriggersPushNothing) {
+  // A sphere falls on a floor of layer 1; triggers are reported all the same.
+  const auto falls_through = [](const LayerMatrix& collide, std::uint32_t triggers) {
+    AuthoredScene scene{.name = "Layers", .parameters = {{"frames", "60"}}};
+    scene.collide = collide;
+    scene.triggers = triggers;
+    scene.bodies = {{.shape = BoxShape{{8, 0.5F, 8}}, .frozen = true, .layer = 1},
+                    {.shape = SphereShape{0.5F}, .pose = {.position = {0, 3, 0}}}};
+    const auto simulation = makeAuthoredSimulation(scene);
+    EXPECT_EQ(simulation->scene().filter.wanted(0, 1), collide.collide(0, 1));
+    return allFrames(*simulation).back()[1].max[1] < 0;
+  };
+  EXPECT_FALSE(falls_through(LayerMatrix::all(), 0));
+  EXPECT_FALSE(falls_through(LayerMatrix().set(0, 1), 0));
+  EXPECT_TRUE(falls_through(LayerMatrix().set(0, 0).set(1, 1), 0));
+  EXPECT_TRUE(falls_through(LayerMatrix::all(), 1U << 1));
+  EXPECT_TRUE(falls_through(LayerMatrix().set(0, 1), 1U << 1));
 }
 
 TEST(AuthoredSimulation, StaysInsideAWorldOfAnyForm) {

@@ -1,4 +1,4 @@
-// The example scene in the assets, made with the editor.
+// The example scenes in the assets: one made with the editor, one in which bodies come and go.
 
 #include <gmock/gmock.h>
 
@@ -76,6 +76,27 @@ TEST(ExampleScene, TheLastDominoFalls) {
     EXPECT_EQ(frames.front()[id].max[1], 2) << domino;
     EXPECT_LT(frames.back()[id].max[1], 1.9F) << domino;
   }
+}
+
+TEST(ExampleScene, ATrapdoorLetsTheCubesFallThroughATrigger) {
+  const auto file = places::source("assets/scenes/trapdoor.json");
+  const std::string text = readTextFile(file);
+  const AuthoredScene scene = parseAuthoredScene(text, file.string());
+  EXPECT_EQ(formatAuthoredScene(scene), text);
+  constexpr std::size_t kDoor = 2;
+  constexpr std::size_t kCubes = 12;
+  constexpr std::uint32_t kTrigger = 15;
+  const auto simulation = makeAuthoredSimulation(scene);
+  const auto frames = tests::allFrames(*simulation);
+  EXPECT_FALSE(isEmpty(frames[59][kDoor]));
+  EXPECT_TRUE(isEmpty(frames[60][kDoor]));
+  for (std::size_t cube = kDoor + 1; cube <= kDoor + kCubes; ++cube) {
+    EXPECT_GT(frames[59][cube].min[1], 0.4F) << cube;
+    EXPECT_LT(frames[200][cube].max[1], 0.4F) << cube;
+  }
+  EXPECT_EQ(frames[200][kTrigger], frames[0][kTrigger]);
+  EXPECT_TRUE(simulation->scene().filter.wanted(kDoor + 1, kTrigger));
+  EXPECT_FALSE(simulation->scene().filter.wanted(0, kTrigger));
 }
 
 }  // namespace

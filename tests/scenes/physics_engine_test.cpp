@@ -313,6 +313,76 @@ TEST_P(PhysicsEngineTest, DampingTakesItsShareOfTheVelocityPerSecond) {
   EXPECT_NEAR(body.angularVelocity()[2], 3.5, 0.1);
 }
 
+TEST_P(PhysicsEngineTest, BodiesComeAndGo) {
+  auto engine = makeFloor(-100);
+  PhysicsBody& first = addCube(*engine, {0, 0, 0});
+  PhysicsBody* second = &addCube(*engine, {5, 0, 0});
+  step(*engine, 3);
+  const float height = second->pose().position[1];
+  engine->removeBody(first);
+  step(*engine, 1);
+  EXPECT_LT(second->pose().position[1], height) << "the other one falls on";
+  PhysicsBody& third = addCube(*engine, {0, 0, 0}, {1, 0, 0});
+  step(*engine, 30);
+  EXPECT_NEAR(third.pose().position[0], 1, 0.01);
+  EXPECT_NEAR(third.pose().position[1], -5, 0.2) << "falls from where it appeared";
+  engine->removeBody(*second);
+  engine->removeBody(third);
+  EXPECT_TRUE(engine->allAsleep()) << "nobody is left";
+  step(*engine, 1);
+}
+
+TEST_P(RigidEngineTest, AStackWhoseLowestBodyVanishesFalls) {
+  for (const int frames : {25, 300}) {  // at rest; asleep
+    auto engine = makeFloor(0);
+    std::vector<PhysicsBody*> stack;
+    for (int i = 0; i < 5; ++i) {
+      stack.push_back(&addCube(*engine, {0, 0.5F + static_cast<float>(i), 0}));
+    }
+    step(*engine, frames);
+    if (frames == 300) ASSERT_TRUE(engine->allAsleep());
+    engine->removeBody(*stack[0]);
+    EXPECT_FALSE(engine->allAsleep());
+    step(*engine, 60);
+    for (int i = 1; i < 5; ++i) {
+      EXPECT_NEAR(stack[i]->pose().position[1], i - 0.5, 0.05) << "cube " << i << ' ' << frames;
+    }
+  }
+}
+
+TEST_P(RigidEngineTest, OnlyThoseTouchedByABodyThatVanishesWake) {
+  auto engine = makeFloor(0);
+  PhysicsBody& lower = addCube(*engine, {0, 0.5F, 0});
+  PhysicsBody& upper = addCube(*engine, {0, 1.5F, 0});
+  PhysicsBody& far_off = addCube(*engine, {9, 0.5F, 0});
+  PhysicsBody& fixed = addCube(*engine, {1.01F, 0.5F, 0});
+  fixed.freeze();
+  step(*engine, 300);
+  ASSERT_TRUE(engine->allAsleep());
+  engine->removeBody(lower);
+  EXPECT_FALSE(upper.asleep());
+  EXPECT_TRUE(far_off.asleep());
+  EXPECT_TRUE(fixed.asleep());
+}
+
+TEST_P(RigidEngineTest, LayersThatDoNotCollidePassThroughEachOther) {
+  for (const bool collide : {false, true}) {
+    auto engine = makeEngine();
+    engine->setLayers(LayerMatrix().set(0, 0).set(3, 31, collide));
+    engine->setGravity({0, -10, 0});
+    engine->addWall({.normal = {0, 1, 0}, .offset = 0});
+    const auto add = [&](float height, std::uint8_t layer) -> PhysicsBody& {
+      return engine->addBody(
+          {.shape = kUnitCube, .pose = {.position = {0, height, 0}}, .layer = layer});
+    };
+    const PhysicsBody& lower = add(0.5F, 31);
+    const PhysicsBody& upper = add(2, 3);
+    step(*engine, 60);
+    EXPECT_NEAR(lower.pose().position[1], 0.5, 0.02) << "the floor holds every layer";
+    EXPECT_NEAR(upper.pose().position[1], collide ? 1.5 : 0.5, 0.03);
+  }
+}
+
 // Bodies of Bullet that are at rest are held in place, but only while something carries them.
 TEST(BulletEngine, AStackThatLosesItsLowestBodyFalls) {
   const auto engine = entryOf(engineEntries(), "bullet", "engine").create({});

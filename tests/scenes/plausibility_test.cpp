@@ -93,12 +93,11 @@ class FreeFallWorld {
     }
     const auto scene = entryOf(sceneEntries(), "freefall", "scene").create();
     const ObjectType type = entryOf(objectTypes(), object_type, "object type");
-    for (std::int64_t i = 0; i < objects; ++i) {
-      bodies_.push_back(
-          &engine_->addBody(scene->body(static_cast<std::size_t>(i), settings_, type, random_)));
-    }
-    Stage stage{settings_, *engine_, bodies_, random_};
+    Bodies bodies(*engine_, {.objects = static_cast<std::uint32_t>(objects)});
+    Stage stage{settings_, type, *engine_, bodies, random_};
+    scene->populate(stage);
     scene->start(stage);
+    for (const std::uint32_t id : bodies.inEngine()) bodies_.push_back(bodies[id]);
   }
 
   void step() { engine_->step(); }

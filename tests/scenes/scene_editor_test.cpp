@@ -60,6 +60,9 @@ TEST(SceneEditor, EditsActOnTheSelectionAlone) {
   editor.move({0.5F, 1, 0});
   editor.setMass(4);
   editor.setFrozen(true);
+  editor.setLayer(7);
+  editor.setVanishes(9);
+  editor.setAppears(8);
   editor.setVelocity({1, 2, 3});
   editor.setAngularVelocity({4, 5, 6});
   editor.makeSpheres();
@@ -68,6 +71,9 @@ TEST(SceneEditor, EditsActOnTheSelectionAlone) {
   EXPECT_EQ(body.pose.position, (Vec3{2.5F, 1, 0}));
   EXPECT_EQ(body.mass, 4);
   EXPECT_TRUE(body.frozen);
+  EXPECT_EQ(body.layer, 7);
+  EXPECT_EQ(body.appears, 8U);
+  EXPECT_EQ(body.vanishes, 9U);
   EXPECT_EQ(body.linear_velocity, (Vec3{1, 2, 3}));
   EXPECT_EQ(body.angular_velocity, (Vec3{4, 5, 6}));
   EXPECT_EQ(body.shape, Shape(SphereShape{1.5F}));
@@ -154,6 +160,8 @@ TEST(SceneEditor, ARefusedEditChangesNothing) {
     EXPECT_EQ(editor.undoName(), "add 3 bodies");
   };
   refuses([&] { editor.setMass(0); }, "mass");
+  refuses([&] { editor.setLayer(32); }, "layer");
+  refuses([&] { editor.setVanishes(0); }, "vanishes");
   refuses([&] { editor.setSize({1, 0, 1}); }, "size");
   refuses([&] { editor.scale(0); }, "size");
   refuses([&] { editor.scale(std::nanf("")); }, "body 0");
@@ -243,7 +251,7 @@ class Monkey {
 
   void editOnce(SceneEditor& editor) {
     const std::size_t count = editor.scene().bodies.size();
-    switch (any(16)) {
+    switch (any(19)) {
       case 0:
       case 1:
         return editor.add(std::vector<AuthoredBody>(any(6), AuthoredBody{.mass = 1.0 + any(5)}));
@@ -274,6 +282,12 @@ class Monkey {
       case 14:
         return editor.setParameters(
             {{"frames", std::to_string(any(5))}, {"engine", any(2) == 0 ? "kinematic" : "boids"}});
+      case 15:
+        return editor.setLayer(static_cast<std::uint8_t>(any(33)));
+      case 16:
+        return editor.setAppears(any(5));
+      case 17:
+        return editor.setVanishes(any(2) == 0 ? kNever : any(5));
       default:
         return editor.move(vector());
     }

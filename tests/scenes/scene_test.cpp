@@ -49,6 +49,8 @@ class NotingEngine final : public PhysicsEngine {
   PhysicsBody& addBody(const BodyDescription& description) override {
     return bodies.emplace_back(description);
   }
+  void setLayers(const LayerMatrix&) override {}
+  void removeBody(PhysicsBody&) override {}
   void addWall(const HalfSpace&) override {}
   void setGravity(const Vec3& value) override { noted_gravity = value; }
   [[nodiscard]] Vec3 gravity() const override { return noted_gravity; }
@@ -65,11 +67,8 @@ struct Rehearsal {
     scene = entryOf(sceneEntries(), id, "scene").create();
     scene->setDefaults(settings);
     settings.objects = objects;
-    for (std::int64_t i = 0; i < objects; ++i) {
-      const auto index = static_cast<std::size_t>(i);
-      bodies.push_back(
-          &engine.addBody(scene->body(index, settings, objectTypes().front(), random)));
-    }
+    bodies = Bodies(engine, {.objects = static_cast<std::uint32_t>(objects)});
+    scene->populate(stage);
     scene->start(stage);
   }
 
@@ -77,13 +76,11 @@ struct Rehearsal {
   Settings settings;
   NotingEngine engine;
   Random random{1};
-  std::vector<PhysicsBody*> bodies;
-  Stage stage{settings, engine, {}, random};
+  ObjectType cubes = objectTypes().front();
+  Bodies bodies{engine, {}};
+  Stage stage{settings, cubes, engine, bodies, random};
 
-  void act(std::uint32_t frame) {
-    stage.bodies = bodies;
-    scene->act(stage, frame);
-  }
+  void act(std::uint32_t frame) { scene->act(stage, frame); }
 };
 
 double length(const Vec3& v) { return std::hypot(v[0], v[1], v[2]); }

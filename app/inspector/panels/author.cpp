@@ -60,6 +60,9 @@ struct Inputs {
   bool frozen = false;
   Numbers velocity{};
   Numbers spin{};
+  double layer = 0;
+  double appears = 0;
+  double vanishes = 0;  ///< 0: never
 };
 
 class AuthorPanel final : public Panel {
@@ -114,6 +117,9 @@ class AuthorPanel final : public Panel {
     inputs_.frozen = body.frozen;
     inputs_.velocity = numbers(body.linear_velocity);
     inputs_.spin = numbers(body.angular_velocity);
+    inputs_.layer = body.layer;
+    inputs_.appears = body.appears;
+    inputs_.vanishes = body.vanishes == scenes::kNever ? 0 : body.vanishes;
   }
 
   static void drawFile(PanelContext& context) {
@@ -276,6 +282,30 @@ class AuthorPanel final : public Panel {
     if (ui.vector("spin", inputs_.spin, -kFast, kFast,
                   "Angular velocity about each axis, in radians per second")) {
       edit([v = vec(inputs_.spin)](SceneEditor& editor) { editor.setAngularVelocity(v); });
+    }
+    drawPresence(ui);
+  }
+
+  void drawPresence(Ui& ui) {
+    if (ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
+                  "Which layers collide is in the scene's file")) {
+      edit([layer = static_cast<std::uint8_t>(inputs_.layer)](SceneEditor& editor) {
+        editor.setLayer(layer);
+      });
+    }
+    if (ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in")) {
+      edit([frame = static_cast<std::uint32_t>(inputs_.appears)](SceneEditor& editor) {
+        editor.setAppears(frame);
+      });
+      known_ = false;  // a frame that is refused does not stay
+    }
+    if (ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
+                  "The first frame after that which it is not in; 0: it stays")) {
+      const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
+      edit([frame](SceneEditor& editor) {
+        editor.setVanishes(frame == 0 ? scenes::kNever : frame);
+      });
+      known_ = false;
     }
   }
 

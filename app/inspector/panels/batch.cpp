@@ -142,7 +142,7 @@ class BatchPanel final : public Panel {
       preview_.bytes = plan->bytes();
       for (const BakeJob& job : plan->pending) {
         for (const fs::path& path : job.paths) {
-          preview_.recordings.emplace_back(path, recordingBytes(job.scene));
+          preview_.recordings.emplace_back(path, leastBytes(path, job.scene));
         }
       }
     } catch (const InputError& error) {

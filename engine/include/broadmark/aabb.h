@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <limits>
 
 namespace broadmark {
@@ -16,6 +18,12 @@ struct alignas(16) Aabb {
   friend bool operator==(const Aabb&, const Aabb&) = default;
 };
 static_assert(sizeof(Aabb) == 32);
+
+/// Equal to the bit: unlike ==, tells -0 from 0, so that what is recorded comes back as it was.
+constexpr bool sameBits(const Aabb& a, const Aabb& b) {
+  using Bits = std::array<std::uint64_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
 
 /// Closed intersection on all three axes, in 32-bit floats: touching counts.
 constexpr bool overlaps(const Aabb& a, const Aabb& b) {

@@ -38,7 +38,7 @@ bool fitsAabbs(const SceneInfo&);
 /// else .broadmark.
 std::string_view recordingExtension(const SceneInfo&);
 
-/// Throws InputError unless a recording of boxes of this name can hold the scene.
+/// Throws InputError unless a recording of this name can hold the scene.
 void requireHolds(const std::filesystem::path& path, const SceneInfo&);
 
 /// Size of a whole .aabbs or .posrot recording: 304 + 32·objects·(1 + frames); the largest uint64
@@ -138,6 +138,9 @@ class RecordingWriter {
   /// finite or inverted (a simulation that blew up) and not that of a body that may be absent, or
   /// the disc is full.
   void write(std::span<const Aabb> boxes);
+  /// The same for the next frame of a source, all of whose frames are written. If it says what
+  /// changed, a .broadmark recording looks at nothing else.
+  void write(const Frame& frame);
   /// Completes the recording and gives it its name. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();

@@ -1,6 +1,8 @@
 // Authored scenes: documents that are edited, saved and simulated.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,8 @@ inline constexpr std::string_view kAuthoredSceneSchema = "broadmark-scene/1";
 /// Limits of a box's edges and of a sphere's diameter.
 inline constexpr float kLeastEdge = 1e-6F;
 inline constexpr float kMostEdge = 1e6F;
+/// The frame in which a body vanishes that stays.
+inline constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
 /// A body as it starts.
 struct AuthoredBody {
@@ -24,6 +28,9 @@ struct AuthoredBody {
   Pose pose;
   Vec3 linear_velocity{};   ///< world units per second
   Vec3 angular_velocity{};  ///< radians per second
+  std::uint8_t layer = 0;
+  std::uint32_t appears = 0;        ///< the first frame that it is in, as stated above
+  std::uint32_t vanishes = kNever;  ///< the first frame after that which it is not in
 
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
@@ -33,6 +40,8 @@ struct AuthoredBody {
 struct AuthoredScene {
   std::string name = "Untitled";  ///< as recordings state it
   Aabb world{{-10, -10, -10, 0}, {10, 10, 10, 0}};
+  LayerMatrix collide = LayerMatrix::all();  ///< which layers collide
+  std::uint32_t triggers = 0;  ///< bit b: bodies of layer b push nothing, and nothing pushes them
   /// The values of AuthoredParameters that are stated; the others have their defaults.
   ParameterValues parameters;
   std::vector<AuthoredBody> bodies;
@@ -66,7 +75,10 @@ AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
 /// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);
 
-/// The tight box of each body: frame 0.
+/// Which pairs of its bodies are wanted.
+CollisionFilter collisionFilterOf(const AuthoredScene&);
+
+/// The tight box of each body where it starts.
 std::vector<Aabb> boxesOf(const AuthoredScene&);
 
 }  // namespace broadmark::scenes

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "broadmark/collision_filter.h"
 #include "broadmark/parameters.h"
 #include "broadmark/scenes/shape.h"
 
@@ -30,6 +31,8 @@ struct BodyDescription {
   Pose pose;
   Vec3 linear_velocity{};   ///< world units per second
   Vec3 angular_velocity{};  ///< radians per second
+  std::uint8_t layer = 0;   ///< see setLayers()
+  std::uint32_t world = 0;  ///< bodies of different worlds never meet
 };
 
 /// One side of a plane, which bodies cannot leave: normal · point >= offset.
@@ -65,8 +68,13 @@ class PhysicsBody {
 /// of the settings and of every scene.
 class PhysicsEngine : public Parametrised {
  public:
-  /// Adds a body. The reference stays valid as long as the engine lives.
+  /// Which layers push each other; by default all. Walls hold bodies of every layer. To be called
+  /// before there are bodies.
+  virtual void setLayers(const LayerMatrix&) = 0;
+  /// Adds a body. The reference stays valid until the body is removed.
   virtual PhysicsBody& addBody(const BodyDescription&) = 0;
+  /// Removes a body of this engine, and wakes those that it touches.
+  virtual void removeBody(PhysicsBody&) = 0;
   virtual void addWall(const HalfSpace&) = 0;
   /// Acceleration of all bodies. A change wakes them.
   virtual void setGravity(const Vec3&) = 0;

@@ -3,9 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "broadmark/parameters.h"
+#include "broadmark/scenes/bodies.h"
 #include "broadmark/scenes/physics_engine.h"
 #include "broadmark/scenes/random.h"
 #include "broadmark/scenes/registry.h"
@@ -16,8 +16,9 @@ namespace broadmark::scenes {
 /// What a scene acts on. Valid during the call that it is handed to.
 struct Stage {
   const Settings& settings;
+  const ObjectType& object_type;
   PhysicsEngine& engine;
-  std::span<PhysicsBody* const> bodies;  ///< all, by id
+  Bodies& bodies;
   Random& random;
 };
 
@@ -28,17 +29,30 @@ class Scene : public Parametrised {
   /// Changes the defaults of shared parameters that do not suit this scene.
   virtual void setDefaults(Settings&) const {}
 
+  /// Says what is special about the scene: bodies that are absent at times, pairs that are not
+  /// wanted, another world. Called whenever the parameters may have changed.
+  virtual void describe(const Settings&, SceneInfo&) const {}
+
+  /// Which layers push each other. By default those that collide.
+  [[nodiscard]] virtual LayerMatrix pushing(const SceneInfo& info) const {
+    return info.filter.matrix();
+  }
+
   /// Called before the first call of body(): decides what concerns all bodies.
   virtual void prepare(const Settings&, Random&) {}
 
   /// Body `index` as it starts. By default at a uniformly random place in a ball around the origin,
-  /// unturned, with a random velocity. Called once for each body, in order.
+  /// unturned, with a random velocity.
   virtual BodyDescription body(std::size_t index, const Settings&, const ObjectType&, Random&);
+
+  /// Brings on the bodies of the initial pose. By default all, in order, as body() says.
+  virtual void populate(Stage& stage);
 
   /// Called when all bodies are in their initial pose. By default gravity points down.
   virtual void start(Stage& stage);
 
-  /// Called after frame `frame` has been recorded.
+  /// Called after frame `frame`, 1 or later, when the next one is asked for. Bodies that it adds
+  /// move before that is recorded.
   virtual void act(Stage&, std::uint32_t /*frame*/) {}
 };
 

@@ -76,6 +76,10 @@ class SceneEditor {
   void setFrozen(bool frozen);
   void setVelocity(const Vec3& linear);
   void setAngularVelocity(const Vec3& angular);
+  void setLayer(std::uint8_t layer);
+  /// The frames in which the bodies appear and vanish (kNever: they stay).
+  void setAppears(std::uint32_t frame);
+  void setVanishes(std::uint32_t frame);
   // These change the scene as a whole.
   void setName(std::string name);
   void setWorld(const Aabb& world);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "broadmark/aabb.h"
 #include "broadmark/parameters.h"
 #include "broadmark/scenes/physics_engine.h"
 
@@ -29,6 +30,8 @@ struct Settings {
   void visit(const ParameterVisitor&);
   /// Edge of the world's cube.
   [[nodiscard]] double side() const;
+  /// The cube, around the origin.
+  [[nodiscard]] Aabb world() const;
 };
 
 }  // namespace broadmark::scenes

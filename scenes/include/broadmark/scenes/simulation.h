@@ -119,9 +119,9 @@ std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 /// InputError.
 std::string bakedParameters(const std::filesystem::path& recording);
 
-/// Throws InputError if bake() to these paths would overwrite input(), its sidecar, or one
-/// recording's sidecar with another's.
-void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
+/// Throws InputError if a recording at one of these paths cannot hold the scene, or if bake() would
+/// overwrite input(), its sidecar, or one recording's sidecar with another's.
+void requireBakeable(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
 
 /// Simulates all frames once into recordings at `paths`, each by the recorder that its extension
 /// names. Writes a sidecar beside each: a .json of the same name (schema kBakeSchema) with all

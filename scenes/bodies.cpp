@@ -1,0 +1,63 @@
+#include "broadmark/scenes/bodies.h"
+
+#include <algorithm>
+
+namespace broadmark::scenes {
+
+Bodies::Bodies(PhysicsEngine& engine, const SceneInfo& scene)
+    : engine_(&engine),
+      filter_(scene.filter),
+      bodies_(scene.objects),
+      masses_(scene.objects),
+      boxes_(scene.objects, kEmptyBox),
+      poses_(scene.objects) {}
+
+std::span<const std::uint32_t> Bodies::inEngine() {
+  if (!arrived_.empty()) {
+    std::ranges::sort(arrived_);
+    const auto known = static_cast<std::ptrdiff_t>(ids_.size());
+    ids_.insert(ids_.end(), arrived_.begin(), arrived_.end());
+    std::inplace_merge(ids_.begin(), ids_.begin() + known, ids_.end());
+    ids_.erase(std::unique(ids_.begin(), ids_.end()), ids_.end());
+    arrived_.clear();
+  }
+  return ids_;
+}
+
+PhysicsBody& Bodies::add(std::size_t id, BodyDescription description) {
+  const BodyGroups groups = filter_.groupsOf(static_cast<std::uint32_t>(id));
+  description.layer = groups.layer;
+  description.world = groups.world;
+  bodies_[id] = &engine_->addBody(description);
+  masses_[id] = description.mass;
+  arrived_.push_back(static_cast<std::uint32_t>(id));
+  return *bodies_[id];
+}
+
+void Bodies::remove(std::size_t id) {
+  engine_->removeBody(*bodies_[id]);
+  bodies_[id] = nullptr;
+}
+
+void Bodies::place(std::size_t id, const Shape& shape, const Pose& pose) {
+  boxes_[id] = tightBox(shape, pose);
+  poses_[id] = pose;
+}
+
+Frame Bodies::record(std::uint32_t frame) {
+  changed_.clear();
+  for (const std::uint32_t id : inEngine()) {
+    Aabb box = kEmptyBox;
+    if (const PhysicsBody* body = bodies_[id]) {
+      poses_[id] = body->pose();
+      box = tightBox(body->shape(), poses_[id]);
+    }
+    if (!sameBits(box, boxes_[id])) changed_.push_back(id);
+    boxes_[id] = box;
+  }
+  std::erase_if(ids_, [this](std::uint32_t id) { return bodies_[id] == nullptr; });
+  if (frame == 0) changed_.clear();
+  return {frame, boxes_, changed_};
+}
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,63 @@
+// Where engines keep their bodies: each stays at its address until it is removed, and memory is
+// used again. Adding and removing take constant time.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace broadmark::scenes {
+
+template <class Body>
+class BodyPool {
+ public:
+  template <class... Arguments>
+  Body& add(Arguments&&... arguments) {
+    if (free_.empty()) {
+      free_.push_back(slots_.size());
+      slots_.emplace_back();
+    }
+    const std::size_t slot = free_.back();
+    free_.pop_back();
+    return slots_[slot].emplace(slot, std::forward<Arguments>(arguments)...);
+  }
+
+  /// The body is one of this pool.
+  void remove(Body& body) {
+    const std::size_t slot = static_cast<Slotted&>(body).slot;
+    slots_[slot].reset();
+    free_.push_back(slot);
+  }
+
+  /// Calls visit(body) for each body, in the order of their slots.
+  template <class Visit>
+  void each(const Visit& visit) {
+    for (auto& slot : slots_) {
+      if (slot) visit(static_cast<Body&>(*slot));
+    }
+  }
+
+  /// Whether holds(body) for all bodies.
+  template <class Holds>
+  [[nodiscard]] bool all(const Holds& holds) const {
+    for (const auto& slot : slots_) {
+      if (slot && !holds(static_cast<const Body&>(*slot))) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Slotted final : Body {
+    template <class... Arguments>
+    explicit Slotted(std::size_t place, Arguments&&... arguments)
+        : Body(std::forward<Arguments>(arguments)...), slot(place) {}
+    std::size_t slot;
+  };
+
+  std::deque<std::optional<Slotted>> slots_;
+  std::vector<std::size_t> free_;  ///< slots without a body
+};
+
+}  // namespace broadmark::scenes

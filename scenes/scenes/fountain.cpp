@@ -1,0 +1,106 @@
+// Fountain: a nozzle in the floor throws bodies up; they fall, lie about and vanish. The jet swells
+// and dies down, and so the number of bodies rises and falls. A body that appears takes the id of
+// one that has vanished, often in the same frame.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
+#include "scenes/course.h"
+#include "scenes/lifetimes.h"
+#include "scenes/sizes.h"
+
+namespace broadmark::scenes::fountain {
+namespace {
+
+class Fountain final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.density = 0.02;
+    settings.initial_radius = 0.1;
+    settings.initial_speed = 1.1;
+    settings.gravity = 0.8;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"lifetime", "frames after which a body vanishes, on average", &lifetime_, 1, 1'000'000});
+    visit({"period", "frames from one swell of the jet to the next", &period_, 1, 1'000'000});
+    visit({"spread", "largest sideways speed of the jet, as a share of the upward one", &spread_, 0,
+           1});
+    visit({"filled", "share of the ids that bodies have at the start, anywhere in the world",
+           &filled_, 0, 1});
+  }
+
+  void describe(const Settings&, SceneInfo& info) const override { info.all_present = false; }
+
+  void prepare(const Settings& settings, Random&) override {
+    lifetimes_.reset(0, static_cast<std::size_t>(settings.objects));
+    due_ = 0;
+  }
+
+  void populate(Stage& stage) override {
+    const auto count = static_cast<std::size_t>(filled_ * static_cast<double>(stage.bodies.size()));
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto id = lifetimes_.take(framesOf(stage.random.uniform()));
+      BodyDescription body = describeBody(*id, stage);
+      body.pose.position = anywhereInside(body.shape, stage.settings.side(), stage.random);
+      stage.bodies.add(*id, body);
+    }
+  }
+
+  void act(Stage& stage, std::uint32_t frame) override {
+    lifetimes_.removeOld(stage.bodies, frame);
+    const double phase = 2 * std::numbers::pi * frame / static_cast<double>(period_);
+    due_ += (1 - std::cos(phase)) / 2 * static_cast<double>(stage.bodies.size()) /
+            static_cast<double>(lifetime_);
+    for (; due_ >= 1; --due_) {
+      const auto id = lifetimes_.take(frame + framesOf(stage.random.between(0.5, 1.5)));
+      if (!id) continue;
+      stage.bodies.add(*id, thrown(*id, stage));
+    }
+  }
+
+ private:
+  /// So many lifetimes, in frames; at least one.
+  [[nodiscard]] std::uint32_t framesOf(double lifetimes) const {
+    return 1 + static_cast<std::uint32_t>(lifetimes * static_cast<double>(lifetime_));
+  }
+
+  static BodyDescription describeBody(std::size_t id, Stage& stage) {
+    const Settings& settings = stage.settings;
+    return {.shape = stage.object_type.shape(id, settings.scale, stage.random),
+            .mass = settings.mass};
+  }
+
+  [[nodiscard]] BodyDescription thrown(std::size_t id, Stage& stage) const {
+    const Settings& settings = stage.settings;
+    const double side = settings.side();
+    BodyDescription body = describeBody(id, stage);
+    const float reach = farthestInside(body.shape, side);
+    const Vec3 place = stage.random.inBall(std::min<double>(settings.initial_radius * side, reach));
+    body.pose.position = {place[0], -reach, place[2]};
+    const double speed = settings.initial_speed * side * stage.random.between(0.7, 1);
+    const Vec3 sideways = stage.random.inBall(spread_ * speed);
+    body.linear_velocity = {sideways[0], static_cast<float>(speed), sideways[2]};
+    return body;
+  }
+
+  std::int64_t lifetime_ = 150;
+  std::int64_t period_ = 400;
+  double spread_ = 0.2;
+  double filled_ = 0.25;
+  Lifetimes lifetimes_;
+  double due_ = 0;  ///< bodies to throw, a fraction included
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {{"fountain", "Fountain", "bodies are thrown up, fall and vanish: ids are used again"},
+          makeAs<Scene, Fountain>};
+}
+
+}  // namespace broadmark::scenes::fountain

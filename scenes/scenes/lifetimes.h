@@ -1,0 +1,34 @@
+// Bodies that live for some frames and leave their id to others.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "broadmark/scenes/bodies.h"
+
+namespace broadmark::scenes {
+
+/// Which ids of a range are free, and when those that are not will be. The id that has become free
+/// last is taken first, often in the same frame.
+class Lifetimes {
+ public:
+  /// The ids [first, end) are free, and no others.
+  void reset(std::size_t first, std::size_t end);
+  /// A free id, until removeOld() is called for frame `last` or a later one; nothing: none is free.
+  std::optional<std::size_t> take(std::uint32_t last);
+  /// Removes the bodies whose time is over after frame `frame`.
+  void removeOld(Bodies& bodies, std::uint32_t frame);
+
+ private:
+  using End = std::pair<std::uint32_t, std::size_t>;  ///< frame, id
+
+  std::vector<std::size_t> free_;
+  std::priority_queue<End, std::vector<End>, std::greater<>> ends_;
+};
+
+}  // namespace broadmark::scenes

@@ -1,0 +1,60 @@
+// Spot: all bodies at one place, then apart. At first every body overlaps every other, and nothing
+// moves; then they fly off in all directions, and soon hardly any two overlap.
+
+#include <cstdint>
+
+#include "broadmark/scenes/scene.h"
+#include "broadmark/scenes/simulation.h"
+#include "entries.h"
+
+namespace broadmark::scenes::spot {
+namespace {
+
+class Spot final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.engine.value = "kinematic";
+    settings.density = 0.02;
+    settings.initial_speed = 0.5;
+    settings.gravity = 0;
+    settings.physics.friction = 0;
+    settings.physics.restitution = 1;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"hold", "frame after which the bodies fly apart", &hold_, 1, kMostFrames});
+  }
+
+  /// Physics would try to push each out of all the others.
+  [[nodiscard]] LayerMatrix pushing(const SceneInfo&) const override { return {}; }
+
+  void prepare(const Settings& settings, Random& random) override {
+    spot_ = random.inBall(settings.initial_radius * settings.side() / 2);
+  }
+
+  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
+                       Random& random) override {
+    return {.shape = type.shape(index, settings.scale, random),
+            .mass = settings.mass,
+            .pose = {.position = spot_}};
+  }
+
+  void act(Stage& stage, std::uint32_t frame) override {
+    if (frame != hold_) return;
+    for (const std::uint32_t id : stage.bodies.inEngine()) {
+      stage.bodies[id]->setVelocity(launchVelocity(stage.settings, stage.random), {});
+    }
+  }
+
+ private:
+  std::int64_t hold_ = 5;
+  Vec3 spot_{};
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {{"spot", "Spot", "all bodies at one place, then apart"}, makeAs<Scene, Spot>};
+}
+
+}  // namespace broadmark::scenes::spot

@@ -1,0 +1,81 @@
+// World: static boxes of all sizes, as many as there is memory for, and a few bodies that fly among
+// them. Two layers: static boxes do not meet each other. The cost of a frame should follow the
+// movers; here it does, as static boxes are scenery.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "broadmark/scenes/scene.h"
+#include "broadmark/scenes/simulation.h"
+#include "entries.h"
+#include "scenes/sizes.h"
+
+namespace broadmark::scenes::world {
+namespace {
+
+class World final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.engine.value = "kinematic";
+    settings.density = 0.02;
+    settings.initial_speed = 0.1;
+    settings.gravity = 0;
+    settings.physics.substeps = 1;
+    settings.physics.friction = 0;
+    settings.physics.restitution = 1;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"movers", "number of bodies that fly about; the others never move", &movers_, 0,
+           kMostBodies});
+    visit({"largest", "longest edge of a static box, in sides of the world", &largest_, 1e-3, 1});
+  }
+
+  void describe(const Settings& settings, SceneInfo& info) const override {
+    std::vector<BodyGroups> bodies(info.objects);
+    for (std::size_t id = 0; id < bodies.size(); ++id) {
+      bodies[id].layer = isMover(id, settings) ? 1 : 0;
+    }
+    info.filter = {bodies, LayerMatrix().set(0, 1).set(1, 1)};
+  }
+
+  void populate(Stage& stage) override {
+    const Settings& settings = stage.settings;
+    Random& random = stage.random;
+    const double most = largest_ * settings.side() / settings.scale;
+    for (std::size_t id = 0; id < stage.bodies.size(); ++id) {
+      const bool mover = isMover(id, settings);
+      const double size = mover ? 1 : sizeOfMany(most, random);
+      BodyDescription body{.shape = stage.object_type.shape(id, size * settings.scale, random),
+                           .mass = settings.mass};
+      body.pose.position = anywhereInside(body.shape, settings.side(), random);
+      if (mover) {
+        body.linear_velocity = launchVelocity(settings, random);
+        stage.bodies.add(id, body);
+      } else {
+        stage.bodies.place(id, body.shape, body.pose);
+      }
+    }
+  }
+
+ private:
+  /// Movers are spread evenly over the ids.
+  [[nodiscard]] bool isMover(std::size_t id, const Settings& settings) const {
+    const auto count = static_cast<std::uint64_t>(settings.objects);
+    const auto movers = std::min(static_cast<std::uint64_t>(movers_), count);
+    return id * movers / count != (id + 1) * movers / count;
+  }
+
+  std::int64_t movers_ = 100;
+  double largest_ = 0.1;
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {{"world", "World", "static boxes of all sizes, and a few bodies that fly through them"},
+          makeAs<Scene, World>};
+}
+
+}  // namespace broadmark::scenes::world

@@ -1,0 +1,94 @@
+// Worlds: many copies of a small FreeFall at the same place, as robots learn: a body meets only
+// those of its own copy. Each copy starts again after an episode, one after the other.
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "broadmark/scenes/scene.h"
+#include "entries.h"
+
+namespace broadmark::scenes::worlds {
+namespace {
+
+class Worlds final : public Scene {
+ public:
+  void setDefaults(Settings& settings) const override {
+    settings.density = 0.05;
+    settings.gravity = 0.5;
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"bodies_per_world", "number of bodies in each copy; the density is that of one copy",
+           &bodies_per_world_, 1, 1'000'000});
+    visit({"episode", "frames after which a copy starts again", &episode_, 1, 1'000'000});
+  }
+
+  void describe(const Settings& settings, SceneInfo& info) const override {
+    info.world = ofOneWorld(settings).world();
+    std::vector<BodyGroups> bodies(info.objects);
+    for (std::size_t id = 0; id < bodies.size(); ++id) {
+      bodies[id].world =
+          static_cast<std::uint32_t>(id / static_cast<std::size_t>(bodies_per_world_));
+    }
+    info.filter = {bodies, LayerMatrix().set(0, 0)};
+  }
+
+  void prepare(const Settings& settings, Random&) override {
+    starts_.clear();
+    starts_.reserve(static_cast<std::size_t>(settings.objects));
+    world_size_ = static_cast<std::size_t>(bodies_per_world_);
+    one_ = ofOneWorld(settings);
+  }
+
+  BodyDescription body(std::size_t index, const Settings&, const ObjectType& type,
+                       Random& random) override {
+    starts_.push_back(Scene::body(index, one_, type, random));
+    return starts_.back();
+  }
+
+  void start(Stage& stage) override {
+    stage.engine.setGravity({0, -static_cast<float>(one_.gravity * one_.side()), 0});
+  }
+
+  void act(Stage& stage, std::uint32_t frame) override {
+    const std::size_t worlds = (starts_.size() + world_size_ - 1) / world_size_;
+    const auto episode = static_cast<std::size_t>(episode_);
+    for (std::size_t world = 0; world < worlds; ++world) {
+      // Their episodes end one after the other.
+      if ((frame + world * episode / worlds) % episode == 0) startAgain(world, stage);
+    }
+  }
+
+ private:
+  /// The settings of a copy as a scene of its own.
+  [[nodiscard]] Settings ofOneWorld(const Settings& settings) const {
+    Settings one = settings;
+    one.objects = std::min(bodies_per_world_, settings.objects);
+    return one;
+  }
+
+  void startAgain(std::size_t world, Stage& stage) const {
+    const std::size_t end = std::min(starts_.size(), (world + 1) * world_size_);
+    for (std::size_t id = world * world_size_; id < end; ++id) {
+      PhysicsBody& body = *stage.bodies[id];
+      body.setPose(starts_[id].pose);
+      body.setVelocity(starts_[id].linear_velocity, starts_[id].angular_velocity);
+    }
+  }
+
+  std::int64_t bodies_per_world_ = 20;
+  std::int64_t episode_ = 100;
+  std::size_t world_size_ = 1;
+  Settings one_;                         ///< of a copy
+  std::vector<BodyDescription> starts_;  ///< by body
+};
+
+}  // namespace
+
+SceneEntry entry() {
+  return {{"worlds", "Worlds", "many copies of a small FreeFall at the same place"},
+          makeAs<Scene, Worlds>};
+}
+
+}  // namespace broadmark::scenes::worlds
