@@ -44,7 +44,7 @@ void addLanes(Values& values, const RunProgress& progress) {
 
 void addSnapshot(Values& values, const Snapshot* snapshot) {
   values["shown_frame"] = snapshot ? std::to_string(snapshot->frame) : "";
-  values["bodies"] = snapshot ? std::to_string(snapshot->boxes->size()) : "0";
+  values["bodies"] = snapshot ? std::to_string(snapshot->present) : "0";
   values["pairs"] = snapshot ? std::to_string(snapshot->pairs.size()) : "0";
   const FrameDifference difference = snapshot ? snapshot->difference : FrameDifference();
   addCounts(values, "", difference);
