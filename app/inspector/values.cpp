@@ -106,6 +106,14 @@ void addBatch(Values& values, const BackgroundBake& bake) {
   values["batch.failed"] = std::to_string(report.failed());
 }
 
+/// Whether the first selected body is there.
+std::string presenceText(const Session& session, const Snapshot* snapshot) {
+  const auto& bodies = session.selection.bodies();
+  if (bodies.empty() || !snapshot || bodies.front() >= snapshot->boxes->size()) return "";
+  if (!isEmpty((*snapshot->boxes)[bodies.front()])) return "present";
+  return snapshot->tracks.empty() ? "absent" : absenceText(snapshot->tracks.front());
+}
+
 /// Of the two selected bodies, if there are two.
 void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
@@ -168,6 +176,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBatch(values, session.bake);
   addLanes(values, progress);
   addSnapshot(values, progress.snapshot.get());
+  values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
   values["searching"] = yes(session.mismatches.searching());

@@ -7,7 +7,9 @@
 
 namespace broadmark::faulty {
 
-/// "faulty", which misses pairs, and "faulty-extra", which reports false ones.
+/// "faulty", which misses pairs, and "faulty-extra", which reports false ones. In changing worlds
+/// "faulty-removal", which misses a pair when a body vanishes, and "faulty-layers", which misses
+/// those of two layers.
 std::vector<Algorithm> variants();
 
 }  // namespace broadmark::faulty

@@ -57,7 +57,8 @@ class SubRecording final : public IndexedFrames {
 /// What a part of a scene is called: "FreeFall case".
 std::string partName(const SceneInfo&);
 
-/// Writes the selected part of `whole` as an .aabbs recording. Returns its hash. Throws InputError.
+/// Writes the selected part of `whole` as a recording of boxes of the kind that the path's
+/// extension names. Returns its hash. Throws InputError, too, when such a one cannot hold the part.
 std::string writePart(const std::filesystem::path& path, IndexedFrames& whole, const Part&);
 
 }  // namespace broadmark
