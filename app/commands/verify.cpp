@@ -17,6 +17,7 @@
 #include "option_types.h"
 #include "output.h"
 #include "progress.h"
+#include "recordings.h"
 #include "table.h"
 #include "words.h"
 
@@ -153,7 +154,7 @@ std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options&
   const auto opened = openRecordingFile(file);
   Recording& recording = *opened;
   const SceneInfo& scene = recording.scene();
-  const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
+  const bool slow = options.describe || recording.bytes() > (1U << 28);
   Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);
   const auto description = readThrough(recording, options.describe, [&](std::uint32_t frame) {
     progress.update(frame);
@@ -196,10 +197,7 @@ int run(const Options& options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("files", options->files,
-                 fmt::format("recordings ({}, {})", kAabbsExtension, kPosrotExtension))
-      ->type_name("FILE")
-      ->required();
+  app.add_option("files", options->files, recordingKindsText())->type_name("FILE")->required();
   CLI::Option* describe = app.add_flag(
       "--describe", options->describe,
       "also print what each is like, over time: density, pairs per body, share of "
