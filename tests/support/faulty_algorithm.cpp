@@ -1,7 +1,7 @@
 // Algorithms that are wrong once in a while, to show how such a fault is found. A plug-in, never
 // part of the program.
 //
-// "faulty-removal" and "faulty-layers" test all pairs. The first loses one whenever a body has
+// "lossy-removal" and "lossy-layers" test all pairs. The first loses one whenever a body has
 // vanished since the frame before, the second all pairs of two layers.
 //
 // The other two keep a fat box around each body (as Bullet's and Box2D's trees do) and all pairs of
@@ -214,8 +214,8 @@ Algorithm variant(const std::string& id, const std::string& summary, Fault fault
 std::vector<Algorithm> variants() {
   return {variant("faulty", "loses a pair once in some hundred frames", Fault::missed),
           variant("faulty-extra", "reports false pairs", Fault::extra),
-          changingVariant("faulty-removal", "loses a pair when a body vanishes", loseOneAtARemoval),
-          changingVariant("faulty-layers", "loses all pairs of two layers", losePairsOfTwoLayers)};
+          changingVariant("lossy-removal", "loses a pair when a body vanishes", loseOneAtARemoval),
+          changingVariant("lossy-layers", "loses all pairs of two layers", losePairsOfTwoLayers)};
 }
 
 }  // namespace broadmark::faulty

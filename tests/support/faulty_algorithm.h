@@ -8,7 +8,7 @@
 namespace broadmark::faulty {
 
 /// "faulty", which misses pairs, and "faulty-extra", which reports false ones. In changing worlds
-/// "faulty-removal", which misses a pair when a body vanishes, and "faulty-layers", which misses
+/// "lossy-removal", which misses a pair when a body vanishes, and "lossy-layers", which misses
 /// those of two layers.
 std::vector<Algorithm> variants();
 
