@@ -75,13 +75,13 @@ Part renumbered(const Part& part, const Part& origin) {
   Part same = part;
   same.bodies = positions(part.bodies, origin.bodies);
   same.frames = positions(part.frames, origin.frames);
-  std::erase_if(same.filled, [&](Filling& filling) {
-    filling.body = positionOf(filling.body, origin.bodies);
+  same.filled.clear();
+  for (const Filling& filling : part.filled) {
+    const std::uint32_t begin = positionOf(filling.first, origin.frames);
     const std::uint32_t end = positionOf(filling.last + 1, origin.frames);
-    filling.first = positionOf(filling.first, origin.frames);
-    filling.last = end - 1;
-    return filling.first == end;
-  });
+    if (begin == end) continue;
+    same.filled.push_back({positionOf(filling.body, origin.bodies), begin, end - 1, filling.box});
+  }
   return same;
 }
 
