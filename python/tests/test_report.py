@@ -49,7 +49,8 @@ def test_cases_are_chosen_as_elsewhere(tmp_path: pathlib.Path, command: Any) -> 
     report = tmp_path / "report.html"
     status, out, _ = command("report", results, "-o", report, "--no-pictures", "--filter", "/kd$")
     assert status == 0 and "1 cases" in out
-    data = json.loads(report.read_text("utf-8").partition('id="data">')[2].partition("</script>")[0])
+    text = report.read_text("utf-8").partition('id="data">')[2]
+    data = json.loads(text.partition("</script>")[0])
     assert data["columns"]["algorithm"]["texts"] == ["kd"]
     status, _, err = command("report", results, "--filter", "nothing")
     assert status == 2 and "--filter" in err
