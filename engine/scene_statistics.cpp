@@ -96,7 +96,7 @@ class FilterTally {
       bodies_[layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
     }
     for (const Pair pair : pairs) {
-      const auto [a, b] = std::minmax(layerOf(pair.a), layerOf(pair.b));
+      const auto [a, b] = std::minmax({layerOf(pair.a), layerOf(pair.b)});
       pairs_[a][b] += 1;
     }
   }
