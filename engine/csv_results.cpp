@@ -149,6 +149,8 @@ Columns resultColumns() {
   }
   add({column("pairs_mean", [](R r) { return r.pairs_mean; }),
        column("pairs_max", [](R r) { return r.pairs_max; }),
+       column("bodies_mean", [](R r) { return r.bodies ? fmt::format("{}", r.bodies->mean) : ""; }),
+       column("bodies_max", [](R r) { return r.bodies ? fmt::format("{}", r.bodies->max) : ""; }),
        wrongPairs("missed", &CaseResult::missed_count),
        wrongPairs("false", &CaseResult::false_count),
        wrongPairs("allowed_extra", &CaseResult::allowed_extra_count),

@@ -418,6 +418,9 @@ Json toJson(const CaseResult& result) {
                {"processor", processorToJson(result.repetitions)},
                {"frame_counts", frameCountsToJson(result.frames)},
                {"frames", framesToJson(result.repetitions)}};
+  if (result.bodies) {
+    json["bodies"] = {{"mean", result.bodies->mean}, {"max", result.bodies->max}};
+  }
   for (const FrameDifference& difference : result.differences) {
     json["differences"].push_back(toJson(difference));
   }
@@ -444,6 +447,10 @@ CaseResult caseFrom(const JsonFields& json) {
   result.reason = json.text("reason");
   result.pairs_mean = json.object("pairs").number("mean");
   result.pairs_max = json.object("pairs").integer<std::uint64_t>("max");
+  if (json.has("bodies")) {
+    const JsonFields bodies = json.object("bodies");
+    result.bodies = {bodies.number("mean"), bodies.integer<std::uint64_t>("max")};
+  }
   result.checked = json.boolean("checked");
   json.eachObject("differences", [&](const JsonFields& difference) {
     result.differences.push_back(differenceFrom(difference));

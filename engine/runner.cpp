@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace broadmark {
 namespace {
@@ -24,7 +25,10 @@ class FrameCounter {
     FrameCounts& counts = result_.frames[passed_++];
     auto difference = run.check(frame, oracle);
     if (difference) keepWorst(counts, *difference);
-    if (is_first_pass_ && run.answered()) countWork(counts, run);
+    if (is_first_pass_ && run.answered()) {
+      countWork(counts, run);
+      countBodies(frame);
+    }
     if (!difference || !difference->isMismatch()) return;
     difference->repetition = number_;
     result_.differences.push_back(std::move(*difference));
@@ -54,6 +58,15 @@ class FrameCounter {
     for (const auto& [name, count] : run.counters()) {
       addToMean(result_.counters[name], count, before);
     }
+  }
+
+  void countBodies(const Frame& frame) {
+    if (result_.recording.scene.all_present) return;
+    const auto present =
+        static_cast<std::uint64_t>(std::ranges::count_if(frame.boxes, std::not_fn(isEmpty)));
+    Population& bodies = result_.bodies ? *result_.bodies : result_.bodies.emplace();
+    addToMean(bodies.mean, present, passed_ - 1);
+    bodies.max = std::max(bodies.max, present);
   }
 
   /// Takes one more value into the mean of `count_before`.

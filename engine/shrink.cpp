@@ -1,6 +1,6 @@
-// Shrinking a failing case, by delta debugging: parts are left out, large ones first, as long as
-// what is left still fails, until no single body and no single frame can go.
-// Zeller and Hildebrandt, "Simplifying and Isolating Failure-Inducing Input", 2002.
+// Shrinking a failing case, by delta debugging (delta_debugging.h): parts are left out, large ones
+// first, as long as what is left still fails, until nothing can go: no single body, no frame, no
+// absence (the body is put where it was, or will be, instead), nothing of the collision filter.
 //
 // That alone would begin with the whole recording. But wrong answers mostly have causes nearby. So
 // the wrong pair is tried first with few neighbours, then with more and more (and with a short
@@ -13,13 +13,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "broadmark/case_run.h"
 #include "broadmark/error.h"
+#include "delta_debugging.h"
+#include "simpler_filter.h"
 
 namespace broadmark {
 namespace {
@@ -35,15 +39,50 @@ bool isWithin(const Part& part, const Part& whole) {
          std::ranges::includes(whole.frames, part.frames);
 }
 
+/// The position of the first of `all`, which ascend, that is not below `number`.
+std::uint32_t positionOf(std::uint32_t number, const std::vector<std::uint32_t>& all) {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(all, number) - all.begin());
+}
+
 /// The position of each of `numbers` in `all`; both ascend.
 std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
                                      const std::vector<std::uint32_t>& all) {
   std::vector<std::uint32_t> found;
-  for (const std::uint32_t number : numbers) {
-    const auto place = std::ranges::lower_bound(all, number);
-    found.push_back(static_cast<std::uint32_t>(place - all.begin()));
-  }
+  for (const std::uint32_t number : numbers) found.push_back(positionOf(number, all));
   return found;
+}
+
+/// Some of a part's bodies.
+Part withBodies(const Part& part, std::vector<std::uint32_t> bodies) {
+  Part fewer = part;
+  fewer.filter = part.filter.of(positions(bodies, part.bodies));
+  fewer.bodies = std::move(bodies);
+  std::erase_if(fewer.filled, [&](const Filling& filling) {
+    return !std::ranges::binary_search(fewer.bodies, filling.body);
+  });
+  return fewer;
+}
+
+/// Some of a part's frames.
+Part withFrames(const Part& part, std::vector<std::uint32_t> frames) {
+  Part fewer = part;
+  fewer.frames = std::move(frames);
+  return fewer;
+}
+
+/// The part in the numbers of another one that it is within.
+Part renumbered(const Part& part, const Part& origin) {
+  Part same = part;
+  same.bodies = positions(part.bodies, origin.bodies);
+  same.frames = positions(part.frames, origin.frames);
+  same.filled.clear();
+  for (const Filling& filling : part.filled) {
+    const std::uint32_t begin = positionOf(filling.first, origin.frames);
+    const std::uint32_t end = positionOf(filling.last + 1, origin.frames);
+    if (begin == end) continue;
+    same.filled.push_back({positionOf(filling.body, origin.bodies), begin, end - 1, filling.box});
+  }
+  return same;
 }
 
 /// Where to look first: the bodies of the first wrong pair whose bodies exist.
@@ -59,7 +98,7 @@ std::vector<std::uint32_t> suspects(const FrameDifference& difference, std::uint
   return {};
 }
 
-/// Squared distance of two boxes, 0 when they overlap.
+/// Squared distance of two boxes, 0 when they overlap; infinite if one is empty.
 double squaredGap(const Aabb& a, const Aabb& b) {
   double sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -70,8 +109,9 @@ double squaredGap(const Aabb& a, const Aabb& b) {
   return sum;
 }
 
-/// Squared distance of two boxes' centres.
+/// Squared distance of two boxes' centres; infinite if one is empty.
 double squaredDistance(const Aabb& a, const Aabb& b) {
+  if (isEmpty(a) || isEmpty(b)) return std::numeric_limits<double>::infinity();
   double sum = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double twice = (static_cast<double>(a.min[axis]) + a.max[axis]) -
@@ -128,7 +168,7 @@ class Shrinker {
   }
 
  private:
-  /// A part of the recording that is held in memory.
+  /// A part of the recording that is held in memory, as it is there.
   struct Held {
     Part origin;
     FrameList frames;
@@ -143,8 +183,9 @@ class Shrinker {
       return false;
     }
     held_.reset();
-    SubRecording frames(whole_, part, partName(whole_.scene()));
-    held_ = std::make_unique<Held>(part, frames);
+    Part origin = partOf(whole_.scene(), part.bodies, part.frames);
+    SubRecording frames(whole_, origin, partName(whole_.scene()));
+    held_ = std::make_unique<Held>(std::move(origin), frames);
     return true;
   }
 
@@ -155,10 +196,7 @@ class Shrinker {
   SubRecording framesOf(const Part& part) {
     const std::string name = partName(whole_.scene());
     if (!isHeld(part)) return {whole_, part, name};
-    return {held_->frames,
-            {positions(part.bodies, held_->origin.bodies),
-             positions(part.frames, held_->origin.frames)},
-            name};
+    return {held_->frames, renumbered(part, held_->origin), name};
   }
 
   /// Runs the case on a part, which becomes the best when it fails there.
@@ -208,9 +246,9 @@ class Shrinker {
     if (seeds.empty() || limit < seeds.size()) return false;
     const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(known_.frame).boxes, limit);
     const auto first = [&](std::size_t count) {
-      Part part{{order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count)}, before.frames};
-      std::ranges::sort(part.bodies);
-      return part;
+      std::vector bodies(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+      std::ranges::sort(bodies);
+      return withBodies(before, std::move(bodies));
     };
     hold(first(order.size()));
     for (std::size_t count = seeds.size(); count < order.size(); count *= 2) {
@@ -234,7 +272,7 @@ class Shrinker {
     const Part before = best_.part;
     const auto frames = static_cast<std::ptrdiff_t>(before.frames.size());
     for (std::ptrdiff_t history = 2; history < frames; history *= 2) {
-      if (fails({before.bodies, {before.frames.end() - history, before.frames.end()}})) return;
+      if (fails(withFrames(before, {before.frames.end() - history, before.frames.end()}))) return;
     }
   }
 
@@ -242,47 +280,100 @@ class Shrinker {
     bool smaller = true;
     while (smaller) {
       hold(best_.part);
-      const bool fewer_frames = removeFrames();
-      smaller = removeBodies() || fewer_frames;
+      smaller = removeFrames();
+      smaller = removeBodies() || smaller;
+      smaller = fillAbsences() || smaller;
+      smaller = simplifyFilterOfBest() || smaller;
     }
   }
 
   bool removeBodies() {
-    return removeChunks(best_.part.bodies, 0, [&](std::vector<std::uint32_t> bodies) {
-      return fails({std::move(bodies), best_.part.frames});
+    return leaveOut(best_.part.bodies, 0, [&](const std::vector<std::uint32_t>& bodies) {
+      return fails(withBodies(best_.part, bodies));
     });
   }
 
   /// The last frame stays, and one before it: the initial pose.
   bool removeFrames() {
-    return removeChunks(best_.part.frames, 1, [&](std::vector<std::uint32_t> frames) {
-      return frames.size() > 1 && fails({best_.part.bodies, std::move(frames)});
+    return leaveOut(best_.part.frames, 1, [&](const std::vector<std::uint32_t>& frames) {
+      return frames.size() > 1 && fails(withFrames(best_.part, frames));
     });
   }
 
-  /// Leaves out chunks, large ones first, until none of the items can go, the last `kept` aside.
-  /// Whether any could.
-  template <class Fails>
-  static bool removeChunks(std::vector<std::uint32_t> items, std::size_t kept,
-                           Fails&& still_fails) {
-    const std::size_t at_first = items.size();
-    std::size_t chunk = std::max<std::size_t>(items.size() / 2, 1);
-    while (true) {
-      const std::size_t before = items.size();
-      for (std::size_t begin = 0; begin + kept < items.size();) {
-        const std::size_t end = std::min(begin + chunk, items.size() - kept);
-        std::vector<std::uint32_t> fewer = items;
-        fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(begin),
-                    fewer.begin() + static_cast<std::ptrdiff_t>(end));
-        if (still_fails(fewer)) {
-          items = std::move(fewer);
+  enum class PutWhere { it_was, it_will_be };
+
+  /// Fills each absence that is not needed. A part from which nobody is absent any more need not
+  /// say that somebody may be.
+  bool fillAbsences() {
+    if (best_.part.all_present) return false;
+    bool fewer = false;
+    for (const PutWhere where : {PutWhere::it_was, PutWhere::it_will_be}) {
+      const Part before = best_.part;
+      std::vector<Filling> all = absences(before, where);
+      std::erase_if(all, [](const Filling& absence) { return isEmpty(absence.box); });
+      fewer = leaveOut(all, 0,
+                       [&](const std::vector<Filling>& left) {
+                         Part part = before;
+                         std::ranges::set_difference(all, left, std::back_inserter(part.filled), {},
+                                                     placeOf, placeOf);
+                         return fails(part);
+                       }) ||
+              fewer;
+    }
+    if (!absences(best_.part, PutWhere::it_was).empty()) return fewer;
+    Part steady = best_.part;
+    steady.all_present = true;
+    return fails(steady) || fewer;
+  }
+
+  static std::pair<std::uint32_t, std::uint32_t> placeOf(const Filling& filling) {
+    return {filling.body, filling.first};
+  }
+
+  /// Each time that a body is absent from a part, and its box just before or just after: the other
+  /// one if there is only that, empty if it is absent throughout. By body and frame.
+  std::vector<Filling> absences(const Part& part, PutWhere where) {
+    struct Body {
+      Aabb before = kEmptyBox;
+      std::optional<Filling> absence;
+    };
+    std::vector<Body> bodies(part.bodies.size());
+    std::vector<Filling> found;
+    const auto end_absence = [&](Body& body, const Aabb& after) {
+      if (!body.absence) return;
+      const bool is_ahead = where == PutWhere::it_will_be && !isEmpty(after);
+      body.absence->box = is_ahead || isEmpty(body.before) ? after : body.before;
+      found.push_back(*body.absence);
+      body.absence.reset();
+    };
+    SubRecording source = framesOf(part);
+    for (std::uint32_t index = 0; index < part.frames.size(); ++index) {
+      const std::span<const Aabb> boxes = source.at(index).boxes;
+      const std::uint32_t frame = part.frames[index];
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        Body& body = bodies[i];
+        if (!isEmpty(boxes[i])) {
+          end_absence(body, boxes[i]);
+          body.before = boxes[i];
+        } else if (body.absence) {
+          body.absence->last = frame;
         } else {
-          begin = end;
+          body.absence = Filling{part.bodies[i], frame, frame, kEmptyBox};
         }
       }
-      if (chunk == 1 && items.size() == before) return items.size() < at_first;
-      chunk = std::max<std::size_t>(chunk / 2, 1);
     }
+    for (Body& body : bodies) end_absence(body, kEmptyBox);
+    std::ranges::sort(found, {}, placeOf);
+    return found;
+  }
+
+  bool simplifyFilterOfBest() {
+    return simplifyFilter(best_.part.filter, best_.part.bodies.size(),
+                          [&](const CollisionFilter& filter) {
+                            Part part = best_.part;
+                            part.filter = filter;
+                            return fails(part);
+                          });
   }
 
   CaseRun run_;  ///< of all trials

@@ -2,6 +2,7 @@
 
 #include "broadmark/sub_recording.h"
 
+#include <algorithm>
 #include <numeric>
 #include <string_view>
 
@@ -9,13 +10,21 @@
 
 namespace broadmark {
 
+Part partOf(const SceneInfo& scene, std::vector<std::uint32_t> bodies,
+            std::vector<std::uint32_t> frames) {
+  CollisionFilter filter = scene.filter.of(bodies);
+  return {.bodies = std::move(bodies),
+          .frames = std::move(frames),
+          .all_present = scene.all_present,
+          .filter = std::move(filter)};
+}
+
 Part wholePart(const SceneInfo& scene, std::uint32_t last_frame) {
-  Part all;
-  all.bodies.resize(scene.objects);
-  all.frames.resize(std::size_t{last_frame} + 1);
-  std::iota(all.bodies.begin(), all.bodies.end(), 0U);
-  std::iota(all.frames.begin(), all.frames.end(), 0U);
-  return all;
+  std::vector<std::uint32_t> bodies(scene.objects);
+  std::vector<std::uint32_t> frames(std::size_t{last_frame} + 1);
+  std::iota(bodies.begin(), bodies.end(), 0U);
+  std::iota(frames.begin(), frames.end(), 0U);
+  return partOf(scene, std::move(bodies), std::move(frames));
 }
 
 SubRecording::SubRecording(IndexedFrames& whole, Part part, std::string name)
@@ -23,13 +32,21 @@ SubRecording::SubRecording(IndexedFrames& whole, Part part, std::string name)
   scene_.name = std::move(name);
   scene_.objects = static_cast<std::uint32_t>(part_.bodies.size());
   scene_.frames = static_cast<std::uint32_t>(part_.frames.size() - 1);
-  scene_.filter = whole.scene().filter.of(part_.bodies);
+  scene_.all_present = part_.all_present;
+  scene_.filter = part_.filter;
   boxes_.resize(scene_.objects);
 }
 
 std::span<const Aabb> SubRecording::readBoxes(std::uint32_t index) {
-  const Frame frame = whole_.at(part_.frames[index]);
+  const std::uint32_t number = part_.frames[index];
+  const Frame frame = whole_.at(number);
   for (std::size_t i = 0; i < boxes_.size(); ++i) boxes_[i] = frame.boxes[part_.bodies[i]];
+  for (const Filling& filling : part_.filled) {
+    if (number < filling.first || number > filling.last) continue;
+    const auto body = std::ranges::lower_bound(part_.bodies, filling.body);
+    if (body == part_.bodies.end() || *body != filling.body) continue;
+    boxes_[static_cast<std::size_t>(body - part_.bodies.begin())] = filling.box;
+  }
   return boxes_;
 }
 

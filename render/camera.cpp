@@ -96,13 +96,18 @@ ViewSpace viewSpaceOf(const Aabb& box) {
 }
 
 Aabb shownBox(const Aabb& world, std::span<const Aabb> boxes) {
-  if (boxes.empty()) return world;
-  const auto inside = std::count_if(boxes.begin(), boxes.end(),
-                                    [&](const Aabb& box) { return holdsCentre(world, box); });
-  if (longestEdge(world) > 0 && 2 * static_cast<std::size_t>(inside) >= boxes.size()) return world;
-  Aabb all = longestEdge(world) > 0 ? world : boxes.front();
-  for (const Aabb& box : boxes) all = merged(all, box);
-  return all;
+  std::size_t present = 0;
+  std::size_t inside = 0;
+  Aabb all = kEmptyBox;
+  for (const Aabb& box : boxes) {
+    if (isEmpty(box)) continue;
+    ++present;
+    inside += holdsCentre(world, box) ? 1 : 0;
+    all = merged(all, box);
+  }
+  if (present == 0) return world;
+  if (longestEdge(world) == 0) return all;
+  return 2 * inside >= present ? world : merged(world, all);
 }
 
 Camera figureCamera(const Aabb& box, double aspect) {

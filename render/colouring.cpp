@@ -16,6 +16,7 @@ namespace broadmark {
 namespace {
 
 using Scale = std::array<Rgb, 6>;
+using Hues = std::array<Rgb, 8>;
 
 /// The colours for one background.
 struct Palette {
@@ -25,6 +26,7 @@ struct Palette {
   Rgb missed;
   Rgb false_pair;
   Rgb moving;
+  Hues layers;
   Scale heat;
   Scale size;
 };
@@ -38,6 +40,9 @@ Palette paletteOf(const ColouringInput& input) {
       .missed = choose(Rgb{0xD1003F}, Rgb{0xFF4F79}),
       .false_pair = choose(Rgb{0x2563C9}, Rgb{0x62A5FF}),
       .moving = choose(Rgb{0x0072B2}, Rgb{0x56B4E9}),
+      .layers = choose(
+          Hues{0x8A99A8, 0x0072B2, 0xD55E00, 0x009E73, 0xB3548A, 0xB87A00, 0x4B5FD0, 0x3E4650},
+          Hues{0x707C89, 0x56B4E9, 0xE8703A, 0x2FC08F, 0xF28AC0, 0xF0E442, 0x8AA4FF, 0xE4E7EB}),
       .heat = choose(Scale{0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
                      Scale{0x6A3B78, 0x973A72, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B}),
       .size = choose(Scale{0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75},
@@ -46,13 +51,14 @@ Palette paletteOf(const ColouringInput& input) {
 }
 
 /// Gives each body the colour of its class, the legend's entry number classOf(body), and counts the
-/// bodies of each class.
+/// bodies of each class. Absent ones have none.
 template <class ClassOf>
-void colourByClass(std::size_t bodies, std::vector<LegendEntry> legend, Colouring& colouring,
-                   const ClassOf& classOf) {
-  colouring.colours.resize(bodies);
+void colourByClass(std::span<const Aabb> boxes, std::vector<LegendEntry> legend,
+                   Colouring& colouring, const ClassOf& classOf) {
+  colouring.colours.resize(boxes.size());
   colouring.legend = std::move(legend);
-  for (std::size_t body = 0; body < bodies; ++body) {
+  for (std::size_t body = 0; body < boxes.size(); ++body) {
+    if (isEmpty(boxes[body])) continue;
     LegendEntry& entry = colouring.legend[classOf(body)];
     ++entry.count;
     colouring.colours[body] = entry.swatch;
@@ -74,7 +80,7 @@ void mark(std::vector<std::uint8_t>& marks, std::span<const Pair> pairs, std::ui
 
 void colourOverlapping(const ColouringInput& input, Colouring& colouring) {
   const Palette palette = paletteOf(input);
-  colourByClass(input.boxes.size(), {{"overlapping", palette.overlapping}, {"free", palette.quiet}},
+  colourByClass(input.boxes, {{"overlapping", palette.overlapping}, {"free", palette.quiet}},
                 colouring, [&](std::size_t body) { return overlapsOf(input, body) > 0 ? 0U : 1U; });
 }
 
@@ -86,7 +92,7 @@ void colourByCount(const ColouringInput& input, Colouring& colouring) {
     legend.push_back({fmt::format("{} to {}", 1U << step, (2U << step) - 1), palette.heat[step]});
   }
   legend.push_back({fmt::format("{} or more", 1U << last), palette.heat[last]});
-  colourByClass(input.boxes.size(), std::move(legend), colouring, [&](std::size_t body) {
+  colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
     const std::uint32_t count = overlapsOf(input, body);
     std::size_t step = count > 0 ? 1 : 0;
     for (std::size_t i = 1; i <= last; ++i) step += (count >> i) != 0 ? 1 : 0;
@@ -102,7 +108,7 @@ void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
   }
   mark(classes, input.false_pairs, 1);
   mark(classes, input.missed, 0);  // last: a missed pair is the worse fault
-  colourByClass(classes.size(),
+  colourByClass(input.boxes,
                 {{"missed", palette.missed},
                  {"false", palette.false_pair},
                  {"right", palette.right},
@@ -110,16 +116,55 @@ void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
                 colouring, [&](std::size_t body) { return classes[body]; });
 }
 
+/// All bodies in one class.
+void colourAlike(const ColouringInput& input, const std::string& label, Rgb colour,
+                 Colouring& colouring) {
+  colourByClass(input.boxes, {{label, colour}}, colouring, [](std::size_t) { return 0U; });
+}
+
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {
   const Palette palette = paletteOf(input);
   if (input.previous.size() != input.boxes.size()) {
-    colourByClass(input.boxes.size(), {{"no previous frame", palette.quiet}}, colouring,
-                  [](std::size_t) { return 0U; });
+    colourAlike(input, "no previous frame", palette.quiet, colouring);
     return;
   }
   colourByClass(
-      input.boxes.size(), {{"moving", palette.moving}, {"static", palette.quiet}}, colouring,
+      input.boxes, {{"moving", palette.moving}, {"static", palette.quiet}}, colouring,
       [&](std::size_t body) { return input.boxes[body] != input.previous[body] ? 0U : 1U; });
+}
+
+void colourByChange(const ColouringInput& input, Colouring& colouring) {
+  const Palette palette = paletteOf(input);
+  if (input.previous.size() != input.boxes.size()) {
+    colourAlike(input, "no previous frame", palette.quiet, colouring);
+    return;
+  }
+  colourByClass(
+      input.boxes,
+      {{"appeared", palette.overlapping}, {"moved", palette.moving}, {"unchanged", palette.quiet}},
+      colouring, [&](std::size_t body) {
+        if (isEmpty(input.previous[body])) return 0U;
+        return input.boxes[body] != input.previous[body] ? 1U : 2U;
+      });
+}
+
+void colourByLayer(const ColouringInput& input, Colouring& colouring) {
+  const Palette palette = paletteOf(input);
+  if (input.layers.size() != input.boxes.size()) {
+    colourAlike(input, "layer 0", palette.layers[0], colouring);
+    return;
+  }
+  std::array<std::size_t, LayerMatrix::kLayers> entries{};
+  for (const std::uint8_t layer : input.layers) entries[layer] = 1;
+  std::vector<LegendEntry> legend;
+  for (std::size_t layer = 0; layer < entries.size(); ++layer) {
+    if (entries[layer] == 0) continue;
+    entries[layer] = legend.size();
+    legend.push_back(
+        {fmt::format("layer {}", layer), palette.layers[legend.size() % palette.layers.size()]});
+  }
+  colourByClass(input.boxes, std::move(legend), colouring,
+                [&](std::size_t body) { return entries[input.layers[body]]; });
 }
 
 /// The longest edge.
@@ -133,13 +178,12 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
   float smallest = kMost;
   float largest = 0;
   for (const Aabb& box : input.boxes) {
-    const float size = sizeOf(box);
+    const float size = sizeOf(box);  // below 0: absent
     if (size > 0) smallest = std::min(smallest, size);
     largest = std::max(largest, std::min(size, kMost));
   }
   if (!(smallest < largest)) {
-    colourByClass(input.boxes.size(), {{fmt::format("{:.3g}", largest), palette.size[2]}},
-                  colouring, [](std::size_t) { return 0U; });
+    colourAlike(input, fmt::format("{:.3g}", largest), palette.size[2], colouring);
     return;
   }
   // Steps of equal ratio. Points belong to the first step, like the smallest bodies.
@@ -155,7 +199,7 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
     legend.push_back(
         {fmt::format("{:.3g} to {:.3g}", border(step), border(step + 1)), palette.size[step]});
   }
-  colourByClass(input.boxes.size(), std::move(legend), colouring, [&](std::size_t body) {
+  colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
     const float size = sizeOf(input.boxes[body]);
     std::size_t step = 0;
     for (std::size_t i = 1; i < steps; ++i) step += size >= begins[i] ? 1 : 0;
@@ -170,6 +214,9 @@ constexpr ColourMode kModes[] = {
      colourByCorrectness},
     {"motion", "Moving and static", "bodies whose box has changed since the previous frame",
      colourByMotion},
+    {"changes", "Changed now", "bodies that appeared or moved since the previous frame",
+     colourByChange},
+    {"layers", "Layer", "the layer of each body; beyond eight the colours repeat", colourByLayer},
     {"size", "Size", "longest edge of each body, in steps of equal ratio", colourBySize},
 };
 

@@ -16,13 +16,14 @@ namespace {
 constexpr Rgb kTitle = 0x1F2933;
 constexpr Rgb kText = 0x52606D;
 
-/// For each body whether it is in a pair. An invalid pair may name bodies that do not exist.
-std::vector<bool> overlappingBodies(std::size_t bodies, PairRuns overlaps) {
-  std::vector<bool> overlapping(bodies, false);
+/// For each body whether it is in a pair. A wrong pair may name bodies that do not exist or are
+/// absent.
+std::vector<bool> overlappingBodies(std::span<const Aabb> boxes, PairRuns overlaps) {
+  std::vector<bool> overlapping(boxes.size(), false);
   for (const PairRun run : overlaps) {
     for (const Pair pair : run) {
       for (const std::uint32_t body : {pair.a, pair.b}) {
-        if (body < bodies) overlapping[body] = true;
+        if (body < boxes.size() && !isEmpty(boxes[body])) overlapping[body] = true;
       }
     }
   }
@@ -43,14 +44,15 @@ void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
                 const std::vector<bool>& overlapping, std::uint64_t pairs) {
   const auto in_pairs =
       static_cast<std::uint64_t>(std::count(overlapping.begin(), overlapping.end(), true));
+  const auto absent = static_cast<std::uint64_t>(std::ranges::count_if(frame.boxes, isEmpty));
+  const std::uint64_t bodies = frame.boxes.size() - absent;
   drawCaption(
       picture,
       {{{fmt::format("{} {}", abbreviated(scene.name), abbreviated(scene.object_type)), kTitle},
         {fmt::format("frame {}", frame.index), kText}},
-       {{counted(frame.boxes.size(), "body", "bodies"), kText},
-        {counted(pairs, "pair", "pairs"), kText}},
+       {{counted(bodies, "body", "bodies"), kText}, {counted(pairs, "pair", "pairs"), kText}},
        {{fmt::format("{} overlapping", in_pairs), kText, kOverlappingBox}},
-       {{fmt::format("{} free", frame.boxes.size() - in_pairs), kText, kFreeBox}}},
+       {{fmt::format("{} free", bodies - in_pairs), kText, kFreeBox}}},
       kLightScene.background);
 }
 
@@ -66,7 +68,7 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   }
   const Gl gl(context);
   const Aabb shown = shownBox(scene.world, frame.boxes);
-  const std::vector<bool> overlapping = overlappingBodies(frame.boxes.size(), overlaps);
+  const std::vector<bool> overlapping = overlappingBodies(frame.boxes, overlaps);
   std::vector<Rgb> colours(frame.boxes.size());
   for (std::size_t body = 0; body < colours.size(); ++body) {
     colours[body] = overlapping[body] ? kOverlappingBox : kFreeBox;

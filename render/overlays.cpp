@@ -49,6 +49,7 @@ Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineSty
     for (const Pair pair : run) {
       if (pair.a >= boxes.size() || pair.b >= boxes.size()) continue;
       if (!is_wanted[pair.a] && !is_wanted[pair.b]) continue;
+      if (isEmpty(boxes[pair.a]) || isEmpty(boxes[pair.b])) continue;
       addUpTo(style.most, overlay.lines,
               {middleOf(boxes[pair.a]), middleOf(boxes[pair.b]), style.colour, style.width,
                style.behind},

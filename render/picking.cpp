@@ -30,7 +30,9 @@ std::array<float, 2> onWindow(const Viewpoint& viewpoint, float x, float y) {
           camera.window_min[1] + v * (camera.window_max[1] - camera.window_min[1])};
 }
 
-bool counts(BodyMask mask, std::size_t body) { return mask.empty() || mask[body] != 0; }
+bool counts(std::span<const Aabb> boxes, BodyMask mask, std::size_t body) {
+  return !isEmpty(boxes[body]) && (mask.empty() || mask[body] != 0);
+}
 
 /// The corners of a box relative to the eye, in view units.
 struct SeenBox {
@@ -125,7 +127,7 @@ std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace&
   std::optional<PickedBody> picked;
   double nearest = camera.far;
   for (std::size_t body = 0; body < boxes.size(); ++body) {
-    if (!counts(mask, body)) continue;
+    if (!counts(boxes, mask, body)) continue;
     SeenBox box = seenBox(boxes[body], eye, scale);
     enlarge(box, forward, half_side);
     double enter = camera.near;
@@ -156,7 +158,7 @@ std::vector<std::uint32_t> bodiesWithin(std::span<const Aabb> boxes, const ViewS
   const std::array planes = frustum(viewpoint, rectangle);
   std::vector<std::uint32_t> bodies;
   for (std::size_t body = 0; body < boxes.size(); ++body) {
-    if (!counts(mask, body)) continue;
+    if (!counts(boxes, mask, body)) continue;
     SeenBox box = seenBox(boxes[body], eye, 1 / space.side);
     if (by == SelectBy::centre) {
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -183,6 +183,21 @@ std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCu
   return hovered;
 }
 
+/// A column of pixels for each frame whose value is known.
+void drawBackdrop(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
+  double most = 0;
+  for (const double value : curve.values) most = std::fmax(most, value);
+  if (most == 0) return;
+  for (float x = axes.min.x; x < axes.max.x; ++x) {
+    const double value = valueAt(curve, axes.frameAt(x + 0.5F));
+    if (std::isnan(value)) continue;
+    const auto height = static_cast<float>(0.92 * value / most) * (axes.max.y - axes.min.y);
+    draw.AddRectFilled({x, axes.max.y - height}, {x + 1, axes.max.y}, packed(curve.colour, 38));
+    draw.AddRectFilled({x, axes.max.y - height - 1}, {x + 1, axes.max.y - height + 1},
+                       packed(curve.colour, 120));
+  }
+}
+
 void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
                    const PlotOptions& options, const PlotColours& colours) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -203,6 +218,13 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
     ImGui::SameLine();
     ImGui::Text("%s%s", withPrefix(value, options.unit).c_str(), disturbed ? "  (disturbed)" : "");
     draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
+  }
+  if (options.backdrop != nullptr) {
+    const double value = valueAt(*options.backdrop, frame);
+    if (!std::isnan(value)) {
+      ImGui::TextUnformatted(
+          fmt::format("{} {}", options.backdrop->label, withPrefix(value, "")).c_str());
+    }
   }
   ImGui::EndTooltip();
 }
@@ -278,6 +300,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   draw.AddRectFilled(axes.min, axes.max, colours.background, 3);
   drawAxes(draw, axes, colours, options.unit);
   draw.PushClipRect(axes.min, axes.max, true);
+  if (options.backdrop != nullptr) drawBackdrop(draw, *options.backdrop, axes);
   for (const PlotCurve& curve : curves) {
     if (!curve.hidden) drawCurve(draw, curve, axes, line / 15);
   }

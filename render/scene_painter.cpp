@@ -76,6 +76,7 @@ void ScenePainter::updateBodies(const SceneViewContent& content) {
     if (body < is_selected.size()) is_selected[body] = true;
   }
   const auto is_visible = [&](std::size_t body) {
+    if (isEmpty(content.boxes[body])) return false;
     return content.visible.empty() || content.visible[body] != 0;
   };
   // The visible bodies of a worker's share follow those of the workers before it.
@@ -109,7 +110,7 @@ void ScenePainter::updateOutlines(const SceneViewContent& content) {
   std::vector<Primitive> edges;
   for (const std::uint32_t body :
        content.selected.first(std::min(kMostOutlines, content.selected.size()))) {
-    if (body >= content.boxes.size()) continue;
+    if (body >= content.boxes.size() || isEmpty(content.boxes[body])) continue;
     const std::vector<Primitive> box = wireframe(content.boxes[body], content.theme.selection,
                                                  kOutlineWidth * content.scale, content.space);
     edges.insert(edges.end(), box.begin(), box.end());

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
 #include <memory>
 
 #include "broadmark/error.h"
@@ -37,32 +39,103 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100 * *share) : kNothing;
 }
 
-std::vector<std::string> cells(std::string frames, const RangeStatistics& range) {
-  const std::optional<double> size_ratio = range.sizeRatio();
-  return {"",
-          std::move(frames),
-          fmt::format("{:.4g}", range.density),
-          fmt::format("{:.4g}", range.pairs_per_body),
-          percent(range.moving_share),
-          fmt::format("{:.4g}", range.min_extent),
-          fmt::format("{:.4g}", range.median_extent),
-          fmt::format("{:.4g}", range.max_extent),
-          size_ratio ? fmt::format("{:.4g}", *size_ratio) : kNothing,
-          fmt::format("{}", range.max_outside)};
+/// One figure of a range: its heading, and how it reads.
+struct Column {
+  const char* heading;
+  std::function<std::string(const RangeStatistics&)> cell;
+};
+
+std::string number(double value) { return fmt::format("{:.4g}", value); }
+
+template <class Figure>
+Column plain(const char* heading, Figure RangeStatistics::*figure) {
+  return {heading,
+          [=](const RangeStatistics& range) { return number(static_cast<double>(range.*figure)); }};
 }
 
-std::string formatDescription(const SceneDescription& description) {
-  std::vector<std::vector<std::string>> rows = {{"", "frames", "density", "pairs/body", "moving",
-                                                 "smallest", "median", "largest", "ratio",
-                                                 "outside"}};
-  const auto frames = [](const RangeStatistics& range) {
-    return range.first == range.last ? fmt::format("{}", range.first)
-                                     : fmt::format("{}–{}", range.first, range.last);
+Column change(const char* heading, double Changes::*which) {
+  return {heading, [=](const RangeStatistics& range) {
+            return range.changes ? number((*range.changes).*which) : kNothing;
+          }};
+}
+
+std::vector<Column> columns(const SceneInfo& scene) {
+  std::vector<Column> all = {
+      plain("density", &RangeStatistics::density),
+      plain("pairs/body", &RangeStatistics::pairs_per_body),
+      {"moving", [](const RangeStatistics& range) { return percent(range.moving_share); }},
+      plain("smallest", &RangeStatistics::min_extent),
+      plain("median", &RangeStatistics::median_extent),
+      plain("largest", &RangeStatistics::max_extent),
+      {"ratio",
+       [](const RangeStatistics& range) {
+         const std::optional<double> ratio = range.sizeRatio();
+         return ratio ? number(*ratio) : kNothing;
+       }},
+      {"outside",
+       [](const RangeStatistics& range) { return fmt::format("{}", range.max_outside); }},
   };
-  rows.push_back(cells("initial", description.initial));
-  for (const RangeStatistics& part : description.parts) rows.push_back(cells(frames(part), part));
-  if (description.overall) rows.push_back(cells("all", *description.overall));
+  if (scene.all_present) return all;
+  const std::vector<Column> population = {
+      plain("fewest", &RangeStatistics::min_bodies), plain("bodies", &RangeStatistics::mean_bodies),
+      plain("most", &RangeStatistics::max_bodies),   change("appear", &Changes::appeared),
+      change("vanish", &Changes::vanished),          change("change", &Changes::changed)};
+  all.insert(all.end(), population.begin(), population.end());
+  return all;
+}
+
+/// Rows of cells, each after a margin.
+std::string rightAligned(const std::vector<std::vector<std::string>>& rows) {
   return alignColumns(rows, std::vector<bool>(rows.front().size(), true));
+}
+
+/// Which layers collide, how many bodies are in each and how many pairs there are between two.
+std::string layerTable(const FilterStatistics& filter) {
+  std::vector<std::vector<std::string>> rows = {{"", "layer", "bodies"}};
+  for (const auto& [layer, bodies] : filter.layers) {
+    rows.front().push_back(fmt::format("with {}", layer));
+    rows.push_back({"", fmt::format("{}", layer), number(bodies)});
+    for (const auto& [other, others] : filter.layers) {
+      const auto pair = std::ranges::find_if(filter.layer_pairs, [&](const auto& one) {
+        return one.a == std::min(layer, other) && one.b == std::max(layer, other);
+      });
+      rows.back().push_back(pair == filter.layer_pairs.end() ? kNothing : number(pair->pairs));
+    }
+  }
+  return rightAligned(rows);
+}
+
+std::string formatFilter(const FilterStatistics& filter) {
+  std::string text;
+  if (filter.layers.size() > 1 || filter.layer_pairs.empty()) text += layerTable(filter);
+  if (filter.worlds > 1) {
+    text += fmt::format("  {} worlds, of at most {}\n", filter.worlds,
+                        counted(filter.largest_world, "body", "bodies"));
+  }
+  if (filter.tagged > 0) {
+    text += fmt::format("  {} with tags\n", counted(filter.tagged, "body", "bodies"));
+  }
+  return text;
+}
+
+std::string formatDescription(const SceneInfo& scene, const SceneDescription& description) {
+  const std::vector<Column> figures = columns(scene);
+  std::vector<std::vector<std::string>> rows = {{"", "frames"}};
+  for (const Column& figure : figures) rows.front().emplace_back(figure.heading);
+  const auto add = [&](std::string frames, const RangeStatistics& range) {
+    rows.push_back({"", std::move(frames)});
+    for (const Column& figure : figures) rows.back().push_back(figure.cell(range));
+  };
+  add("initial", description.initial);
+  for (const RangeStatistics& part : description.parts) {
+    add(part.first == part.last ? fmt::format("{}", part.first)
+                                : fmt::format("{}–{}", part.first, part.last),
+        part);
+  }
+  if (description.overall) add("all", *description.overall);
+  std::string text = rightAligned(rows);
+  if (description.filter) text += "\n" + formatFilter(*description.filter);
+  return text;
 }
 
 /// Reads every frame, and describes the scene if wanted. Nothing when interrupted. Throws
@@ -98,7 +171,7 @@ std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options&
     progress.print(fmt::format("{}: ok: {} {}, {}, hash {}{}", file.string(), scene.name,
                                scene.object_type, extentText(scene.objects, scene.frames),
                                recording.hash(), stated ? ", as baked" : ""));
-    if (options.describe) progress.print(formatDescription(*description));
+    if (options.describe) progress.print(formatDescription(scene, *description));
   }
   return DescribedRecording{file.string(), recording.hash(), scene, *description};
 }
@@ -125,10 +198,13 @@ int run(const Options& options) {
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("files", options->files, recordingKindsText())->type_name("FILE")->required();
-  CLI::Option* describe =
-      app.add_flag("--describe", options->describe,
-                   "also print what each is like, over time: density, pairs per body, share of "
-                   "moving bodies, sizes (longest edge of a box), most bodies outside the world");
+  CLI::Option* describe = app.add_flag(
+      "--describe", options->describe,
+      "also print what each is like, over time: density, pairs per body, share of "
+      "moving bodies, sizes (longest edge of a box), most bodies outside the world; where "
+      "bodies come and go, how many are present, and how many appear, vanish and "
+      "change in a frame; where not all pairs are wanted, bodies by layer, and pairs "
+      "by layers that collide ('–': do not)");
   addPath(app, "--json", "FILE", options->json,
           "write that as JSON, too; '-': to standard output, instead of all else")
       ->needs(describe);

@@ -71,8 +71,11 @@ void Inspector::drawStatus(const RunProgress& progress) {
   if (progress.footage) {
     ImGui::TextUnformatted(progress.footage->title.c_str());
     ImGui::SameLine(0, 14 * ui_.scale);
-    ui_.faint(fmt::format("{} {}, {} bodies", progress.scene.name, progress.scene.object_type,
-                          progress.scene.objects));
+    const std::string capacity = fmt::format("{}", progress.scene.objects);
+    const bool partly = !progress.scene.all_present && progress.snapshot;
+    ui_.faint(fmt::format(
+        "{} {}, {} bodies", progress.scene.name, progress.scene.object_type,
+        partly ? fmt::format("{} of {}", progress.snapshot->present, capacity) : capacity));
     if (progress.snapshot) {
       ImGui::SameLine(0, 14 * ui_.scale);
       ui_.faint(fmt::format("{} pairs", progress.snapshot->pairs.size()));

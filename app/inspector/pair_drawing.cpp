@@ -155,13 +155,15 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double most = 0;
     for (std::size_t i = 0; i < frames; ++i) {
-      most = std::max(most, std::abs(relationOn(axis, track.a.boxes[i], track.b.boxes[i]).gap));
+      const double gap = std::abs(relationOn(axis, track.a.boxes[i], track.b.boxes[i]).gap);
+      if (std::isfinite(gap)) most = std::max(most, gap);
     }
     const float top = origin.y + static_cast<float>(axis) * row;
     const float zero = top + row / 2;
     labelAt({origin.x, zero - ImGui::GetTextLineHeight() / 2}, ui.theme.faint, kAxes[axis]);
     plainRect({origin.x + label, zero}, {origin.x + label + width, zero + 1}, ui.theme.faint, 0.4F);
     for (std::size_t i = 0; i < frames; ++i) {
+      if (isEmpty(track.a.boxes[i]) || isEmpty(track.b.boxes[i])) continue;
       const AxisRelation relation = relationOn(axis, track.a.boxes[i], track.b.boxes[i]);
       const double share = most > 0 ? relation.gap / most : 0;
       const float extent = static_cast<float>(share) * (row / 2 - 2 * unit);
@@ -176,6 +178,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
     const std::string name = fmt::format("{}", body.body);
     labelAt({origin.x, y + strip / 2 - ImGui::GetTextLineHeight() / 2}, rgb, name.c_str());
     for (std::size_t i = 0; i < frames; ++i) {
+      if (isEmpty(body.boxes[i])) continue;
       plainRect({left(i), y + 4 * unit}, {right(i), y + strip - 4 * unit}, rgb,
                 movedAt(body, i) ? 0.9F : 0.15F);
     }
@@ -190,7 +193,11 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
   plainRect({left(at), origin.y}, {right(at), origin.y + height}, textColour(ui), 0.18F);
   const std::uint32_t frame = track.a.first + static_cast<std::uint32_t>(at);
   std::string text = fmt::format("frame {}", frame);
+  for (const Track* body : {&track.a, &track.b}) {
+    if (isEmpty(body->boxes[at])) text += fmt::format("\nbody {} is absent", body->body);
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (isEmpty(track.a.boxes[at]) || isEmpty(track.b.boxes[at])) break;
     const AxisRelation relation = relationOn(axis, track.a.boxes[at], track.b.boxes[at]);
     text += fmt::format("\n{}: {} {}", kAxes[axis], kRelations.nameOf(relation.kind),
                         exactly(std::abs(static_cast<float>(relation.gap))));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "broadmark/pair.h"
@@ -18,6 +19,11 @@ constexpr std::uint32_t kTrackFrames = 60;
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
          a.tracked == b.tracked;
+}
+
+std::uint32_t presentIn(std::span<const Aabb> boxes) {
+  return static_cast<std::uint32_t>(boxes.size()) -
+         static_cast<std::uint32_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
 float fractionOf(std::uint32_t part, std::uint32_t whole) {
@@ -207,6 +213,18 @@ std::uint32_t RunThread::target() const {
   return stop_ ? std::min(last, stop_->frame) : last;
 }
 
+/// A frame of the footage; takes note of its population.
+Frame RunThread::frameAt(std::uint32_t index) {
+  const Frame frame = footage_->at(index);
+  if (footage_->scene().all_present) return frame;
+  const double present = presentIn(frame.boxes);
+  const std::lock_guard lock(mutex_);
+  std::vector<double>& known = progress_.population;
+  if (known.size() <= index) known.resize(index + 1, std::numeric_limits<double>::quiet_NaN());
+  known[index] = present;
+  return frame;
+}
+
 /// Brings the footage and one lane a frame nearer to the target. Returns whether it had to.
 bool RunThread::advance() {
   if (stop_ && (!current_.check || !current_.stop_at_mismatch ||
@@ -219,6 +237,7 @@ bool RunThread::advance() {
     tell(fmt::format("simulating frame {}", footage_->known() + 1),
          fractionOf(footage_->known(), wanted));
     footage_->extend();
+    if (!footage_->scene().all_present) frameAt(footage_->known());
     const std::lock_guard lock(mutex_);
     progress_.known_frames = footage_->known();
     return true;
@@ -249,7 +268,7 @@ bool RunThread::advance() {
   const std::uint32_t next = hindmost->report().frame + 1;
   tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next),
        fractionOf(next, target()));
-  return advanceLane(*hindmost, footage_->at(next));
+  return advanceLane(*hindmost, frameAt(next));
 }
 
 bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
@@ -323,11 +342,12 @@ void RunThread::show() {
   snapshot->frame = index;
   snapshot->tracks = tracks(index);
   const auto copy = [&](std::uint32_t which) {
-    const Frame frame = footage_->at(which);
+    const Frame frame = frameAt(which);
     return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
   };
   if (index > 0) snapshot->boxes_before = copy(index - 1);
   snapshot->boxes = copy(index);
+  snapshot->present = presentIn(*snapshot->boxes);
   const Frame frame{index, *snapshot->boxes};
   Lane* const lane = shownLane();
   if (lane != nullptr) {
@@ -347,7 +367,7 @@ void RunThread::show() {
       return;
     }
   } else {
-    const std::span<const Pair> pairs = oracle_.pairs(frame.boxes);
+    const std::span<const Pair> pairs = oracle_.pairs(frame.boxes, snapshot->scene.filter);
     snapshot->pairs.assign(pairs.begin(), pairs.end());
   }
   const PairRun answer = snapshot->pairs;

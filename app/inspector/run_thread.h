@@ -64,6 +64,7 @@ struct Snapshot {
   SceneInfo scene;
   std::uint32_t frame = 0;
   std::shared_ptr<const std::vector<Aabb>> boxes;
+  std::uint32_t present = 0;                              ///< bodies that are there
   std::shared_ptr<const std::vector<Aabb>> boxes_before;  ///< null for frame 0
   int lane = 0;                                           ///< whose answer this is; 0: the oracle's
   std::vector<Pair> pairs;                                ///< the answer
@@ -81,6 +82,9 @@ struct RunProgress {
   SceneInfo scene;
   std::uint32_t known_frames = 0;  ///< that exist already
   bool live = false;               ///< more can be simulated
+  /// How many bodies are present in each frame that has been looked at; NaN in others. Empty where
+  /// nobody is ever absent.
+  std::vector<double> population;
   std::vector<LaneReport> lanes;
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
   /// The frame at which all stay, as the lane of this number is wrong there.
@@ -122,6 +126,7 @@ class RunThread {
   bool reconcileLanes();
   bool advance();
   bool advanceLane(Lane& lane, const Frame& frame);
+  Frame frameAt(std::uint32_t index);
   void show();
   void tell(std::string doing, float fraction);
   void report(const Lane& lane);

@@ -44,7 +44,7 @@ void addLanes(Values& values, const RunProgress& progress) {
 
 void addSnapshot(Values& values, const Snapshot* snapshot) {
   values["shown_frame"] = snapshot ? std::to_string(snapshot->frame) : "";
-  values["bodies"] = snapshot ? std::to_string(snapshot->boxes->size()) : "0";
+  values["bodies"] = snapshot ? std::to_string(snapshot->present) : "0";
   values["pairs"] = snapshot ? std::to_string(snapshot->pairs.size()) : "0";
   const FrameDifference difference = snapshot ? snapshot->difference : FrameDifference();
   addCounts(values, "", difference);
@@ -110,6 +110,14 @@ void addBatch(Values& values, const BackgroundBake& bake) {
   values["batch.failed"] = std::to_string(report.failed());
 }
 
+/// Whether the first selected body is there.
+std::string presenceText(const Session& session, const Snapshot* snapshot) {
+  const auto& bodies = session.selection.bodies();
+  if (bodies.empty() || !snapshot || bodies.front() >= snapshot->boxes->size()) return "";
+  if (!isEmpty((*snapshot->boxes)[bodies.front()])) return "present";
+  return snapshot->tracks.empty() ? "absent" : absenceText(snapshot->tracks.front());
+}
+
 /// Of the two selected bodies, if there are two.
 void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
@@ -172,6 +180,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBatch(values, session.bake);
   addLanes(values, progress);
   addSnapshot(values, progress.snapshot.get());
+  values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
   values["searching"] = yes(session.mismatches.searching());

@@ -58,9 +58,8 @@ void View::moveOn(float seconds) {
 }
 
 Aabb View::boundsOf(std::span<const std::uint32_t> bodies) const {
-  const std::vector<Aabb>& boxes = *shown_.snapshot->boxes;
-  Aabb bounds = boxes[bodies.front()];
-  for (const std::uint32_t body : bodies) bounds = merged(bounds, boxes[body]);
+  Aabb bounds = kEmptyBox;
+  for (const std::uint32_t body : bodies) bounds = merged(bounds, (*shown_.snapshot->boxes)[body]);
   return bounds;
 }
 
@@ -73,6 +72,7 @@ void View::takeFlightRequest(Session& session) {
     return;
   }
   const Aabb bounds = boundsOf(bodies);
+  if (isEmpty(bounds)) return;  // all of them are absent
   const Aabb surroundings = content_.space.toView(enlargedBy(bounds, kSurroundings));
   // What stands before them would hide them.
   fly(cutAway(focusedOn(camera_, surroundings, aspect()), content_.space.toView(bounds)));
@@ -115,6 +115,7 @@ void View::updateBodies(const Session& session) {
        .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
                                          : std::span<const Aabb>(),
        .overlaps = snapshot.overlaps,
+       .layers = snapshot.scene.filter.layers(),
        .missed = snapshot.difference.missed_pairs,
        .false_pairs = snapshot.difference.false_pairs,
        .dark = shown_.dark},
@@ -166,13 +167,13 @@ void View::updateLines(const Session& session, bool dark) {
     if (options.structure_level >= 0) {
       filter.first_level = filter.last_level = options.structure_level;
     }
-    if (options.structure_near && !shown_.selection.empty()) {
-      filter.near = boundsOf(shown_.selection);
-    }
+    const Aabb selected_box = boundsOf(shown_.selection);
+    if (options.structure_near && !isEmpty(selected_box)) filter.near = selected_box;
     add(structureOverlay(*snapshot.structure, filter));
   }
   for (const Track& track : snapshot.tracks) {
     for (std::size_t i = 1; i < track.boxes.size(); ++i) {
+      if (isEmpty(track.boxes[i - 1]) || isEmpty(track.boxes[i])) continue;
       const auto middle = [&](const Aabb& box) {
         std::array<float, 3> centre{};
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -59,6 +59,7 @@ class View {
   void selectWithin(Session& session, ImVec2 from, ImVec2 to);
   void drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const;
   void drawAxisNames(ImVec2 corner) const;
+  /// Of those that are present; empty if there are none.
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
   [[nodiscard]] double aspect() const;
 

@@ -36,6 +36,32 @@ std::size_t decidingAxis(const Aabb& a, const Aabb& b) {
   return widest;
 }
 
+std::string absenceText(const Track& track) {
+  std::size_t absent = 0;
+  while (absent < track.boxes.size() && isEmpty(track.boxes[track.boxes.size() - 1 - absent])) {
+    ++absent;
+  }
+  const std::size_t since = track.first + track.boxes.size() - absent;
+  if (absent < track.boxes.size()) return fmt::format("absent: vanished in frame {}", since);
+  return since == 0 ? "absent since frame 0"
+                    : fmt::format("absent since frame {} or earlier", since);
+}
+
+std::string unwantedText(const CollisionFilter& filter, Pair pair) {
+  if (filter.wanted(pair.a, pair.b)) return "";
+  const BodyGroups a = filter.groupsOf(pair.a);
+  const BodyGroups b = filter.groupsOf(pair.b);
+  if (!filter.matrix().collide(a.layer, b.layer)) {
+    return a.layer == b.layer
+               ? fmt::format("not wanted: layer {} does not collide with itself", a.layer)
+               : fmt::format("not wanted: layers {} and {} do not collide", a.layer, b.layer);
+  }
+  if (a.world != b.world) {
+    return fmt::format("not wanted: one in world {}, one in world {}", a.world, b.world);
+  }
+  return "not wanted: they share a tag";
+}
+
 std::optional<std::uint32_t> PairTrack::overlapBegan() const {
   std::size_t first = size();
   while (first > 0 && overlapsAt(first - 1)) --first;

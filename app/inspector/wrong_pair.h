@@ -50,6 +50,13 @@ AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b);
 /// with the least overlap.
 std::size_t decidingAxis(const Aabb& a, const Aabb& b);
 
+/// Of a body that is absent at the end of its track: "absent: vanished in frame 41".
+std::string absenceText(const Track& track);
+
+/// Why the overlap of two bodies would not count: "not wanted: layers 1 and 2 do not collide". ""
+/// if it would.
+std::string unwantedText(const CollisionFilter& filter, Pair pair);
+
 /// Two tracked bodies, side by side; both tracks span the same frames.
 struct PairTrack {
   const Track& a;

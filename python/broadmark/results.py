@@ -273,6 +273,8 @@ def _row(case: dict[str, Any]) -> dict[str, Any]:
         nothing = [np.zeros(1)] if sum(map(len, times)) else []  # without a device
         row[f"{phase}_seconds"] = _mean_of_arrays(case["frames"].get(phase, nothing)) * 1e-9
     row |= {"pairs_mean": case["pairs"]["mean"], "pairs_max": case["pairs"]["max"]}
+    bodies = case.get("bodies", {})
+    row |= {"bodies_mean": bodies.get("mean"), "bodies_max": bodies.get("max")}
     for count in ("missed", "false", "allowed_extra", "invalid"):
         row[count] = case.get(count) if checked else None
     row["peak_bytes"] = case.get("peak_bytes")

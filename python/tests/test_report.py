@@ -44,6 +44,18 @@ def test_the_command_writes_one_file(
     assert base64.b64decode(data["pictures"][0]["uri"].partition(",")[2]).startswith(b"\x89PNG")
 
 
+def test_cases_are_chosen_as_elsewhere(tmp_path: pathlib.Path, command: Any) -> None:
+    results = write_results(tmp_path / "r.jsonl", [case(a, 100, 1e-5) for a in ("kd", "sap")])
+    report = tmp_path / "report.html"
+    status, out, _ = command("report", results, "-o", report, "--no-pictures", "--filter", "/kd$")
+    assert status == 0 and "1 cases" in out
+    text = report.read_text("utf-8").partition('id="data">')[2]
+    data = json.loads(text.partition("</script>")[0])
+    assert data["columns"]["algorithm"]["texts"] == ["kd"]
+    status, _, err = command("report", results, "--filter", "nothing")
+    assert status == 2 and "--filter" in err
+
+
 def test_without_the_program_there_are_no_pictures(
     tmp_path: pathlib.Path, command: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

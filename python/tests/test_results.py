@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import SOURCE_FOLDER
+from made_results import case, write
 
 import broadmark
 
@@ -135,3 +136,12 @@ def test_nothing_has_empty_tables(tmp_path: pathlib.Path) -> None:
     file.write_text(json.dumps({"schema": "broadmark-results/2", "environments": [], "cases": []}))
     results = broadmark.read_results(file)
     assert len(results.cases) == len(results.frames) == 0
+
+
+def test_a_population_is_known_where_it_changes(tmp_path: pathlib.Path) -> None:
+    changing = case("FreeFall", 1000, "kd", 1e-3, bodies={"mean": 812.5, "max": 990})
+    path = write(tmp_path / "r.json", [changing, case("FreeFall", 1000, "sap", 1e-3)])
+    cases = broadmark.read_results(path).cases.set_index("algorithm")
+    assert cases.loc["kd", "bodies_mean"] == 812.5
+    assert cases.loc["kd", "bodies_max"] == 990
+    assert cases.loc["sap", ["bodies_mean", "bodies_max"]].isna().all()

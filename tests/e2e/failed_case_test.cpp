@@ -8,7 +8,9 @@
 
 #include "broadmark/recording.h"
 #include "e2e/end_to_end.h"
+#include "support/changing_worlds.h"
 #include "support/places.h"
+#include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
 namespace {
@@ -86,6 +88,35 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
       EXPECT_THAT(lines[2], HasSubstr(word));
     }
     EXPECT_EQ(shell(lines[2] + " --json shown.json"), 1) << readFile(file("shell.out"));
+    EXPECT_EQ(caseOf(algorithm, "shown.json").at("status"), "mismatch");
+  }
+}
+
+TEST_F(FailedCase, OfAChangingWorldKeepsWhatTheFaultNeeds) {
+  WanderingBoxes live(80, 12, 1);
+  FrameList scene = changing(live, presences::seldom, filters(80).back().filter);
+  RecordingWriter writer(file("world.broadmark"), scene.scene());
+  recordAll(scene, writer);
+  writer.finish();
+  const Ended found = run({"--headless", "world.broadmark", "--plugin", places::faultyPlugin(),
+                           "--algorithm", "lossy*", "--quiet", "--json", "results.json"});
+  EXPECT_EQ(found.status, 1) << found.out << found.err;
+  for (const std::string algorithm : {"lossy-removal", "lossy-layers"}) {
+    SCOPED_TRACE(algorithm);
+    expectRefusal(aboutCase(idOf(algorithm), {"--export-case", "a.aabbs"}),
+                  {"a.aabbs", ".broadmark"});
+    const std::string recording = algorithm + " case.broadmark";
+    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", recording}));
+    ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+
+    const auto written = openRecordingFile(file(recording));
+    const bool removal = algorithm == "lossy-removal";
+    EXPECT_EQ(written->scene().all_present, !removal);
+    EXPECT_EQ(written->scene().filter.wantsAll(), removal);
+    EXPECT_LE(written->scene().objects, 3U);
+    EXPECT_EQ(written->scene().frames, 1U);
+    EXPECT_EQ(shell(linesOf(ended.out).back() + " --json shown.json"), 1)
+        << readFile(file("shell.out"));
     EXPECT_EQ(caseOf(algorithm, "shown.json").at("status"), "mismatch");
   }
 }

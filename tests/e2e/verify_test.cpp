@@ -2,7 +2,9 @@
 
 #include <sstream>
 
+#include "broadmark/recording.h"
 #include "e2e/end_to_end.h"
+#include "support/changing_worlds.h"
 
 namespace broadmark::tests {
 namespace {
@@ -72,6 +74,37 @@ TEST_F(Verify, DescribesAKnownScene) {
   EXPECT_EQ(known.at("parts").size(), 4U);
   EXPECT_EQ(known.at("overall").at("pairs_per_body"), 0.125);
   EXPECT_EQ(known.at("overall").at("moving_share"), 0.125);
+}
+
+TEST_F(Verify, DescribesAWorldThatChanges) {
+  const Aabb near = {{1, 0, 0, 0}, {3, 2, 2, 0}};
+  SceneInfo scene{"Handmade", "Cubes", 0, 0, {{-5, -5, -5, 0}, {5, 5, 5, 0}}, false};
+  const std::vector<BodyGroups> bodies = {{.layer = 2}, {.layer = 5}, {.layer = 5, .world = 1}};
+  scene.filter = CollisionFilter(bodies, LayerMatrix().set(2, 5));
+  FrameList frames = listed(
+      scene,
+      {{kUnitBox, near, near}, {kUnitBox, near, kEmptyBox}, {kUnitBox, kEmptyBox, kEmptyBox}});
+  RecordingWriter writer(file("known.broadmark"), frames.scene());
+  recordAll(frames, writer);
+  writer.finish();
+  const Ended ended =
+      runQuietly({"verify", "--describe", "known.broadmark", "--json", "known.json"});
+  const auto lines = linesOf(ended.out);
+  ASSERT_GE(lines.size(), 10U) << ended.out;
+  const auto words = [&](std::size_t line) {
+    std::istringstream stream(lines[line]);
+    return std::vector<std::string>{std::istream_iterator<std::string>(stream), {}};
+  };
+  EXPECT_THAT(lines[1], HasSubstr("outside  fewest  bodies  most  appear  vanish  change"));
+  EXPECT_THAT(lines[2], testing::EndsWith("3       3     3       –       –       –"));
+  EXPECT_THAT(lines[5], testing::EndsWith("1     1.5     2       0       1       1"));
+  EXPECT_THAT(words(7), ElementsAre("layer", "bodies", "with", "2", "with", "5"));
+  EXPECT_THAT(words(8), ElementsAre("2", "1", "–", "0.5"));
+  EXPECT_THAT(words(9), ElementsAre("5", "0.5", "0.5", "–"));
+  EXPECT_THAT(lines[10], HasSubstr("2 worlds, of at most 2 bodies"));
+  const Json known = readJson(file("known.json")).at("recordings").at(0);
+  EXPECT_EQ(known.at("overall").at("bodies").at("mean"), 1.5);
+  EXPECT_EQ(known.at("filter").at("layer_pairs").size(), 1U);
 }
 
 TEST_F(Verify, DescribesWhatItCan) {

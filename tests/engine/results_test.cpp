@@ -80,6 +80,7 @@ Results everything() {
   full.reason = "frame 1: 1 missed, 1 false, 1 invalid";
   full.pairs_mean = 1.0 / 3;
   full.pairs_max = std::uint64_t{1} << 33;
+  full.bodies = Population{.mean = 2.5, .max = 4};
   full.checked = true;
   full.missed_count = 1;
   full.false_count = 1;
@@ -136,6 +137,10 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(full.recording.scene, everything().cases[0].recording.scene) << "floats are exact";
   EXPECT_EQ(full.recording.seed, UINT64_MAX);
   EXPECT_EQ(full.pairs_mean, 1.0 / 3);
+  ASSERT_TRUE(full.bodies);
+  EXPECT_EQ(full.bodies->mean, 2.5);
+  EXPECT_EQ(full.bodies->max, 4U);
+  EXPECT_FALSE(copy.cases.at(1).bodies) << "where nobody is ever absent";
   EXPECT_EQ(full.differences.at(0).invalid_pairs.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
   ASSERT_TRUE(full.repetitions.at(0).yardsticks);
@@ -264,8 +269,8 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
     // Without conditions it is taken for results/1.
-    const std::set<std::string> optional = {"peak_bytes", "counters",   "setup",    "device",
-                                            "plugin",     "conditions", "processor"};
+    const std::set<std::string> optional = {"peak_bytes", "counters",   "setup",     "device",
+                                            "plugin",     "conditions", "processor", "bodies"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());

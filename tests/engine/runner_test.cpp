@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "engine/spoilt_cases.h"
+#include "support/changing_worlds.h"
 
 namespace broadmark::tests {
 namespace {
@@ -209,6 +210,19 @@ TEST(Runner, BodiesThatMoveAreCounted) {
     changed.push_back(counts[FrameCount::changed_bodies]);
   }
   EXPECT_THAT(changed, ElementsAre(1, 2, 0));
+}
+
+TEST(Runner, BodiesThatArePresentAreCountedWhereSomeMayBeAbsent) {
+  Behaviour silent{.on_answer = [](auto, auto& answer) { answer = {}; }};
+  TwoBodies always;
+  EXPECT_FALSE(runCase(caseOf(silent), always, {.check = CheckMode::off}).bodies);
+  FrameList sometimes = changing(
+      always, [](std::uint32_t body, std::uint32_t frame) { return body == 0 || frame > 1; });
+  silent.traits.changing_worlds = ChangingWorlds::native;
+  const CaseResult result = runCase(caseOf(silent), sometimes, {.check = CheckMode::off});
+  ASSERT_TRUE(result.bodies) << result.reason;
+  EXPECT_DOUBLE_EQ(result.bodies->mean, 5 / 3.0);
+  EXPECT_EQ(result.bodies->max, 2U);
 }
 
 TEST(Runner, FramesComeInOrderAndEveryRepetitionIsAFreshInstance) {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/helpers.h"
+#include "support/changing_worlds.h"
 
 namespace broadmark::tests {
 namespace {
@@ -74,11 +75,72 @@ TEST(FrameStatistics, NothingAndPoints) {
   EXPECT_FALSE(rangeStatistics({&figures, 1}).sizeRatio());
 }
 
+TEST(FrameStatistics, AbsentBodiesCountNowhere) {
+  const std::vector<Aabb> some = threeBoxes();
+  const FrameStatistics expected = frameStatistics(smallScene(3, 1), {7, some});
+  std::vector<Aabb> boxes = {kEmptyBox, some[0], some[1], kEmptyBox, some[2]};
+  SceneInfo scene = smallScene(5, 1);
+  scene.all_present = false;
+  const FrameStatistics figures = frameStatistics(scene, {7, boxes});
+  EXPECT_EQ(figures.bodies, 3U);
+  EXPECT_EQ(figures.density, expected.density);
+  EXPECT_EQ(figures.pairs_per_body, expected.pairs_per_body);
+  EXPECT_EQ(figures.outside, 0U);
+  EXPECT_EQ(figures.min_extent, 1);
+  EXPECT_EQ(figures.median_extent, 2);
+  EXPECT_EQ(figures.max_extent, 4);
+  EXPECT_FALSE(figures.changes);
+
+  const std::vector<Aabb> nobody(5, kEmptyBox);
+  const FrameStatistics none = frameStatistics(scene, {8, nobody}, boxes);
+  EXPECT_EQ(none.bodies, 0U);
+  EXPECT_EQ(none.density, 0);
+  EXPECT_EQ(none.max_extent, 0);
+  EXPECT_EQ(none.changes->vanished, 3);
+  EXPECT_FALSE(none.moving_share) << "of nobody";
+}
+
+TEST(FrameStatistics, WhatComesAndGoes) {
+  const std::vector<Aabb> some = threeBoxes();
+  // One stays, one moves, one vanishes, two appear, one remains absent.
+  const std::vector<Aabb> before = {some[0], some[1], some[2], kEmptyBox, kEmptyBox, kEmptyBox};
+  const std::vector<Aabb> boxes = {some[0], some[2], kEmptyBox, some[1], some[0], kEmptyBox};
+  SceneInfo scene = smallScene(6, 1);
+  scene.all_present = false;
+  const FrameStatistics figures = frameStatistics(scene, {1, boxes}, before);
+  EXPECT_EQ(figures.bodies, 4U);
+  EXPECT_EQ(figures.changes->appeared, 2);
+  EXPECT_EQ(figures.changes->vanished, 1);
+  EXPECT_EQ(figures.changes->changed, 4);
+  EXPECT_THAT(figures.moving_share, Optional(DoubleEq(0.5)));
+}
+
+TEST(RangeStatistics, Population) {
+  std::vector<FrameStatistics> frames(3);
+  frames[0] = {.frame = 0, .bodies = 0};
+  frames[1] = {.frame = 1, .bodies = 4, .changes = Changes{4, 0, 4}};
+  frames[1].min_extent = frames[1].median_extent = frames[1].max_extent = 2;
+  frames[2] = {.frame = 2, .bodies = 2, .changes = Changes{1, 3, 6}};
+  frames[2].min_extent = frames[2].median_extent = frames[2].max_extent = 6;
+  const RangeStatistics range = rangeStatistics(frames);
+  EXPECT_EQ(range.min_bodies, 0U);
+  EXPECT_DOUBLE_EQ(range.mean_bodies, 2);
+  EXPECT_EQ(range.max_bodies, 4U);
+  ASSERT_TRUE(range.changes);
+  EXPECT_DOUBLE_EQ(range.changes->appeared, 2.5);
+  EXPECT_DOUBLE_EQ(range.changes->vanished, 1.5);
+  EXPECT_DOUBLE_EQ(range.changes->changed, 5);
+  EXPECT_EQ(range.min_extent, 2) << "an empty frame has no sizes";
+  EXPECT_EQ(range.median_extent, 4);
+}
+
 TEST(RangeStatistics, MeansMediansAndExtremes) {
   const auto statistics = [](std::uint32_t frame, double density, double pairs_per_body,
                              std::optional<double> moving_share, std::uint64_t outside,
                              std::array<double, 3> extents) {
-    FrameStatistics one{.frame = frame, .density = density, .pairs_per_body = pairs_per_body};
+    FrameStatistics one{.frame = frame, .bodies = 3};
+    one.density = density;
+    one.pairs_per_body = pairs_per_body;
     one.moving_share = moving_share;
     one.outside = static_cast<decltype(one.outside)>(outside);
     one.min_extent = extents[0];
@@ -151,6 +213,43 @@ TEST(Describe, CanBeStopped) {
   EXPECT_FALSE(describe(*leavingPair(5, 9), 2, [](std::uint32_t frame) { return frame < 3; }));
 }
 
+/// Layers 1 and 3 collide with each other, not with themselves; 4 with itself; all boxes touch.
+/// Body 4 is absent in frame 2.
+FrameList layeredScene() {
+  SceneInfo scene = smallScene(5, 2);
+  scene.all_present = false;
+  const std::vector<BodyGroups> bodies = {{.layer = 1},
+                                          {.layer = 3},
+                                          {.layer = 3, .world = 9},
+                                          {.layer = 4},
+                                          {.layer = 4, .tags = {7, 8, BodyGroups::kNoTag}}};
+  scene.filter = CollisionFilter(bodies, LayerMatrix().set(1, 3).set(4, 4).set(1, 5));
+  const std::vector<Aabb> all(5, unitBox(0));
+  std::vector<Aabb> without = all;
+  without[4] = kEmptyBox;
+  return listed(scene, {all, all, without});
+}
+
+TEST(Describe, LayersWorldsAndTags) {
+  FrameList source = layeredScene();
+  const auto description = describe(source, 1);
+  ASSERT_TRUE(description->filter);
+  const FilterStatistics& filter = *description->filter;
+  ASSERT_EQ(filter.layers.size(), 3U);
+  EXPECT_EQ(filter.layers[1].layer, 3U);
+  EXPECT_EQ(filter.layers[1].bodies, 2);
+  EXPECT_EQ(filter.layers[2].bodies, 1.5) << "absent in one of two frames";
+  ASSERT_EQ(filter.layer_pairs.size(), 2U) << "those of layers with bodies that collide";
+  EXPECT_EQ(filter.layer_pairs[0].a, 1U);
+  EXPECT_EQ(filter.layer_pairs[0].b, 3U);
+  EXPECT_EQ(filter.layer_pairs[0].pairs, 1) << "not across worlds";
+  EXPECT_EQ(filter.layer_pairs[1].a, 4U);
+  EXPECT_EQ(filter.layer_pairs[1].pairs, 0.5);
+  EXPECT_EQ(filter.worlds, 2U);
+  EXPECT_EQ(filter.largest_world, 4U);
+  EXPECT_EQ(filter.tagged, 1U);
+}
+
 TEST(Describe, AsJson) {
   const auto source = leavingPair(2, 9);
   const DescribedRecording one = {"a \xff path", source->hash(), source->scene(),
@@ -165,6 +264,24 @@ TEST(Describe, AsJson) {
   EXPECT_EQ(recording.at("overall").at("moving_share"), 0.5);
   EXPECT_EQ(recording.at("overall").at("last_frame"), 2);
   EXPECT_EQ(recording.at("overall").at("size_ratio"), 1);
+  EXPECT_FALSE(recording.at("overall").contains("bodies")) << "nobody comes or goes";
+  EXPECT_FALSE(recording.contains("filter"));
+}
+
+TEST(Describe, ChangingWorldsAsJson) {
+  FrameList source = layeredScene();
+  const DescribedRecording one = {"a path", "a hash", source.scene(), *describe(source, 1)};
+  const auto json = nlohmann::json::parse(formatDescriptions({&one, 1}));
+  const auto& recording = json.at("recordings").at(0);
+  EXPECT_TRUE(recording.at("initial").at("changed").is_null());
+  const auto& overall = recording.at("overall");
+  EXPECT_EQ(overall.at("bodies"), nlohmann::json::parse(R"({"min": 4, "mean": 4.5, "max": 5})"));
+  EXPECT_EQ(overall.at("appeared"), 0);
+  EXPECT_EQ(overall.at("vanished"), 0.5);
+  EXPECT_EQ(overall.at("changed"), 0.5);
+  EXPECT_EQ(recording.at("filter").at("layer_pairs").at(0),
+            nlohmann::json::parse(R"({"layers": [1, 3], "pairs": 1.0})"));
+  EXPECT_EQ(recording.at("filter").at("worlds"), 2);
 }
 
 }  // namespace

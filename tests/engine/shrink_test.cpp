@@ -7,10 +7,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <numeric>
 
 #include "broadmark/recording.h"
 #include "broadmark/runner.h"
 #include "engine/helpers.h"
+#include "support/changing_worlds.h"
 #include "support/faulty_algorithm.h"
 #include "support/wandering_boxes.h"
 
@@ -81,6 +83,87 @@ FrameDifference lastDifference(const Case& run, IndexedFrames& source, const Par
   return result.differences.back();
 }
 
+std::vector<std::uint32_t> without(std::vector<std::uint32_t> items, std::size_t item) {
+  items.erase(items.begin() + static_cast<std::ptrdiff_t>(item));
+  return items;
+}
+
+/// What is left of a part without one of its bodies.
+Part withoutBody(const Part& part, std::size_t body) {
+  Part fewer = part;
+  fewer.bodies = without(part.bodies, body);
+  std::vector<std::uint32_t> all(part.bodies.size());
+  std::iota(all.begin(), all.end(), 0U);
+  fewer.filter = part.filter.of(without(all, body));
+  return fewer;
+}
+
+/// The part, each time with one of the absences that are left filled, in either way.
+std::vector<Part> withAnAbsenceFilled(IndexedFrames& source, const Part& part) {
+  std::vector<Part> filled;
+  SubRecording some(source, part, "Part");
+  const FrameList frames(some);
+  FrameList list = frames;
+  const auto last = static_cast<std::uint32_t>(part.frames.size() - 1);
+  for (std::size_t body = 0; body < part.bodies.size(); ++body) {
+    const auto box = [&](std::uint32_t index) { return list.at(index).boxes[body]; };
+    for (std::uint32_t begin = 0; begin <= last; ++begin) {
+      if (!isEmpty(box(begin))) continue;
+      std::uint32_t end = begin;
+      while (end < last && isEmpty(box(end + 1))) ++end;
+      for (const Aabb& place :
+           {begin > 0 ? box(begin - 1) : kEmptyBox, end < last ? box(end + 1) : kEmptyBox}) {
+        if (isEmpty(place)) continue;
+        filled.push_back(part);
+        filled.back().filled.push_back(
+            {part.bodies[body], part.frames[begin], part.frames[end], place});
+      }
+      begin = end;
+    }
+  }
+  return filled;
+}
+
+/// The part, each time with a filter that is simpler in one way.
+std::vector<Part> withASimplerFilter(const Part& part) {
+  std::vector<BodyGroups> groups;
+  for (std::uint32_t body = 0; body < part.bodies.size(); ++body) {
+    groups.push_back(part.filter.groupsOf(body));
+  }
+  const LayerMatrix matrix = part.filter.matrix();
+  std::vector<Part> simpler;
+  const auto add = [&](const std::vector<BodyGroups>& changed, const LayerMatrix& other) {
+    Part one = part;
+    one.filter = CollisionFilter(changed, other);
+    if (one.filter != part.filter) simpler.push_back(one);
+  };
+  const auto change_all = [&](const auto& change) {
+    std::vector<BodyGroups> changed = groups;
+    for (BodyGroups& body : changed) change(body);
+    add(changed, matrix);
+  };
+  for (const BodyGroups& from : groups) {
+    for (const BodyGroups& to : groups) {
+      change_all([&](BodyGroups& body) {
+        if (body.layer == from.layer) body.layer = to.layer;
+      });
+      LayerMatrix more = matrix;
+      add(groups, more.set(from.layer, to.layer));
+    }
+    change_all([&](BodyGroups& body) {
+      if (body.world == from.world) body.world = groups.front().world;
+    });
+    for (const std::uint32_t gone : from.tags) {
+      change_all([&](BodyGroups& body) {
+        for (std::uint32_t& tag : body.tags) {
+          if (tag == gone) tag = BodyGroups::kNoTag;
+        }
+      });
+    }
+  }
+  return simpler;
+}
+
 /// The part fails in its last frame, and no longer when anything is left out.
 void expectMinimal(const Case& run, IndexedFrames& source, const ShrunkCase& shrunk) {
   EXPECT_TRUE(shrunk.minimal);
@@ -91,16 +174,21 @@ void expectMinimal(const Case& run, IndexedFrames& source, const ShrunkCase& shr
   EXPECT_TRUE(difference.isMismatch());
   EXPECT_EQ(difference.missed_pairs, shrunk.difference.missed_pairs);
   EXPECT_EQ(difference.false_pairs, shrunk.difference.false_pairs);
+  const auto fails = [&](const Part& fewer) {
+    return lastDifference(run, source, fewer).isMismatch();
+  };
   for (std::size_t i = 0; i < part.bodies.size(); ++i) {
-    Part fewer = part;
-    fewer.bodies.erase(fewer.bodies.begin() + static_cast<std::ptrdiff_t>(i));
-    EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without body " << i;
+    EXPECT_FALSE(fails(withoutBody(part, i))) << "without body " << i;
   }
   for (std::size_t i = 0; i + 1 < part.frames.size() && part.frames.size() > 2; ++i) {
     Part fewer = part;
-    fewer.frames.erase(fewer.frames.begin() + static_cast<std::ptrdiff_t>(i));
-    EXPECT_FALSE(lastDifference(run, source, fewer).isMismatch()) << "without frame " << i;
+    fewer.frames = without(part.frames, i);
+    EXPECT_FALSE(fails(fewer)) << "without frame " << i;
   }
+  for (const Part& filled : withAnAbsenceFilled(source, part)) {
+    EXPECT_FALSE(fails(filled)) << "body " << filled.filled.back().body << " present";
+  }
+  for (const Part& simpler : withASimplerFilter(part)) EXPECT_FALSE(fails(simpler));
 }
 
 class PlantedFault : public testing::TestWithParam<std::uint64_t> {
@@ -297,6 +385,176 @@ TEST(Shrink, WhatCannotBeShrunk) {
   Case bad = right;
   bad.parameters = {{"nonsense", "1"}};
   EXPECT_THAT(inputErrorOf([&] { shrinkCase(bad, scene, {.frame = 2}); }), HasSubstr("nonsense"));
+}
+
+/// Of a changing world: tests all pairs, but spoils the answer, knowing the boxes of the frame
+/// before.
+class SpoiltInChangingWorlds final : public BoxBroadPhase {
+ public:
+  struct Seen {
+    const SceneInfo& scene;
+    std::span<const Aabb> boxes;
+    std::span<const Aabb> before;  ///< the same in the first frame
+  };
+  using Spoil = std::function<void(std::vector<Pair>&, const Seen&)>;
+
+  explicit SpoiltInChangingWorlds(Spoil spoil) : spoil_(std::move(spoil)) {}
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    scene_ = scene;
+    before_ = boxes();
+  }
+  void findPairs() override {
+    std::vector<Pair> answer = bruteForcePairs(boxes(), scene_.filter);
+    spoil_(answer, {scene_, boxes(), before_});
+    for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+    before_ = boxes();
+  }
+
+ private:
+  Spoil spoil_;
+  SceneInfo scene_;
+  std::vector<Aabb> before_;
+};
+
+Case spoiltInChangingWorlds(SpoiltInChangingWorlds::Spoil spoil) {
+  Case run;
+  run.algorithm.id = "spoilt";
+  run.algorithm.traits.changing_worlds = ChangingWorlds::native;
+  run.algorithm.create = [=] { return std::make_unique<SpoiltInChangingWorlds>(spoil); };
+  return run;
+}
+
+/// Somebody has come or gone since the frame before.
+bool hasChangedPopulation(const SpoiltInChangingWorlds::Seen& seen, bool appeared) {
+  for (std::size_t body = 0; body < seen.boxes.size(); ++body) {
+    const Aabb& empty = appeared ? seen.before[body] : seen.boxes[body];
+    const Aabb& full = appeared ? seen.boxes[body] : seen.before[body];
+    if (isEmpty(empty) && !isEmpty(full)) return true;
+  }
+  return false;
+}
+
+/// Bodies that come and go, in a filter with layers, worlds and tags.
+FrameList changingScene() {
+  WanderingBoxes live(60, 12, 1);
+  return changing(live, presences::random, filters(60).back().filter);
+}
+
+std::size_t absencesIn(IndexedFrames& source, const Part& part) {
+  SubRecording frames(source, part, "Part");
+  std::size_t absent = 0;
+  recordAll(frames, [&](const Frame& frame) {
+    absent += static_cast<std::size_t>(std::ranges::count_if(frame.boxes, isEmpty));
+  });
+  return absent;
+}
+
+TEST(ShrinkInChangingWorlds, AFaultThatNeedsOneRemoval) {
+  FrameList scene = changingScene();
+  for (const bool appeared : {false, true}) {
+    SCOPED_TRACE(appeared);
+    const Case run = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
+      if (hasChangedPopulation(seen, appeared)) dropFirst(answer);
+    });
+    const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+    EXPECT_LE(shrunk.part.bodies.size(), 3U);  // a pair, and one who comes or goes
+    EXPECT_EQ(shrunk.part.frames.size(), 2U);
+    EXPECT_EQ(absencesIn(scene, shrunk.part), 1U);
+    EXPECT_FALSE(shrunk.part.all_present);
+    EXPECT_TRUE(shrunk.part.filter.wantsAll());
+    expectMinimal(run, scene, shrunk);
+  }
+}
+
+TEST(ShrinkInChangingWorlds, AFaultThatNeedsNoRemovalKeepsNone) {
+  const Case run =
+      spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto&) { dropFirst(answer); });
+  FrameList scene = changingScene();
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+  EXPECT_EQ(shrunk.part.frames.size(), 2U);
+  EXPECT_EQ(absencesIn(scene, shrunk.part), 0U);
+  EXPECT_TRUE(shrunk.part.all_present);
+  EXPECT_TRUE(shrunk.part.filter.wantsAll());
+  expectMinimal(run, scene, shrunk);
+}
+
+TEST(ShrinkInChangingWorlds, ThatSomebodyMayBeAbsentIsEnough) {
+  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+    if (!seen.scene.all_present) dropFirst(answer);
+  });
+  FrameList scene = changingScene();
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+  EXPECT_EQ(absencesIn(scene, shrunk.part), 0U);
+  EXPECT_FALSE(shrunk.part.all_present);
+  expectMinimal(run, scene, shrunk);
+}
+
+TEST(ShrinkInChangingWorlds, AFaultThatNeedsTwoLayers) {
+  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+    std::erase_if(answer, [&](const Pair pair) {
+      const CollisionFilter& filter = seen.scene.filter;
+      return filter.groupsOf(pair.a).layer != filter.groupsOf(pair.b).layer;
+    });
+  });
+  FrameList scene = changingScene();
+  const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+  EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+  EXPECT_TRUE(shrunk.part.all_present);
+  const CollisionFilter& filter = shrunk.part.filter;
+  EXPECT_NE(filter.groupsOf(0).layer, filter.groupsOf(1).layer);
+  LayerMatrix both;
+  for (const std::uint8_t a : filter.layers()) {
+    for (const std::uint8_t b : filter.layers()) both.set(a, b);
+  }
+  EXPECT_EQ(filter.matrix(), both);
+  EXPECT_TRUE(filter.worlds().empty());
+  EXPECT_TRUE(filter.tags().empty());
+  expectMinimal(run, scene, shrunk);
+}
+
+/// Reports what is not wanted for one reason, the only one that is left then.
+TEST(ShrinkInChangingWorlds, FaultsThatNeedLayersApartWorldsOrTags) {
+  enum class Why { layers, worlds, tags };
+  for (const Why why : {Why::layers, Why::worlds, Why::tags}) {
+    SCOPED_TRACE(static_cast<int>(why));
+    const Case run = spoiltInChangingWorlds([=](std::vector<Pair>& answer, const auto& seen) {
+      std::vector<BodyGroups> groups;
+      for (std::uint32_t body = 0; body < seen.boxes.size(); ++body) {
+        groups.push_back(seen.scene.filter.groupsOf(body));
+        if (why == Why::worlds) groups.back().world = 0;
+        if (why == Why::tags) groups.back().tags = BodyGroups::kNoTags;
+      }
+      const LayerMatrix matrix =
+          why == Why::layers ? LayerMatrix::all() : seen.scene.filter.matrix();
+      answer = bruteForcePairs(seen.boxes, CollisionFilter(groups, matrix));
+    });
+    FrameList scene = changingScene();
+    const ShrunkCase shrunk = shrinkCase(run, scene, firstDifference(run, scene));
+    const CollisionFilter& filter = shrunk.part.filter;
+    EXPECT_EQ(shrunk.part.bodies.size(), 2U);
+    EXPECT_TRUE(shrunk.part.all_present);
+    EXPECT_FALSE(filter.wanted(0, 1));
+    EXPECT_EQ(!filter.worlds().empty(), why == Why::worlds);
+    EXPECT_EQ(!filter.tags().empty(), why == Why::tags);
+    expectMinimal(run, scene, shrunk);
+  }
+}
+
+TEST(ShrinkInChangingWorlds, IsFoundWithoutKnowingThePairAndWithLittleMemory) {
+  const Case run = spoiltInChangingWorlds([](std::vector<Pair>& answer, const auto& seen) {
+    if (hasChangedPopulation(seen, false)) dropFirst(answer);
+  });
+  FrameList scene = changingScene();
+  const FrameDifference only_frame{.frame = firstDifference(run, scene).frame};
+  for (const std::size_t memory : {std::size_t{0}, std::size_t{2'000}, std::size_t{1} << 30}) {
+    const ShrunkCase shrunk = shrinkCase(run, scene, only_frame, {.memory_bytes = memory});
+    EXPECT_EQ(absencesIn(scene, shrunk.part), 1U);
+    expectMinimal(run, scene, shrunk);
+  }
 }
 
 TEST(Shrink, PartsAreWrittenAsRecordings) {

@@ -7,6 +7,7 @@
 
 #include "broadmark/recording.h"
 #include "engine/helpers.h"
+#include "support/changing_worlds.h"
 #include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
@@ -73,6 +74,27 @@ TEST(SubRecording, OfEverythingIsTheWhole) {
   SubRecording part(*recording, wholePart(recording->scene(), 4), recording->scene().name);
   EXPECT_EQ(part.scene(), recording->scene());
   EXPECT_EQ(recorded(part)->hash(), recording->hash());
+}
+
+TEST(SubRecording, FillsAbsencesAndKeepsTheFilterOfItsBodies) {
+  WanderingBoxes live(4, 5, 2);
+  const std::vector<BodyGroups> groups = {{.layer = 1}, {.layer = 2}, {.world = 3}, {.layer = 4}};
+  FrameList whole = changing(
+      live, [](std::uint32_t body, std::uint32_t frame) { return body != 2 || frame > 3; },
+      CollisionFilter(groups, LayerMatrix().set(0, 4)));
+  Part some = partOf(whole.scene(), {1, 2, 3}, {0, 2, 4});
+  EXPECT_FALSE(some.all_present);
+  EXPECT_EQ(some.filter.groupsOf(1), groups[2]);
+  EXPECT_EQ(some.filter.matrix(), whole.scene().filter.matrix());
+  const Aabb place = inputs::boxAt({7, 7, 7}, {1, 1, 1});
+  some.filled = {{2, 2, 3, place}};
+  SubRecording part(whole, some, "Part");
+  EXPECT_FALSE(part.scene().all_present);
+  EXPECT_EQ(part.scene().filter, some.filter);
+  EXPECT_TRUE(isEmpty(part.at(0).boxes[1]));
+  EXPECT_EQ(part.at(1).boxes[1], place);
+  EXPECT_EQ(part.at(2).boxes[1], whole.at(4).boxes[2]);
+  EXPECT_EQ(part.at(1).boxes[2], whole.at(2).boxes[3]);
 }
 
 TEST(FrameList, HoldsAllFrames) {

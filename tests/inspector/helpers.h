@@ -4,11 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cstdint>
+#include <filesystem>
 #include <vector>
 
 #include "broadmark/algorithms.h"
+#include "broadmark/recording.h"
+#include "engine/helpers.h"
 #include "inspector/session.h"
+#include "support/changing_worlds.h"
 #include "support/faulty_algorithm.h"
+#include "support/wandering_boxes.h"
 
 namespace broadmark::tests {
 
@@ -31,6 +37,22 @@ inline RunProgress settled(Session& session) {
     });
   }
   return seen;
+}
+
+/// A recording of 20 frames: in each frame another body is gone, the last ones first.
+inline std::filesystem::path vanishingBodies(const TemporaryDirectory& directory,
+                                             std::uint32_t objects,
+                                             const CollisionFilter& filter = {}) {
+  WanderingBoxes live(objects, 20, 1);
+  const auto present = [=](std::uint32_t body, std::uint32_t frame) {
+    return body < objects - frame;
+  };
+  FrameList scene = changing(live, present, filter);
+  const std::filesystem::path path = directory / "vanishing.broadmark";
+  RecordingWriter writer(path, scene.scene());
+  recordAll(scene, writer);
+  writer.finish();
+  return path;
 }
 
 }  // namespace broadmark::tests

@@ -8,11 +8,14 @@
 
 #include <random>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "broadmark/algorithms.h"
+#include "broadmark/render/colouring.h"
 #include "broadmark/render/framebuffer.h"
 #include "engine/helpers.h"
+#include "inspector/helpers.h"
 #include "support/pictures.h"
 #include "support/places.h"
 
@@ -176,6 +179,61 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
   key(GLFW_KEY_ESCAPE);
   settle();
   EXPECT_EQ(value("selection"), "0");
+}
+
+TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
+  inspector.session().open(vanishingBodies(directory, 40));
+  settle();
+  EXPECT_EQ(value("bodies"), "40");
+  key(GLFW_KEY_END);
+  settle();
+  ASSERT_EQ(value("shown_frame"), "20");
+  EXPECT_EQ(value("bodies"), "20");
+  const WidgetPlace view = *inspector.ui().find("View/scene");
+  std::set<std::uint32_t> picked;
+  for (int i = 0; i < 81; ++i) {
+    const float x = 0.3F + 0.05F * static_cast<float>(i % 9);
+    const float y = 0.3F + 0.05F * static_cast<float>(i / 9);
+    press({view.min.x + x * (view.max.x - view.min.x), view.min.y + y * (view.max.y - view.min.y)});
+    settle();
+    const auto& bodies = inspector.session().selection.bodies();
+    picked.insert(bodies.begin(), bodies.end());
+  }
+  ASSERT_FALSE(picked.empty());
+  EXPECT_LT(*picked.rbegin(), 20U);
+}
+
+TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
+  inspector.session().open(vanishingBodies(directory, 40));
+  settle();
+  inspector.showPanel("Bodies");
+  inspector.session().selection.select({37});
+  settle();
+  EXPECT_EQ(value("selected_body"), "present");
+  for (int frame = 0; frame < 5; ++frame) key(GLFW_KEY_RIGHT);
+  settle();
+  EXPECT_EQ(value("selected_body"), "absent: vanished in frame 3");
+  const std::string camera = value("camera.distance");
+  key(GLFW_KEY_F);  // there is nowhere to fly to
+  settle();
+  EXPECT_EQ(value("camera.distance"), camera);
+}
+
+TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
+  inspector.session().open(vanishingBodies(directory, 40));
+  settle();
+  key(GLFW_KEY_END);
+  settle();
+  for (const ColourMode& mode : colourModes()) {
+    std::istringstream words(value("legend"));
+    int bodies = 0;
+    for (std::string entry; std::getline(words, entry, ',');) {
+      bodies += std::stoi(entry.substr(entry.rfind(' ')));
+    }
+    EXPECT_EQ(bodies, 20) << mode.id << ": " << value("legend");
+    key(GLFW_KEY_C);
+    settle();
+  }
 }
 
 // Every widget of every panel is pressed once, and whatever that opens is closed again.

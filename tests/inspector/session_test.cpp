@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
@@ -280,6 +281,39 @@ TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
   EXPECT_THAT(table, testing::HasSubstr(",sap,SAP,scalar,1,,1,3,"));
   EXPECT_THAT(table,
               testing::HasSubstr(",pairs,changed_bodies,missed,false,allowed_extra,invalid,"));
+}
+
+TEST_F(SessionTest, ShowsWorldsThatChange) {
+  const auto layers = [](inputs::Random&, std::uint32_t body) {
+    return BodyGroups{.layer = static_cast<std::uint8_t>(body % 2)};
+  };
+  session.open(vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
+  session.playback.seek(10);
+  settle();
+  session.playback.seek(10);
+  RunProgress seen = settle();
+  ASSERT_TRUE(seen.snapshot) << seen.failure;
+  ASSERT_EQ(seen.snapshot->frame, 10U);
+  EXPECT_EQ(seen.snapshot->present, 50U);
+  EXPECT_THAT(seen.snapshot->pairs, testing::UnorderedElementsAreArray(
+                                        bruteForcePairs(*seen.snapshot->boxes, seen.scene.filter)));
+  EXPECT_LT(seen.snapshot->pairs.size(), bruteForcePairs(*seen.snapshot->boxes).size());
+  // How many there are is known of the frames that have been looked at.
+  ASSERT_EQ(seen.population.size(), 11U);
+  EXPECT_TRUE(std::isnan(seen.population[5]));
+  session.lanes.add("kd");
+  session.lanes.add("sap");
+  seen = settle();
+  for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.status, Status::ok) << lane.reason;
+  for (std::uint32_t frame = 1; frame <= 10; ++frame) {
+    EXPECT_EQ(seen.population.at(frame), 60 - frame);
+  }
+}
+
+TEST_F(SessionTest, WithoutChangesThereIsNoPopulation) {
+  session.simulate();
+  session.playback.seek(3);
+  EXPECT_TRUE(settle().population.empty());
 }
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {

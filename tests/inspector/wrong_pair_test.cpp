@@ -91,6 +91,30 @@ TEST(PairTracks, TellSinceWhenTheyOverlap) {
   EXPECT_EQ((PairTrack{still, still}.overlapBegan()), 10U);
 }
 
+TEST(PairTracks, TellSinceWhenABodyIsAbsent) {
+  Track track{.body = 1, .first = 10, .boxes = {box(0, 1), kEmptyBox, kEmptyBox}};
+  EXPECT_EQ(absenceText(track), "absent: vanished in frame 11");
+  track.boxes.front() = kEmptyBox;
+  EXPECT_EQ(absenceText(track), "absent since frame 10 or earlier");
+  track.first = 0;
+  EXPECT_EQ(absenceText(track), "absent since frame 0");
+}
+
+TEST(UnwantedPairs, TellWhy) {
+  const std::vector<BodyGroups> bodies = {{.layer = 1},
+                                          {.layer = 2},
+                                          {.layer = 2, .world = 7},
+                                          {.layer = 1, .tags = {4, 5, 6}},
+                                          {.layer = 2, .tags = {6, BodyGroups::kNoTag, 9}}};
+  const CollisionFilter filter(bodies, LayerMatrix().set(1, 2).set(2, 2));
+  EXPECT_EQ(unwantedText(filter, {0, 1}), "");
+  EXPECT_THAT(unwantedText(filter, {0, 3}), testing::HasSubstr("layer 1"));
+  EXPECT_THAT(unwantedText(filter, {1, 2}), testing::HasSubstr("world 7"));
+  EXPECT_THAT(unwantedText(filter, {3, 4}), testing::HasSubstr("tag"));
+  EXPECT_THAT(unwantedText(CollisionFilter({}, LayerMatrix().set(0, 1)), {0, 1}),
+              testing::HasSubstr("layer 0 does not"));
+}
+
 TEST(KnownMismatches, TheNextOfAnyLane) {
   std::vector<LaneReport> lanes(2);
   for (LaneReport& lane : lanes) {

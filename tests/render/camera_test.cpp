@@ -69,6 +69,15 @@ TEST(ShownBox, HoldsTheBodiesWhenTheWorldDoesNot) {
   EXPECT_EQ(shownBox(cubeAt(-500, 0), boxes), merged(boxes[2], boxes[1]));
 }
 
+TEST(ShownBox, AbsentBodiesDoNotCount) {
+  const Aabb world = cubeAt(0, 10);
+  EXPECT_EQ(shownBox(world, std::vector{kEmptyBox, kEmptyBox, cubeAt(1, 1)}), world);
+  EXPECT_EQ(shownBox(world, std::vector{kEmptyBox, kEmptyBox, cubeAt(50, 1)}),
+            merged(world, cubeAt(50, 1)));
+  EXPECT_EQ(shownBox(cubeAt(-500, 0), std::vector{kEmptyBox, cubeAt(50, 1)}), cubeAt(50, 1));
+  EXPECT_EQ(shownBox(world, std::vector{kEmptyBox}), world);
+}
+
 TEST(FigureCamera, StandsWhereThePaperHasIt) {
   const Camera camera = figureCamera(cubeAt(0, 1), 1.5);
   EXPECT_FLOAT_EQ(camera.eye[0], 1.71F);

@@ -109,6 +109,50 @@ TEST(Colouring, MotionIsSeenAgainstThePreviousFrame) {
   EXPECT_THAT(labels(coloured("motion", input)), ElementsAre("static", "moving", "static"));
 }
 
+TEST(Colouring, WhatHasChangedNow) {
+  const std::vector<Aabb> all = someBoxes(4);
+  const std::vector<Aabb> boxes = {all[0], all[1], all[2], kEmptyBox};
+  const std::vector<Aabb> previous = {all[0], all[0], kEmptyBox, all[3]};
+  ColouringInput input;
+  input.boxes = boxes;
+  EXPECT_EQ(coloured("changes", input).legend.size(), 1U);
+  input.previous = previous;
+  const Colouring colouring = coloured("changes", input);
+  EXPECT_EQ(labels(colouring)[0], "unchanged");
+  EXPECT_EQ(labels(colouring)[1], "moved");
+  EXPECT_EQ(labels(colouring)[2], "appeared");
+  for (const LegendEntry& entry : colouring.legend) EXPECT_EQ(entry.count, 1U) << entry.label;
+}
+
+TEST(Colouring, LayersInUse) {
+  const std::vector<Aabb> boxes = someBoxes(4);
+  const std::vector<std::uint8_t> layers = {31, 2, 31, 0};
+  ColouringInput input;
+  input.boxes = boxes;
+  EXPECT_EQ(coloured("layers", input).legend.size(), 1U);
+  input.layers = layers;
+  const Colouring colouring = coloured("layers", input);
+  EXPECT_THAT(labels(colouring), ElementsAre("layer 31", "layer 2", "layer 31", "layer 0"));
+  EXPECT_EQ(colouring.legend.size(), 3U);
+}
+
+TEST(Colouring, AbsentBodiesAreInNoClass) {
+  std::vector<Aabb> boxes = someBoxes(5);
+  boxes[1] = boxes[4] = kEmptyBox;
+  const std::vector<Pair> pairs = {{1, 2}};
+  for (const ColourMode& mode : colourModes()) {
+    Colouring colouring;
+    ColouringInput input;
+    input.boxes = boxes;
+    input.previous = boxes;
+    input.missed = pairs;
+    mode.colour(input, colouring);
+    std::uint64_t bodies = 0;
+    for (const LegendEntry& entry : colouring.legend) bodies += entry.count;
+    EXPECT_EQ(bodies, 3U) << mode.id;
+  }
+}
+
 TEST(Colouring, SizesAreShownInStepsOfEqualRatio) {
   const std::vector<Aabb> boxes = {boxOf(0, 0), boxOf(0, 1), boxOf(0, 9), boxOf(0, 1000),
                                    boxOf(0, 1e6F)};
@@ -136,7 +180,7 @@ TEST(Colouring, EveryModeColoursOddInput) {
       EXPECT_EQ(colouring.colours.size(), boxes.size()) << mode.id;
       std::uint64_t bodies = 0;
       for (const LegendEntry& entry : colouring.legend) bodies += entry.count;
-      EXPECT_EQ(bodies, boxes.size()) << mode.id;
+      EXPECT_EQ(bodies, boxes.size() - std::ranges::count_if(boxes, isEmpty)) << mode.id;
     }
   }
 }

@@ -125,6 +125,14 @@ TEST_P(EachSource, ColoursWhatOverlaps) {
   EXPECT_TRUE(isCool(face(2)));
 }
 
+TEST_P(EachSource, AbsentBodiesAreNeitherDrawnNorCounted) {
+  const SceneInfo scene = sceneWithSide(2, 10);
+  const std::vector<Aabb> two = {cube({-3, 0, 3}, 2), cube({3, 0, -3}, 2)};
+  const std::vector<Aabb> four = {kEmptyBox, two[0], kEmptyBox, two[1]};
+  EXPECT_EQ(drawBoxes(context(), scene, four, {{1, 3}}).rgba,
+            drawBoxes(context(), scene, two, {{0, 1}}).rgba);
+}
+
 TEST_P(EachSource, DrawsTheNearerBoxInFront) {
   const SceneInfo scene = sceneWithSide(2, 10);
   const std::vector<Aabb> boxes = {cube({1.14F, 0.4F, 1.2F}, 2), cube({-2.28F, -0.8F, -2.4F}, 2)};

@@ -92,6 +92,18 @@ TEST(Picking, IgnoresMaskedBodiesAndBodiesAroundTheEye) {
   EXPECT_EQ(pick(boxes, viewpoint, {200, 150}, mask), 1U);
 }
 
+TEST(Picking, AbsentBodiesAreNotHitNorSelected) {
+  const Viewpoint viewpoint = viewpointFrom(Direction::front);
+  const std::vector<Aabb> boxes = {kEmptyBox, cube({1000, 0, 20}, 10), kEmptyBox};
+  EXPECT_EQ(pick(boxes, viewpoint, {200, 150}), 1U);
+  EXPECT_EQ(pick({kEmptyBox}, viewpoint, {200, 150}), std::nullopt);
+  for (const SelectBy by : {SelectBy::centre, SelectBy::whole}) {
+    EXPECT_THAT(
+        bodiesWithin(boxes, viewSpaceOf(kFarWorld), viewpoint, {{0, 0}, {400, 300}}, {}, by),
+        testing::ElementsAre(1));
+  }
+}
+
 TEST(Picking, NothingBehindTheEyeIsHit) {
   const Viewpoint viewpoint = viewpointFrom(Direction::front);
   EXPECT_EQ(pick({cube({1000, 0, 5000}, 10)}, viewpoint, {200, 150}), std::nullopt);

@@ -134,6 +134,21 @@ TEST_P(SceneViewTest, OnlyVisibleBodiesAreDrawn) {
   EXPECT_TRUE(isBlue(colourInTheMiddle(*view)));
 }
 
+TEST_P(SceneViewTest, AbsentBodiesAreNotDrawn) {
+  const Bodies both{{cube({0, 0, 3}, 2), cube({0, 0, -3}, 3)}, {kRed, kBlue}};
+  const Bodies one{{kEmptyBox, both.boxes[1], kEmptyBox}, {kRed, kBlue, kRed}};
+  const std::vector<std::uint32_t> selected = {0};
+  const auto picture = [&](const Bodies& bodies, std::span<const std::uint32_t> which) {
+    SceneViewContent content = contentOf(bodies);
+    content.selected = which;
+    const auto view = makeView();
+    view->draw(content, wholeWorld(Direction::front));
+    return view->read();
+  };
+  const Bodies alone{{both.boxes[1]}, {kBlue}};
+  EXPECT_EQ(picture(one, selected).rgba, picture(alone, {}).rgba);
+}
+
 TEST_P(SceneViewTest, TheSmallestBodyIsSeen) {
   const std::array<float, 4> somewhere = {1.7F, 2.3F, -0.9F, 0};
   for (const Aabb& box : {cube({1.7F, 2.3F, -0.9F}, 0), cube({1.7F, 2.3F, -0.9F}, 1e-5F),

@@ -3,10 +3,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "broadmark/collision_filter.h"
+#include "broadmark/frame.h"
 #include "support/inputs.h"
 
 namespace broadmark::tests {
@@ -115,6 +118,48 @@ inline std::vector<std::vector<Aabb>> framesWith(const inputs::Input& input, std
     }
   }
   return frames;
+}
+
+/// A scene of given frames.
+inline FrameList listed(SceneInfo scene, const std::vector<std::vector<Aabb>>& frames) {
+  class Given final : public FrameSource {
+   public:
+    Given(SceneInfo scene, const std::vector<std::vector<Aabb>>& frames)
+        : scene_(std::move(scene)), frames_(frames) {
+      scene_.objects = static_cast<std::uint32_t>(frames.front().size());
+      scene_.frames = static_cast<std::uint32_t>(frames.size()) - 1;
+    }
+    [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+    Frame rewind() override { return {index_ = 0, frames_.front()}; }
+    std::optional<Frame> next() override {
+      if (index_ == scene_.frames) return std::nullopt;
+      ++index_;
+      return Frame{index_, frames_[index_]};
+    }
+
+   private:
+    SceneInfo scene_;
+    const std::vector<std::vector<Aabb>>& frames_;
+    std::uint32_t index_ = 0;
+  };
+  Given given(std::move(scene), frames);
+  return FrameList(given);
+}
+
+/// The frames of a scene, with only those bodies that are there.
+inline FrameList changing(FrameSource& source, const Presence& present,
+                          const CollisionFilter& filter = {}) {
+  SceneInfo scene = source.scene();
+  scene.all_present = false;
+  scene.filter = filter;
+  std::vector<std::vector<Aabb>> frames;
+  for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
+    frames.emplace_back(frame->boxes.begin(), frame->boxes.end());
+    for (std::uint32_t body = 0; body < scene.objects; ++body) {
+      if (!present(body, frame->index)) frames.back()[body] = kEmptyBox;
+    }
+  }
+  return listed(std::move(scene), frames);
 }
 
 }  // namespace broadmark::tests

@@ -1,7 +1,10 @@
 // Algorithms that are wrong once in a while, to show how such a fault is found. A plug-in, never
 // part of the program.
 //
-// Both keep a fat box around each body (as Bullet's and Box2D's trees do) and all pairs of
+// "lossy-removal" and "lossy-layers" test all pairs. The first loses one whenever a body has
+// vanished since the frame before, the second all pairs of two layers.
+//
+// The other two keep a fat box around each body (as Bullet's and Box2D's trees do) and all pairs of
 // overlapping fat boxes. Only bodies that left their fat box, the moved ones, get a new one and are
 // queried anew. Moved bodies are taken from a small buffer in turn, and of two moved bodies only
 // the lower one reports the pair, so that it is found once.
@@ -132,6 +135,67 @@ class FatBoxes final : public BoxBroadPhase {
   std::vector<Pair> candidates_;
 };
 
+/// All wanted pairs, of which `spoil(answer, scene, boxes, before)` takes some.
+template <class Spoil>
+class AllPairsButSome final : public BoxBroadPhase {
+ public:
+  explicit AllPairsButSome(Spoil spoil) : spoil_(spoil) {}
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    scene_ = scene;
+    before_ = boxes();
+  }
+  void findPairs() override {
+    std::vector<Pair> answer;
+    for (std::uint32_t b = 0; b < boxes().size(); ++b) {
+      for (std::uint32_t a = 0; a < b; ++a) {
+        if (scene_.filter.wanted(a, b) && broadmark::overlaps(boxes()[a], boxes()[b])) {
+          answer.push_back({a, b});
+        }
+      }
+    }
+    spoil_(answer, scene_, boxes(), before_);
+    for (const Pair pair : answer) pairs().add(pair.a, pair.b);
+    before_ = boxes();
+  }
+
+ private:
+  Spoil spoil_;
+  SceneInfo scene_;
+  std::vector<Aabb> before_;
+};
+
+void loseOneAtARemoval(std::vector<Pair>& answer, const SceneInfo&, const std::vector<Aabb>& boxes,
+                       const std::vector<Aabb>& before) {
+  for (std::size_t body = 0; body < boxes.size(); ++body) {
+    if (answer.empty() || !isEmpty(boxes[body]) || isEmpty(before[body])) continue;
+    answer.pop_back();
+    return;
+  }
+}
+
+void losePairsOfTwoLayers(std::vector<Pair>& answer, const SceneInfo& scene,
+                          const std::vector<Aabb>&, const std::vector<Aabb>&) {
+  std::erase_if(answer, [&](const Pair pair) {
+    return scene.filter.groupsOf(pair.a).layer != scene.filter.groupsOf(pair.b).layer;
+  });
+}
+
+template <class Spoil>
+Algorithm changingVariant(const std::string& id, const std::string& summary, Spoil spoil) {
+  return {.id = id,
+          .family = "Faulty",
+          .summary = summary,
+          .traits = {.changing_worlds = ChangingWorlds::native},
+          .description = {.principle = "brute force",
+                          .optimisations = "",
+                          .time = "O(n²)",
+                          .space = "O(n + k)",
+                          .source = "a test of Broadmark's, wrong on purpose"},
+          .create = [spoil] { return std::make_unique<AllPairsButSome<Spoil>>(spoil); }};
+}
+
 Algorithm variant(const std::string& id, const std::string& summary, Fault fault) {
   return {.id = id,
           .family = "Faulty",
@@ -149,7 +213,9 @@ Algorithm variant(const std::string& id, const std::string& summary, Fault fault
 
 std::vector<Algorithm> variants() {
   return {variant("faulty", "loses a pair once in some hundred frames", Fault::missed),
-          variant("faulty-extra", "reports false pairs", Fault::extra)};
+          variant("faulty-extra", "reports false pairs", Fault::extra),
+          changingVariant("lossy-removal", "loses a pair when a body vanishes", loseOneAtARemoval),
+          changingVariant("lossy-layers", "loses all pairs of two layers", losePairsOfTwoLayers)};
 }
 
 }  // namespace broadmark::faulty

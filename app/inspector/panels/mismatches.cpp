@@ -250,6 +250,15 @@ class MismatchesPanel final : public Panel {
     }
     const BoxPair pair{
         {bodies[0], bodies[1]}, (*seen->boxes)[bodies[0]], (*seen->boxes)[bodies[1]]};
+    const std::string unwanted = unwantedText(seen->scene.filter, pair.bodies);
+    if (!unwanted.empty()) ui.coloured(ui.theme.warning, unwanted);
+    if (isEmpty(pair.a) || isEmpty(pair.b)) {
+      for (const Track& track : seen->tracks) {
+        if (!isEmpty(track.boxes.back())) continue;
+        ui.coloured(ui.theme.bad, fmt::format("body {}: {}", track.body, absenceText(track)));
+      }
+      return;
+    }
     ui.coloured(overlaps(pair.a, pair.b) ? ui.theme.good : ui.theme.bad, sentenceOn(pair));
     drawPairTable(ui, pair);
     drawIntervals(ui, pair);

@@ -52,6 +52,12 @@ class SelectionPanel final : public Panel {
     if (body >= snapshot.boxes->size()) return;
     const Aabb& box = (*snapshot.boxes)[body];
     ui.heading(fmt::format("Body {}", body).c_str());
+    drawGroups(ui, snapshot.scene.filter, body);
+    if (isEmpty(box)) {
+      const auto track = std::ranges::find(snapshot.tracks, body, &Track::body);
+      ui.paragraph(track != snapshot.tracks.end() ? absenceText(*track) : "absent");
+      return;
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       ui.fact(kAxes[axis], fmt::format("{:.5g} … {:.5g}", box.min[axis], box.max[axis]));
     }
@@ -71,6 +77,18 @@ class SelectionPanel final : public Panel {
     ImGui::EndChild();
   }
 
+  static void drawGroups(Ui& ui, const CollisionFilter& filter, std::uint32_t body) {
+    const BodyGroups groups = filter.groupsOf(body);
+    if (!filter.layers().empty()) ui.fact("layer", std::to_string(groups.layer));
+    if (!filter.worlds().empty()) ui.fact("world", std::to_string(groups.world));
+    if (groups.tags == BodyGroups::kNoTags) return;
+    std::string tags;
+    for (const std::uint32_t tag : groups.tags) {
+      if (tag != BodyGroups::kNoTag) tags += fmt::format("{}{}", tags.empty() ? "" : ", ", tag);
+    }
+    ui.fact("tags", tags);
+  }
+
   static void drawBodies(PanelContext& context, const Snapshot& snapshot) {
     Ui& ui = context.ui;
     const std::vector<std::uint32_t> bodies = context.session.selection.bodies();
@@ -80,7 +98,9 @@ class SelectionPanel final : public Panel {
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
       const std::string label =
-          fmt::format("{}    {} overlaps", bodies[i], snapshot.overlaps[bodies[i]]);
+          isEmpty((*snapshot.boxes)[bodies[i]])
+              ? fmt::format("{}    absent", bodies[i])
+              : fmt::format("{}    {} overlaps", bodies[i], snapshot.overlaps[bodies[i]]);
       if (ui.selectable(label.c_str(), false)) context.session.selection.select({bodies[i]});
     }
     if (bodies.size() > kListedBodies) ui.faint("…");
@@ -92,27 +112,34 @@ class SelectionPanel final : public Panel {
     ui.heading("Scene");
     ui.fact("name", snapshot->scene.name);
     ui.fact("object type", snapshot->scene.object_type);
-    ui.fact("bodies", std::to_string(snapshot->boxes->size()));
+    const bool changes = !snapshot->scene.all_present;
+    ui.fact("bodies", changes ? fmt::format("{} of {}", snapshot->present, snapshot->boxes->size())
+                              : std::to_string(snapshot->present));
     ui.fact("pairs", std::to_string(snapshot->pairs.size()));
     const float side = snapshot->scene.world.max[0] - snapshot->scene.world.min[0];
     ui.fact("world", fmt::format("{:.4g} wide", side));
     if (described_ != snapshot) {
       described_ = snapshot;
-      moving_ = 0;
+      changes_ = {};
       if (snapshot->boxes_before) {
-        for (std::size_t i = 0; i < snapshot->boxes->size(); ++i) {
-          moving_ += (*snapshot->boxes)[i] == (*snapshot->boxes_before)[i] ? 0 : 1;
-        }
+        changes_ = changesBetween(*snapshot->boxes_before, *snapshot->boxes);
       }
     }
-    ui.fact("moving", std::to_string(moving_));
+    const auto fact = [&](const char* name, double bodies) {
+      ui.fact(name, fmt::format("{:.0f}", bodies));
+    };
+    fact("moving", changes_.changed - changes_.appeared - changes_.vanished);
+    if (changes) {
+      fact("appeared", changes_.appeared);
+      fact("vanished", changes_.vanished);
+    }
     ImGui::Spacing();
     ui.faintParagraph("Click a body to select it; drag with Shift to select several.");
   }
 
   std::int64_t wanted_ = 0;
   std::shared_ptr<const Snapshot> described_;
-  std::uint64_t moving_ = 0;
+  Changes changes_;  ///< in the frame described
 };
 
 }  // namespace

@@ -19,7 +19,10 @@ constexpr std::uint32_t kFewestFrames = 20;
 
 class TimingsPanel final : public Panel {
  public:
-  TimingsPanel() : Panel("Timings", Place::bottom, "Times of all frames as curves") {}
+  TimingsPanel()
+      : Panel("Timings", Place::bottom,
+              "Times of all frames as curves; behind them, where bodies come and go, how many are "
+              "present") {}
 
   void draw(PanelContext& context) override {
     drawControls(context.ui);
@@ -29,6 +32,8 @@ class TimingsPanel final : public Panel {
       first_ = 0;
       last_ = last;
     }
+    const PlotCurve population{
+        .label = "bodies", .colour = context.ui.theme.faint, .values = context.progress.population};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotResult done =
         drawPlot("plot", curves,
@@ -37,7 +42,8 @@ class TimingsPanel final : public Panel {
                   .marked_frame = static_cast<double>(context.session.playback.frame()),
                   .first = first_,
                   .last = last_,
-                  .dark = context.ui.theme.dark},
+                  .dark = context.ui.theme.dark,
+                  .backdrop = population.values.empty() ? nullptr : &population},
                  room.x, room.y);
     context.ui.note("plot");
     if (done.clicked_frame) {

@@ -61,6 +61,12 @@ struct RecordingReference {
   ParameterValues swept = {};        ///< of those, what tells it from other recordings of its run
 };
 
+/// How many bodies were present in the frames that were run.
+struct Population {
+  double mean = 0;
+  std::uint64_t max = 0;
+};
+
 struct CaseResult {
   std::string id;
   RecordingReference recording;
@@ -80,7 +86,8 @@ struct CaseResult {
 
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
-  bool checked = false;  ///< when false, the counts of wrong pairs mean nothing
+  std::optional<Population> bodies;  ///< nothing where nobody is ever absent
+  bool checked = false;              ///< when false, the counts of wrong pairs mean nothing
   /// Of each frame, over all repetitions the most of each kind. Empty in results/1.
   std::vector<FrameCounts> frames;
   // Sums of those.

@@ -31,7 +31,8 @@ struct ShrunkCase {
   Part part;                   ///< in the recording's own numbers
   FrameDifference difference;  ///< of the last frame, numbered as in the part
   std::uint64_t trials = 0;
-  /// Whether no single body and no single frame can be left out; false when cancelled.
+  /// Whether no single body, frame, absence, layer, world or tag can be left out; false when
+  /// cancelled.
   bool minimal = false;
 };
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import argparse
 import os
 
+from broadmark import selection
 from broadmark.report import write_report
-from broadmark.results import read_results
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("results", nargs="+", metavar="RESULTS", help="results (.json, .jsonl)")
+    selection.add_options(parser)
     parser.add_argument(
         "-o", "--output", default="report.html", metavar="FILE", help="default: %(default)s"
     )
@@ -28,7 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> None:
-    results = read_results(*options.results)
+    results = selection.read_selected(options)
     for note in write_report(
         results, options.output, title=options.title, pictures=options.pictures
     ):

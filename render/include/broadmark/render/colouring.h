@@ -15,9 +15,10 @@ namespace broadmark {
 
 /// What a mode reads, borrowed. Pairs may name bodies that do not exist.
 struct ColouringInput {
-  std::span<const Aabb> boxes;
+  std::span<const Aabb> boxes;              ///< empty: absent
   std::span<const Aabb> previous;           ///< of the previous frame; empty without one
   std::span<const std::uint32_t> overlaps;  ///< of each body: see overlapCounts()
+  std::span<const std::uint8_t> layers;     ///< as CollisionFilter::layers()
   std::span<const Pair> missed;
   std::span<const Pair> false_pairs;
   bool dark = false;  ///< the background
@@ -26,7 +27,7 @@ struct ColouringInput {
 struct LegendEntry {
   std::string label;
   Rgb swatch = 0;
-  std::uint64_t count = 0;  ///< bodies
+  std::uint64_t count = 0;  ///< bodies that are present
 
   friend bool operator==(const LegendEntry&, const LegendEntry&) = default;
 };

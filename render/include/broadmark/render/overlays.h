@@ -28,7 +28,7 @@ struct PairLineStyle {
 };
 
 /// A line from middle to middle for each pair; with `only`, for each pair with one of these bodies.
-/// Pairs of bodies that do not exist are left out.
+/// Pairs of bodies that do not exist, or are absent, are left out.
 Overlay pairLines(std::span<const Aabb> boxes, PairRuns pairs, const PairLineStyle& style,
                   std::optional<std::span<const std::uint32_t>> only = {});
 

@@ -25,7 +25,7 @@ struct Ray {
 /// middle of the first pixel.
 Ray rayThrough(const Viewpoint& viewpoint, float x, float y);
 
-/// Which bodies count: those with a value other than 0; all if empty.
+/// Which bodies count: those with a value other than 0; all if empty. Absent ones never do.
 using BodyMask = std::span<const std::uint8_t>;
 
 struct PickedBody {

@@ -29,6 +29,8 @@ struct PlotOptions {
   double first = 0;
   double last = 1;
   bool dark = true;
+  /// Drawn behind the curves, from 0 on a scale of its own, without a unit; null: nothing.
+  const PlotCurve* backdrop = nullptr;
 };
 
 /// What the user did.

@@ -65,7 +65,7 @@ struct SceneViewContent {
   Aabb world;
 
   std::uint64_t bodies_revision = 0;        ///< of the four that follow
-  std::span<const Aabb> boxes;              ///< in the world
+  std::span<const Aabb> boxes;              ///< in the world; empty ones are not drawn
   std::span<const Rgb> colours;             ///< one for each box
   BodyMask visible;                         ///< one for each box, or empty: all
   std::span<const std::uint32_t> selected;  ///< bodies to be outlined, also invisible ones

@@ -1,0 +1,36 @@
+// Leaving out what a failure does not need. Zeller and Hildebrandt, "Simplifying and Isolating
+// Failure-Inducing Input", 2002.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace broadmark {
+
+/// Leaves out chunks of `items`, large ones first, as long as `still_fails(fewer)` says so, until
+/// none of them can go, the last `kept` aside. Whether any could.
+template <class Item, class Fails>
+bool leaveOut(std::vector<Item> items, std::size_t kept, Fails&& still_fails) {
+  const std::size_t at_first = items.size();
+  std::size_t chunk = std::max<std::size_t>(items.size() / 2, 1);
+  while (true) {
+    const std::size_t before = items.size();
+    for (std::size_t begin = 0; begin + kept < items.size();) {
+      const std::size_t end = std::min(begin + chunk, items.size() - kept);
+      std::vector<Item> fewer = items;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(begin),
+                  fewer.begin() + static_cast<std::ptrdiff_t>(end));
+      if (still_fails(std::as_const(fewer))) {
+        items = std::move(fewer);
+      } else {
+        begin = end;
+      }
+    }
+    if (chunk == 1 && items.size() == before) return items.size() < at_first;
+    chunk = std::max<std::size_t>(chunk / 2, 1);
+  }
+}
+
+}  // namespace broadmark
