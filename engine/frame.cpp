@@ -15,7 +15,7 @@ Frame IndexedFrames::at(std::uint32_t index) {
   }
   const std::span<const Aabb> boxes = readBoxes(index);
   position_ = index;
-  return {index, boxes};
+  return {index, boxes, changed()};
 }
 
 std::optional<Frame> IndexedFrames::next() {

@@ -34,10 +34,10 @@ struct SceneInfo {
 struct Frame {
   std::uint32_t index = 0;      ///< 0 is the initial pose, 1…F are the frames that count
   std::span<const Aabb> boxes;  ///< by body id; kEmptyBox: absent
-  /// The bodies that moved, appeared or vanished since the frame before, ascending: those whose
-  /// boxes differ. Nothing when the source does not know: an algorithm always gets them, found out
-  /// before the clock starts. A source knows in all of its frames or in none; in frame 0 there are
-  /// none.
+  /// The bodies that moved, appeared or vanished since frame `index` - 1, whichever frame was read
+  /// last, ascending: those whose boxes differ by a bit. Nothing when the source does not know: an
+  /// algorithm always gets them, found out before the clock starts. A source knows in all of its
+  /// frames or in none; in frame 0 there are none.
   std::optional<std::span<const std::uint32_t>> changed = {};
 };
 
@@ -72,6 +72,8 @@ class IndexedFrames : public FrameSource {
  protected:
   /// The boxes of frame `index`, which exists.
   virtual std::span<const Aabb> readBoxes(std::uint32_t index) = 0;
+  /// What changed in the frame that was read last, if this knows: Frame::changed.
+  [[nodiscard]] virtual std::optional<std::span<const std::uint32_t>> changed() const { return {}; }
 
  private:
   std::uint32_t position_ = 0;
