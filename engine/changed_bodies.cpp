@@ -2,7 +2,19 @@
 
 #include "broadmark/changed_bodies.h"
 
+#include <array>
+#include <bit>
+
 namespace broadmark {
+namespace {
+
+/// To the bit, so that what is recorded comes back as it was.
+bool same(const Aabb& a, const Aabb& b) {
+  using Bits = std::array<std::uint64_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+}  // namespace
 
 Frame ChangedBodies::complete(const Frame& frame) {
   if (frame.changed) return frame;
@@ -12,7 +24,7 @@ Frame ChangedBodies::complete(const Frame& frame) {
     changed_.reserve(before_.size());
   }
   for (std::uint32_t body = 0; body < before_.size(); ++body) {
-    if (frame.boxes[body] == before_[body]) continue;
+    if (same(frame.boxes[body], before_[body])) continue;
     before_[body] = frame.boxes[body];
     changed_.push_back(body);
   }

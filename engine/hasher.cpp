@@ -22,9 +22,16 @@ void Hasher::add(std::span<const std::byte> bytes) {
   XXH3_128bits_update(&state_->xxh3, bytes.data(), bytes.size());
 }
 
-std::string Hasher::hex() const {
+void Hasher::restart() { XXH3_128bits_reset(&state_->xxh3); }
+
+HashValue Hasher::value() const {
   const XXH128_hash_t hash = XXH3_128bits_digest(&state_->xxh3);
-  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+  return {hash.low64, hash.high64};
+}
+
+std::string Hasher::hex() const {
+  const HashValue hash = value();
+  return fmt::format("{:016x}{:016x}", hash.high, hash.low);
 }
 
 HashValue hashOf(std::span<const std::byte> bytes) {

@@ -1,35 +1,71 @@
-// Reading recordings of any kind, and .aabbs recordings.
+// The kinds of recordings; reading and writing .aabbs recordings.
 
 #include "broadmark/recording.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <limits>
 
 #include "broadmark/error.h"
 #include "broadmark/posrot.h"
+#include "broadmark/recording2.h"
 #include "recording_file.h"
 
 namespace broadmark {
 namespace {
 
-/// Reads exactly `bytes`, from `offset`.
-void readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset, const std::string& name) {
-  while (!bytes.empty()) {
-    const ssize_t got = ::pread(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) {
-      throw InputError(
-          fmt::format("{}: cannot read at byte {}: {}", name, offset, std::strerror(errno)));
-    }
-    if (got == 0) throw InputError(fmt::format("{}: ends at byte {}", name, offset));
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    offset += static_cast<std::uint64_t>(got);
+class AabbsFile final : public BoxRecordingFile {
+ public:
+  AabbsFile(const std::filesystem::path& path, const SceneInfo& scene) : file_(path, scene) {}
+
+  void write(std::span<const Aabb> boxes) override { file_.append(boxes, "box"); }
+  std::string finish() override { return file_.finish(); }
+  std::unique_ptr<Recording> finishTemporary() override {
+    return std::make_unique<RecordingReader>(file_.finishTemporary(), file_.name());
   }
+
+ private:
+  RecordingFile file_;
+};
+
+std::unique_ptr<BoxRecordingFile> makeAabbsFile(const std::filesystem::path& path,
+                                                const SceneInfo& scene, const RecordingOrigin&) {
+  if (fitsAabbs(scene)) return std::make_unique<AabbsFile>(path, scene);
+  throw InputError(fmt::format(
+      "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
+      path.string(), kAabbsExtension, kBroadmarkExtension));
+}
+
+template <class Reader>
+std::unique_ptr<Recording> open(const std::filesystem::path& path) {
+  return std::make_unique<Reader>(path);
+}
+
+/// A kind of recording.
+struct Kind {
+  std::string_view extension;
+  std::unique_ptr<Recording> (*open)(const std::filesystem::path&);
+  /// Null: does not hold boxes. Without a path: an unnamed file.
+  std::unique_ptr<BoxRecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
+                                             const RecordingOrigin&);
+};
+
+constexpr Kind kKinds[] = {
+    {kAabbsExtension, open<RecordingReader>, makeAabbsFile},
+    {kBroadmarkExtension, open<Recording2Reader>, makeRecording2File},
+    {kPosrotExtension, open<PosrotReader>, nullptr},
+};
+
+/// The first one unless the extension is another's.
+const Kind& kindOf(const std::filesystem::path& extension) {
+  const auto* kind = std::ranges::find(kKinds, extension, &Kind::extension);
+  return kind == std::end(kKinds) ? kKinds[0] : *kind;
 }
 
 }  // namespace
@@ -40,6 +76,30 @@ std::uint64_t recordingBytes(const SceneInfo& scene) {
   // Absurd counts must not wrap around to a size that looks right.
   if (boxes > (kMost - kRecordingHeaderBytes) / kRecordBytes) return kMost;
   return kRecordingHeaderBytes + kRecordBytes * boxes;
+}
+
+std::vector<std::string_view> recordingExtensions() {
+  std::vector<std::string_view> all;
+  for (const Kind& kind : kKinds) all.push_back(kind.extension);
+  return all;
+}
+
+std::vector<std::string_view> boxRecordingExtensions() {
+  std::vector<std::string_view> all;
+  for (const Kind& kind : kKinds) {
+    if (kind.write != nullptr) all.push_back(kind.extension);
+  }
+  return all;
+}
+
+bool fitsAabbs(const SceneInfo& scene) { return scene.all_present && scene.filter.wantsAll(); }
+
+std::string_view recordingExtension(const SceneInfo& scene) {
+  return fitsAabbs(scene) ? kAabbsExtension : kBroadmarkExtension;
+}
+
+std::string recordingFileName(const SceneInfo& scene) {
+  return recordingFileName(scene, recordingExtension(scene));
 }
 
 std::string recordingFileName(const SceneInfo& scene, std::string_view extension) {
@@ -53,50 +113,72 @@ Recording::Recording(FileDescriptor file, std::string name)
   if (::fstat(file_.get(), &status) != 0) {
     throw InputError(fmt::format("{}: cannot read: {}", name_, std::strerror(errno)));
   }
-  const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size < kRecordingHeaderBytes) {
-    throw InputError(fmt::format("{}: {} bytes is too short: a recording has a header of {} bytes",
-                                 name_, size, kRecordingHeaderBytes));
-  }
-  RecordingHeader header{};
-  readAll(file_.get(), std::as_writable_bytes(std::span(&header, 1)), 0, name_);
-  scene_ = parseHeader(header, name_);
-  const std::uint64_t expected = recordingBytes(scene_);
-  if (size != expected) {
-    throw InputError(fmt::format(
-        "{}: {} bytes is too {}: {} objects and {} frames take 304 + 32·{}·(1 + {}) = {} bytes",
-        name_, size, size < expected ? "short" : "long", scene_.objects, scene_.frames,
-        scene_.objects, scene_.frames, expected));
+  size_ = static_cast<std::uint64_t>(status.st_size);
+}
+
+void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t got =
+        ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      throw InputError(
+          fmt::format("{}: cannot read at byte {}: {}", name_, offset, std::strerror(errno)));
+    }
+    if (got == 0) throw InputError(fmt::format("{}: ends at byte {}", name_, offset));
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+    offset += static_cast<std::uint64_t>(got);
   }
 }
 
-void Recording::readSet(std::uint32_t index, std::span<std::byte> bytes) const {
-  readAll(file_.get(), bytes, setOffset(scene_, index), name_);
+const RecordingOrigin& Recording::origin() const {
+  static const RecordingOrigin kUnknown;
+  return kUnknown;
 }
 
 const std::string& Recording::hash() {
   if (!hash_.empty()) return hash_;
   Hasher hasher;
   std::vector<std::byte> chunk(1 << 20);
-  const std::uint64_t size = recordingBytes(scene_);
-  for (std::uint64_t offset = 0; offset < size; offset += chunk.size()) {
-    const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size - offset));
-    readAll(file_.get(), part, offset, name_);
+  for (std::uint64_t offset = 0; offset < size_; offset += chunk.size()) {
+    const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size_ - offset));
+    read(offset, part);
     hasher.add(part);
   }
   return hash_ = hasher.hex();
 }
 
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path) {
-  if (path.extension() == kPosrotExtension) return std::make_unique<PosrotReader>(path);
-  return std::make_unique<RecordingReader>(path);
+  return kindOf(path.extension()).open(path);
+}
+
+OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
+    : Recording(std::move(file), std::move(name)) {
+  if (bytes() < kRecordingHeaderBytes) {
+    throw InputError(fmt::format("{}: {} bytes is too short: a recording has a header of {} bytes",
+                                 this->name(), bytes(), kRecordingHeaderBytes));
+  }
+  RecordingHeader header{};
+  read(0, std::as_writable_bytes(std::span(&header, 1)));
+  setScene(parseHeader(header, this->name()));
+  const std::uint64_t expected = recordingBytes(scene());
+  if (bytes() != expected) {
+    throw InputError(fmt::format(
+        "{}: {} bytes is too {}: {} objects and {} frames take 304 + 32·{}·(1 + {}) = {} bytes",
+        this->name(), bytes(), bytes() < expected ? "short" : "long", scene().objects,
+        scene().frames, scene().objects, scene().frames, expected));
+  }
+}
+
+void OriginalRecording::readSet(std::uint32_t index, std::span<std::byte> bytes) const {
+  read(setOffset(scene(), index), bytes);
 }
 
 RecordingReader::RecordingReader(const std::filesystem::path& path)
     : RecordingReader(openForReading(path), path.string()) {}
 
 RecordingReader::RecordingReader(FileDescriptor file, std::string name)
-    : Recording(std::move(file), std::move(name)), boxes_(scene().objects) {}
+    : OriginalRecording(std::move(file), std::move(name)), boxes_(scene().objects) {}
 
 std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
   readSet(index, std::as_writable_bytes(std::span(boxes_)));
@@ -104,21 +186,26 @@ std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
   return boxes_;
 }
 
-RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene)
-    : file_(std::make_unique<RecordingFile>(path, scene)) {}
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
+                                 const RecordingOrigin& origin) {
+  const Kind& kind = kindOf(path.extension());
+  if (kind.write == nullptr) {
+    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
+                                 fmt::join(boxRecordingExtensions(), " or ")));
+  }
+  file_ = kind.write(path, scene, origin);
+}
 
 RecordingWriter::RecordingWriter(const SceneInfo& scene)
-    : file_(std::make_unique<RecordingFile>(scene)) {}
+    : file_(kindOf(recordingExtension(scene)).write({}, scene, {})) {}
 
 RecordingWriter::~RecordingWriter() = default;
 
-void RecordingWriter::write(std::span<const Aabb> boxes) { file_->append(boxes, "box"); }
+void RecordingWriter::write(std::span<const Aabb> boxes) { file_->write(boxes); }
 
 std::string RecordingWriter::finish() { return file_->finish(); }
 
-std::unique_ptr<RecordingReader> RecordingWriter::finishTemporary() {
-  return std::make_unique<RecordingReader>(file_->finishTemporary(), file_->name());
-}
+std::unique_ptr<Recording> RecordingWriter::finishTemporary() { return file_->finishTemporary(); }
 
 bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress) {
   std::optional<Frame> frame = source.rewind();

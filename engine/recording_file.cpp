@@ -19,16 +19,12 @@ constexpr std::size_t kTextBytes = 128;
 /// Frames of no objects take no bytes, so the file's length does not bound their number.
 constexpr std::uint32_t kMostEmptyFrames = 1'000'000;
 
-bool isPrintable(std::string_view text) {
-  return std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
-}
-
 /// A NUL-padded text of the header.
 std::string headerText(const char (&field)[kTextBytes], std::string_view what, std::size_t offset,
                        const std::string& name) {
   const auto* end = std::find(std::begin(field), std::end(field), '\0');
   std::string text(std::begin(field), end);
-  if (end == std::end(field) || !isPrintable(text)) {
+  if (!isName(text)) {
     throw InputError(
         fmt::format("{}: byte {}: the {} is not printable ASCII ended by a NUL: not a "
                     "recording?",
@@ -46,17 +42,9 @@ std::uint32_t headerCount(std::int32_t value, std::string_view what, std::size_t
   return static_cast<std::uint32_t>(value);
 }
 
-void copyText(char (&field)[kTextBytes], const std::string& text, std::string_view what) {
-  if (text.size() >= kTextBytes || !isPrintable(text)) {
-    throw InputError(
-        fmt::format("cannot record the {} '{}': at most {} printable ASCII characters are allowed",
-                    what, text, kLongestName));
-  }
-  std::ranges::copy(text, field);
-}
-
 RecordingHeader makeHeader(const SceneInfo& scene) {
   constexpr auto kMost = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
+  requireNames(scene);
   if (scene.objects > kMost || scene.frames > kMost) {
     throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
                                  scene.objects, scene.frames, kMost));
@@ -66,8 +54,8 @@ RecordingHeader makeHeader(const SceneInfo& scene) {
                                  scene.frames, kMostEmptyFrames));
   }
   RecordingHeader header{};
-  copyText(header.name, scene.name, "scene name");
-  copyText(header.object_type, scene.object_type, "object type");
+  std::ranges::copy(scene.name, header.name);
+  std::ranges::copy(scene.object_type, header.object_type);
   header.objects = static_cast<std::int32_t>(scene.objects);
   header.frames = static_cast<std::int32_t>(scene.frames);
   header.world = scene.world;
@@ -75,6 +63,22 @@ RecordingHeader makeHeader(const SceneInfo& scene) {
 }
 
 }  // namespace
+
+bool isName(std::string_view text) {
+  return text.size() <= kLongestName &&
+         std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+void requireNames(const SceneInfo& scene) {
+  const auto require = [](const std::string& text, std::string_view what) {
+    if (isName(text)) return;
+    throw InputError(
+        fmt::format("cannot record the {} '{}': at most {} printable ASCII characters are allowed",
+                    what, text, kLongestName));
+  };
+  require(scene.name, "scene name");
+  require(scene.object_type, "object type");
+}
 
 SceneInfo parseHeader(const RecordingHeader& header, const std::string& name) {
   SceneInfo scene;
@@ -122,59 +126,31 @@ std::string fault(const Pose& pose) {
   return fmt::format("has a quaternion of length {:.6g} (1 is right)", std::sqrt(squared));
 }
 
-RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene)
-    : scene_(scene), name_(path.string()) {
-  const RecordingHeader header = makeHeader(scene);
-  named_ = std::make_unique<AtomicFile>(path);
-  write(std::as_bytes(std::span(&header, 1)));
-}
-
-RecordingFile::RecordingFile(const SceneInfo& scene)
-    : scene_(scene), name_(recordingFileName(scene) + " (temporary)") {
-  const RecordingHeader header = makeHeader(scene);
-  unnamed_ = unnamedFile();
-  write(std::as_bytes(std::span(&header, 1)));
-}
-
-std::string RecordingFile::finish() {
-  requireWhole();
+void GrowingFile::append(std::vector<std::byte>& block) {
   settle();
-  named_->commit();
-  return hasher_.hex();
-}
-
-FileDescriptor RecordingFile::finishTemporary() {
-  requireWhole();
-  settle();
-  return std::move(unnamed_);
-}
-
-void RecordingFile::requireSize(std::size_t bytes) const {
-  if (bytes != kRecordBytes * scene_.objects) {
-    throw std::logic_error(fmt::format("{}: a set of {} bodies instead of {}", name_,
-                                       bytes / kRecordBytes, scene_.objects));
-  }
-}
-
-void RecordingFile::requireWhole() const {
-  if (sets_ != std::uint64_t{1} + scene_.frames) {
-    throw std::logic_error(
-        fmt::format("{}: {} sets written instead of 1 + {}", name_, sets_, scene_.frames));
-  }
-}
-
-void RecordingFile::writeHanded() {
+  std::swap(block, handed_);
   constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
   if (handed_.size() < kLarge) return write(handed_);
   // Deferred, that is in settle(), where the system grants no more threads.
   writing_ = std::async(std::launch::async | std::launch::deferred, [this] { write(handed_); });
 }
 
-void RecordingFile::settle() {
+std::string GrowingFile::finish() {
+  settle();
+  named_->commit();
+  return hasher_.hex();
+}
+
+FileDescriptor GrowingFile::finishTemporary() {
+  settle();
+  return std::move(unnamed_);
+}
+
+void GrowingFile::settle() {
   if (writing_.valid()) writing_.get();
 }
 
-void RecordingFile::write(std::span<const std::byte> bytes) {
+void GrowingFile::write(std::span<const std::byte> bytes) {
   // In pieces, so that what was hashed is still in the cache when it is written.
   constexpr std::size_t kPiece = 1 << 18;
   for (std::size_t start = 0; start < bytes.size(); start += kPiece) {
@@ -186,6 +162,43 @@ void RecordingFile::write(std::span<const std::byte> bytes) {
       writeAll(unnamed_.get(), piece, name_);
     }
   }
+}
+
+std::unique_ptr<GrowingFile> growingFile(const std::filesystem::path& path,
+                                         const SceneInfo& scene) {
+  if (!path.empty()) return std::make_unique<GrowingFile>(path);
+  return std::make_unique<GrowingFile>(recordingFileName(scene) + " (temporary)");
+}
+
+void requireBodies(std::size_t bodies, const SceneInfo& scene, const std::string& name) {
+  if (bodies == scene.objects) return;
+  throw std::logic_error(
+      fmt::format("{}: a set of {} bodies instead of {}", name, bodies, scene.objects));
+}
+
+void requireWhole(std::uint64_t sets, const SceneInfo& scene, const std::string& name) {
+  if (sets == std::uint64_t{1} + scene.frames) return;
+  throw std::logic_error(
+      fmt::format("{}: {} sets written instead of 1 + {}", name, sets, scene.frames));
+}
+
+RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene)
+    : scene_(scene) {
+  const RecordingHeader header = makeHeader(scene);
+  file_ = growingFile(path, scene);
+  const auto bytes = std::as_bytes(std::span(&header, 1));
+  filling_.assign(bytes.begin(), bytes.end());
+  file_->append(filling_);
+}
+
+std::string RecordingFile::finish() {
+  requireWhole(sets_, scene_, name());
+  return file_->finish();
+}
+
+FileDescriptor RecordingFile::finishTemporary() {
+  requireWhole(sets_, scene_, name());
+  return file_->finishTemporary();
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// What recordings of all kinds share: the header, the checks, and the file being written.
+// What recordings share: the checks, and the file being written; and the header of the original's.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,6 +22,7 @@
 #include "broadmark/frame.h"
 #include "broadmark/hasher.h"
 #include "broadmark/posrot.h"
+#include "broadmark/recording.h"
 
 namespace broadmark {
 
@@ -43,6 +44,11 @@ SceneInfo parseHeader(const RecordingHeader&, const std::string& name);
 
 /// Where set `set` begins.
 std::uint64_t setOffset(const SceneInfo&, std::uint64_t set);
+
+/// Throws InputError naming the scene and what of it no recording holds.
+void requireNames(const SceneInfo&);
+/// Whether a scene or an object type may have this name.
+bool isName(std::string_view text);
 
 /// "" or what is wrong with a record.
 std::string fault(const Aabb&);
@@ -86,16 +92,68 @@ void requireSound(std::span<const Record> records, std::uint64_t set, const Scen
                                setOffset(scene, set) + body * kRecordBytes, what, fault(*broken)));
 }
 
-/// A recording of any kind while it is written: hashed as it grows, whole only after finish(). A
-/// large set is hashed and written while the caller makes the next one.
+/// A file while it is written: hashed as it grows, there only after finish(). A large block is
+/// hashed and written while the caller makes the next one.
+class GrowingFile {
+ public:
+  /// Throws InputError if the path cannot be written.
+  explicit GrowingFile(const std::filesystem::path& path)
+      : name_(path.string()), named_(std::make_unique<AtomicFile>(path)) {}
+  /// An unnamed file in the temporary directory; `name` stands for it in messages.
+  explicit GrowingFile(std::string name) : name_(std::move(name)), unnamed_(unnamedFile()) {}
+  GrowingFile(const GrowingFile&) = delete;  // a block on its way refers to this
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  /// Appends a block, which is swapped for another buffer. Throws InputError when the disc was
+  /// full, at the latest in finish().
+  void append(std::vector<std::byte>& block);
+  /// Gives the file its name. Returns its hash.
+  std::string finish();
+  /// Hands over the unnamed file.
+  FileDescriptor finishTemporary();
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  /// Waits until the last block is written. Throws InputError when that failed.
+  void settle();
+  void write(std::span<const std::byte> bytes);
+
+  std::string name_;
+  std::unique_ptr<AtomicFile> named_;
+  FileDescriptor unnamed_;
+  Hasher hasher_;
+  std::vector<std::byte> handed_;  ///< the last block, perhaps being written
+  std::future<void> writing_;      ///< last: its thread uses all of the above
+};
+
+/// Writes to `path`, or for an empty one to an unnamed file.
+std::unique_ptr<GrowingFile> growingFile(const std::filesystem::path& path, const SceneInfo&);
+
+/// A recording of boxes while it is written; see RecordingWriter.
+class BoxRecordingFile {
+ public:
+  virtual ~BoxRecordingFile() = default;
+
+  virtual void write(std::span<const Aabb> boxes) = 0;
+  virtual std::string finish() = 0;
+  virtual std::unique_ptr<Recording> finishTemporary() = 0;
+};
+
+/// A .broadmark recording; `path` may be empty: then it is a temporary one.
+std::unique_ptr<BoxRecordingFile> makeRecording2File(const std::filesystem::path& path,
+                                                     const SceneInfo&, const RecordingOrigin&);
+
+/// Throws std::logic_error unless as many sets as the scene has frames were written.
+void requireWhole(std::uint64_t sets, const SceneInfo&, const std::string& name);
+/// Throws std::logic_error unless a set has as many bodies as the scene.
+void requireBodies(std::size_t bodies, const SceneInfo&, const std::string& name);
+
+/// A recording laid out as the original's while it is written.
 class RecordingFile {
  public:
   /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
+  /// Without a path: to an unnamed file.
   RecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
-  /// Writes to an unnamed file in the temporary directory instead.
-  explicit RecordingFile(const SceneInfo& scene);
-  RecordingFile(const RecordingFile&) = delete;  // a set on its way refers to this
-  RecordingFile& operator=(const RecordingFile&) = delete;
 
   /// Appends a set. Throws InputError when one of its records is broken, and then it is not
   /// written, or when the disc was full, at the latest in finish().
@@ -107,19 +165,17 @@ class RecordingFile {
   template <class Record>
   void append(std::span<const Record> records, std::string_view what,
               std::span<const std::byte> bytes) {
-    requireSize(bytes.size());
+    requireBodies(bytes.size() / kRecordBytes, scene_, name());
     filling_.resize(bytes.size());
     // In pieces, so that what was checked is still in the cache when it is copied.
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
-      requireSound(piece, sets_, scene_, name_, what, first);
+      requireSound(piece, sets_, scene_, name(), what, first);
       std::ranges::copy(bytes.subspan(first * kRecordBytes, piece.size() * kRecordBytes),
                         filling_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
     }
-    settle();
-    std::swap(filling_, handed_);
-    writeHanded();
+    file_->append(filling_);
     ++sets_;
   }
 
@@ -127,26 +183,13 @@ class RecordingFile {
   std::string finish();
   /// Hands over the unnamed file, once all sets are written.
   FileDescriptor finishTemporary();
-  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& name() const { return file_->name(); }
 
  private:
-  void requireSize(std::size_t bytes) const;
-  void requireWhole() const;
-  /// Writes the set in `handed_`, perhaps later.
-  void writeHanded();
-  /// Waits until that is done. Throws InputError when that failed.
-  void settle();
-  void write(std::span<const std::byte> bytes);
-
   SceneInfo scene_;
-  std::string name_;
-  std::unique_ptr<AtomicFile> named_;
-  FileDescriptor unnamed_;
-  Hasher hasher_;
+  std::unique_ptr<GrowingFile> file_;
   std::uint64_t sets_ = 0;
   std::vector<std::byte> filling_;  ///< the set that is being appended
-  std::vector<std::byte> handed_;   ///< the last one, perhaps being written
-  std::future<void> writing_;       ///< last: its thread uses all of the above
 };
 
 }  // namespace broadmark

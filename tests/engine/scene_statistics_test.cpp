@@ -104,7 +104,7 @@ TEST(RangeStatistics, MeansMediansAndExtremes) {
 
 /// Two unit boxes that touch in the initial pose; in each frame the second moves on by 1, except in
 /// the frames from `rest` on.
-std::unique_ptr<RecordingReader> leavingPair(std::uint32_t frames, std::uint32_t rest) {
+std::unique_ptr<Recording> leavingPair(std::uint32_t frames, std::uint32_t rest) {
   RecordingWriter writer(smallScene(2, frames));
   for (std::uint32_t f = 0; f <= frames; ++f) {
     const auto moves = static_cast<float>(std::min(f, rest - 1));

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 std::vector<Aabb> copyOf(const Frame& frame) { return {frame.boxes.begin(), frame.boxes.end()}; }
 
-std::unique_ptr<RecordingReader> recorded(FrameSource& source) {
+std::unique_ptr<Recording> recorded(FrameSource& source) {
   RecordingWriter writer(source.scene());
   recordAll(source, writer);
   return writer.finishTemporary();

@@ -10,6 +10,14 @@
 
 namespace broadmark {
 
+/// 128 bits that stand for some bytes.
+struct HashValue {
+  std::uint64_t low = 0;
+  std::uint64_t high = 0;
+
+  friend auto operator<=>(const HashValue&, const HashValue&) = default;
+};
+
 /// XXH3-128, fed piece by piece.
 class Hasher {
  public:
@@ -19,20 +27,16 @@ class Hasher {
   Hasher& operator=(Hasher&&) noexcept;
 
   void add(std::span<const std::byte> bytes);
-  /// Of all bytes so far: 32 hex digits.
+  /// Forgets all bytes.
+  void restart();
+  /// Of all bytes so far.
+  [[nodiscard]] HashValue value() const;
+  /// The same as 32 hex digits.
   [[nodiscard]] std::string hex() const;
 
  private:
   struct State;
   std::unique_ptr<State> state_;
-};
-
-/// 128 bits that stand for some bytes.
-struct HashValue {
-  std::uint64_t low = 0;
-  std::uint64_t high = 0;
-
-  friend auto operator<=>(const HashValue&, const HashValue&) = default;
 };
 
 /// XXH3-128 of the bytes.

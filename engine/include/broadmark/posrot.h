@@ -16,6 +16,8 @@
 
 namespace broadmark {
 
+class RecordingFile;  // a recording laid out as the original's while it is written
+
 /// How far the squared length of a recorded quaternion may be from 1.
 inline constexpr float kRotationTolerance = 1e-3F;
 
@@ -27,7 +29,7 @@ inline constexpr float kRotationTolerance = 1e-3F;
 /// rounding of a whole number of thousandths is taken to be that number. So bodies of usual sizes
 /// get exactly the boxes they had in the simulation; others differ by a few units in the last
 /// place.
-class PosrotReader final : public Recording, public PoseSource {
+class PosrotReader final : public OriginalRecording, public PoseSource {
  public:
   explicit PosrotReader(const std::filesystem::path& path);
   /// The same from an open descriptor, which this takes over; `name` stands for it in messages.

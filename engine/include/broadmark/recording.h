@@ -1,8 +1,10 @@
-// Recordings: reading and writing, byte for byte as the original Broadmark's.
+// Recordings: reading and writing.
 //
-// Little-endian: name char[128], object type char[128] (NUL-padded printable ASCII), int32 objects,
-// int32 frames, int32 0, int32 0, the world box, then 1 + frames sets of 32 bytes per body. In an
-// .aabbs recording all sets are boxes; .posrot recordings are in posrot.h.
+// Those of the original Broadmark, byte for byte. Little-endian: name char[128], object type
+// char[128] (NUL-padded printable ASCII), int32 objects, int32 frames, int32 0, int32 0, the world
+// box, then 1 + frames sets of 32 bytes per body. In an .aabbs recording all sets are boxes;
+// .posrot recordings are in posrot.h. What these cannot hold, absent bodies and a collision filter,
+// a .broadmark recording can: recording2.h.
 #pragma once
 
 #include <cstddef>
@@ -23,13 +25,35 @@ namespace broadmark {
 inline constexpr std::size_t kRecordingHeaderBytes = 304;
 inline constexpr std::string_view kAabbsExtension = ".aabbs";
 inline constexpr std::string_view kPosrotExtension = ".posrot";
+inline constexpr std::string_view kBroadmarkExtension = ".broadmark";
 
-/// Size of a whole recording of either kind: 304 + 32·objects·(1 + frames); the largest uint64 if
-/// that is larger.
+/// Of all kinds of recordings, for help and messages.
+std::vector<std::string_view> recordingExtensions();
+/// Of those that hold boxes: what a RecordingWriter writes.
+std::vector<std::string_view> boxRecordingExtensions();
+
+/// Whether an .aabbs recording can hold the scene: nobody is ever absent, and all pairs are wanted.
+bool fitsAabbs(const SceneInfo&);
+/// Of the recording that a scene gets where nobody asks for another: .aabbs if that can hold it,
+/// else .broadmark.
+std::string_view recordingExtension(const SceneInfo&);
+
+/// Size of a whole .aabbs or .posrot recording: 304 + 32·objects·(1 + frames); the largest uint64
+/// if that is larger. A .broadmark recording is smaller, but for its header.
 std::uint64_t recordingBytes(const SceneInfo&);
 
 /// "FreeFall Cubes N1000 F1000frames.aabbs"
-std::string recordingFileName(const SceneInfo&, std::string_view extension = kAabbsExtension);
+std::string recordingFileName(const SceneInfo&, std::string_view extension);
+/// The same with recordingExtension().
+std::string recordingFileName(const SceneInfo&);
+
+/// What a recording can say of where it comes from. Only .broadmark recordings can.
+struct RecordingOrigin {
+  std::string source;            ///< what it was made from, if that was a file
+  std::string scene_parameters;  ///< a JSON object, as in the sidecar of a baked one; "": unknown
+
+  friend bool operator==(const RecordingOrigin&, const RecordingOrigin&) = default;
+};
 
 /// A recording of any kind and length, read with the memory of one frame. Every frame is checked as
 /// it is read. All errors are InputErrors that name the file and the byte offset, or frame and
@@ -44,25 +68,42 @@ class Recording : public IndexedFrames {
   /// The path, or what stands for it in messages.
   [[nodiscard]] const std::string& name() const final { return name_; }
 
+  [[nodiscard]] virtual const RecordingOrigin& origin() const;
+
+  /// Of the whole file.
+  [[nodiscard]] std::uint64_t bytes() const { return size_; }
+
  protected:
-  /// Checks the header and the length of an open file.
   Recording(FileDescriptor file, std::string name);
 
-  /// Reads set `index`, which holds `bytes.size()` bytes.
-  void readSet(std::uint32_t index, std::span<std::byte> bytes) const;
+  /// To be called once: what the header says.
+  void setScene(SceneInfo scene) { scene_ = std::move(scene); }
+  /// Reads exactly `bytes.size()` bytes.
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:
   std::string name_;
   FileDescriptor file_;
+  std::uint64_t size_ = 0;
   SceneInfo scene_;
   std::string hash_;
+};
+
+/// A recording laid out as the original's: .aabbs or .posrot.
+class OriginalRecording : public Recording {
+ protected:
+  /// Checks the header and the length of an open file.
+  OriginalRecording(FileDescriptor file, std::string name);
+
+  /// Reads set `index`, which holds `bytes.size()` bytes.
+  void readSet(std::uint32_t index, std::span<std::byte> bytes) const;
 };
 
 /// Opens a recording of the kind that the path's extension names; without one of ours, .aabbs.
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path);
 
 /// Reads an .aabbs recording.
-class RecordingReader final : public Recording {
+class RecordingReader final : public OriginalRecording {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
   /// The same from an open descriptor, which this takes over; `name` stands for it in messages.
@@ -74,30 +115,34 @@ class RecordingReader final : public Recording {
   std::vector<Aabb> boxes_;
 };
 
-class RecordingFile;  // shared by the writers of all kinds of recordings
+class BoxRecordingFile;  // a recording of some kind while it is written
 
-/// Writes an .aabbs recording, frame by frame, to a temporary neighbour of `path` that takes its
+/// Writes a recording of boxes, frame by frame, to a temporary neighbour of `path` that takes its
 /// name only in finish(): a writer that is destroyed or killed before leaves nothing that looks
-/// whole.
+/// whole. The path's extension names the kind; without one of ours it is .aabbs.
 class RecordingWriter {
  public:
-  /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
-  RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene);
-  /// Writes to an unnamed file in the temporary directory instead; see finishTemporary().
+  /// Throws InputError if the scene cannot be recorded (names, counts, or .aabbs cannot hold it) or
+  /// the path not be written.
+  RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
+                  const RecordingOrigin& origin = {});
+  /// Writes to an unnamed file in the temporary directory instead, of the kind that
+  /// recordingExtension() names; see finishTemporary().
   explicit RecordingWriter(const SceneInfo& scene);
   ~RecordingWriter();
 
   /// Appends one set of boxes; the first is the initial pose. Throws InputError when a box is not
-  /// finite or inverted (a simulation that blew up), or the disc is full.
+  /// finite or inverted (a simulation that blew up) and not that of a body that may be absent, or
+  /// the disc is full.
   void write(std::span<const Aabb> boxes);
   /// Completes the recording and gives it its name. Exactly 1 + frames sets must be written.
   /// Returns the recording's hash, as Recording::hash().
   std::string finish();
   /// The same for an unnamed recording: a reader of it. It vanishes with the reader.
-  std::unique_ptr<RecordingReader> finishTemporary();
+  std::unique_ptr<Recording> finishTemporary();
 
  private:
-  std::unique_ptr<RecordingFile> file_;
+  std::unique_ptr<BoxRecordingFile> file_;
 };
 
 /// Told after each frame; returning false stops.
