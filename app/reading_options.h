@@ -24,7 +24,8 @@ struct ReadingOptions : Parametrised {
            "collision detection takes them",
            &swept});
     visit({"elements", "of meshes: what gets a box", &elements});
-    visit({"keep", "of meshes: pairs that are wanted, too: of elements that share a vertex", &keep});
+    visit(
+        {"keep", "of meshes: pairs that are wanted, too: of elements that share a vertex", &keep});
     visit({"radius", "of particles; 0: as the file says", &radius, 0, kMostRadius});
     visit({"frame_rate", "of animations: frames a second", &frame_rate, 1e-6, kMostRate});
   }
@@ -35,5 +36,8 @@ struct ReadingOptions : Parametrised {
     return changedValues(parameterValues(*this), fresh);
   }
 };
+
+/// "--frame-rate"
+std::string readingOption(std::string parameter);
 
 }  // namespace broadmark

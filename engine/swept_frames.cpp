@@ -33,6 +33,10 @@ Aabb sweptBox(const Aabb& before, const Aabb& now) {
   return box;
 }
 
+std::string sweptName(const SceneInfo& scene) {
+  return scene.name.substr(0, kLongestName - kSweptSuffix.size()).append(kSweptSuffix);
+}
+
 std::string sweptHash(const std::string& hash) {
   Hasher hasher;
   hasher.add(std::as_bytes(std::span(std::string_view("swept "))));
@@ -42,8 +46,7 @@ std::string sweptHash(const std::string& hash) {
 
 SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames)
     : frames_(std::move(frames)), scene_(frames_->scene()), boxes_(scene_.objects) {
-  constexpr std::string_view kSuffix = " swept";
-  scene_.name = scene_.name.substr(0, kLongestName - kSuffix.size()).append(kSuffix);
+  scene_.name = sweptName(scene_);
 }
 
 std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {

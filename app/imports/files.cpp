@@ -16,35 +16,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> matches(const std::string& pattern) {
+std::vector<fs::path> filesLike(const std::string& pattern) {
   glob_t found{};
-  std::vector<std::string> paths;
+  std::vector<fs::path> files;
   if (::glob(pattern.c_str(), 0, nullptr, &found) == 0) {
-    paths.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
   }
   ::globfree(&found);
-  return paths;
+  return files;
 }
 
-/// In a folder.
-std::vector<std::string> filesIn(const std::string& folder,
-                                 const std::vector<std::string>& extensions) {
-  std::vector<std::string> paths;
+std::vector<fs::path> filesIn(const std::string& folder,
+                              const std::vector<std::string>& extensions) {
+  std::vector<fs::path> files;
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(folder, failed)) {
-    if (hasExtension(entry.path(), extensions)) paths.push_back(entry.path().string());
+    if (hasExtension(entry.path(), extensions)) files.push_back(entry.path());
   }
   if (failed) throw InputError(fmt::format("{}: cannot read: {}", folder, failed.message()));
-  return paths;
+  return files;
 }
 
 }  // namespace
-
-bool isSequence(const std::string& name) {
-  std::error_code ignored;
-  if (fs::is_directory(name, ignored)) return true;
-  return name.find_first_of("*?[") != std::string::npos && !fs::exists(name, ignored);
-}
 
 bool hasExtension(const fs::path& path, const std::vector<std::string>& extensions) {
   std::string extension = path.extension().string();
@@ -53,22 +46,31 @@ bool hasExtension(const fs::path& path, const std::vector<std::string>& extensio
   return std::ranges::find(extensions, extension) != extensions.end();
 }
 
+std::vector<fs::path> filesNamed(const std::string& name,
+                                 const std::vector<std::string>& extensions) {
+  std::error_code ignored;
+  if (fs::is_directory(name, ignored)) return filesIn(name, extensions);
+  if (name.find_first_of("*?[") != std::string::npos && !fs::exists(name, ignored)) {
+    return filesLike(name);
+  }
+  return {name};
+}
+
 std::vector<fs::path> filesOf(const std::vector<std::string>& names,
                               const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
   for (const std::string& name : names) {
-    if (!isSequence(name)) {
-      files.emplace_back(name);
-      continue;
+    const auto named = filesNamed(name, extensions);
+    if (named.empty()) {
+      throw InputError(
+          fmt::format("{}: stands for no file; expected: {}", name, fmt::join(extensions, ", ")));
     }
-    const bool folder = fs::is_directory(name);
-    const auto found = folder ? filesIn(name, extensions) : matches(name);
-    if (found.empty()) {
-      throw InputError(folder ? fmt::format("{}: a folder without a file that can be imported ({})",
-                                            name, fmt::join(extensions, ", "))
-                              : fmt::format("{}: no file fits this pattern", name));
-    }
-    files.insert(files.end(), found.begin(), found.end());
+    files.insert(files.end(), named.begin(), named.end());
+  }
+  for (const fs::path& file : files) {
+    if (hasExtension(file, extensions)) continue;
+    throw InputError(fmt::format("{}: another kind of file than the first: {} is expected",
+                                 file.string(), fmt::join(extensions, ", ")));
   }
   // As versions are compared: numbers by their value.
   std::ranges::stable_sort(files, [](const fs::path& a, const fs::path& b) {

@@ -7,11 +7,14 @@
 
 namespace broadmark::imports {
 
-/// Whether a name stands for several files: a folder, or a pattern with '*', '?' or '[' in it.
-bool isSequence(const std::string& name);
+/// The files that a name stands for: itself; of a folder those with one of the `extensions`; or
+/// those that fit, if it is a pattern with '*', '?' or '[' in it. In no order. Throws InputError
+/// when a folder cannot be read.
+std::vector<std::filesystem::path> filesNamed(const std::string& name,
+                                              const std::vector<std::string>& extensions);
 
-/// The files that names stand for, in natural order: frame10 after frame9. Of a folder those with
-/// one of the `extensions`. Throws InputError when a name stands for none.
+/// All files that these names stand for, in natural order: frame10 after frame9. Throws InputError
+/// when a name stands for none, or for a file without one of the `extensions`.
 std::vector<std::filesystem::path> filesOf(const std::vector<std::string>& names,
                                            const std::vector<std::string>& extensions);
 

@@ -89,8 +89,7 @@ bool LineReader::next() {
 
 void LineReader::require(std::string_view expected) {
   if (next()) return;
-  throw InputError(
-      fmt::format("{}: ends after line {}: {} is expected", path_, number_, expected));
+  throw InputError(fmt::format("{}: ends after line {}: {} is expected", path_, number_, expected));
 }
 
 LineReader::Place LineReader::place() const {
@@ -106,8 +105,8 @@ void LineReader::seek(Place place) {
   again_ = false;
 }
 
-void LineReader::fail(std::string_view what) const {
-  throw InputError(fmt::format("{}: line {}: {}", path_, number_, what));
+void LineReader::fail(std::uint64_t line, std::string_view what) const {
+  throw InputError(fmt::format("{}: line {}: {}", path_, line, what));
 }
 
 double LineReader::realNumber(std::string_view text, std::string_view what) const {

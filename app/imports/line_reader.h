@@ -37,7 +37,9 @@ class LineReader {
   void seek(Place place);
 
   /// Throws InputError about the present line.
-  [[noreturn]] void fail(std::string_view what) const;
+  [[noreturn]] void fail(std::string_view what) const { fail(number_, what); }
+  /// The same about another one.
+  [[noreturn]] void fail(std::uint64_t line, std::string_view what) const;
 
   /// The number that `text` is. Throws InputError; `what` stands for it.
   [[nodiscard]] double realNumber(std::string_view text, std::string_view what) const;
@@ -49,9 +51,9 @@ class LineReader {
   std::string path_;
   FileDescriptor file_;
   std::string buffer_;
-  std::size_t used_ = 0;                ///< of the buffer
-  std::uint64_t buffer_offset_ = 0;     ///< in the file
-  std::uint64_t begin_ = 0;             ///< of the present line, in the file
+  std::size_t used_ = 0;             ///< of the buffer
+  std::uint64_t buffer_offset_ = 0;  ///< in the file
+  std::uint64_t begin_ = 0;          ///< of the present line, in the file
   std::string line_;
   std::uint64_t number_ = 0;
   bool again_ = false;

@@ -72,15 +72,17 @@ void TextFrames::add(const LineReader& lines, FramePlace place) {
   std::uint64_t left_out = 0;
   if (frame_.number && last_number_) {
     if (*frame_.number <= *last_number_) {
-      lines.fail(fmt::format("frame {} after frame {}: frames must stand in their order",
+      lines.fail(frame_.rows.front().line,
+                 fmt::format("frame {} after frame {}: frames must stand in their order",
                              *frame_.number, *last_number_));
     }
-    left_out = static_cast<std::uint64_t>(*frame_.number) -
-               static_cast<std::uint64_t>(*last_number_) - 1;
+    left_out =
+        static_cast<std::uint64_t>(*frame_.number) - static_cast<std::uint64_t>(*last_number_) - 1;
   }
   last_number_ = frame_.number;
   if (left_out >= kMostFrames || places_.size() + left_out > kMostFrames) {
-    lines.fail(fmt::format("more than {} frames", kMostFrames));
+    lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
+               fmt::format("more than {} frames", kMostFrames));
   }
   if (left_out > 0) scene_.all_present = false;
   places_.resize(places_.size() + left_out, FramePlace{.empty = true});
@@ -94,8 +96,8 @@ void TextFrames::count(const LineReader& lines) {
   }
   const auto twin = std::ranges::adjacent_find(rows, {}, &TextRow::id);
   if (twin != rows.end()) {
-    lines.fail(fmt::format("in the frame that ends here {} stands twice, in line {} and line {}",
-                           twin->id, twin->line, std::next(twin)->line));
+    lines.fail(std::next(twin)->line,
+               fmt::format("{} is already in this frame, in line {}", twin->id, twin->line));
   }
   for (const TextRow& row : rows) scene_.world = merged(scene_.world, row.box);
   const auto same_id = [](const TextRow& row, std::int64_t id) { return row.id == id; };
@@ -105,7 +107,8 @@ void TextFrames::count(const LineReader& lines) {
   std::vector<std::int64_t> here;
   for (const TextRow& row : rows) here.push_back(row.id);
   std::ranges::set_union(ids_, here, std::back_inserter(all));
-  if (all.size() > std::numeric_limits<std::int32_t>::max()) lines.fail("more bodies than 2^31 - 1");
+  if (all.size() > std::numeric_limits<std::int32_t>::max())
+    lines.fail("more bodies than 2^31 - 1");
   ids_ = std::move(all);
 }
 

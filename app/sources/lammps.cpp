@@ -22,7 +22,7 @@ struct Head {
   std::int64_t atoms = -1;  ///< -1: not stated
   std::array<double, 3> low{};
   std::array<double, 3> high{};
-  bool bounds = false;  ///< low and high are stated
+  bool bounds = false;   ///< low and high are stated
   bool slanted = false;  ///< the box is no cuboid
 };
 
@@ -69,12 +69,12 @@ Columns columnsOf(const LineReader& lines, const std::vector<std::string_view>& 
 
 void readBounds(LineReader& lines, Head& head) {
   std::vector<std::string_view> words;
-  splitWords(lines.line(), words);
+  imports::splitWords(lines.line(), words);
   head.slanted = std::ranges::find(words, "xy") != words.end();
   head.bounds = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lines.require("the bounds of the box");
-    splitWords(lines.line(), words);
+    imports::splitWords(lines.line(), words);
     if (words.size() < 2) lines.fail("two bounds of the box are expected");
     head.low[axis] = lines.realNumber(words[0], "a bound of the box");
     head.high[axis] = lines.realNumber(words[1], "a bound of the box");
@@ -138,7 +138,7 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
   if (!readHead(lines, head)) return false;
   std::vector<std::string_view> words;
   const std::string names(lines.line().substr(kItem.size()));
-  splitWords(names, words);
+  imports::splitWords(names, words);
   words.erase(words.begin());
   const Columns columns = columnsOf(lines, words);
   if (columns.scaled && (!head.bounds || head.slanted)) {
@@ -146,7 +146,7 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
   }
   for (std::int64_t i = 0; i < head.atoms; ++i) {
     lines.require(fmt::format("atom {} of {}", i + 1, head.atoms));
-    splitWords(lines.line(), words);
+    imports::splitWords(lines.line(), words);
     if (words.size() < columns.count) {
       lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
     }

@@ -70,14 +70,14 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
     if (!lines.next()) return false;
   } while (lines.line().find_first_not_of(" \t") == std::string_view::npos);
   std::vector<std::string_view> words;
-  splitWords(lines.line(), words);
+  imports::splitWords(lines.line(), words);
   const std::int64_t count = lines.integer(words.front(), "the number of particles");
   if (count < 0) lines.fail("a negative number of particles");
   lines.require("a comment");
   const Columns columns = columnsOf(lines);
   for (std::int64_t id = 0; id < count; ++id) {
     lines.require(fmt::format("particle {} of {}", id + 1, count));
-    splitWords(lines.line(), words);
+    imports::splitWords(lines.line(), words);
     if (words.size() < columns.fewest) {
       lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.fewest));
     }
@@ -86,8 +86,7 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
       centre[axis] = lines.realNumber(words[columns.position + axis], "a coordinate");
     }
     const double size = radiusIn(lines, words, columns, radius);
-    frame.rows.push_back(
-        {.id = id, .box = ballBox(lines, centre, size), .line = lines.number()});
+    frame.rows.push_back({.id = id, .box = ballBox(lines, centre, size), .line = lines.number()});
   }
   return true;
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -17,6 +18,11 @@ namespace broadmark {
 /// then.
 Aabb sweptBox(const Aabb& before, const Aabb& now);
 
+/// At the end of a scene's name: its boxes are swept.
+inline constexpr std::string_view kSweptSuffix = " swept";
+/// What a scene is called with swept boxes: "FreeFall swept".
+std::string sweptName(const SceneInfo&);
+
 /// The hash of a recording's swept boxes, of which the recording's own is `hash`.
 std::string sweptHash(const std::string& hash);
 
@@ -26,7 +32,6 @@ class SweptFrames final : public IndexedFrames {
  public:
   explicit SweptFrames(std::unique_ptr<IndexedFrames> frames);
 
-  /// " swept" is added to the name.
   [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
   [[nodiscard]] const std::string& name() const override { return frames_->name(); }
 
