@@ -57,15 +57,19 @@ void TextFrames::scan(std::size_t file) {
   const std::size_t before = places_.size();
   while (true) {
     const FramePlace place{.file = file, .place = lines.place()};
-    frame_.number.reset();
-    frame_.rows.clear();
-    if (!format_(lines, frame_)) break;
+    if (!readNext(lines)) break;
     add(lines, place);
     count(lines);
   }
   if (places_.size() == before) {
     throw InputError(fmt::format("{}: holds no frame", files_[file].string()));
   }
+}
+
+bool TextFrames::readNext(LineReader& lines) {
+  frame_.number.reset();
+  frame_.rows.clear();
+  return format_(lines, frame_);
 }
 
 void TextFrames::add(const LineReader& lines, FramePlace place) {
@@ -124,8 +128,7 @@ std::span<const Aabb> TextFrames::readBoxes(std::uint32_t index) {
   if (at.empty) return boxes_;
   LineReader& lines = reader(at.file);
   lines.seek(at.place);
-  frame_.rows.clear();
-  if (!format_(lines, frame_)) lines.fail("the file has changed: its frames are no longer there");
+  if (!readNext(lines)) lines.fail("the file has changed: its frames are no longer there");
   for (const TextRow& row : frame_.rows) {
     const auto body = std::ranges::lower_bound(ids_, row.id);
     if (body == ids_.end() || *body != row.id) lines.fail("the file has changed: a new id");

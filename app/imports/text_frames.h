@@ -52,6 +52,8 @@ class TextFrames final : public IndexedFrames {
 
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
   void scan(std::size_t file);
+  /// Into frame_; false at the end of the file.
+  bool readNext(LineReader& reader);
   void add(const LineReader& reader, FramePlace place);
   /// Takes note of who is there.
   void count(const LineReader& reader);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "imports/element_frames.h"
+#include "parts.h"
 #include "sources/source.h"
 
 namespace broadmark::sources::meshes {
@@ -17,8 +18,11 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
 }  // namespace
 
 SourceKind kind() {
-  return {.what = fmt::format("meshes ({}), also as animations",
-                              fmt::join(imports::meshExtensions(), ", ")),
+  // Where assimp is left out, a file that it would read is known, to say so.
+  const std::string shown = parts::kAssimp.included
+                                ? fmt::format("{}", fmt::join(imports::meshExtensions(), ", "))
+                                : ".obj";
+  return {.what = fmt::format("meshes and animations ({})", shown),
           .import = FileImport{.extensions = imports::meshExtensions(),
                                .options = {"elements", "keep", "frame_rate"},
                                .open = open}};
