@@ -45,11 +45,9 @@ std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
 
 }  // namespace
 
-void requireExportable(const fs::path& file, const fs::path& original) {
-  if (file.extension() != kAabbsExtension) {
-    throw InputError(fmt::format("cannot export to {}: its name must end in {}", file.string(),
-                                 kAabbsExtension));
-  }
+void requireExportable(const fs::path& file, const fs::path& original, const SceneInfo& scene) {
+  requireRecordingName(file);
+  requireHolds(file, scene);
   if (!original.empty() && fs::weakly_canonical(file) == fs::weakly_canonical(original)) {
     throw InputError(fmt::format("cannot export to {}: it is the recording itself", file.string()));
   }
@@ -80,7 +78,7 @@ int runExportCase(Plan plan, const SessionOptions& options) {
     throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
                                  options.case_id, statusName(entry.known->status)));
   }
-  requireExportable(options.export_case, entry.source.reference.path);
+  requireExportable(options.export_case, entry.source.reference.path, entry.source.reference.scene);
   const InterruptGuard guard;
   const auto recording = openRecording(entry.source, {}, {}, options.quiet);
   if (!recording) throw Interrupted();

@@ -11,9 +11,10 @@ namespace broadmark {
 struct Plan;
 struct SessionOptions;
 
-/// Throws InputError when no recording can be written to `file`, or when it is `original` (which
+/// Throws InputError when no recording of the scene can be written to `file`, or when it is `original` (which
 /// may be ""): to fail before a long search rather than after it.
-void requireExportable(const std::filesystem::path& file, const std::filesystem::path& original);
+void requireExportable(const std::filesystem::path& file, const std::filesystem::path& original,
+                       const SceneInfo& scene);
 
 /// The command that runs a case on a recording and checks it, for a shell:
 /// "broadmark --headless 'FreeFall case.aabbs' --algorithm sap-mt --threads 2 --check full".

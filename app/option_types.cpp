@@ -196,14 +196,13 @@ CLI::Option* addQuiet(CLI::App& app, bool& quiet) {
 }
 
 CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
-  const std::vector<std::string> known = recorderIds();
-  recorders = {known.front()};
   const auto set = [&](const std::vector<std::string>& names) {
     recorders = parseRecorders(names);
   };
   return addList(app, "--recorder", "KIND[,KIND...]", set,
-                 fmt::format("kinds of recordings to keep: {} (default: {})",
-                             fmt::join(known, ", "), known.front()));
+                 fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
+                             "scene, else {})",
+                             fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
 }
 
 std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& options) {

@@ -3,6 +3,7 @@
 #include "recordings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -91,7 +92,8 @@ void requireHash(const std::string& what, const std::string& hash, const std::st
 
 std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo& scene,
                                      const ParameterValues& swept,
-                                     const std::vector<std::string>& recorders) {
+                                     std::vector<std::string> recorders) {
+  if (recorders.empty()) recorders.emplace_back(recordingExtension(scene).substr(1));
   std::vector<fs::path> paths;
   const std::vector<RecorderListing> listings = builtinRecorders();
   for (const std::string& id : recorders) {
@@ -100,6 +102,17 @@ std::vector<fs::path> recordingPaths(const fs::path& directory, const SceneInfo&
                     recordingFileName(scene, fmt::format("{}.{}", sweptText(swept), id)));
   }
   return paths;
+}
+
+void requireRecordingName(const fs::path& path) {
+  const std::vector<std::string> extensions = boxRecordingExtensions();
+  if (std::ranges::find(extensions, path.extension().string()) != extensions.end()) return;
+  throw InputError(fmt::format("{}: cannot be written: the name of a recording ends in {}",
+                               path.string(), fmt::join(extensions, " or ")));
+}
+
+std::string recordingKindsText() {
+  return fmt::format("recordings ({})", fmt::join(recordingExtensions(), ", "));
 }
 
 void makeDirectory(const fs::path& directory) {

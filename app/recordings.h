@@ -13,10 +13,11 @@ namespace broadmark {
 
 /// Where recordings by these recorders lie below a directory, laid out as the original's:
 /// "DIRECTORY/Recordings_AABBs/FreeFall Cubes N1000 F1000frames.aabbs", …. Those of a sweep also
-/// have the `swept` parameters in their names.
+/// have the `swept` parameters in their names. Without recorders: the one of the kind that
+/// recordingExtension() names.
 std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& directory,
                                                   const SceneInfo&, const ParameterValues& swept,
-                                                  const std::vector<std::string>& recorders);
+                                                  std::vector<std::string> recorders);
 
 /// Opens a source's recording and fills in its hash. A simulation is recorded first: below
 /// `directory`, once by each of `recorders`, of which the first is opened; or, if that is empty,
@@ -27,6 +28,12 @@ std::unique_ptr<IndexedFrames> openRecording(Source&, const std::filesystem::pat
 
 /// Throws InputError, naming `what`, unless `hash` is that of the recording a case ran on.
 void requireHash(const std::string& what, const std::string& hash, const std::string& expected);
+
+/// Throws InputError unless the name ends like that of a recording of boxes.
+void requireRecordingName(const std::filesystem::path&);
+
+/// "recordings (.aabbs, …)", for help.
+std::string recordingKindsText();
 
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);

@@ -15,7 +15,8 @@ struct SceneOptions {
   /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name. A
   /// text may hold several values (sweep.h).
   ParameterValues parameters;
-  std::vector<std::string> recorders;  ///< kinds of recordings to keep; the first is run on
+  /// Kinds of recordings to keep; the first is run on. Empty: recordingExtension() of the scene.
+  std::vector<std::string> recorders;
 };
 
 }  // namespace broadmark

@@ -36,10 +36,7 @@ class AabbsFile final : public BoxRecordingFile {
 
 std::unique_ptr<BoxRecordingFile> makeAabbsFile(const std::filesystem::path& path,
                                                 const SceneInfo& scene, const RecordingOrigin&) {
-  if (fitsAabbs(scene)) return std::make_unique<AabbsFile>(path, scene);
-  throw InputError(fmt::format(
-      "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
-      path.string(), kAabbsExtension, kBroadmarkExtension));
+  return std::make_unique<AabbsFile>(path, scene);
 }
 
 template <class Reader>
@@ -78,16 +75,16 @@ std::uint64_t recordingBytes(const SceneInfo& scene) {
   return kRecordingHeaderBytes + kRecordBytes * boxes;
 }
 
-std::vector<std::string_view> recordingExtensions() {
-  std::vector<std::string_view> all;
-  for (const Kind& kind : kKinds) all.push_back(kind.extension);
+std::vector<std::string> recordingExtensions() {
+  std::vector<std::string> all;
+  for (const Kind& kind : kKinds) all.emplace_back(kind.extension);
   return all;
 }
 
-std::vector<std::string_view> boxRecordingExtensions() {
-  std::vector<std::string_view> all;
+std::vector<std::string> boxRecordingExtensions() {
+  std::vector<std::string> all;
   for (const Kind& kind : kKinds) {
-    if (kind.write != nullptr) all.push_back(kind.extension);
+    if (kind.write != nullptr) all.emplace_back(kind.extension);
   }
   return all;
 }
@@ -96,6 +93,19 @@ bool fitsAabbs(const SceneInfo& scene) { return scene.all_present && scene.filte
 
 std::string_view recordingExtension(const SceneInfo& scene) {
   return fitsAabbs(scene) ? kAabbsExtension : kBroadmarkExtension;
+}
+
+void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
+  const Kind& kind = kindOf(path.extension());
+  if (kind.write == nullptr) {
+    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
+                                 fmt::join(boxRecordingExtensions(), " or ")));
+  }
+  if (kind.extension == kAabbsExtension && !fitsAabbs(scene)) {
+    throw InputError(fmt::format(
+        "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
+        path.string(), kAabbsExtension, kBroadmarkExtension));
+  }
 }
 
 std::string recordingFileName(const SceneInfo& scene) {
@@ -188,12 +198,8 @@ std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
                                  const RecordingOrigin& origin) {
-  const Kind& kind = kindOf(path.extension());
-  if (kind.write == nullptr) {
-    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
-                                 fmt::join(boxRecordingExtensions(), " or ")));
-  }
-  file_ = kind.write(path, scene, origin);
+  requireHolds(path, scene);
+  file_ = kindOf(path.extension()).write(path, scene, origin);
 }
 
 RecordingWriter::RecordingWriter(const SceneInfo& scene)

@@ -5,7 +5,9 @@
 #include "broadmark/recording2.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -15,6 +17,7 @@
 #include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
 #include "broadmark/json_fields.h"
+#include "packed_box.h"
 #include "recording_file.h"
 
 namespace broadmark {
@@ -35,9 +38,6 @@ struct End {
   HashValue hash;  ///< of the index, after all that comes before the first frame
   std::array<char, 8> magic = kMagic;
 };
-
-/// A box in the file: min x y z, max x y z.
-using PackedBox = std::array<float, 6>;
 
 constexpr std::uint64_t kAlignment = 32;
 static_assert(sizeof(Start) == 16 && sizeof(RecordedFrame) == kAlignment &&
@@ -68,14 +68,6 @@ struct Layout {
   }
 };
 
-PackedBox packed(const Aabb& box) {
-  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
-}
-
-Aabb unpacked(const PackedBox& box) {
-  return {{box[0], box[1], box[2], 0}, {box[3], box[4], box[5], 0}};
-}
-
 bool isRecordable(const Aabb& box, bool all_present) {
   return isSound(box) || (!all_present && box == kEmptyBox);
 }
@@ -96,12 +88,50 @@ void align(std::vector<std::byte>& bytes) { bytes.resize(aligned(bytes.size()));
 
 // The header. After the JSON come the numbers of each body that it announces, aligned.
 
-/// The numbers of bodies in a filter: visit(key, those of all bodies or none).
-template <class Filter, class Visit>
-void visitGroups(Filter&& filter, Visit&& visit) {
-  visit("layers", filter.layers());
-  visit("worlds", filter.worlds());
-  visit("tags", filter.tags());
+/// Numbers of bodies that a header may announce: bytes of each, where they are in a filter, and how
+/// a body gets its own.
+struct Group {
+  std::string_view key;
+  std::uint64_t bytes;
+  std::span<const std::byte> (*in)(const CollisionFilter&);
+  void (*put)(BodyGroups&, const std::byte*);
+};
+
+constexpr Group kGroups[] = {
+    {"layers", sizeof(BodyGroups::layer),
+     [](const CollisionFilter& filter) { return std::as_bytes(filter.layers()); },
+     [](BodyGroups& body, const std::byte* raw) {
+       std::memcpy(&body.layer, raw, sizeof body.layer);
+     }},
+    {"worlds", sizeof(BodyGroups::world),
+     [](const CollisionFilter& filter) { return std::as_bytes(filter.worlds()); },
+     [](BodyGroups& body, const std::byte* raw) {
+       std::memcpy(&body.world, raw, sizeof body.world);
+     }},
+    {"tags", sizeof(BodyGroups::tags),
+     [](const CollisionFilter& filter) { return std::as_bytes(filter.tags()); },
+     [](BodyGroups& body, const std::byte* raw) {
+       std::memcpy(&body.tags, raw, sizeof body.tags);
+     }},
+};
+
+/// Those that a header announces, in the order of the list above.
+std::vector<Group> groupsIn(const JsonFields& fields) {
+  std::vector<Group> groups;
+  const Json& keys = fields.array("groups");
+  for (const Group& group : kGroups) {
+    if (groups.size() < keys.size() && keys[groups.size()] == group.key) groups.push_back(group);
+  }
+  if (groups.size() == keys.size()) return groups;
+  throw InputError(
+      fmt::format("{}: some of 'layers', 'worlds', 'tags', in this order, are expected",
+                  fields.path("groups")));
+}
+
+std::uint64_t groupBytes(const JsonFields& fields, std::uint64_t objects) {
+  std::uint64_t sum = 0;
+  for (const Group& group : groupsIn(fields)) sum += aligned(group.bytes * objects);
+  return sum;
 }
 
 Json boxJson(const Aabb& box) {
@@ -131,9 +161,9 @@ std::vector<std::byte> headerBytes(const SceneInfo& scene, const RecordingOrigin
   json["all_present"] = scene.all_present;
   json["colliding_layers"] = matrixJson(scene.filter.matrix());
   Json& groups = json["groups"] = Json::array();
-  visitGroups(scene.filter, [&](const char* key, auto numbers) {
-    if (!numbers.empty()) groups.push_back(key);
-  });
+  for (const Group& group : kGroups) {
+    if (!group.in(scene.filter).empty()) groups.push_back(group.key);
+  }
   json["source"] = origin.source.empty() ? Json(nullptr) : Json(origin.source);
   json["scene_parameters"] = origin.scene_parameters.empty()
                                  ? Json(nullptr)
@@ -145,10 +175,10 @@ std::vector<std::byte> headerBytes(const SceneInfo& scene, const RecordingOrigin
   std::vector<std::byte> bytes;
   add(bytes, std::span(&start, 1));
   add(bytes, std::span<const char>(text));
-  visitGroups(scene.filter, [&](const char*, auto numbers) {
-    add(bytes, numbers);
+  for (const Group& group : kGroups) {
+    add(bytes, group.in(scene.filter));
     align(bytes);
-  });
+  }
   return bytes;
 }
 
@@ -170,7 +200,8 @@ Aabb worldIn(const JsonFields& fields) {
     right = number.is_number();
     if (right) numbers[i] = static_cast<float>(number.get<double>());
   }
-  const Aabb world = unpacked(numbers);
+  Aabb world;
+  BoxCorners(std::as_bytes(std::span(numbers)).data()).put(world);
   if (!right || !isSound(world)) {
     throw InputError(fmt::format(
         "{}: two corners of three finite numbers, min <= max, are expected", fields.path("world")));
@@ -191,6 +222,25 @@ LayerMatrix matrixIn(const JsonFields& fields) {
     matrix.set(layer(0), layer(1));
   }
   return matrix;
+}
+
+/// `raw` holds the numbers of all bodies, one group after the other.
+CollisionFilter filterIn(const JsonFields& fields, std::span<const std::byte> raw,
+                         std::uint32_t objects) {
+  const std::vector<Group> groups = groupsIn(fields);
+  std::vector<BodyGroups> bodies(groups.empty() ? 0 : objects);
+  for (const Group& group : groups) {
+    for (std::size_t i = 0; i < bodies.size(); ++i) group.put(bodies[i], &raw[group.bytes * i]);
+    raw = raw.subspan(aligned(group.bytes * objects));
+  }
+  const auto unknown = std::ranges::find_if(
+      bodies, [](const BodyGroups& body) { return body.layer >= LayerMatrix::kLayers; });
+  if (unknown != bodies.end()) {
+    throw InputError(fmt::format("{}: body {} is in layer {}: there are layers 0 to {}",
+                                 fields.name(), unknown - bodies.begin(), unknown->layer,
+                                 LayerMatrix::kLayers - 1));
+  }
+  return {bodies, matrixIn(fields)};
 }
 
 /// A text that may be null.
@@ -326,108 +376,89 @@ Recording2Reader::Recording2Reader(FileDescriptor file, std::string name)
   piece_.resize(aligned(sizeof(PackedBox) * std::min<std::uint64_t>(kPieceRows, boxes_.size())));
 }
 
+namespace {
+
+template <class... Arguments>
+[[noreturn]] void refuse(const std::string& name, fmt::format_string<Arguments...> text,
+                         Arguments&&... arguments) {
+  throw InputError(
+      fmt::format("{}: {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)));
+}
+
+}  // namespace
+
 void Recording2Reader::open() {
-  const auto refuse = [&](std::string what) { throw InputError(name() + ": " + std::move(what)); };
-  Start start;
-  End end;
-  if (bytes() < sizeof start + sizeof end) {
-    refuse(fmt::format("{} bytes is too short: a recording 2 has at least {}", bytes(),
-                       sizeof start + sizeof end));
+  constexpr std::uint64_t kLeast = sizeof(Start) + sizeof(End);
+  if (bytes() < kLeast) {
+    refuse(name(), "{} bytes is too short: a recording 2 has at least {}", bytes(), kLeast);
   }
+  Start start;
   read(0, std::as_writable_bytes(std::span(&start, 1)));
   if (start.magic != kMagic) {
-    refuse(fmt::format("byte 0: is not '{}': not a recording 2",
-                       std::string_view(kMagic.data(), kMagic.size())));
+    refuse(name(), "byte 0: is not '{}': not a recording 2", fmt::join(kMagic, ""));
   }
-  const std::uint64_t last = bytes() - sizeof end;
+  const std::uint64_t last = bytes() - sizeof(End);
+  End end;
   read(last, std::as_writable_bytes(std::span(&end, 1)));
   if (end.magic != kMagic) {
-    refuse(
-        fmt::format("byte {}: does not end as a recording 2: cut short, or not finished?", last));
+    refuse(name(), "byte {}: does not end as a recording 2: cut short, or not finished?", last);
   }
-  if (start.header_bytes > kMostHeaderBytes || start.header_bytes > last - sizeof start ||
+  if (start.header_bytes > std::min(kMostHeaderBytes, last - sizeof start) ||
       (sizeof start + start.header_bytes) % kAlignment != 0) {
-    refuse(
-        fmt::format("byte 8: a header of {} bytes is expected to end at a multiple of {} within "
-                    "the file of {} bytes",
-                    start.header_bytes, kAlignment, bytes()));
+    refuse(name(), "byte 8: a header of {} bytes cannot be: it ends at a multiple of {}",
+           start.header_bytes, kAlignment);
   }
-  std::string text(start.header_bytes, ' ');
-  read(sizeof start, std::as_writable_bytes(std::span(text)));
-  const Json json = parseJson(text, name() + ": header");
-  const JsonFields fields(json, name() + ": header");
+  hasher_.restart();
+  hasher_.add(std::as_bytes(std::span(&start, 1)));
+  const std::uint64_t frames_offset = readHeader(start.header_bytes, end.index_offset);
+  readIndex(end.index_offset);
+  if (hasher_.value() != end.hash) {
+    refuse(name(), "header or index: damaged: their checksum is another");
+  }
+  checkIndex(frames_offset, end.index_offset);
+}
+
+std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t index_offset) {
+  std::string text(size, ' ');
+  read(sizeof(Start), std::as_writable_bytes(std::span(text)));
+  hasher_.add(std::as_bytes(std::span(text)));
+  const std::string header = name() + ": header";
+  const Json json = parseJson(text, header);
+  const JsonFields fields(json, header);
   if (const std::string schema = fields.text("schema"); schema != kSchema) {
-    refuse(fmt::format("header: schema: '{}' is expected, not '{}'", kSchema, onOneLine(schema)));
+    refuse(header, "schema: '{}' is expected, not '{}'", kSchema, onOneLine(schema));
   }
   SceneInfo scene = sceneIn(fields);
   origin_ = originIn(fields);
 
-  hasher_.restart();
-  hasher_.add(std::as_bytes(std::span(&start, 1)));
-  hasher_.add(std::as_bytes(std::span(text)));
-
-  // The initial pose takes 24 bytes per body: a file that is long enough bounds all that follows.
-  std::uint64_t offset = sizeof start + start.header_bytes;
-  const std::uint64_t least = offset + sizeof(PackedBox) * std::uint64_t{scene.objects} +
-                              sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
-  if (least > last) {
-    refuse(fmt::format("{} bytes is too short for {} objects and {} frames", bytes(), scene.objects,
-                       scene.frames));
-  }
+  // The initial pose takes 24 bytes a body: the file's length bounds all that follows.
+  const std::uint64_t offset = sizeof(Start) + size;
+  const std::uint64_t last = bytes() - sizeof(End);
   const std::uint64_t index_bytes = sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
-  if (end.index_offset != last - index_bytes) {
-    refuse(fmt::format("byte {}: the index of {} frames begins at byte {}, not {}", last,
-                       scene.frames, last - index_bytes, end.index_offset));
+  if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes > last) {
+    refuse(name(), "{} bytes is too short for {} objects and {} frames", bytes(), scene.objects,
+           scene.frames);
   }
-
-  std::vector<std::uint8_t> layers;
-  std::vector<std::uint32_t> worlds;
-  std::vector<BodyGroups::Tags> tags;
-  const auto take = [&](auto& numbers) {
-    using Number = typename std::remove_reference_t<decltype(numbers)>::value_type;
-    numbers.resize(aligned(sizeof(Number) * scene.objects) / sizeof(Number) + 1);
-    const auto raw =
-        std::as_writable_bytes(std::span(numbers)).first(aligned(sizeof(Number) * scene.objects));
-    if (raw.size() > end.index_offset - offset) {
-      refuse(fmt::format("byte {}: ends within the groups of the bodies", end.index_offset));
-    }
-    read(offset, raw);
-    hasher_.add(raw);
-    offset += raw.size();
-    numbers.resize(scene.objects);
-  };
-  for (const Json& group : fields.array("groups")) {
-    if (group == "layers" && layers.empty() && worlds.empty() && tags.empty()) {
-      take(layers);
-    } else if (group == "worlds" && worlds.empty() && tags.empty()) {
-      take(worlds);
-    } else if (group == "tags" && tags.empty()) {
-      take(tags);
-    } else {
-      refuse("header: groups: some of 'layers', 'worlds', 'tags', in this order, are expected");
-    }
+  if (index_offset != last - index_bytes) {
+    refuse(name(), "byte {}: the index of {} frames begins at byte {}, not {}", last, scene.frames,
+           last - index_bytes, index_offset);
   }
-  std::vector<BodyGroups> groups(fields.array("groups").empty() ? 0 : scene.objects);
-  for (std::uint32_t body = 0; body < groups.size(); ++body) {
-    if (!layers.empty()) groups[body].layer = layers[body];
-    if (!worlds.empty()) groups[body].world = worlds[body];
-    if (!tags.empty()) groups[body].tags = tags[body];
-    if (groups[body].layer >= LayerMatrix::kLayers) {
-      refuse(fmt::format("body {}: layer {}: there are layers 0 to {}", body, groups[body].layer,
-                         LayerMatrix::kLayers - 1));
-    }
+  std::vector<std::byte> groups(groupBytes(fields, scene.objects));
+  if (groups.size() > index_offset - offset) {
+    refuse(name(), "byte {}: ends within the groups of the bodies", index_offset);
   }
-  scene.filter = CollisionFilter(groups, matrixIn(fields));
-
-  index_.resize(std::size_t{1} + scene.frames);
-  const auto raw = std::as_writable_bytes(std::span(index_));
-  read(end.index_offset, raw);
-  hasher_.add(raw);
-  if (hasher_.value() != end.hash) {
-    refuse("header or index: damaged: their checksum is another");
-  }
+  read(offset, groups);
+  hasher_.add(groups);
+  scene.filter = filterIn(fields, groups, scene.objects);
   setScene(std::move(scene));
-  checkIndex(offset, end.index_offset);
+  return offset + groups.size();
+}
+
+void Recording2Reader::readIndex(std::uint64_t offset) {
+  index_.resize(std::size_t{1} + scene().frames);
+  const auto raw = std::as_writable_bytes(std::span(index_));
+  read(offset, raw);
+  hasher_.add(raw);
 }
 
 void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const {
@@ -503,6 +534,7 @@ template <class Take>
 void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
   const RecordedFrame& frame = index_[index];
   const Layout layout(frame.changed, frame.key == index, scene().objects);
+  const bool may_be_empty = !scene().all_present;
   std::uint64_t offset = frame.offset + layout.idBytes();
   for (std::uint64_t first = 0; first < layout.rows; first += kPieceRows) {
     const std::uint64_t rows = std::min(kPieceRows, layout.rows - first);
@@ -511,49 +543,45 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
     hasher_.add(raw);
     offset += raw.size();
     for (std::uint64_t row = 0; row < rows; ++row) {
-      PackedBox box;
-      std::memcpy(box.data(), raw.data() + sizeof box * row, sizeof box);
-      take(first + row, unpacked(box));
+      const BoxCorners box(raw.data() + sizeof(PackedBox) * row);
+      if (!box.isRight(may_be_empty)) failAt(index, first + row, box);
+      take(first + row, box);
     }
   }
 }
 
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
   // Who relies on `changed` misses what changed without being named.
-  const bool check_others = follows && changed_ < scene().objects;
-  const bool all_present = scene().all_present;
-  std::uint32_t listed = 0;
-  readRows(index, [&](std::uint64_t body, const Aabb& box) {
-    if (!isRecordable(box, all_present)) {
-      failAt(index, static_cast<std::uint32_t>(body), body, "the box " + faultOf(box, all_present));
-    }
-    if (check_others) {
+  if (follows && changed_ < scene().objects) {
+    readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body,
+                                                   const BoxCorners& box) mutable {
       if (listed < changed_ && ids_[listed] == body) {
         ++listed;
-      } else if (box != boxes_[body]) {
-        failAt(index, static_cast<std::uint32_t>(body), body,
-               "differs from the frame before, but is not among the changed bodies");
+      } else if (!box.is(boxes_[body])) {
+        failAt(index, body, "differs from the frame before, but is not among the changed bodies");
       }
-    }
-    boxes_[body] = box;
-  });
+      box.put(boxes_[body]);
+    });
+  } else {
+    readRows(index, [&](std::uint64_t body, const BoxCorners& box) { box.put(boxes_[body]); });
+  }
 }
 
 void Recording2Reader::readChangedBoxes(std::uint32_t index) {
-  const bool all_present = scene().all_present;
-  readRows(index, [&](std::uint64_t row, const Aabb& box) {
-    if (!isRecordable(box, all_present)) {
-      failAt(index, ids_[row], row, "the box " + faultOf(box, all_present));
-    }
-    boxes_[ids_[row]] = box;
-  });
+  readRows(index, [&](std::uint64_t row, const BoxCorners& box) { box.put(boxes_[ids_[row]]); });
 }
 
-void Recording2Reader::failAt(std::uint32_t index, std::uint32_t body, std::uint64_t row,
-                              const std::string& what) {
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box) {
+  Aabb unpacked;
+  box.put(unpacked);
+  failAt(index, row, "the box " + faultOf(unpacked, scene().all_present));
+}
+
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const std::string& what) {
   const RecordedFrame& frame = index_[index];
-  const Layout layout(frame.changed, frame.key == index, scene().objects);
-  fail(index, fmt::format("body {} (byte {}): {}", body,
+  const bool whole = frame.key == index;
+  const Layout layout(frame.changed, whole, scene().objects);
+  fail(index, fmt::format("body {} (byte {}): {}", whole ? row : ids_[row],
                           frame.offset + layout.idBytes() + sizeof(PackedBox) * row, what));
 }
 

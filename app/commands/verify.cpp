@@ -143,8 +143,8 @@ int run(const Options& options) {
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   app.add_option("files", options->files,
-                 fmt::format("recordings ({}, {}), or what can be imported: {}", kAabbsExtension,
-                             kPosrotExtension, importKindsText()))
+                 fmt::format("{}; or what can be imported: {}", recordingKindsText(),
+                             importKindsText()))
       ->type_name("FILE")
       ->required();
   CLI::Option* describe =

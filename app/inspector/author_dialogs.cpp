@@ -44,7 +44,7 @@ void askBakeScene(FileDialog& files, Session& session) {
   session.notices.attempt([&] {
     files.ask({.title = "Bake all frames into a recording",
                .purpose = FileDialog::Purpose::save,
-               .extensions = {".aabbs", ".posrot"},
+               .extensions = recordingExtensions(),
                .suggestion = recordingFileName(session.document.desk.simulation()->scene()),
                .chosen = [&session](const fs::path& path) { session.document.bake(path); }});
   });

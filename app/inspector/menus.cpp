@@ -78,9 +78,11 @@ void Inspector::drawMenus(const RunProgress& progress) {
 }
 
 void Inspector::askOpen() {
+  std::vector<std::string> extensions = recordingExtensions();
+  extensions.emplace_back(".json");
   files_.ask({.title = "Open a recording, a scene or results",
               .purpose = FileDialog::Purpose::open,
-              .extensions = {".aabbs", ".posrot", ".json"},
+              .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
               .chosen = [this](const fs::path& path) { session_.open(path); }});
 }
@@ -89,7 +91,7 @@ void Inspector::askSaveRecording() {
   SceneInfo scene = session_.playback.scene();
   files_.ask({.title = "Save the frames known so far as a recording",
               .purpose = FileDialog::Purpose::save,
-              .extensions = {".aabbs"},
+              .extensions = boxRecordingExtensions(),
               .suggestion = fs::path(recordingFileName(scene)),
               .chosen = [this](const fs::path& path) { session_.saveRecording(path); }});
 }

@@ -260,9 +260,10 @@ void Session::saveRecording(const fs::path& path) {
 }
 
 void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot, fs::path file) {
-  if (!file.has_extension()) file += kAabbsExtension;
-  later([this, run, snapshot, file] {
-    requireExportable(file, snapshot->footage->recording);
+  const SceneInfo scene = playback.scene();
+  if (!file.has_extension()) file += recordingExtension(scene);
+  later([this, run, snapshot, file, scene] {
+    requireExportable(file, snapshot->footage->recording, scene);
     std::unique_ptr<IndexedFrames> source;
     if (snapshot->footage == playback.footage()) {
       runs.withFootage([&](Footage* footage) {

@@ -1,8 +1,6 @@
 // Recordings: every file that is not JSON.
 
-#include <fmt/format.h>
-
-#include "broadmark/recording.h"
+#include "recordings.h"
 #include "sources/make_source.h"
 
 namespace broadmark::sources::recording {
@@ -17,7 +15,7 @@ OpenedSource open(NamedSource& source, const OpeningOptions&) {
 }  // namespace
 
 SourceKind kind() {
-  return {.what = fmt::format("recordings ({}, {})", kAabbsExtension, kPosrotExtension),
+  return {.what = recordingKindsText(),
           .recognises = [](NamedSource& source) { return source.isFile() && !source.isJson(); },
           .open = open};
 }

@@ -3,6 +3,7 @@
 `python3 -m broadmark --help` lists the commands. The functions behind them:
 
 - `read_recording`, `write_recording`: the boxes of a recording as numpy arrays
+- `present`: which bodies are there; `EMPTY_BOX` is the box of one that is absent
 - `run`: runs algorithms on a scene, a recording or arrays, by the program `broadmark`
 - `overlaps`: the overlapping pairs of an array of boxes
 - `read_results`: results files as pandas data frames
@@ -11,15 +12,20 @@
 from broadmark.errors import InputError
 from broadmark.native import overlaps
 from broadmark.program import run
+from broadmark.recording2 import EMPTY_BOX, ChangingRecording, Groups, present
 from broadmark.recordings import PoseRecording, Recording, read_recording, write_recording
 from broadmark.results import Results, read_results
 
 __all__ = [
+    "EMPTY_BOX",
+    "ChangingRecording",
+    "Groups",
     "InputError",
     "PoseRecording",
     "Recording",
     "Results",
     "overlaps",
+    "present",
     "read_recording",
     "read_results",
     "run",

@@ -1,4 +1,5 @@
-"""Recordings as numpy arrays. The files (.aabbs, .posrot) are those of the original Broadmark:
+"""Recordings as numpy arrays. Those of worlds that change (.broadmark) are in recording2. The others
+(.aabbs, .posrot) are those of the original Broadmark:
 
     char[128] name, char[128] object type, int32 bodies, int32 frames, int32 0, int32 0, world box,
     a box for each body, then `frames` times a record for each body
@@ -9,20 +10,23 @@ A box is eight 32-bit floats: min x y z 0, max x y z 0. A record is a box (.aabb
 
 from __future__ import annotations
 
+import itertools
 import os
 import pathlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from broadmark import recording2
 from broadmark.errors import InputError
 from broadmark.files import whole_file
 
 Path = str | os.PathLike[str]
 Floats = npt.NDArray[np.float32]
+EMPTY_BOX = recording2.EMPTY_BOX
 
 HEADER = np.dtype(
     [
@@ -59,18 +63,23 @@ class PoseRecording:
     rotations: Floats  #: (F, n, 4): quaternions x y z w
 
 
-def read_recording(path: Path) -> Recording | PoseRecording:
-    """Maps a recording (.aabbs, .posrot): only what is used is read.
+EXTENSIONS = (".aabbs", ".broadmark", ".posrot")
+
+
+def read_recording(path: Path) -> Recording | recording2.ChangingRecording | PoseRecording:
+    """Maps a recording (.aabbs, .broadmark, .posrot): only what is used is read.
 
     Raises InputError for a file of another kind or size. `broadmark verify` checks all values.
     """
     path = pathlib.Path(path)
-    if path.suffix not in (".aabbs", ".posrot"):
-        raise InputError(f"{path}: is no recording: its name ends with neither .aabbs nor .posrot")
+    if path.suffix not in EXTENSIONS:
+        raise InputError(f"{path}: is no recording: its name ends with none of {EXTENSIONS}")
     try:
         content = np.memmap(path, np.uint8, "r")
     except (OSError, ValueError) as error:  # ValueError: an empty file
         raise InputError(f"{path}: cannot be read: {error}") from None
+    if path.suffix == ".broadmark":
+        return recording2.read(path, content)
     if content.size < HEADER.itemsize:
         raise InputError(f"{path}: has {content.size} bytes, its header alone {HEADER.itemsize}")
     header = content[: HEADER.itemsize].view(HEADER)[0]
@@ -99,12 +108,12 @@ def _text(field: bytes) -> str:
     return field.split(b"\0", 1)[0].decode("ascii", "replace")
 
 
-def as_boxes(boxes: Any) -> Floats:
+def as_boxes(boxes: Any, *, may_be_absent: bool = False) -> Floats:
     """Boxes as an array (n, 2, 3) of 32-bit floats, without copying one that is so already.
 
     Takes (n, 2, 3) and (n, 6): min x y z, max x y z. Raises InputError for other shapes, NaN and
     boxes whose min is greater than their max; an infinite side is one of these here, as recordings
-    hold none.
+    hold none. Where bodies may be absent, EMPTY_BOX stands for one that is.
     """
     array = np.asarray(boxes)
     if array.dtype.kind not in "iuf":
@@ -118,14 +127,19 @@ def as_boxes(boxes: Any) -> Floats:
     if len(array) and not (
         (low <= high).all() and array.min() > -np.inf and array.max() < np.inf  # NaN is neither
     ):
-        _complain(array)
+        _require_sound(array, may_be_absent)
     return array
 
 
-def _complain(boxes: Floats) -> NoReturn:
+def _require_sound(boxes: Floats, may_be_absent: bool) -> None:
     """Raises InputError for the first bad box."""
     unknown = ~np.isfinite(boxes).all((1, 2))
-    body = int((unknown | (boxes[:, 0] > boxes[:, 1]).any(1)).argmax())
+    bad = unknown | (boxes[:, 0] > boxes[:, 1]).any(1)
+    if may_be_absent:
+        bad &= (boxes != EMPTY_BOX).any((1, 2))
+        if not bad.any():
+            return
+    body = int(bad.argmax())
     if unknown[body]:
         raise InputError(f"boxes: body {body} has a side that is not a finite number")
     raise InputError(
@@ -140,52 +154,90 @@ def write_recording(
     name: str = "Custom",
     object_type: str = "Boxes",
     world: Any = None,
+    groups: recording2.Groups | None = None,
 ) -> None:
-    """Writes boxes as a recording (.aabbs).
+    """Writes boxes as a recording (.aabbs, .broadmark).
 
     `boxes` is an array (F + 1, n, 2, 3), or any iterable of arrays (n, 2, 3) or (n, 6), taken one
     by one: the first is the initial pose, which is not timed, the others are the frames. `world`
-    (2, 3): default, what contains all boxes. A file appears only when it is whole. Raises
-    InputError for boxes that a recording cannot hold.
+    (2, 3): default, what contains all boxes. Only .broadmark holds EMPTY_BOX, for absent bodies, and
+    `groups`. A file appears only when it is whole. Raises InputError for boxes that a recording
+    cannot hold.
     """
     path = pathlib.Path(path)
-    if path.suffix != ".aabbs":
-        raise InputError(f"{path}: the name of a recording of boxes ends with .aabbs")
-    header = np.zeros(1, HEADER)
-    header["name"], header["object_type"] = _field("name", name), _field("object type", object_type)
+    changing = path.suffix == ".broadmark"
+    if path.suffix != ".aabbs" and not changing:
+        raise InputError(f"{path}: the name of a recording of boxes ends with .aabbs or .broadmark")
+    if groups is not None and not changing:
+        raise InputError(f"{path}: groups of bodies need .broadmark")
+    _field("name", name), _field("object type", object_type)
+    frames = _checked(boxes, may_be_absent=changing)
+    first = next(frames, None)
+    if first is None:
+        raise InputError(_too_few(path, 0))
     with whole_file(path) as file:
-        header.tofile(file)
-        sets = 0
+        writer: recording2.Writer | _SetWriter
+        if changing:
+            bodies, known = len(first), groups or recording2.Groups()
+            header = recording2.new_header(name, object_type, bodies, known)
+            writer = recording2.Writer(file, header, known, bodies)
+        else:
+            writer = _SetWriter(file, name, object_type, len(first))
         bounds: Floats | None = None
-        for frame in boxes:
-            try:
-                array = as_boxes(frame)
-            except InputError as error:
-                raise InputError(f"frame {sets}: {error}") from None
-            if sets == 0:
-                header["bodies"] = len(array)
-            elif len(array) != header["bodies"][0]:
-                raise InputError(
-                    f"frame {sets}: has {len(array)} bodies, the first {header['bodies'][0]}"
-                )
-            records = np.zeros((len(array), 2, 4), "<f4")
-            records[..., :3] = array
-            records.tofile(file)
-            if len(array):
-                reach = np.stack([array[:, 0].min(0), array[:, 1].max(0)])
+        sets = 0
+        for array in itertools.chain([first], frames):
+            writer.write(array)
+            there = array[recording2.present(array)]
+            if len(there):
+                reach = np.stack([there[:, 0].min(0), there[:, 1].max(0)])
                 bounds = reach if bounds is None else _united(bounds, reach)
             sets += 1
         if sets < 2:
-            raise InputError(
-                f"{path}: {sets} sets of boxes: the initial pose and a frame are least"
-            )
-        header["frames"] = sets - 1
+            raise InputError(_too_few(path, sets))
         if world is not None:
             bounds = as_boxes(np.asarray(world)[np.newaxis])[0]
-        if bounds is not None:
-            header["world"][0, :, :3] = bounds
-        file.seek(0)
-        header.tofile(file)
+        writer.finish(np.zeros((2, 3), np.float32) if bounds is None else bounds)
+
+
+def _too_few(path: pathlib.Path, sets: int) -> str:
+    return f"{path}: {sets} sets of boxes: the initial pose and a frame are least"
+
+
+def _checked(boxes: Iterable[Any], may_be_absent: bool) -> Iterator[Floats]:
+    """All frames as arrays of the same size."""
+    bodies: int | None = None
+    for number, frame in enumerate(boxes):
+        try:
+            array = as_boxes(frame, may_be_absent=may_be_absent)
+        except InputError as error:
+            raise InputError(f"frame {number}: {error}") from None
+        bodies = len(array) if bodies is None else bodies
+        if len(array) != bodies:
+            raise InputError(f"frame {number}: has {len(array)} bodies, the first {bodies}")
+        yield array
+
+
+class _SetWriter:
+    """Writes an .aabbs recording into an open file, frame by frame."""
+
+    def __init__(self, file: Any, name: str, object_type: str, bodies: int) -> None:
+        self._file = file
+        self._header = np.zeros(1, HEADER)
+        self._header["name"] = _field("name", name)
+        self._header["object_type"] = _field("object type", object_type)
+        self._header["bodies"], self._header["frames"] = bodies, -1
+        self._header.tofile(file)
+
+    def write(self, boxes: Floats) -> None:
+        records = np.zeros((len(boxes), 2, 4), "<f4")
+        records[..., :3] = boxes
+        records.tofile(self._file)
+        self._header["frames"] += 1
+
+    def finish(self, world: Floats) -> None:
+        self._header["world"][0, :, :3] = world
+        self._file.seek(0)
+        self._header.tofile(self._file)
 
 
 def _united(a: Floats, b: Floats) -> Floats:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import pathlib
 from typing import Any
 
@@ -87,6 +88,129 @@ def test_names_that_a_header_cannot_hold(tmp_path: pathlib.Path) -> None:
     for name in ("", "x" * 128, "größer", "a\nb"):
         with pytest.raises(broadmark.InputError, match="printable ASCII"):
             broadmark.write_recording(tmp_path / "a.aabbs", random_boxes(2, 2), name=name)
+
+
+def changing_boxes(frames: int, bodies: int) -> Any:
+    """Boxes of which a tenth changes in each frame, some vanish and come back."""
+    generator = np.random.default_rng(2)
+    boxes = np.repeat(random_boxes(1, bodies), frames, axis=0)
+    for before, now in itertools.pairwise(boxes):
+        now[:] = before
+        moved = generator.random(bodies) < 0.1
+        now[moved] = random_boxes(1, bodies)[0, moved] + generator.random(dtype=np.float32)
+        now[generator.random(bodies) < 0.03] = broadmark.EMPTY_BOX
+    return boxes
+
+
+GROUPS = broadmark.Groups(
+    layers=np.arange(60, dtype=np.uint8) % 3,
+    tags=np.arange(180, dtype=np.uint32).reshape(60, 3),
+    colliding_layers=((0, 1), (2, 2)),
+)
+
+
+def changing_recording(path: pathlib.Path) -> broadmark.ChangingRecording:
+    broadmark.write_recording(path, changing_boxes(40, 60), name="Changing", groups=GROUPS)
+    recording = broadmark.read_recording(path)
+    assert isinstance(recording, broadmark.ChangingRecording)
+    return recording
+
+
+def test_changing_worlds_are_read_in_any_order(tmp_path: pathlib.Path) -> None:
+    boxes = changing_boxes(40, 60)
+    recording = changing_recording(tmp_path / "a.broadmark")
+    np.testing.assert_array_equal(recording.boxes, boxes)
+    for frame in (39, 0, 17, 18, 5):
+        np.testing.assert_array_equal(recording.frame(frame), boxes[frame])
+    for frame, (now, changed) in enumerate(recording.frames()):
+        np.testing.assert_array_equal(now, boxes[frame])
+        differs = (boxes[frame] != boxes[max(frame - 1, 0)]).any((1, 2))
+        np.testing.assert_array_equal(changed, differs.nonzero()[0])
+        np.testing.assert_array_equal(recording.changed(frame), changed)
+    assert not recording.all_present and not broadmark.present(boxes).all()
+    assert recording.groups.colliding_layers == GROUPS.colliding_layers
+    np.testing.assert_array_equal(recording.groups.layers, GROUPS.layers)
+    np.testing.assert_array_equal(recording.groups.tags, GROUPS.tags)
+    assert recording.groups.worlds is None
+    for frame in (-1, 40):
+        with pytest.raises(broadmark.InputError, match="last one is 39"):
+            recording.frame(frame)
+
+
+def test_the_program_reads_what_python_writes_and_back(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "a.broadmark"
+    written = changing_recording(path)
+    assert "ok" in call("verify", str(path))
+    call("convert", str(path), str(tmp_path / "b.broadmark"), "--quiet")
+    read = broadmark.read_recording(tmp_path / "b.broadmark")
+    assert isinstance(read, broadmark.ChangingRecording)
+    np.testing.assert_array_equal(read.boxes, written.boxes)
+    np.testing.assert_array_equal(read.groups.tags, GROUPS.tags)
+    assert read.groups.colliding_layers == GROUPS.colliding_layers
+    assert (read.name, read.source) == ("Changing", "a.broadmark")
+    with pytest.raises(broadmark.InputError, match="layers"):
+        call("convert", str(path), str(tmp_path / "c.aabbs"))
+
+
+def test_the_reader_in_the_manual(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    manual = pathlib.Path(__file__).parents[2] / "docs/recordings.md"
+    code = manual.read_text().split("```python\n")[1].split("```")[0]
+    assert len(code.splitlines()) <= 12
+    monkeypatch.chdir(tmp_path)
+    for frames, bodies in ((40, 60), (3, 1), (300, 2)):
+        boxes = changing_boxes(frames, bodies)
+        broadmark.write_recording("city.broadmark", boxes)
+        for last in (frames - 1, frames // 2):
+            stop = code.replace("index.tolist()", f"index.tolist()[:{last + 1}]")
+            names: dict[str, Any] = {}
+            exec(stop, names)  # pylint: disable=exec-used
+            np.testing.assert_array_equal(names["boxes"], boxes[last])
+
+
+def test_what_only_changing_recordings_hold(tmp_path: pathlib.Path) -> None:
+    boxes = changing_boxes(40, 60)
+    with pytest.raises(broadmark.InputError, match="not a finite number"):
+        broadmark.write_recording(tmp_path / "a.aabbs", boxes)
+    with pytest.raises(broadmark.InputError, match="groups"):
+        broadmark.write_recording(tmp_path / "a.aabbs", random_boxes(2, 60), groups=GROUPS)
+    for bad in (
+        broadmark.Groups(layers=np.full(60, 32)),
+        broadmark.Groups(layers=np.zeros(59, int)),
+        broadmark.Groups(tags=np.zeros((60, 2), int)),
+        broadmark.Groups(worlds=np.zeros(60)),
+        broadmark.Groups(colliding_layers=((0, 32),)),
+    ):
+        with pytest.raises(broadmark.InputError, match="expected"):
+            broadmark.write_recording(tmp_path / "a.broadmark", boxes, groups=bad)
+    boxes[3, 5] = [[np.inf] * 3, [1, 1, 1]]
+    with pytest.raises(broadmark.InputError, match="frame 3: boxes: body 5"):
+        broadmark.write_recording(tmp_path / "a.broadmark", boxes)
+    assert not list(tmp_path.iterdir())
+
+
+def test_bad_changing_files_are_refused(tmp_path: pathlib.Path) -> None:
+    path = tmp_path / "mine.broadmark"
+    changing_recording(path)
+    whole = path.read_bytes()
+    index = int.from_bytes(whole[-32:-24], "little")
+    for content in (
+        b"",
+        whole[:40],
+        whole[:-1],
+        whole[:-32],
+        whole + bytes(32),
+        b"X" + whole[1:],
+        whole[:8] + b"\xff" * 8 + whole[16:],
+        whole.replace(b"recording/2", b"recording/3"),
+        whole.replace(b'"objects": 60', b'"objects": 61'),
+        whole.replace(b'"frames": 39', b'"frames": 38'),
+        whole.replace(b'"layers"', b'"liars"'),
+        whole[: index + 40] + b"\xff" * 4 + whole[index + 44 :],
+        whole[: index + 32] + b"\xff" * 8 + whole[index + 40 :],
+    ):
+        path.write_bytes(content)
+        with pytest.raises(broadmark.InputError, match="mine.broadmark: "):
+            broadmark.read_recording(path)
 
 
 def test_bad_files_are_refused(tmp_path: pathlib.Path) -> None:

@@ -31,10 +31,10 @@ class Viewer final : public Replay {
 
 ReplayEntry entry() {
   return {.listing = {.id = "viewer",
-                      .summary = "replays a recording (.posrot, .aabbs)",
+                      .summary = "replays a recording (.posrot, .aabbs, .broadmark)",
                       .dynamics = Dynamics::replayed},
           .bodies_per_recorded = 1,
-          .extensions = {kPosrotExtension, kAabbsExtension},
+          .extensions = {kPosrotExtension, kAabbsExtension, kBroadmarkExtension},
           .create = makeAs<Replay, Viewer>};
 }
 

@@ -23,13 +23,22 @@ constexpr std::uint64_t kSidecarLimitBytes = 1 << 20;
 
 fs::path sidecarPath(fs::path recording) { return recording.replace_extension(".json"); }
 
+/// All parameters but for the path of an input, which says nothing elsewhere.
+Json parametersWithoutPath(Simulation& simulation) {
+  Json json = sceneParametersJson(simulation, kBakeSchema);
+  json["parameters"].erase("input");
+  return json;
+}
+
+RecordingOrigin originOf(Simulation& simulation) {
+  return {.source = simulation.input().filename().string(),
+          .scene_parameters = formatJson(parametersWithoutPath(simulation))};
+}
+
 /// The sidecar of a recording with this hash. It names an input by its contents, not by its path.
 Json sidecarJson(Simulation& simulation, const std::string& hash) {
-  Json json = sceneParametersJson(simulation, kBakeSchema);
-  if (const std::string input = simulation.inputHash(); !input.empty()) {
-    json["parameters"].erase("input");
-    json["input_hash"] = input;
-  }
+  Json json = parametersWithoutPath(simulation);
+  if (const std::string input = simulation.inputHash(); !input.empty()) json["input_hash"] = input;
   json["hash"] = hash;
   return json;
 }
@@ -45,6 +54,14 @@ std::optional<std::string> statedHash(const Sidecar& sidecar) {
   const auto hash = sidecar.find("hash");
   if (hash == sidecar.end() || !hash->is_string()) return {};
   return hash->get<std::string>();
+}
+
+/// The sidecar of a recording; empty if it has none.
+Sidecar sidecarOf(const fs::path& recording) {
+  const fs::path path = sidecarPath(recording);
+  if (!fs::exists(path)) return Sidecar::object();
+  const Sidecar sidecar = readSidecar(path);
+  return sidecar.value("schema", Sidecar()) == kBakeSchema ? sidecar : Sidecar::object();
 }
 
 scenes::RecorderEntry recorderOf(const fs::path& path) {
@@ -81,15 +98,20 @@ bool isIntact(const fs::path& path) {
 }
 
 std::optional<std::string> bakedHash(const fs::path& recording) {
-  const fs::path path = sidecarPath(recording);
-  if (!fs::exists(path)) return std::nullopt;
-  const Sidecar sidecar = readSidecar(path);
-  if (sidecar.value("schema", Sidecar()) != kBakeSchema) return std::nullopt;
+  const Sidecar sidecar = sidecarOf(recording);
+  if (sidecar.empty()) return std::nullopt;
   std::optional<std::string> hash = statedHash(sidecar);
   if (!hash) {
-    throw InputError(fmt::format("{}: states no hash: bake again with --force", path.string()));
+    throw InputError(fmt::format("{}: states no hash: bake again with --force",
+                                 sidecarPath(recording).string()));
   }
   return hash;
+}
+
+std::string bakedParameters(const fs::path& recording) {
+  Sidecar sidecar = sidecarOf(recording);
+  sidecar.erase("hash");
+  return sidecar.empty() ? std::string() : formatJson(Json(sidecar));
 }
 
 void requireApart(Simulation& simulation, const std::vector<fs::path>& paths) {
@@ -110,7 +132,7 @@ bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
   requireApart(simulation, paths);
   std::vector<std::unique_ptr<scenes::Recorder>> recorders;
   for (const fs::path& path : paths) {
-    recorders.push_back(recorderOf(path).create(path, simulation.scene()));
+    recorders.push_back(recorderOf(path).create(path, simulation.scene(), originOf(simulation)));
   }
   const auto record = [&](const Frame& frame) {
     for (const auto& recorder : recorders) recorder->record(frame, simulation);

@@ -9,7 +9,7 @@ namespace {
 
 class PosrotRecorder final : public Recorder {
  public:
-  PosrotRecorder(const std::filesystem::path& path, const SceneInfo& scene)
+  PosrotRecorder(const std::filesystem::path& path, const SceneInfo& scene, const RecordingOrigin&)
       : writer_(path, scene) {}
 
   void record(const Frame& frame, PoseSource& poses) override {

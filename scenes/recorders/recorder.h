@@ -9,6 +9,7 @@
 
 #include "broadmark/frame.h"
 #include "broadmark/pose.h"
+#include "broadmark/recording.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {
@@ -26,7 +27,8 @@ class Recorder {
 
 struct RecorderEntry {
   RecorderListing listing;
-  std::unique_ptr<Recorder> (*create)(const std::filesystem::path&, const SceneInfo&);
+  std::unique_ptr<Recorder> (*create)(const std::filesystem::path&, const SceneInfo&,
+                                      const RecordingOrigin&);
 };
 
 /// All of them, in the order of the list in CMakeLists.txt.

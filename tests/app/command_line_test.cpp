@@ -46,7 +46,7 @@ TEST(Session, Defaults) {
   EXPECT_FALSE(options.inspector());
   EXPECT_THAT(options.scene.objects, IsEmpty());
   EXPECT_THAT(options.scene.parameters, IsEmpty());
-  EXPECT_THAT(options.scene.recorders, ElementsAre("aabbs"));
+  EXPECT_THAT(options.scene.recorders, IsEmpty());
   EXPECT_THAT(options.cases.algorithms, IsEmpty());
   EXPECT_EQ(options.repetitions.most, 1);
   EXPECT_EQ(options.warmup, 0);

@@ -6,8 +6,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "broadmark/sub_recording.h"
 #include "engine/recording_bytes.h"
@@ -169,7 +172,8 @@ TEST(Recording2, TellsZeroesApart) {
   write(directory / "a.broadmark", sceneOf(frames), frames);
   Recording2Reader reader(directory / "a.broadmark");
   EXPECT_FALSE(std::signbit(reader.at(0).boxes[0].min[1]));
-  EXPECT_TRUE(std::signbit(reader.at(2).boxes[0].min[1]));
+  EXPECT_TRUE(std::signbit(reader.at(1).boxes[0].min[1]));
+  EXPECT_FALSE(std::signbit(reader.at(2).boxes[0].min[1]));
 }
 
 TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
@@ -197,6 +201,218 @@ TEST(Recording2, IsTakenOnlyWhereAabbsDoesNotDo) {
   EXPECT_THAT(recordingExtensions(), ElementsAre(".aabbs", ".broadmark", ".posrot"));
   EXPECT_THAT(inputErrorOf([&] { RecordingWriter writer("a.posrot", sceneOf(frames)); }),
               AllOf(HasSubstr("a.posrot"), HasSubstr(".aabbs or .broadmark")));
+}
+
+/// Frame 0 has bodies 0 to 2; in frame 1 body 1 has moved, in frame 2 body 2 is gone.
+Bytes smallRecording() {
+  const TemporaryDirectory directory;
+  Frames frames(1, chain(3));
+  frames.push_back(frames[0]);
+  frames[1][1] = unitBox(5);
+  frames.push_back(frames[1]);
+  frames[2][2] = kEmptyBox;
+  write(directory / "a.broadmark", sceneOf(frames, false, filters(3)[1].filter), frames);
+  return bytesOf(directory / "a.broadmark");
+}
+
+Recording2Reader readerOf(const Bytes& bytes) {
+  return tests::readerOf<Recording2Reader>(bytes, "test.broadmark");
+}
+std::string faultOf(const Bytes& bytes) {
+  return tests::faultOf<Recording2Reader>(bytes, "test.broadmark");
+}
+
+template <class T>
+T get(const Bytes& bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+template <class T>
+void put(Bytes& bytes, std::size_t offset, T value) {
+  std::memcpy(bytes.data() + offset, &value, sizeof value);
+}
+
+constexpr std::size_t kEntryBytes = 32;
+
+std::size_t indexOf(const Bytes& bytes) {
+  return get<std::uint64_t>(bytes, bytes.size() - kEntryBytes);
+}
+std::size_t frameOf(const Bytes& bytes, std::uint32_t frame) {
+  return get<RecordedFrame>(bytes, indexOf(bytes) + kEntryBytes * frame).offset;
+}
+
+/// Puts the right checksums to spoilt bytes: as somebody's own writer would.
+Bytes sealed(Bytes bytes) {
+  const std::size_t index = indexOf(bytes);
+  const auto raw = std::as_bytes(std::span(bytes));
+  for (std::size_t at = index; at + kEntryBytes < bytes.size(); at += kEntryBytes) {
+    auto entry = get<RecordedFrame>(bytes, at);
+    const std::size_t end = at + 2 * kEntryBytes < bytes.size()
+                                ? get<RecordedFrame>(bytes, at + kEntryBytes).offset
+                                : index;
+    entry.hash = hashOf(raw.subspan(entry.offset, end - entry.offset));
+    put(bytes, at, entry);
+  }
+  Hasher hasher;
+  hasher.add(raw.first(frameOf(bytes, 0)));
+  hasher.add(raw.subspan(index, bytes.size() - kEntryBytes - index));
+  put(bytes, bytes.size() - 24, hasher.value());
+  return bytes;
+}
+
+/// With another text, as long, in the header.
+Bytes withHeader(Bytes bytes, std::string_view text, std::string_view other) {
+  const auto found = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
+  EXPECT_EQ(text.size(), other.size());
+  EXPECT_NE(found, bytes.end()) << text;
+  if (found != bytes.end()) std::ranges::copy(other, found);
+  return sealed(std::move(bytes));
+}
+
+TEST(BadRecording2, TooShortOrTooLong) {
+  const Bytes whole = smallRecording();
+  EXPECT_EQ(readerOf(whole).at(2).boxes[2], kEmptyBox);
+  for (std::size_t size = 0; size < whole.size(); size += 7) {
+    EXPECT_THAT(faultOf(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))),
+                StartsWith("test.broadmark: "));
+  }
+  Bytes longer = whole;
+  longer.insert(longer.end(), 32, 0);
+  EXPECT_THAT(faultOf(longer), HasSubstr("does not end as a recording 2"));
+}
+
+TEST(BadRecording2, AnyWrongByteIsNoticed) {
+  const Bytes whole = smallRecording();
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    Bytes bytes = whole;
+    bytes[at] ^= 0x10;
+    EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: ")) << "byte " << at;
+  }
+}
+
+TEST(BadRecording2, DamagedFramesAreNamed) {
+  Bytes bytes = smallRecording();
+  const std::size_t at = frameOf(bytes, 1);
+  bytes[at + 40] ^= 1;
+  EXPECT_THAT(faultOf(bytes), HasSubstr("frame 1 (bytes " + std::to_string(at) + " to " +
+                                        std::to_string(at + 63) + "): damaged"));
+  EXPECT_THAT(inputErrorOf([&] { readerOf(bytes).at(2); }), HasSubstr("frame 1"));
+  EXPECT_EQ(readerOf(bytes).at(0).boxes.size(), 3U);
+  bytes[at] = 99;  // also where the ids are nonsense
+  EXPECT_THAT(faultOf(bytes), HasSubstr("damaged"));
+}
+
+TEST(BadRecording2, IdsAndBoxesAreNamedWithTheirPlace) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const Bytes whole = smallRecording();
+  const auto spoilt = [&](std::uint32_t frame, std::size_t offset, auto value) {
+    Bytes bytes = whole;
+    put(bytes, frameOf(bytes, frame) + offset, value);
+    return faultOf(sealed(std::move(bytes)));
+  };
+  const auto byte = [&](std::uint32_t frame, std::size_t offset) {
+    return "byte " + std::to_string(frameOf(whole, frame) + offset);
+  };
+  EXPECT_THAT(spoilt(1, 0, 3U), AllOf(HasSubstr("frame 1, " + byte(1, 0)), HasSubstr("body 3"),
+                                      HasSubstr("below 3")));
+  EXPECT_THAT(spoilt(1, 32, kNan),
+              HasSubstr("frame 1, body 1 (" + byte(1, 32) + "): the box is not a number"));
+  EXPECT_THAT(spoilt(1, 44, kInfinity), HasSubstr("frame 1, body 1 (" + byte(1, 32)));
+  EXPECT_THAT(spoilt(2, 32, 1.0F), HasSubstr("frame 2, body 2 (" + byte(2, 32)))
+      << "neither there nor absent";
+  EXPECT_THAT(spoilt(0, 28, 9.0F),
+              HasSubstr("frame 0, body 1 (" + byte(0, 24) + "): the box is inverted"));
+}
+
+TEST(BadRecording2, IdsAscend) {
+  const TemporaryDirectory directory;
+  Frames frames(2, chain(40));
+  frames[1][3] = unitBox(9);
+  frames[1][7] = unitBox(9);
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  put(bytes, frameOf(bytes, 1) + 4, 3U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 3 among the changed ones"));
+  put(bytes, frameOf(bytes, 1) + 4, 2U);
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 2 among the changed ones"));
+}
+
+// Who believes that nothing else has changed misses pairs.
+TEST(BadRecording2, AKeyFrameChangesOnlyWhatItNames) {
+  const TemporaryDirectory directory;
+  Frames frames(3, chain(4));
+  for (int body = 0; body < 3; ++body) frames[2][body] = unitBox(9);
+  for (int body = 1; body < 4; ++body) frames[1][body] = unitBox(7);
+  frames[2][3] = frames[1][3];
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  const auto entry = get<RecordedFrame>(bytes, indexOf(bytes) + 2 * kEntryBytes);
+  ASSERT_EQ(entry.key, 2U);
+  ASSERT_EQ(entry.changed, 3U);
+  put(bytes, frameOf(bytes, 2) + 32 + 3 * 24, 7.5F);
+  bytes = sealed(bytes);
+  EXPECT_THAT(faultOf(bytes),
+              AllOf(HasSubstr("frame 2, body 3"), HasSubstr("not among the changed")));
+}
+
+TEST(BadRecording2, HeadersOfOtherThings) {
+  const Bytes whole = smallRecording();
+  const std::pair<std::string_view, std::string_view> all[] = {
+      {"broadmark-recording/2", "broadmark-recording/3"},
+      {"\"objects\": 3", "\"objects\": 9"},
+      {"\"objects\": 3", "\"objects\":-3"},
+      {"\"frames\": 2", "\"frames\": 9"},
+      {"\"frames\": 2", "\"frames\": 1"},
+      {"\"frames\": 2", "\"frames\":\"\""},
+      {"\"all_present\": false", "\"all_present\": 0    "},
+      {"\"Changing\"", "\"Chang\\ng\""},
+      {"\"Changing\"", "\"Ch\\u0001\""},
+      {"\"groups\"", "\"gruops\""},
+      {"\"layers\"", "\"nobody\""},
+      {"\"world\"", "\"earth\""},
+      {"\"source\": null", "\"source\": 1234"},
+      {"\"scene_parameters\": null", "\"scene_parameters\": 1234"},
+      {"{", "["},
+  };
+  for (const auto& [text, other] : all) {
+    EXPECT_THAT(faultOf(withHeader(whole, text, other)), StartsWith("test.broadmark: "))
+        << text << " -> " << other;
+  }
+}
+
+TEST(BadRecording2, AbsurdCountsTakeNoMemory) {
+  Bytes bytes = smallRecording();
+  put(bytes, 8, std::uint64_t{1} << 62);
+  EXPECT_THAT(faultOf(bytes), HasSubstr("byte 8: a header of 4611686018427387904 bytes"));
+  bytes = smallRecording();
+  bytes = withHeader(bytes, "\"objects\": 3,\n", "\"objects\":42e8");
+  EXPECT_THAT(faultOf(bytes), StartsWith("test.broadmark: "));
+  bytes = smallRecording();
+  put(bytes, indexOf(bytes) + 8, std::numeric_limits<std::uint32_t>::max());
+  EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("index: frame 0 cannot be"));
+}
+
+TEST(BadRecording2, AnIndexThatLeadsNowhere) {
+  const Bytes whole = smallRecording();
+  const std::size_t entry = indexOf(whole) + kEntryBytes;
+  const auto spoilt = [&](std::size_t offset, auto value) {
+    Bytes bytes = whole;
+    put(bytes, entry + offset, value);
+    Hasher hasher;  // of the index, which leads elsewhere
+    hasher.add(std::as_bytes(std::span(bytes)).first(frameOf(whole, 0)));
+    hasher.add(std::as_bytes(std::span(bytes)).subspan(indexOf(whole), 3 * kEntryBytes));
+    put(bytes, bytes.size() - 24, hasher.value());
+    return faultOf(bytes);
+  };
+  EXPECT_THAT(spoilt(0, std::uint64_t{7}), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(0, std::uint64_t{1} << 63), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(8, 0U), HasSubstr("index: frame 2"));
+  EXPECT_THAT(spoilt(8, 4U), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(12, 2U), HasSubstr("index: frame 1"));
+  EXPECT_THAT(spoilt(12, 1U), HasSubstr("index: frame 2"));
 }
 
 TEST(Recording2Writer, LeavesNothingUnlessFinished) {

@@ -66,7 +66,6 @@ class BatchPanel final : public Panel {
     engines_ = optionsOf("engine");
     options_.scenes = {scenes_.front()};
     options_.scene.object_types = {types_.front()};
-    options_.scene.recorders = {recorders_.front()};
     options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   }
 
@@ -131,7 +130,6 @@ class BatchPanel final : public Panel {
     try {
       if (options_.scenes.empty()) throw InputError("no scene is chosen");
       if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
-      if (options_.scene.recorders.empty()) throw InputError("no recorder is chosen");
       if (directory_.empty()) throw InputError("a directory is needed");
       options_.scene.objects = parseCounts(counts_);
       if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "broadmark/recording.h"
 #include "broadmark/sub_recording.h"
 #include "inspector/pair_drawing.h"
 #include "inspector/panel.h"
@@ -185,8 +186,9 @@ class MismatchesPanel final : public Panel {
       context.files.ask(
           {.title = "Export the smallest recording that fails",
            .purpose = FileDialog::Purpose::save,
-           .extensions = {".aabbs"},
-           .suggestion = partName(context.progress.scene) + ".aabbs",
+           .extensions = boxRecordingExtensions(),
+           .suggestion = fmt::format("{}{}", partName(context.progress.scene),
+                                     recordingExtension(context.progress.scene)),
            .chosen = [&session, run = lane.spec.run, seen = context.progress.snapshot](
                          const auto& file) { session.exportCase(run, seen, file); }});
     }

@@ -28,15 +28,18 @@ inline constexpr std::string_view kPosrotExtension = ".posrot";
 inline constexpr std::string_view kBroadmarkExtension = ".broadmark";
 
 /// Of all kinds of recordings, for help and messages.
-std::vector<std::string_view> recordingExtensions();
+std::vector<std::string> recordingExtensions();
 /// Of those that hold boxes: what a RecordingWriter writes.
-std::vector<std::string_view> boxRecordingExtensions();
+std::vector<std::string> boxRecordingExtensions();
 
 /// Whether an .aabbs recording can hold the scene: nobody is ever absent, and all pairs are wanted.
 bool fitsAabbs(const SceneInfo&);
 /// Of the recording that a scene gets where nobody asks for another: .aabbs if that can hold it,
 /// else .broadmark.
 std::string_view recordingExtension(const SceneInfo&);
+
+/// Throws InputError unless a recording of boxes of this name can hold the scene.
+void requireHolds(const std::filesystem::path& path, const SceneInfo&);
 
 /// Size of a whole .aabbs or .posrot recording: 304 + 32·objects·(1 + frames); the largest uint64
 /// if that is larger. A .broadmark recording is smaller, but for its header.

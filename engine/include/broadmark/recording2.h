@@ -16,6 +16,8 @@
 
 namespace broadmark {
 
+class BoxCorners;
+
 /// What the index of a recording 2 says of a frame, as it lies in the file.
 struct RecordedFrame {
   std::uint64_t offset;   ///< where it begins
@@ -42,19 +44,22 @@ class Recording2Reader final : public Recording {
 
   /// Reads header and index, and checks that they are whole.
   void open();
+  /// Of this size; returns where the frames begin.
+  std::uint64_t readHeader(std::uint64_t size, std::uint64_t index_offset);
+  void readIndex(std::uint64_t offset);
   void checkIndex(std::uint64_t begin, std::uint64_t end) const;
   /// Makes `boxes_` those of a frame: a key frame, or the one after `current_`.
   void readFrame(std::uint32_t index);
   void readIds(std::uint32_t index);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
-  /// Hands pieces of the packed boxes of a frame to take(floats, first row, rows).
+  /// Hands the boxes of a frame to take(row, BoxCorners).
   template <class Take>
   void readRows(std::uint32_t index, Take&& take);
   /// Throws InputError: a wrong checksum if that is so, else what is said.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
-  [[noreturn]] void failAt(std::uint32_t index, std::uint32_t body, std::uint64_t row,
-                           const std::string& what);
+  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
+  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box);
 
   RecordingOrigin origin_;
   std::vector<RecordedFrame> index_;

@@ -115,6 +115,10 @@ bool isIntact(const std::filesystem::path& path);
 /// another kind of file. Throws InputError when a sidecar states no hash.
 std::optional<std::string> bakedHash(const std::filesystem::path& recording);
 
+/// What a recording's sidecar says but for the hash, as JSON; "" without a sidecar. Throws
+/// InputError.
+std::string bakedParameters(const std::filesystem::path& recording);
+
 /// Throws InputError if bake() to these paths would overwrite input(), its sidecar, or one
 /// recording's sidecar with another's.
 void requireApart(Simulation& simulation, const std::vector<std::filesystem::path>& paths);
