@@ -46,12 +46,8 @@ Source sourceOf(const Options& options) {
 
 /// Without an extension it gets that of the recording that can hold the scene.
 fs::path outputFor(const SceneInfo& scene, fs::path path) {
-  const auto known = boxRecordingExtensions();
-  if (path.has_extension() && std::ranges::find(known, path.extension().string()) == known.end()) {
-    throw InputError(
-        fmt::format("-o: '{}': recordings are {} files", path.string(), fmt::join(known, " or ")));
-  }
   if (!path.has_extension()) path += recordingExtension(scene);
+  requireRecordingName(path);
   return path;
 }
 
