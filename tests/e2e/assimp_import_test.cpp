@@ -22,11 +22,13 @@ TEST_F(AssimpImport, PairsOfSweptEdgesAreThoseKnown) {
   };
   for (const Json& result : run_into("wanted.json")) {
     EXPECT_EQ(result["status"], "ok") << result["id"];
-    if (result["algorithm"] == "bf") EXPECT_EQ(result["frame_counts"]["pairs"][0], 7847 - 1048);
+    if (result["algorithm"] != "bf") continue;  // others may report more
+    EXPECT_EQ(result["frame_counts"]["pairs"][0], 7847 - 1048);
   }
   for (const Json& result : run_into("all.json", {"--keep", "shared-vertices"})) {
     EXPECT_EQ(result["status"], "ok") << result["id"];
-    if (result["algorithm"] == "bf") EXPECT_EQ(result["frame_counts"]["pairs"][0], 7847);
+    if (result["algorithm"] != "bf") continue;
+    EXPECT_EQ(result["frame_counts"]["pairs"][0], 7847);
   }
 }
 
