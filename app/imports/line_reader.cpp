@@ -125,6 +125,8 @@ std::int64_t LineReader::integer(std::string_view text, std::string_view what) c
   return number;
 }
 
+bool isBlank(std::string_view line) { return trimmed(line).empty(); }
+
 void splitWords(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   for (std::size_t begin = line.find_first_not_of(kWhiteSpace); begin != std::string_view::npos;) {

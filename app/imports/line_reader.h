@@ -59,6 +59,8 @@ class LineReader {
   bool again_ = false;
 };
 
+/// Whether there is nothing but white space.
+bool isBlank(std::string_view line);
 /// What stands between white space in a line.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
 /// What stands between commas, without white space around it.

@@ -48,7 +48,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
   std::vector<std::string_view> cells;
   while (lines.next()) {
     const std::string_view line = lines.line();
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
+    if (imports::isBlank(line)) continue;
     if (lines.number() == 1 && isHeading(line)) continue;
     imports::splitCommas(line, cells);
     if (cells.size() != kCells) {

@@ -85,7 +85,7 @@ void readBounds(LineReader& lines, Head& head) {
 bool readHead(LineReader& lines, Head& head) {
   for (bool first = true; lines.next(); first = false) {
     const std::string_view line = lines.line();
-    if (first && line.find_first_not_of(" \t") == std::string_view::npos) {
+    if (first && imports::isBlank(line)) {
       first = true;
       continue;
     }

@@ -68,7 +68,7 @@ double radiusIn(const LineReader& lines, const std::vector<std::string_view>& wo
 bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
   do {
     if (!lines.next()) return false;
-  } while (lines.line().find_first_not_of(" \t") == std::string_view::npos);
+  } while (imports::isBlank(lines.line()));
   std::vector<std::string_view> words;
   imports::splitWords(lines.line(), words);
   const std::int64_t count = lines.integer(words.front(), "the number of particles");

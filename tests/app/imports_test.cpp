@@ -77,12 +77,16 @@ TEST_F(Imports, ParticlesOfXyz) {
 }
 
 TEST_F(Imports, ABallLiesInItsBox) {
-  const auto frames = read("p.xyz", "1\n\nA 0.1 16777217 -0.3\n", {{"radius", "0.7"}});
-  const Aabb box = boxesOf(*frames, 0)[0];
-  const double centre[] = {0.1, 16777217, -0.3};
-  for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_LE(double{box.min[axis]}, centre[axis] - 0.7);
-    EXPECT_GE(double{box.max[axis]}, centre[axis] + 0.7);
+  std::string text = "30\n\n";
+  for (int i = 0; i < 30; ++i) text += fmt::format("A {0} -{0} {1}\n", 0.1 * i, 16777216 + i);
+  const auto frames = read("p.xyz", text, {{"radius", "0.7"}});
+  const auto boxes = boxesOf(*frames, 0);
+  for (int i = 0; i < 30; ++i) {
+    const double centre[] = {0.1 * i, -0.1 * i, 16777216.0 + i};
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_LE(double{boxes[i].min[axis]}, centre[axis] - 0.7);
+      EXPECT_GE(double{boxes[i].max[axis]}, centre[axis] + 0.7);
+    }
   }
 }
 
@@ -100,6 +104,7 @@ TEST_F(Imports, WhatIsWrongWithXyz) {
   EXPECT_THAT(wrong(kOneParticle, "0"), AllOf(HasSubstr("line 3"), HasSubstr("--radius")));
   EXPECT_THAT(wrong("x\n\n"), HasSubstr("line 1: the number of particles is 'x'"));
   EXPECT_THAT(wrong("-1\n\n"), HasSubstr("negative"));
+  EXPECT_THAT(wrong("\v\n"), HasSubstr("holds no frame"));
   EXPECT_THAT(wrong("9000000000000\n\nA 1 2 3\n"),
               AllOf(HasSubstr("line 3"), HasSubstr("9000000000000")));
   EXPECT_THAT(wrong("1\n"), HasSubstr("a comment is expected"));
