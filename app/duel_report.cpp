@@ -114,15 +114,15 @@ std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
   return text + verdict(result);
 }
 
-std::string duelJson(const DuelResult& result, Recording& recording) {
-  const SceneInfo& scene = recording.scene();
+std::string duelJson(const DuelResult& result, const RecordingReference& recording) {
+  const SceneInfo& scene = recording.scene;
   Json json = {{"schema", "broadmark-duel/1"},
                {"recording",
                 {{"name", scene.name},
                  {"object_type", scene.object_type},
                  {"objects", scene.objects},
                  {"frames", scene.frames},
-                 {"hash", recording.hash()}}},
+                 {"hash", recording.hash}}},
                {"margin", result.margin},
                {"seconds", result.seconds},
                {"decided", result.decided}};

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "broadmark/duel.h"
-#include "broadmark/recording.h"
+#include "broadmark/results.h"
 
 namespace broadmark {
 
@@ -12,6 +12,6 @@ namespace broadmark {
 std::string formatDuel(const DuelResult&, const SceneInfo&);
 
 /// All times and ratios as JSON (schema "broadmark-duel/1").
-std::string duelJson(const DuelResult&, Recording&);
+std::string duelJson(const DuelResult&, const RecordingReference&);
 
 }  // namespace broadmark

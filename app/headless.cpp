@@ -85,7 +85,7 @@ class EntryRun {
   }
 
   /// Runs all repetitions, interleaved. Returns false when interrupted.
-  bool run(Recording& recording, Oracle& oracle) {
+  bool run(IndexedFrames& recording, Oracle& oracle) {
     const int passes = options_.warmup + options_.repetitions.most;
     const SceneInfo& scene = recording.scene();
     const auto steps_of = [&](int some_passes) {
@@ -133,7 +133,7 @@ class EntryRun {
   static constexpr std::size_t kMostHeld = 64;
 
   /// One repetition of one case, unless it has failed already. Returns false when interrupted.
-  bool runOnce(std::size_t i, Recording& recording, Oracle& oracle, const RunHooks& hooks,
+  bool runOnce(std::size_t i, IndexedFrames& recording, Oracle& oracle, const RunHooks& hooks,
                bool measured) {
     CaseResult& result = results_[i];
     if (result.status != Status::ok || exhausted_.skip(result, cases_[i])) return true;
@@ -271,7 +271,7 @@ class PlanRun {
     files_->rewrite(results_);
   }
 
-  void draw(Recording& recording, Oracle& oracle, const fs::path& path) {
+  void draw(IndexedFrames& recording, Oracle& oracle, const fs::path& path) {
     try {
       takeScreenshot(recording, options_.frame.value_or(recording.scene().frames), oracle,
                      options_.picture, path);

@@ -251,6 +251,33 @@ void addHosts(CLI::App& app, HostOptions& hosts) {
       ->excludes(in_process);
 }
 
+std::string readingOption(std::string parameter) {
+  std::ranges::replace(parameter, '_', '-');
+  return fmt::format("--{}", parameter);
+}
+
+std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& options) {
+  std::vector<CLI::Option*> added;
+  options.visitParameters([&](const Parameter& parameter) {
+    const std::string name = readingOption(std::string(parameter.name));
+    const std::string doc(parameter.doc);
+    if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
+      added.push_back(app.add_flag(name, **flag, doc));
+      return;
+    }
+    const auto set = [&options, key = std::string(parameter.name), name](const std::string& text) {
+      try {
+        setParameters(options, {{key, text}});
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name, error.what()));
+      }
+    };
+    added.push_back(
+        addValue(app, name, parameterRange(parameter), set, doc, parameterText(parameter)));
+  });
+  return added;
+}
+
 std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) {
   std::vector<CLI::Option*> added = {
       addList(

@@ -14,6 +14,7 @@
 #include "hosts.h"
 #include "parts.h"
 #include "picture_options.h"
+#include "reading_options.h"
 #include "result_files.h"
 #include "scene_options.h"
 
@@ -104,6 +105,8 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
 CLI::Option* addDevice(CLI::App&, std::string& device);
 /// Where cases run: --in-process, --pin, --hard-limit, --memory-limit
 void addHosts(CLI::App&, HostOptions&);
+/// How the files of a source are read: --swept, --elements, …
+std::vector<CLI::Option*> addReadingOptions(CLI::App&, ReadingOptions&);
 /// What a scene is like: --objects, --object-type, --frames, …
 std::vector<CLI::Option*> addSceneOptions(CLI::App&, SceneOptions&);
 

@@ -22,6 +22,7 @@ namespace {
 void addSource(Plan& plan, const std::string& name, const SessionOptions& options) {
   OpenedSource opened = openSource(name, {.scene = options.scene,
                                           .parameters = options.parameters,
+                                          .reading = options.reading,
                                           .case_id = options.case_id,
                                           .algorithms = plan.algorithms});
   if (opened.results) {
@@ -130,6 +131,7 @@ Plan makePlan(const SessionOptions& options) {
   for (PlanEntry& entry : plan.entries) addCases(entry, selected, options);
   if (options.sources.empty()) plan.cases = selected;
   requireParametersUsed(plan, options);
+  requireReadingUsed(options.reading, plan.entries);
   requireSound(plan);
   if (!options.inspector()) {
     divide(plan, options);

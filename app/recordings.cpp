@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "broadmark/error.h"
+#include "broadmark/swept_frames.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "sweep.h"
@@ -17,12 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls record(FrameProgress) and shows how far it is.
+/// Calls record(FrameProgress) and shows how far it is with what it is `doing`.
 template <class Record>
-bool recordWithProgress(const Simulation& simulation, bool quiet, Record&& record) {
-  const SceneInfo& scene = simulation.scene();
-  Progress progress(fmt::format("baking {} {} N{}", scene.name, scene.object_type, scene.objects),
-                    scene.frames, quiet);
+bool recordWithProgress(const char* doing, const SceneInfo& scene, bool quiet, Record&& record) {
+  Progress progress(
+      fmt::format("{} {} {} N{}", doing, scene.name, scene.object_type, scene.objects),
+      scene.frames, quiet);
   return record([&](std::uint32_t frame) {
     progress.update(frame);
     return !InterruptGuard::requested();
@@ -39,39 +40,47 @@ fs::path bakeInto(Source& source, const fs::path& directory,
   const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
   if (std::ranges::all_of(paths, there)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
-  const bool whole = recordWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
+  const auto& scene = simulation.scene();
+  const bool whole = recordWithProgress("baking", scene, quiet, [&](const auto& progress) {
     return bake(simulation, paths, progress);
   });
   return whole ? paths.front() : fs::path();
 }
 
-std::unique_ptr<Recording> recordTemporary(Simulation& simulation, bool quiet) {
-  RecordingWriter writer(simulation.scene());
-  const bool whole = recordWithProgress(simulation, quiet, [&](const FrameProgress& progress) {
-    return recordAll(simulation, writer, progress);
-  });
+std::unique_ptr<Recording> recordTemporary(const char* doing, FrameSource& frames, bool quiet) {
+  RecordingWriter writer(frames.scene());
+  const bool whole = recordWithProgress(
+      doing, frames.scene(), quiet,
+      [&](const FrameProgress& progress) { return recordAll(frames, writer, progress); });
   return whole ? writer.finishTemporary() : nullptr;
+}
+
+/// The recording as it is, swept or not. Null when interrupted.
+std::unique_ptr<Recording> openPlain(Source& source, const fs::path& directory,
+                                     const std::vector<std::string>& recorders, bool quiet) {
+  if (source.imported) return recordTemporary("importing", *source.imported, quiet);
+  if (!source.simulation) return openRecordingFile(source.reference.path);
+  if (directory.empty()) return recordTemporary("baking", *source.simulation, quiet);
+  const fs::path path = bakeInto(source, directory, recorders, quiet);
+  return path.empty() ? nullptr : openRecordingFile(path);
 }
 
 }  // namespace
 
-std::unique_ptr<Recording> openRecording(Source& source, const fs::path& directory,
-                                         const std::vector<std::string>& recorders, bool quiet) {
-  std::unique_ptr<Recording> recording;
-  if (!source.simulation) {
-    recording = openRecordingFile(source.reference.path);
-  } else if (directory.empty()) {
-    recording = recordTemporary(*source.simulation, quiet);
-  } else if (const fs::path path = bakeInto(source, directory, recorders, quiet); !path.empty()) {
-    recording = openRecordingFile(path);
-  }
+std::unique_ptr<IndexedFrames> openRecording(Source& source, const fs::path& directory,
+                                             const std::vector<std::string>& recorders,
+                                             bool quiet) {
+  std::unique_ptr<Recording> recording = openPlain(source, directory, recorders, quiet);
   if (!recording) return nullptr;
-  source.reference.hash = recording->hash();
+  const bool swept = source.reference.reading.contains("swept");
+  const std::string hash = swept ? sweptHash(recording->hash()) : recording->hash();
+  source.reference.hash = hash;
   if (!source.expected_hash.empty()) {
     requireHash(source.simulation ? source.reference.scene.name + ", simulated again"
                                   : source.reference.path,
-                recording->hash(), source.expected_hash);
+                hash, source.expected_hash);
   }
+  if (swept) return std::make_unique<SweptFrames>(std::move(recording));
   return recording;
 }
 

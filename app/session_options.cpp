@@ -224,6 +224,7 @@ void SessionParser::Parts::addPictures() {
 void SessionParser::Parts::addScene() {
   for (CLI::Option* option : addSceneOptions(app, options.scene)) tag(option, kCase);
   tag(addParameters(app, options.parameters), kCase);
+  for (CLI::Option* option : addReadingOptions(app, options.reading)) tag(option, kCase);
 }
 
 void SessionParser::Parts::addCaseOfResults() {

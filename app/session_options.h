@@ -12,6 +12,7 @@
 #include "cases.h"
 #include "hosts.h"
 #include "picture_options.h"
+#include "reading_options.h"
 #include "repetitions.h"
 #include "result_files.h"
 #include "scene_options.h"
@@ -33,6 +34,7 @@ struct SessionOptions {
   SceneOptions scene;
   CaseOptions cases;
   ParameterValues parameters;         ///< --param: of algorithms or scenes
+  ReadingOptions reading;
   std::vector<std::string> plugins;   ///< libraries with more algorithms
   std::string case_id;                ///< of the results file that is the source; "": none
   std::filesystem::path export_case;  ///< where its smallest failing recording goes; "": nowhere

@@ -145,6 +145,7 @@ Json toJson(const RecordingReference& recording) {
                {"seed", orNull(recording.seed)},
                {"hash", recording.hash}};
   if (!recording.swept.empty()) json["swept"] = toJson(recording.swept);
+  if (!recording.reading.empty()) json["reading"] = toJson(recording.reading);
   if (recording.path.empty()) {
     json["source"] = toJson(recording.scene_parameters);
   } else {
@@ -165,6 +166,9 @@ RecordingReference recordingFrom(const JsonFields& json) {
   scene.world.max = cornerFrom(world.array("max"), world.path("max"));
   if (json.has("seed")) recording.seed = json.integer<std::uint64_t>("seed");
   if (json.has("swept")) recording.swept = parametersFrom(json.at("swept"), json.path("swept"));
+  if (json.has("reading")) {
+    recording.reading = parametersFrom(json.at("reading"), json.path("reading"));
+  }
   recording.hash = json.text("hash");
   if (json.at("source").is_string()) {
     recording.path = json.text("source");

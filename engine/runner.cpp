@@ -127,6 +127,10 @@ std::string recordingId(const RecordingReference& recording) {
   for (const auto& [name, value] : recording.swept) {
     if (name != "seed") id += fmt::format("/{}={}", name, value);
   }
+  for (const auto& [name, value] : recording.reading) {
+    // Of swept boxes and of elements, names tell.
+    if (name != "swept" && name != "elements") id += fmt::format("/{}={}", name, value);
+  }
   return id;
 }
 

@@ -33,24 +33,27 @@ struct Options {
   std::string device;
   SceneOptions scene;
   ParameterValues parameters;
+  ReadingOptions reading;
   DuelOptions duel;
   HostOptions hosts;
   std::filesystem::path json;  ///< "": none
   bool quiet = false;
 };
 
-/// The one recording that is meant. Throws InputError; null when interrupted.
-std::unique_ptr<Recording> open(const Options& options) {
-  OpenedSource opened =
-      openSource(options.source, {.scene = options.scene, .parameters = options.parameters});
+/// The one source that is meant. Throws InputError.
+Source open(const Options& options) {
+  OpenedSource opened = openSource(
+      options.source,
+      {.scene = options.scene, .parameters = options.parameters, .reading = options.reading});
   if (opened.entries.size() != 1) {
     throw InputError(fmt::format("duel: {} stands for {}; a duel is on one", options.source,
                                  counted(opened.entries.size(), "recording")));
   }
-  Source& source = opened.entries.front().source;
+  requireReadingUsed(options.reading, opened.entries);
+  Source source = std::move(opened.entries.front().source);
   requireKnownParameters(options.parameters, source.simulation ? parameterNames(*source.simulation)
                                                                : std::vector<std::string>());
-  return openRecording(source, {}, {}, options.quiet);
+  return source;
 }
 
 std::vector<DuelSide> sidesOf(const Options& options) {
@@ -92,7 +95,8 @@ int run(Options options) {
   if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
-  const std::unique_ptr<Recording> recording = open(options);
+  Source source = open(options);
+  const std::unique_ptr<IndexedFrames> recording = openRecording(source, {}, {}, options.quiet);
   if (!recording) throw Interrupted();
   if (recording->scene().frames == 0) {
     throw InputError(fmt::format("duel: {} has no frame to run", options.source));
@@ -117,7 +121,7 @@ int run(Options options) {
   }();
   progress.update(static_cast<std::uint64_t>(kTicks));
   if (!isStandardOutput(options.json)) progress.print(formatDuel(result, recording->scene()));
-  if (!options.json.empty()) writeOutput(options.json, duelJson(result, *recording));
+  if (!options.json.empty()) writeOutput(options.json, duelJson(result, source.reference));
   return exitStatusOf(result);
 }
 
@@ -151,6 +155,7 @@ std::function<int()> add(CLI::App& app) {
   addDevice(app, options->device);
   addSceneOptions(app, options->scene);
   addParameters(app, options->parameters);
+  addReadingOptions(app, options->reading);
   addHosts(app, options->hosts);
   addPath(app, "--json", "FILE", options->json,
           "write all times and the verdict as JSON; '-': to standard output, instead of the table");

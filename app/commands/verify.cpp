@@ -11,6 +11,7 @@
 #include "broadmark/recording.h"
 #include "broadmark/scene_statistics.h"
 #include "broadmark/scenes/simulation.h"
+#include "broadmark/swept_frames.h"
 #include "commands/command.h"
 #include "exit_status.h"
 #include "interrupt.h"
@@ -18,6 +19,7 @@
 #include "output.h"
 #include "progress.h"
 #include "recordings.h"
+#include "sources/make_source.h"
 #include "table.h"
 #include "words.h"
 
@@ -28,6 +30,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   std::vector<fs::path> files;
+  ReadingOptions reading;
   bool describe = false;
   fs::path json;  ///< "": none
   bool quiet = false;
@@ -140,7 +143,7 @@ std::string formatDescription(const SceneInfo& scene, const SceneDescription& de
 
 /// Reads every frame, and describes the scene if wanted. Nothing when interrupted. Throws
 /// InputError at the first fault.
-std::optional<SceneDescription> readThrough(Recording& recording, bool describe_it,
+std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool describe_it,
                                             const FrameProgress& progress) {
   if (describe_it) return describe(recording, 10, progress);
   for (std::optional<Frame> frame = recording.rewind(); frame; frame = recording.next()) {
@@ -149,31 +152,46 @@ std::optional<SceneDescription> readThrough(Recording& recording, bool describe_
   return SceneDescription{};
 }
 
+/// The file, to be read as the options say. Throws InputError.
+Source sourceOf(const fs::path& file, const Options& options) {
+  const auto import = importOf(file);
+  std::vector<PlanEntry> entries(1);
+  Source& source = entries.front().source;
+  source = import ? importedSource({file}, *import, options.reading) : recordingSource(file);
+  if (options.reading.swept) sweepBoxes(source);
+  requireReadingUsed(options.reading, entries);
+  return std::move(source);
+}
+
 /// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
-  const auto opened = openRecordingFile(file);
-  Recording& recording = *opened;
+  Source source = sourceOf(file, options);
+  const auto opened = openRecording(source, {}, {}, options.quiet);
+  if (!opened) return std::nullopt;
+  IndexedFrames& recording = *opened;
+  const std::string& hash = source.reference.hash;
   const SceneInfo& scene = recording.scene();
-  const bool slow = options.describe || recording.bytes() > (1U << 28);
+  const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
   Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);
   const auto description = readThrough(recording, options.describe, [&](std::uint32_t frame) {
     progress.update(frame);
     return !InterruptGuard::requested();
   });
   if (!description) return std::nullopt;
-  const std::optional<std::string> stated = bakedHash(file);
-  if (stated && *stated != recording.hash()) {
+  std::optional<std::string> stated = bakedHash(file);
+  if (stated && options.reading.swept) stated = sweptHash(*stated);
+  if (stated && *stated != hash) {
     throw InputError(fmt::format("{}: its hash is {}, but {} says {}: changed since it was baked",
-                                 file.string(), recording.hash(),
+                                 file.string(), hash,
                                  fs::path(file).replace_extension(".json").string(), *stated));
   }
   if (!isStandardOutput(options.json)) {
     progress.print(fmt::format("{}: ok: {} {}, {}, hash {}{}", file.string(), scene.name,
-                               scene.object_type, extentText(scene.objects, scene.frames),
-                               recording.hash(), stated ? ", as baked" : ""));
+                               scene.object_type, extentText(scene.objects, scene.frames), hash,
+                               stated ? ", as baked" : ""));
     if (options.describe) progress.print(formatDescription(scene, *description));
   }
-  return DescribedRecording{file.string(), recording.hash(), scene, *description};
+  return DescribedRecording{file.string(), hash, scene, *description};
 }
 
 int run(const Options& options) {
@@ -197,7 +215,11 @@ int run(const Options& options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("files", options->files, recordingKindsText())->type_name("FILE")->required();
+  app.add_option("files", options->files,
+                 fmt::format("{}; or what can be imported: {}", recordingKindsText(),
+                             importKindsText()))
+      ->type_name("FILE")
+      ->required();
   CLI::Option* describe = app.add_flag(
       "--describe", options->describe,
       "also print what each is like, over time: density, pairs per body, share of "
@@ -208,6 +230,7 @@ std::function<int()> add(CLI::App& app) {
   addPath(app, "--json", "FILE", options->json,
           "write that as JSON, too; '-': to standard output, instead of all else")
       ->needs(describe);
+  addReadingOptions(app, options->reading);
   addQuiet(app, options->quiet);
   return [options] { return run(*options); };
 }

@@ -9,6 +9,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/swept_frames.h"
 
 namespace broadmark {
 namespace {
@@ -48,10 +49,11 @@ void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
 
 }  // namespace
 
-Footage::Footage(std::unique_ptr<Recording> recording)
-    : known_(recording->scene().frames), frames_(std::move(recording)) {}
+Footage::Footage(std::unique_ptr<Recording> recording, bool swept)
+    : swept_(swept), known_(recording->scene().frames), frames_(shown(std::move(recording))) {}
 
-Footage::Footage(std::unique_ptr<Simulation> simulation) : simulation_(std::move(simulation)) {
+Footage::Footage(std::unique_ptr<FrameSource> simulation, bool swept)
+    : swept_(swept), simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
   keep(simulation_->scene(), first.boxes);
 }
@@ -60,8 +62,13 @@ Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, box
 
 void Footage::keep(const SceneInfo& scene, std::span<const Aabb> first) {
   kept_ = std::make_shared<const FileDescriptor>(unnamedFile());
-  frames_ = std::make_unique<KeptFrames>(scene, kept_);
+  frames_ = shown(std::make_unique<KeptFrames>(scene, kept_));
   append(*kept_, first);
+}
+
+std::unique_ptr<IndexedFrames> Footage::shown(std::unique_ptr<IndexedFrames> frames) const {
+  if (!swept_) return frames;
+  return std::make_unique<SweptFrames>(std::move(frames));
 }
 
 void Footage::extend() {
@@ -81,10 +88,10 @@ scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
 }
 
 std::unique_ptr<IndexedFrames> Footage::source(std::uint32_t last) const {
-  if (!kept_) return openRecordingFile(frames_->name());
-  SceneInfo scene = frames_->scene();
+  if (!kept_) return shown(openRecordingFile(frames_->name()));
+  SceneInfo scene = simulation_ ? simulation_->scene() : frames_->scene();
   scene.frames = last;
-  return std::make_unique<KeptFrames>(std::move(scene), kept_);
+  return shown(std::make_unique<KeptFrames>(std::move(scene), kept_));
 }
 
 void Footage::save(const std::filesystem::path& path) {

@@ -15,13 +15,14 @@
 
 namespace broadmark {
 
-/// A recording, or a live simulation that goes only as far as it is watched: its frames are kept in
-/// an unnamed temporary file, so that any of them can be seen again. To be used from one thread.
+/// A recording, or a live simulation or import that goes only as far as it is watched: its frames
+/// are kept in an unnamed temporary file, so that any of them can be seen again. Either can be
+/// shown as swept boxes. To be used from one thread.
 class Footage {
  public:
-  explicit Footage(std::unique_ptr<Recording> recording);
+  explicit Footage(std::unique_ptr<Recording> recording, bool swept = false);
   /// The simulation begins with its present parameters.
-  explicit Footage(std::unique_ptr<Simulation> simulation);
+  explicit Footage(std::unique_ptr<FrameSource> simulation, bool swept = false);
   /// A scene of a single frame; `scene.frames` is 0.
   Footage(SceneInfo scene, std::span<const Aabb> boxes);
 
@@ -50,10 +51,13 @@ class Footage {
 
  private:
   void keep(const SceneInfo& scene, std::span<const Aabb> first);
+  /// The frames as they are shown, swept or not.
+  [[nodiscard]] std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames) const;
 
+  bool swept_ = false;
   std::uint32_t known_ = 0;
   std::unique_ptr<IndexedFrames> frames_;
-  std::unique_ptr<Simulation> simulation_;
+  std::unique_ptr<FrameSource> simulation_;
   std::shared_ptr<const FileDescriptor> kept_;  ///< what frames_ reads; null for a recording
 };
 

@@ -8,8 +8,10 @@
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
 #include "broadmark/scenes/authored_simulation.h"
+#include "broadmark/swept_frames.h"
 #include "export_case.h"
 #include "recordings.h"
+#include "sources/make_source.h"
 
 namespace broadmark {
 namespace {
@@ -126,9 +128,9 @@ void Session::chooseScene(const std::string& scene, const std::string& engine) {
 void Session::simulate() {
   const std::string text = formatSceneParameters(*draft);
   playback.show({.open =
-                     [text] {
+                     [text, swept = swept_] {
                        return std::make_unique<Footage>(
-                           parseSceneParameters(text, "scene parameters"));
+                           parseSceneParameters(text, "scene parameters"), swept);
                      },
                  .title = fmt::format("{} (live)", draft->listing().name)});
 }
@@ -185,14 +187,20 @@ void Session::enter(PlanEntry& entry, Opened document_is) {
 }
 
 void Session::enterSource(Source& source, Opened document_is) {
+  swept_ = source.reference.reading.contains("swept");
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
     const fs::path file = source.simulation->input();
+    if (swept_)
+      throw InputError("--swept: not of a scene that is edited: bake it, or add --headless");
     document.start(authored->document(), file);
     if (document_is == Opened::in_motion) document.simulate();
   } else if (source.simulation) {
     // A hash that is expected would be known only after the last frame.
     draft = std::move(source.simulation);
     simulate();
+  } else if (source.imported) {
+    openImport(source.reference);
+    tellOfFile(source.reference.path);
   } else if (!source.reference.path.empty()) {
     openRecording(source.reference.path, source.expected_hash);
     tellOfFile(source.reference.path);
@@ -201,12 +209,26 @@ void Session::enterSource(Source& source, Opened document_is) {
 
 void Session::openRecording(const fs::path& path, const std::string& hash) {
   openRecordingFile(path);  // a bad one is an error at once, and changes nothing
-  const auto open = [path, hash] {
+  const auto open = [path, hash, swept = swept_] {
     std::unique_ptr<Recording> recording = openRecordingFile(path);
-    if (!hash.empty()) requireHash(path.string(), recording->hash(), hash);
-    return std::make_unique<Footage>(std::move(recording));
+    if (!hash.empty()) {
+      requireHash(path.string(), swept ? sweptHash(recording->hash()) : recording->hash(), hash);
+    }
+    return std::make_unique<Footage>(std::move(recording), swept);
   };
   playback.show({.open = open, .title = path.filename().string(), .recording = path});
+}
+
+void Session::openImport(const RecordingReference& reference) {
+  const auto open = [reference, swept = swept_]() -> std::unique_ptr<Footage> {
+    ReadingOptions reading;
+    setParameters(reading, reference.reading);
+    const auto import = importOf(reference.path);
+    if (!import) throw InputError(fmt::format("{}: no longer there", reference.path));
+    Source source = importedSource({reference.path}, *import, reading);
+    return std::make_unique<Footage>(std::move(source.imported), swept);
+  };
+  playback.show({.open = open, .title = fs::path(reference.path).filename().string()});
 }
 
 void Session::offerCases(const fs::path& file, const Results& results) {
@@ -256,6 +278,7 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
 void Session::openExport() {
   const CaseExport::Report report = case_export.report();
   notices.attempt([&] {
+    swept_ = false;
     openRecording(report.file, {});
     lanes.clear();
     lanes.add(report.run);

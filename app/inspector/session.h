@@ -124,6 +124,8 @@ class Session {
   void enterSource(Source& source, Opened document_is);
   /// `hash`: what it has to be; "": whatever it is. Throws InputError.
   void openRecording(const std::filesystem::path& path, const std::string& hash);
+  /// Throws InputError.
+  void openImport(const RecordingReference& reference);
   void offerCases(const std::filesystem::path& file, const Results& results);
   void tellOfFile(const std::filesystem::path& path) const {
     if (on_file) on_file(path);
@@ -131,6 +133,7 @@ class Session {
 
   const HostMaker make_host_;
   std::string noticed_failure_;
+  bool swept_ = false;  ///< what is open is shown as swept boxes
   std::vector<std::function<void()>> put_off_;
   Wish committed_;
 };

@@ -12,6 +12,8 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/recording.h"
+#include "broadmark/swept_frames.h"
+#include "imports/files.h"
 #include "sweep.h"
 
 namespace broadmark {
@@ -127,6 +129,24 @@ Source recordingSource(const fs::path& path) {
   source.reference.path = path.string();
   source.reference.scene = openRecordingFile(path)->scene();
   return source;
+}
+
+Source importedSource(const std::vector<std::string>& names, const FileImport& import,
+                      ReadingOptions options) {
+  Source source;
+  source.imported = import.open(imports::filesOf(names, import.extensions), options);
+  source.reference.scene = source.imported->scene();
+  source.reference.path = names.front();
+  source.reference.reading = options.stated();
+  std::erase_if(source.reference.reading, [&](const auto& option) {
+    return std::ranges::find(import.options, option.first) == import.options.end();
+  });
+  return source;
+}
+
+void sweepBoxes(Source& source) {
+  source.reference.scene.name = sweptName(source.reference.scene);
+  source.reference.reading["swept"] = "on";
 }
 
 fs::path statedPath(const fs::path& file, const std::string& stated) {

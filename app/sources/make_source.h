@@ -20,6 +20,11 @@ bool isSceneId(const std::string& name);
 Source simulationSource(std::unique_ptr<Simulation>);
 /// A recording in a file. Throws InputError.
 Source recordingSource(const std::filesystem::path&);
+/// Files that are imported. Throws InputError.
+Source importedSource(const std::vector<std::string>& names, const FileImport&, ReadingOptions);
+
+/// Makes its boxes swept ones.
+void sweepBoxes(Source&);
 
 /// A path that is stated in `file`: as stated if there is such a file, else relative to `file`.
 std::filesystem::path statedPath(const std::filesystem::path& file, const std::string& stated);

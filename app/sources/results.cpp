@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "broadmark/names.h"
+#include "broadmark/swept_frames.h"
 #include "cases.h"
 #include "sources/make_source.h"
 
@@ -73,17 +74,30 @@ Source simulationAgain(const RecordingReference& reference, const fs::path& resu
     return simulationSource(std::move(simulation));
   }
   const auto engine = parameters.find("engine");  // which brings parameters of its own
-  auto simulation =
-      makeSimulation(reference.scene.name, engine == parameters.end() ? "" : engine->second);
+  std::string name = reference.scene.name;
+  if (reference.reading.contains("swept") && name.ends_with(kSweptSuffix)) {
+    name.resize(name.size() - kSweptSuffix.size());
+  }
+  auto simulation = makeSimulation(name, engine == parameters.end() ? "" : engine->second);
   setParameters(*simulation, parameters);
   return simulationSource(std::move(simulation));
 }
 
+/// The recording, or the imported file, that a case ran on.
+Source fileAgain(const std::string& path, const fs::path& results_file,
+                 const ReadingOptions& reading) {
+  const std::string file = statedPath(results_file, path).string();
+  if (const auto import = importOf(file)) return importedSource({file}, *import, reading);
+  return recordingSource(file);
+}
+
 /// What a case ran on: opening it checks that it is the same.
 Source sourceOf(const RecordingReference& reference, const fs::path& results_file) {
-  Source source = reference.path.empty()
-                      ? simulationAgain(reference, results_file)
-                      : recordingSource(statedPath(results_file, reference.path));
+  ReadingOptions reading;
+  setParameters(reading, reference.reading);
+  Source source = reference.path.empty() ? simulationAgain(reference, results_file)
+                                         : fileAgain(reference.path, results_file, reading);
+  if (reading.swept) sweepBoxes(source);
   source.reference.swept = reference.swept;
   source.expected_hash = reference.hash;
   return source;

@@ -3,6 +3,7 @@
 #include "sources/source.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -10,6 +11,7 @@
 #include "broadmark/files.h"
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
+#include "imports/files.h"
 #include "sources/make_source.h"
 
 namespace broadmark {
@@ -22,6 +24,21 @@ namespace broadmark {
 #undef SOURCE_KIND
 
 namespace {
+
+/// Whether it opens what is named.
+bool opens(const SourceKind& kind, NamedSource& source) {
+  if (!kind.import) return kind.recognises(source);
+  const auto files = imports::filesNamed(source.name(), kind.import->extensions);
+  return !files.empty() && imports::hasExtension(files.front(), kind.import->extensions);
+}
+
+OpenedSource openWith(const SourceKind& kind, NamedSource& source, const OpeningOptions& options) {
+  if (!kind.import) return kind.open(source, options);
+  OpenedSource opened;
+  opened.entries.push_back(
+      {.source = importedSource({source.name()}, *kind.import, options.reading), .cases = {}});
+  return opened;
+}
 
 /// What is wrong with a source that is of no kind.
 InputError unknownSource(NamedSource& source) {
@@ -83,9 +100,41 @@ bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(n
 OpenedSource openSource(const std::string& name, const OpeningOptions& options) {
   NamedSource source(name);
   for (const SourceKind& kind : sourceKinds()) {
-    if (kind.recognises(source)) return kind.open(source, options);
+    if (!opens(kind, source)) continue;
+    OpenedSource opened = openWith(kind, source, options);
+    if (options.reading.swept) {
+      for (PlanEntry& entry : opened.entries) sweepBoxes(entry.source);
+    }
+    return opened;
   }
   throw unknownSource(source);
+}
+
+std::optional<FileImport> importOf(const std::string& name) {
+  NamedSource source(name);
+  for (const SourceKind& kind : sourceKinds()) {
+    if (kind.import && opens(kind, source)) return kind.import;
+  }
+  return {};
+}
+
+std::string importKindsText() {
+  std::vector<std::string> kinds;
+  for (const SourceKind& kind : sourceKinds()) {
+    if (kind.import) kinds.push_back(kind.what);
+  }
+  return fmt::format("{}", fmt::join(kinds, ", "));
+}
+
+void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {
+  for (const auto& [name, value] : options.stated()) {
+    const auto heeds = [&, key = name](const PlanEntry& entry) {
+      return entry.source.reference.reading.contains(key);
+    };
+    if (entries.empty() || std::ranges::any_of(entries, heeds)) continue;
+    throw InputError(
+        fmt::format("{}: no source here has a use for it: leave it out", readingOption(name)));
+  }
 }
 
 }  // namespace broadmark

@@ -14,15 +14,17 @@
 #include "broadmark/results.h"
 #include "broadmark/scenes/simulation.h"
 #include "original/settings.h"
+#include "reading_options.h"
 #include "scene_options.h"
 
 namespace broadmark {
 
 /// A recording before it is opened: everything known without reading or simulating a frame.
 struct Source {
-  RecordingReference reference;            ///< hash and path filled by openRecording()
-  std::unique_ptr<Simulation> simulation;  ///< null for a given recording
-  std::string expected_hash = {};          ///< that the recording must have; "": any
+  RecordingReference reference;                  ///< hash and path filled by openRecording()
+  std::unique_ptr<Simulation> simulation;        ///< null for a given recording
+  std::unique_ptr<IndexedFrames> imported = {};  ///< of files that are no recording; else null
+  std::string expected_hash = {};                ///< that the recording must have; "": any
 };
 
 /// A recording with the cases to be run on it.
@@ -70,17 +72,29 @@ class NamedSource {
 
 /// What a kind of source may need to be opened.
 struct OpeningOptions {
-  SceneOptions scene;                 ///< of scenes that are simulated
-  ParameterValues parameters;         ///< --param: of scenes or algorithms
+  SceneOptions scene;          ///< of scenes that are simulated
+  ParameterValues parameters;  ///< --param: of scenes or algorithms
+  ReadingOptions reading;
   std::string case_id;                ///< of a results file; "": none chosen
   std::vector<Algorithm> algorithms;  ///< all available ones, plug-ins included
+};
+
+/// How files of other programs are read. Several of them are a sequence.
+struct FileImport {
+  std::vector<std::string> extensions;  ///< in lower case: ".csv"
+  std::vector<std::string> options;     ///< those of ReadingOptions that it heeds
+  /// Throws InputError.
+  std::unique_ptr<IndexedFrames> (*open)(const std::vector<std::filesystem::path>&,
+                                         const ReadingOptions&);
 };
 
 /// A kind of source: `broadmark::sources::NAME::kind()` for a NAME in the list in CMakeLists.txt.
 struct SourceKind {
   std::string what;  ///< in help and messages: "recordings (.aabbs, .posrot)"
-  bool (*recognises)(NamedSource&);
-  OpenedSource (*open)(NamedSource&, const OpeningOptions&);
+  bool (*recognises)(NamedSource&) = nullptr;
+  OpenedSource (*open)(NamedSource&, const OpeningOptions&) = nullptr;
+  /// Takes the place of the other two: files with these extensions, folders of them, and patterns.
+  std::optional<FileImport> import = {};
 };
 std::vector<SourceKind> sourceKinds();
 /// What all of them are, for help and messages: "built-in scenes (freefall, …), recordings …".
@@ -91,5 +105,13 @@ bool isSource(const std::string& name);
 
 /// Opens what is named, by the first kind that recognises it. Throws InputError.
 OpenedSource openSource(const std::string& name, const OpeningOptions&);
+
+/// How to import what is named; nothing if that is no file of another program.
+std::optional<FileImport> importOf(const std::string& name);
+/// The kinds of files that can be imported, for help and messages.
+std::string importKindsText();
+
+/// Throws InputError for a reading option that none of these sources heeds.
+void requireReadingUsed(ReadingOptions, const std::vector<PlanEntry>&);
 
 }  // namespace broadmark

@@ -23,6 +23,7 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
       {parts::kOpenCl, {"--help"}, {"--device", ", devices,"}},
       {parts::kOpenCl, {"list"}, {"Compute devices", "gpu-", "b3-"}},
       {parts::kCgal, {"list"}, {"cgal: "}},
+      {parts::kAssimp, {"import", "--help"}, {".ply", ".gltf"}},
       {parts::kOde, {"list"}, {"  ode: "}}};
   for (const Shown& shown : all) {
     const Ended ended = run(shown.call);
@@ -54,6 +55,7 @@ TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
       {parts::kOpenCl, with("--algorithm", "gpu-grid"), "'gpu-grid'"},
       {parts::kOpenCl, {"list", "devices"}, "'devices'"},
       {parts::kCgal, with("--algorithm", "cgal"), "'cgal'"},
+      {parts::kAssimp, {"--headless", "a.ply"}, "BROADMARK_ASSIMP"},
       {parts::kOde, with("--engine", "ode"), "'ode'"}};
   for (const Refused& refused : all) {
     if (!refused.part.included) expectRefusal(refused.call, {refused.word});

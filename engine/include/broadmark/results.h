@@ -59,6 +59,9 @@ struct RecordingReference {
   std::string path;                  ///< "" when it was simulated for this run
   ParameterValues scene_parameters;  ///< all of them, when it was simulated
   ParameterValues swept = {};        ///< of those, what tells it from other recordings of its run
+  /// How it was read, where that is not the default: as swept boxes; of an import also which
+  /// elements of a mesh, …
+  ParameterValues reading = {};
 };
 
 /// How many bodies were present in the frames that were run.

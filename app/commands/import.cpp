@@ -1,0 +1,98 @@
+// broadmark import: files of other programs into one recording.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "broadmark/error.h"
+#include "broadmark/recording.h"
+#include "broadmark/swept_frames.h"
+#include "commands/command.h"
+#include "interrupt.h"
+#include "option_types.h"
+#include "progress.h"
+#include "recordings.h"
+#include "sources/make_source.h"
+#include "words.h"
+
+namespace broadmark::commands::import {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> inputs;
+  fs::path output;
+  ReadingOptions reading;
+  bool quiet = false;
+};
+
+/// All inputs as one source.
+Source sourceOf(const Options& options) {
+  const auto import = importOf(options.inputs.front());
+  if (!import) {
+    throw InputError(fmt::format("{}: cannot be imported; expected: {}", options.inputs.front(),
+                                 importKindsText()));
+  }
+  std::vector<PlanEntry> entries(1);
+  Source& source = entries.front().source;
+  source = importedSource(options.inputs, *import, options.reading);
+  if (options.reading.swept) sweepBoxes(source);
+  requireReadingUsed(options.reading, entries);
+  return std::move(source);
+}
+
+/// Without an extension it gets that of the recording that can hold the scene.
+fs::path outputFor(const SceneInfo& scene, fs::path path) {
+  if (!path.has_extension()) path += recordingExtension(scene);
+  requireRecordingName(path);
+  return path;
+}
+
+int run(const Options& options) {
+  const InterruptGuard guard;
+  Source source = sourceOf(options);
+  std::unique_ptr<IndexedFrames> frames = std::move(source.imported);
+  if (options.reading.swept) frames = std::make_unique<SweptFrames>(std::move(frames));
+  const SceneInfo& scene = frames->scene();
+  const fs::path path = outputFor(scene, options.output);
+  RecordingWriter writer(path, scene, {.source = source.reference.path});
+  Progress progress("importing " + scene.name, scene.frames, options.quiet);
+  const bool whole = recordAll(*frames, writer, [&](std::uint32_t frame) {
+    progress.update(frame);
+    return !InterruptGuard::requested();
+  });
+  if (!whole) throw Interrupted();
+  const std::string hash = writer.finish();
+  progress.print(fmt::format("{}: {} {}, {}, hash {}", path.string(), scene.name, scene.object_type,
+                             extentText(scene.objects, scene.frames), hash));
+  return 0;
+}
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  app.add_option("inputs", options->inputs,
+                 fmt::format("files, folders or patterns, all of one kind: {}; several files are a "
+                             "sequence, in the order of the numbers in their names",
+                             importKindsText()))
+      ->type_name("IN")
+      ->required();
+  addPath(app, "-o,--output", "FILE", options->output,
+          "the recording; without an extension: .aabbs if that can hold it, else .broadmark")
+      ->required();
+  addReadingOptions(app, options->reading);
+  addQuiet(app, options->quiet);
+  return [options] { return run(*options); };
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "import",
+          .summary = "Makes a recording of meshes, particles or boxes from other programs.",
+          .add = add};
+}
+
+}  // namespace broadmark::commands::import

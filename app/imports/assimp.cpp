@@ -1,0 +1,351 @@
+// Meshes by assimp, in a child process of little memory and time: a damaged file may crash it. The
+// child writes what it has read into a file without a name: counts, triangles, then the vertices of
+// each frame.
+//
+// Of an animation, each frame places the nodes of the scene, and with them meshes, or bones that
+// pull at the vertices. Assimp is not to join vertices, nor to do anything else with them: their
+// numbers are those of the file.
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/json_fields.h"
+#include "broadmark/scenes/simulation.h"
+#include "imports/mesh.h"
+
+namespace broadmark::imports {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The beginning of what the child writes.
+struct Head {
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t frames = 0;
+};
+
+// ---- In the child.
+
+/// The two keys around `time`, and how far it is from the first to the second.
+template <class Key>
+struct Between {
+  const Key* first;
+  const Key* second;
+  float share;
+};
+template <class Key>
+Between<Key> between(const Key* keys, unsigned count, double time) {
+  unsigned next = 0;
+  while (next < count && keys[next].mTime <= time) ++next;
+  if (next == 0) return {&keys[0], &keys[0], 0};
+  if (next == count) return {&keys[count - 1], &keys[count - 1], 0};
+  const double from = keys[next - 1].mTime;
+  const double to = keys[next].mTime;
+  return {&keys[next - 1], &keys[next], static_cast<float>((time - from) / (to - from))};
+}
+
+aiVector3D valueAt(const aiVectorKey* keys, unsigned count, double time, aiVector3D otherwise) {
+  if (count == 0) return otherwise;
+  const auto [first, second, share] = between(keys, count, time);
+  return first->mValue + (second->mValue - first->mValue) * share;
+}
+
+aiMatrix4x4 matrixAt(const aiNodeAnim& channel, double time) {
+  const aiVector3D scale =
+      valueAt(channel.mScalingKeys, channel.mNumScalingKeys, time, aiVector3D(1, 1, 1));
+  const aiVector3D position =
+      valueAt(channel.mPositionKeys, channel.mNumPositionKeys, time, aiVector3D());
+  aiQuaternion rotation;
+  if (channel.mNumRotationKeys > 0) {
+    const auto [first, second, share] =
+        between(channel.mRotationKeys, channel.mNumRotationKeys, time);
+    aiQuaternion::Interpolate(rotation, first->mValue, second->mValue, share);
+  }
+  return {scale, rotation, position};
+}
+
+/// A scene as assimp has read it, moved by its first animation.
+class MovingScene {
+ public:
+  explicit MovingScene(const aiScene& scene) : scene_(scene) {
+    if (scene.mRootNode == nullptr) throw InputError("holds no scene");
+    if (scene.mNumAnimations > 0) animation_ = scene.mAnimations[0];
+    if (animation_ != nullptr && animation_->mNumMorphMeshChannels > 0) {
+      throw InputError("its animation morphs the mesh, which is not read");
+    }
+    for (unsigned i = 0; animation_ != nullptr && i < animation_->mNumChannels; ++i) {
+      const aiNodeAnim* channel = animation_->mChannels[i];
+      channels_[channel->mNodeName.C_Str()] = channel;
+    }
+    place(0);
+    visit(*scene.mRootNode, [&](const aiMesh& mesh, const aiNode&) { addTopology(mesh); });
+  }
+
+  [[nodiscard]] const MeshTopology& topology() const { return topology_; }
+
+  /// How many frames there are, so many a second.
+  [[nodiscard]] std::uint64_t frames(double rate) const {
+    if (animation_ == nullptr) return 1;
+    const double frames = animation_->mDuration / ticksPerSecond() * rate;
+    if (!(frames >= 0 && frames < kMostFrames)) {
+      throw InputError(
+          fmt::format("its animation has {:g} frames: at most {} are read", frames, kMostFrames));
+    }
+    constexpr double kAlmost = 1e-6;  // durations are rounded
+    return static_cast<std::uint64_t>(frames + kAlmost) + 1;
+  }
+
+  /// The vertices at a moment.
+  const std::vector<Point>& points(double seconds) {
+    place(seconds * ticksPerSecond());
+    points_.clear();
+    visit(*scene_.mRootNode,
+          [&](const aiMesh& mesh, const aiNode& node) { addPoints(mesh, node); });
+    return points_;
+  }
+
+ private:
+  [[nodiscard]] double ticksPerSecond() const {
+    constexpr double kUsual = 25;  // what assimp takes where a file does not tell
+    return animation_ != nullptr && animation_->mTicksPerSecond > 0 ? animation_->mTicksPerSecond
+                                                                    : kUsual;
+  }
+
+  /// Calls act(mesh, node) for the meshes of the node and of those below it.
+  template <class Act>
+  void visit(const aiNode& node, Act&& act) const {
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) act(*scene_.mMeshes[node.mMeshes[i]], node);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) visit(*node.mChildren[i], act);
+  }
+
+  void addTopology(const aiMesh& mesh) {
+    constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+    const std::uint32_t first = topology_.vertices;
+    if (first + std::uint64_t{mesh.mNumVertices} > kMost) throw InputError("has too many vertices");
+    topology_.vertices += mesh.mNumVertices;
+    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+      const aiFace& face = mesh.mFaces[i];
+      if (face.mNumIndices != 3) continue;  // a point or a line
+      topology_.triangles.push_back(
+          {first + face.mIndices[0], first + face.mIndices[1], first + face.mIndices[2]});
+    }
+  }
+
+  void place(double ticks) {
+    matrices_.clear();
+    placeBelow(*scene_.mRootNode, aiMatrix4x4(), ticks);
+  }
+  void placeBelow(const aiNode& node, const aiMatrix4x4& parent, double ticks) {
+    const auto channel = channels_.find(node.mName.C_Str());
+    const aiMatrix4x4 own =
+        channel == channels_.end() ? node.mTransformation : matrixAt(*channel->second, ticks);
+    const aiMatrix4x4& here = matrices_[&node] = parent * own;
+    named_[node.mName.C_Str()] = &here;
+    for (unsigned i = 0; i < node.mNumChildren; ++i) placeBelow(*node.mChildren[i], here, ticks);
+  }
+
+  void addPoints(const aiMesh& mesh, const aiNode& node) {
+    const std::vector<aiMatrix4x4> pulls = pullsOf(mesh, matrices_.at(&node));
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      const aiVector3D at = pulls[pulls.size() == 1 ? 0 : i] * mesh.mVertices[i];
+      points_.push_back({at.x, at.y, at.z});
+    }
+  }
+
+  /// Where each vertex is moved; one for all without bones.
+  [[nodiscard]] std::vector<aiMatrix4x4> pullsOf(const aiMesh& mesh,
+                                                 const aiMatrix4x4& node) const {
+    if (mesh.mNumBones == 0) return {node};
+    std::vector<aiMatrix4x4> pulls(mesh.mNumVertices, aiMatrix4x4() * 0.0F);
+    std::vector<bool> pulled(mesh.mNumVertices);
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const aiBone& bone = *mesh.mBones[b];
+      const auto at = named_.find(bone.mName.C_Str());
+      if (at == named_.end()) throw InputError("has a bone that is no node");
+      const aiMatrix4x4 moved = *at->second * bone.mOffsetMatrix;
+      for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+        const aiVertexWeight& weight = bone.mWeights[w];
+        if (weight.mVertexId >= mesh.mNumVertices)
+          throw InputError("has a bone without its vertex");
+        pulls[weight.mVertexId] = pulls[weight.mVertexId] + moved * weight.mWeight;
+        pulled[weight.mVertexId] = true;
+      }
+    }
+    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+      if (!pulled[i]) pulls[i] = node;
+    }
+    return pulls;
+  }
+
+  const aiScene& scene_;
+  const aiAnimation* animation_ = nullptr;
+  std::map<std::string, const aiNodeAnim*> channels_;
+  std::map<const aiNode*, aiMatrix4x4> matrices_;  ///< from the node's space into the scene's
+  std::map<std::string, const aiMatrix4x4*> named_;
+  MeshTopology topology_;
+  std::vector<Point> points_;
+};
+
+/// Assimp takes what it finds in a damaged file for indices.
+void requireIndices(const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
+      for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        if (face.mIndices[i] < mesh.mNumVertices) continue;
+        throw InputError(fmt::format("face {} names vertex {}, of {}: damaged, or cut short?", f,
+                                     face.mIndices[i], mesh.mNumVertices));
+      }
+    }
+  }
+}
+
+void writeScene(const fs::path& file, double frame_rate, int out) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (scene == nullptr) {
+    throw InputError(fmt::format("cannot be read: {}", importer.GetErrorString()));
+  }
+  requireIndices(*scene);
+  scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
+  if (scene == nullptr) throw InputError("its polygons cannot be cut into triangles");
+  MovingScene moving(*scene);
+  const MeshTopology& topology = moving.topology();
+  const auto write = [&](auto span) { writeAll(out, std::as_bytes(span), "a temporary file"); };
+  const Head head{topology.vertices, topology.triangles.size(), moving.frames(frame_rate)};
+  write(std::span(&head, 1));
+  write(std::span(topology.triangles));
+  for (std::uint64_t frame = 0; frame < head.frames; ++frame) {
+    write(std::span(moving.points(static_cast<double>(frame) / frame_rate)));
+  }
+}
+
+/// What this process may take beyond what it has.
+void limitResources(std::uint64_t file_bytes) {
+  constexpr std::uint64_t kGib = 1ULL << 30;
+  constexpr std::uint64_t kMemoryPerByte = 200;
+  constexpr rlim_t kSeconds = 600;
+  std::uint64_t pages = 0;  // of data: the sixth number
+  std::ifstream statm("/proc/self/statm");
+  for (int i = 0; i < 6; ++i) statm >> pages;
+  const rlim_t bytes = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + 4 * kGib +
+                       kMemoryPerByte * file_bytes;
+  const rlimit memory{bytes, bytes};
+  const rlimit time{kSeconds, kSeconds};
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_DATA, &memory);
+  ::setrlimit(RLIMIT_CPU, &time);
+  ::setrlimit(RLIMIT_CORE, &no_core);
+}
+
+/// Leaves this instead of what has been written.
+void complain(int out, std::string_view text) {
+  const bool empty = ::ftruncate(out, 0) == 0 && ::lseek(out, 0, SEEK_SET) == 0;
+  if (empty) writeAll(out, std::as_bytes(std::span(text)), "a temporary file");
+}
+
+[[noreturn]] void runChild(const fs::path& file, double frame_rate, int out) {
+  // Those of this program would tell of a fault in it.
+  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
+  try {
+    limitResources(fs::file_size(file));
+    writeScene(file, frame_rate, out);
+    ::_exit(0);
+  } catch (const std::bad_alloc&) {
+    complain(out, "takes too much memory to read");
+  } catch (const std::exception& error) {
+    complain(out, error.what());
+  }
+  ::_exit(1);
+}
+
+// ---- In the parent.
+
+/// What the child has written.
+class ChildOutput {
+ public:
+  explicit ChildOutput(FileDescriptor file) : file_(std::move(file)) {
+    struct stat status {};
+    if (::fstat(file_.get(), &status) == 0) size_ = static_cast<std::uint64_t>(status.st_size);
+  }
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+
+  /// The next bytes. Throws InputError.
+  void read(std::span<std::byte> bytes) {
+    while (!bytes.empty()) {
+      const ssize_t got =
+          ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(read_));
+      if (got <= 0) throw InputError("what assimp has read cannot be read back");
+      bytes = bytes.subspan(static_cast<std::size_t>(got));
+      read_ += static_cast<std::uint64_t>(got);
+    }
+  }
+
+ private:
+  FileDescriptor file_;
+  std::uint64_t size_ = 0;
+  std::uint64_t read_ = 0;
+};
+
+/// Waits for the child. Nothing if all went well, else what is wrong.
+std::optional<std::string> complaintOf(pid_t child, int out) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status)) {
+    const char* name = ::sigabbrev_np(WTERMSIG(status));
+    return fmt::format("assimp crashed on it (SIG{}): a damaged file?",
+                       name == nullptr ? "?" : name);
+  }
+  if (WEXITSTATUS(status) == 0) return {};
+  std::string text(1 << 10, '\0');
+  const ssize_t got = ::pread(out, text.data(), text.size(), 0);
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+  return onOneLine(text);
+}
+
+}  // namespace
+
+MeshTopology readWithAssimp(const fs::path& file, double frame_rate, const PointSink& sink) {
+  openForReading(file);  // a file that is not there is an error of ours
+  FileDescriptor out = unnamedFile();
+  const pid_t child = ::fork();
+  if (child < 0) throw InputError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
+  if (child == 0) runChild(file, frame_rate, out.get());
+  if (const auto complaint = complaintOf(child, out.get())) {
+    throw InputError(fmt::format("{}: {}", file.string(), *complaint));
+  }
+  ChildOutput written(std::move(out));
+  Head head;
+  written.read(std::as_writable_bytes(std::span(&head, 1)));
+  if (head.vertices == 0) throw InputError(fmt::format("{}: no vertices", file.string()));
+  MeshTopology topology{.vertices = static_cast<std::uint32_t>(head.vertices)};
+  topology.triangles.resize(head.triangles);
+  written.read(std::as_writable_bytes(std::span(topology.triangles)));
+  std::vector<Point> points(head.vertices);
+  for (std::uint64_t frame = 0; frame < head.frames; ++frame) {
+    written.read(std::as_writable_bytes(std::span(points)));
+    sink(points);
+  }
+  return topology;
+}
+
+}  // namespace broadmark::imports

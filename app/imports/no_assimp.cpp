@@ -1,0 +1,16 @@
+// Stands for assimp where that is left out.
+
+#include <fmt/format.h>
+
+#include "broadmark/error.h"
+#include "imports/mesh.h"
+#include "option_types.h"
+
+namespace broadmark::imports {
+
+MeshTopology readWithAssimp(const std::filesystem::path& file, double, const PointSink&) {
+  throw InputError(
+      fmt::format("{}: {}: only .obj can be read", file.string(), leftOut(parts::kAssimp)));
+}
+
+}  // namespace broadmark::imports

@@ -1,0 +1,77 @@
+// Frames from text files of particles or boxes. A file is read once when it is opened, to learn how
+// many frames and bodies there are; then frame by frame.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadmark/frame.h"
+#include "imports/line_reader.h"
+
+namespace broadmark::imports {
+
+/// A body in a frame.
+struct TextRow {
+  std::int64_t id = 0;  ///< whatever the file calls it
+  Aabb box;
+  std::uint64_t line = 0;
+};
+
+/// One frame as it stands in a file.
+struct TextFrame {
+  std::optional<std::int64_t> number;  ///< if the file numbers them; those left out are empty
+  std::vector<TextRow> rows;
+};
+
+/// Reads the frame that begins with the next line into a frame that is empty; false at the end of
+/// the file. Throws InputError.
+using TextFormat = std::function<bool(LineReader&, TextFrame&)>;
+
+/// Bodies are numbered in the order of their ids, over all files. One without a row in a frame is
+/// absent in it.
+class TextFrames final : public IndexedFrames {
+ public:
+  /// Frames of all files, one after the other. Throws InputError.
+  TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
+             std::string object_type);
+
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+
+ private:
+  /// Where a frame is.
+  struct FramePlace {
+    std::size_t file = 0;
+    LineReader::Place place;
+    bool empty = false;  ///< it stands nowhere: nobody is there
+  };
+
+  std::span<const Aabb> readBoxes(std::uint32_t index) override;
+  void scan(std::size_t file);
+  /// Into frame_; false at the end of the file.
+  bool readNext(LineReader& reader);
+  void add(const LineReader& reader, FramePlace place);
+  /// Takes note of who is there.
+  void count(const LineReader& reader);
+  [[nodiscard]] LineReader& reader(std::size_t file);
+
+  std::vector<std::filesystem::path> files_;
+  TextFormat format_;
+  SceneInfo scene_;
+  std::vector<FramePlace> places_;
+  std::vector<std::int64_t> ids_;  ///< ascending, by body
+  std::optional<LineReader> reader_;
+  std::size_t reader_file_ = 0;
+  TextFrame frame_;
+  std::optional<std::int64_t> last_number_;  ///< of the frame before
+  std::vector<Aabb> boxes_;
+};
+
+/// The smallest box around a ball. Throws InputError when 32-bit floats cannot hold it.
+Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius);
+
+}  // namespace broadmark::imports

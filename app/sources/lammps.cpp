@@ -1,0 +1,178 @@
+// Particle trajectories as LAMMPS dumps them as text: sections "ITEM: …", of which the last of each
+// frame names the columns and holds a line for each atom, in any order.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "imports/text_frames.h"
+#include "sources/source.h"
+
+namespace broadmark::sources::lammps {
+namespace {
+
+using imports::LineReader;
+using imports::TextFrame;
+
+constexpr std::string_view kItem = "ITEM: ";
+
+/// What precedes the atoms of a frame.
+struct Head {
+  std::int64_t atoms = -1;  ///< -1: not stated
+  std::array<double, 3> low{};
+  std::array<double, 3> high{};
+  bool bounds = false;   ///< low and high are stated
+  bool slanted = false;  ///< the box is no cuboid
+};
+
+/// Which column is what.
+struct Columns {
+  std::array<std::size_t, 3> position{};
+  bool scaled = false;  ///< positions are shares of the box
+  std::optional<std::size_t> id;
+  std::optional<std::size_t> radius;
+  bool diameter = false;  ///< that column holds diameters
+  std::size_t count = 0;
+};
+
+Columns columnsOf(const LineReader& lines, const std::vector<std::string_view>& names) {
+  const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end()) return {};
+    return static_cast<std::size_t>(found - names.begin());
+  };
+  Columns columns{.id = find("id"), .radius = find("radius"), .count = names.size()};
+  if (!columns.radius) {
+    columns.radius = find("diameter");
+    columns.diameter = columns.radius.has_value();
+  }
+  struct Kind {
+    std::array<std::string_view, 3> names;
+    bool scaled;
+  };
+  constexpr Kind kKinds[] = {{{"x", "y", "z"}, false},
+                             {{"xu", "yu", "zu"}, false},
+                             {{"xs", "ys", "zs"}, true},
+                             {{"xsu", "ysu", "zsu"}, true}};
+  for (const Kind& kind : kKinds) {
+    const auto x = find(kind.names[0]);
+    const auto y = find(kind.names[1]);
+    const auto z = find(kind.names[2]);
+    if (!x || !y || !z) continue;
+    columns.position = {*x, *y, *z};
+    columns.scaled = kind.scaled;
+    return columns;
+  }
+  lines.fail("no columns of positions: 'x y z' is expected, or 'xu yu zu', 'xs ys zs'");
+}
+
+void readBounds(LineReader& lines, Head& head) {
+  std::vector<std::string_view> words;
+  imports::splitWords(lines.line(), words);
+  head.slanted = std::ranges::find(words, "xy") != words.end();
+  head.bounds = true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lines.require("the bounds of the box");
+    imports::splitWords(lines.line(), words);
+    if (words.size() < 2) lines.fail("two bounds of the box are expected");
+    head.low[axis] = lines.realNumber(words[0], "a bound of the box");
+    head.high[axis] = lines.realNumber(words[1], "a bound of the box");
+  }
+}
+
+/// The sections before the atoms; then the present line names their columns. False at the end.
+bool readHead(LineReader& lines, Head& head) {
+  for (bool first = true; lines.next(); first = false) {
+    const std::string_view line = lines.line();
+    if (first && imports::isBlank(line)) {
+      first = true;
+      continue;
+    }
+    if (!line.starts_with(kItem)) lines.fail("'ITEM: …' is expected");
+    const std::string_view item = line.substr(kItem.size());
+    if (item.starts_with("ATOMS")) {
+      if (head.atoms < 0) lines.fail("'ITEM: NUMBER OF ATOMS' is expected before the atoms");
+      return true;
+    }
+    if (item.starts_with("BOX BOUNDS")) {
+      readBounds(lines, head);
+    } else if (item.starts_with("NUMBER OF ATOMS")) {
+      lines.require("a number of atoms");
+      head.atoms = lines.integer(lines.line(), "the number of atoms");
+      if (head.atoms < 0) lines.fail("a negative number of atoms");
+    } else if (item.starts_with("TIMESTEP") || item.starts_with("UNITS") ||
+               item.starts_with("TIME")) {
+      lines.require("a value");
+    } else {
+      lines.fail("an unknown ITEM: TIMESTEP, NUMBER OF ATOMS, BOX BOUNDS or ATOMS is expected");
+    }
+  }
+  if (head.atoms >= 0) lines.require("'ITEM: ATOMS'");
+  return false;
+}
+
+std::array<double, 3> centreOf(const LineReader& lines, const std::vector<std::string_view>& words,
+                               const Columns& columns, const Head& head) {
+  std::array<double, 3> centre{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    centre[axis] = lines.realNumber(words[columns.position[axis]], "a coordinate");
+    if (columns.scaled) {
+      centre[axis] = head.low[axis] + centre[axis] * (head.high[axis] - head.low[axis]);
+    }
+  }
+  return centre;
+}
+
+double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
+                const Columns& columns, double stated) {
+  if (stated > 0) return stated;
+  if (!columns.radius) lines.fail("no column 'radius' or 'diameter': say it with --radius");
+  const double size = lines.realNumber(words[*columns.radius], "the radius");
+  if (size < 0) lines.fail(fmt::format("the radius {:g} is negative", size));
+  return columns.diameter ? size / 2 : size;
+}
+
+bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
+  Head head;
+  if (!readHead(lines, head)) return false;
+  std::vector<std::string_view> words;
+  const std::string names(lines.line().substr(kItem.size()));
+  imports::splitWords(names, words);
+  words.erase(words.begin());
+  const Columns columns = columnsOf(lines, words);
+  if (columns.scaled && (!head.bounds || head.slanted)) {
+    lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
+  }
+  for (std::int64_t i = 0; i < head.atoms; ++i) {
+    lines.require(fmt::format("atom {} of {}", i + 1, head.atoms));
+    imports::splitWords(lines.line(), words);
+    if (words.size() < columns.count) {
+      lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
+    }
+    const double size = radiusOf(lines, words, columns, radius);
+    const std::int64_t id = columns.id ? lines.integer(words[*columns.id], "the id") : i;
+    frame.rows.push_back({.id = id,
+                          .box = ballBox(lines, centreOf(lines, words, columns, head), size),
+                          .line = lines.number()});
+  }
+  return true;
+}
+
+std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
+                                    const ReadingOptions& options) {
+  const auto format = [radius = options.radius](LineReader& lines, TextFrame& frame) {
+    return readFrame(lines, frame, radius);
+  };
+  return std::make_unique<imports::TextFrames>(files, format, "Particles");
+}
+
+}  // namespace
+
+SourceKind kind() {
+  return {.what = "LAMMPS dumps (.lammpstrj, .dump)",
+          .import = FileImport{
+              .extensions = {".lammpstrj", ".dump"}, .options = {"radius"}, .open = open}};
+}
+
+}  // namespace broadmark::sources::lammps

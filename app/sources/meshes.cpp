@@ -1,0 +1,31 @@
+// Meshes, one file a frame or an animation in one file, as boxes of their elements.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "imports/element_frames.h"
+#include "parts.h"
+#include "sources/source.h"
+
+namespace broadmark::sources::meshes {
+namespace {
+
+std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
+                                    const ReadingOptions& options) {
+  return std::make_unique<imports::ElementFrames>(files, options);
+}
+
+}  // namespace
+
+SourceKind kind() {
+  // Where assimp is left out, a file that it would read is known, to say so.
+  const std::string shown = parts::kAssimp.included
+                                ? fmt::format("{}", fmt::join(imports::meshExtensions(), ", "))
+                                : ".obj";
+  return {.what = fmt::format("meshes and animations ({})", shown),
+          .import = FileImport{.extensions = imports::meshExtensions(),
+                               .options = {"elements", "keep", "frame_rate"},
+                               .open = open}};
+}
+
+}  // namespace broadmark::sources::meshes

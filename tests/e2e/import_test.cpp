@@ -1,0 +1,124 @@
+// Files of other programs, and swept boxes, from the command line to the results.
+
+#include "e2e/end_to_end.h"
+
+namespace broadmark::tests {
+namespace {
+
+using Import = EndToEnd;
+
+/// Three boxes in a row: the first two touch, the last one appears, the first one vanishes.
+constexpr const char* kCsv =
+    "frame,id,x0,y0,z0,x1,y1,z1\n"
+    "0,0,0,0,0,1,1,1\n0,1,1,0,0,2,1,1\n"
+    "1,0,0,0,0,1,1,1\n1,1,5,0,0,6,1,1\n1,2,3,0,0,4,1,1\n"
+    "2,1,5,0,0,6,1,1\n2,2,3,0,0,4,1,1\n";
+
+/// The pairs of each frame, in a results file of one case.
+std::vector<int> pairsOf(const fs::path& results) {
+  return readJson(results)["cases"][0]["frame_counts"]["pairs"].get<std::vector<int>>();
+}
+
+TEST_F(Import, RunsOnFilesDirectly) {
+  writeFile(file("boxes.csv"), kCsv);
+  runQuietly(
+      {"--headless", "boxes.csv", "--algorithm", "sap", "--check", "full", "--json", "r.json"});
+  EXPECT_THAT(pairsOf(file("r.json")), ElementsAre(0, 0));
+  // In frame 1 body 1 comes by body 2.
+  runQuietly({"--headless", "boxes.csv", "--swept", "--algorithm", "sap", "--check", "full",
+              "--json", "s.json"});
+  EXPECT_THAT(pairsOf(file("s.json")), ElementsAre(2, 0));
+}
+
+TEST_F(Import, ResultsTellHowTheSourceWasRead) {
+  writeFile(file("p.xyz"), "1\n\nA 0 0 0\n1\n\nA 1 0 0\n");
+  runQuietly({"--headless", "p.xyz", "--radius", "0.5", "--swept", "--algorithm", "sap", "--json",
+              "r.json"});
+  const Json result = readJson(file("r.json"))["cases"][0];
+  const Json recording = result["recording"];
+  EXPECT_EQ(recording["name"], "p swept");
+  EXPECT_EQ(recording["source"], "p.xyz");
+  EXPECT_EQ(recording["reading"], Json::parse(R"({"radius": "0.5", "swept": "on"})"));
+  EXPECT_EQ(result["id"], "p swept/Particles/N1/F1/radius=0.5/sap");
+
+  runQuietly({"--headless", "p.xyz", "--radius", "0.5", "--algorithm", "sap", "--json", "u.json"});
+  EXPECT_NE(readJson(file("u.json"))["cases"][0]["recording"]["hash"], recording["hash"]);
+
+  // The same case again: opened in the same way, its hash is checked.
+  runQuietly({"--headless", "r.json", "--case", result["id"], "--json", "again.json"});
+  EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], recording);
+  writeFile(file("p.xyz"), "1\n\nA 0 0 0\n1\n\nA 2 0 0\n");
+  expectRefusal({"--headless", "r.json", "--case", result["id"]}, {"p.xyz", "hash"});
+}
+
+TEST_F(Import, ScenesAndRecordingsCanBeSwept) {
+  const Arguments scene = {"brownian",    "--objects",     "40",      "--frames", "4",
+                           "--algorithm", "sap,kd,dbvt-f", "--check", "full"};
+  const auto with = [&](const Arguments& more) {
+    Arguments call = {"--headless"};
+    call.insert(call.end(), scene.begin(), scene.end());
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
+  };
+  runQuietly(with({"--swept", "--json", "swept.json"}));
+  const Json swept = readJson(file("swept.json"))["cases"];
+  ASSERT_EQ(swept.size(), 3U);
+  for (const Json& result : swept) EXPECT_EQ(result["status"], "ok") << result["algorithm"];
+  runQuietly({"--headless", "swept.json", "--case", swept[0]["id"], "--json", "again.json"});
+  // A recording that is kept is the scene's own; swept, it is the same again.
+  runQuietly(with({"--record", "out"}));
+  const std::string kept = recordingIn("out", "Brownian Cubes N40 F4frames");
+  runQuietly({"--headless", kept, "--swept", "--algorithm", "sap", "--json", "file.json"});
+  EXPECT_EQ(readJson(file("file.json"))["cases"][0]["recording"]["hash"],
+            swept[0]["recording"]["hash"]);
+  const Ended described = run({"verify", kept, "--swept", "--describe"});
+  EXPECT_EQ(described.status, 0) << described.err;
+  EXPECT_THAT(described.out, HasSubstr("Brownian swept Cubes"));
+  const Ended duel = run({"duel", kept, "sap", "bf", "--swept", "--seconds", "0.3", "--json", "-"});
+  EXPECT_EQ(duel.status, 0) << duel.err;
+  EXPECT_THAT(duel.out, HasSubstr("Brownian swept"));
+}
+
+TEST_F(Import, MakesRecordings) {
+  writeFile(file("boxes.csv"), kCsv);
+  EXPECT_EQ(run({"import", "boxes.csv", "-o", "boxes"}).status, 0);
+  EXPECT_TRUE(fs::exists(file("boxes.broadmark"))) << "a body is absent";
+  runQuietly({"--headless", "boxes.broadmark", "--algorithm", "sap,tracy", "--check", "full"});
+  expectRefusal({"import", "boxes.csv", "-o", "no.aabbs"}, {"no.aabbs"});
+  expectRefusal({"import", "boxes.csv", "-o", "no.txt"}, {"no.txt", ".broadmark"});
+
+  for (const int frame : {9, 10}) {
+    writeFile(file("m" + std::to_string(frame) + ".obj"),
+              "v " + std::to_string(frame) + " 0 0\nv 0 0 0\nv 0 1 0\nf 1 2 3\n");
+  }
+  EXPECT_EQ(run({"import", "m10.obj", "m9.obj", "--keep", "shared-vertices", "-o", "m"}).status, 0);
+  EXPECT_TRUE(fs::exists(file("m.aabbs"))) << "all pairs of bodies that are always there";
+  EXPECT_THAT(run({"verify", "m.aabbs"}).out, HasSubstr("m Triangles, 1 body, 1 frame"));
+  EXPECT_THAT(run({"verify", "m*.obj", "--elements", "edges"}).out, HasSubstr("m Edges, 3 bodies"));
+}
+
+TEST_F(Import, BadCalls) {
+  writeFile(file("boxes.csv"), kCsv);
+  writeFile(file("bad.csv"), "0,0,0,0,0,1,1\n");
+  writeFile(file("p.xyz"), "1\n\nA 0 0 0\n");
+  const Arguments run_on = {"--headless", "--algorithm", "sap", "--quiet"};
+  const auto on = [&](const Arguments& more) {
+    Arguments call = run_on;
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
+  };
+  expectRefusal(on({"bad.csv"}), {"bad.csv", "line 1", "8 are expected"});
+  expectRefusal(on({"p.xyz"}), {"p.xyz", "--radius"});
+  expectRefusal(on({"boxes.csv", "--elements", "edges"}), {"--elements"});
+  expectRefusal(on({"freefall", "--radius", "1"}), {"--radius"});
+  expectRefusal(on({"boxes.csv", "--elements", "edge"}), {"--elements", "'edge'"});
+  expectRefusal(on({"boxes.csv", "--keep", "all"}), {"--keep", "'all'"});
+  expectRefusal(on({"*.ply"}), {"*.ply"});
+  expectRefusal({"import", "boxes.csv", "p.xyz", "-o", "no.aabbs"}, {"p.xyz", ".csv"});
+  expectRefusal({"import", "freefall", "-o", "no.aabbs"}, {"freefall", ".csv"});
+  expectRefusal({"import", "bad.csv", "-o", "no.aabbs"}, {"bad.csv", "line 1"});
+  expectRefusal({"import", "boxes.csv", "-o", "none/no.broadmark"}, {"none/no.broadmark"});
+}
+
+}  // namespace
+}  // namespace broadmark::tests

@@ -1,0 +1,53 @@
+// What every import promises: any bytes are either frames that can be read to their end, or an
+// InputError.
+#pragma once
+
+#include <fmt/format.h>
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "sources/source.h"
+
+namespace broadmark::fuzz {
+
+/// Calls act(path) with a file of these bytes.
+template <class Act>
+void withFile(const std::uint8_t* data, std::size_t size, Act&& act) {
+  const FileDescriptor file(::memfd_create("fuzz", 0));
+  writeAll(file.get(), std::as_bytes(std::span(data, size)), "fuzz");
+  try {
+    act(std::filesystem::path(fmt::format("/proc/self/fd/{}", file.get())));
+  } catch (const InputError&) {
+  }
+}
+
+inline bool isWithin(const Aabb& box, const Aabb& world) { return merged(box, world) == world; }
+
+/// Imports the bytes as a file of this kind.
+inline void importThrough(const SourceKind& kind, const std::uint8_t* data, std::size_t size,
+                          double radius = 0) {
+  ReadingOptions options;
+  options.radius = radius;
+  withFile(data, size, [&](const std::filesystem::path& path) {
+    const auto frames = kind.import->open({path}, options);
+    const SceneInfo& scene = frames->scene();
+    // Frames without bodies take no bytes: a short file may have any number of them.
+    for (std::uint32_t index = 0; index <= std::min(scene.frames, 1000U); ++index) {
+      const Frame frame = frames->at(index);
+      if (frame.boxes.size() != scene.objects) std::abort();
+      for (const Aabb& box : frame.boxes) {
+        if (isEmpty(box) ? scene.all_present : !isWithin(box, scene.world)) std::abort();
+        if (isEmpty(box) ? box != kEmptyBox : !overlaps(box, box)) std::abort();
+      }
+    }
+  });
+}
+
+}  // namespace broadmark::fuzz
