@@ -21,12 +21,14 @@
 
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
 #include "bullet_broad_phase.h"
+#include "broadmark/strangers.h"
 #include "variants.h"
 
 namespace broadmark::dbvt {
@@ -87,8 +89,13 @@ class Dbvt final : public BulletBroadPhase {
     all_present_ = scene.all_present;
     filterPairs(*tree_.m_paircache);
     proxies_.resize(boxes().size(), nullptr);
+    std::vector<std::uint32_t> bodies;
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
-      if (!isEmpty(boxes()[body])) create(body);
+      if (!isEmpty(boxes()[body])) bodies.push_back(body);
+    }
+    putToRest(Strangers(scene.filter, bodies), bodies);
+    for (const std::uint32_t body : bodies) {
+      if (proxies_[body] == nullptr) create(body);
     }
     updatePairs();
   }
@@ -152,6 +159,24 @@ class Dbvt final : public BulletBroadPhase {
     proxies_[body] = static_cast<btDbvtProxy*>(
         tree_.createProxy(vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
                           btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr));
+  }
+
+  /// Puts bodies that never meet into the tree at rest, before there is anybody else.
+  void putToRest(const Strangers& strangers, std::span<const std::uint32_t> bodies) {
+    if (strangers.count() == 0) return;
+    const bool deferred = tree_.m_deferedcollide;
+    tree_.m_deferedcollide = true;  // nobody looks for pairs when created,
+    for (const std::uint32_t body : bodies) {
+      if (strangers.contains(body)) create(body);
+    }
+    tree_.m_deferedcollide = false;  // nor here, where all go to rest.
+    for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);
+    tree_.m_deferedcollide = deferred;
+    tree_.m_sets[Tree::FIXED_SET].optimizeTopDown();
+    // As good as it can be: or Bullet would improve a hundredth of it in each of the next frames,
+    // and whenever a body comes to rest.
+    tree_.m_fixedleft = 0;
+    tree_.m_fupdates = 0;
   }
 
   /// For each proxy that it destroys Bullet would go through all pairs: here that is done once.

@@ -8,8 +8,12 @@
 // are kept from the last frame and only those with a moving body are searched for; else all are.
 // With a margin, those of the kept pairs that overlap in this frame are the answer, so it is exact.
 //
-// kd/tree: the tree and its update. kd/search: the search. Both are shared out over the team, which
-// goes beyond the paper.
+// Bodies that do not meet each other, as a level's, stay out of the tree until they move for the
+// first time: kd/rest, in which each moving body looks for those that it overlaps. So a frame in
+// which few of very many bodies move costs only what these do.
+//
+// kd/tree: the tree and its update. kd/search: the search. Both are shared out over the team. That
+// and the bodies at rest go beyond the paper.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Flexible Use of Temporal and Spatial Reasoning for
 // Fast and Scalable CPU Broad-Phase Collision Detection Using KD-Trees", Computer Graphics Forum,
@@ -20,9 +24,12 @@
 #include <deque>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "kd/rest.h"
 #include "kd/search.h"
 #include "kd/tree.h"
 #include "variants.h"
@@ -69,7 +76,14 @@ class Kd final : public BroadPhase {
       worker.arrived.reserve(stored_.size() / workers_.size() + 1);
     }
     runs_.resize(workers_.size());
-    tree_.build(stored_, static_cast<std::size_t>(objects_per_leaf_), *team_);
+    kernels_ = &overlapKernels(execution.isa());
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t body = 0; body < stored_.size(); ++body) {
+      if (stored_[body] != Tree::kGone) bodies.push_back(body);
+    }
+    rest_.build(stored_, bodies, filter_, team_->size());
+    std::erase_if(bodies, [this](std::uint32_t body) { return rest_.holds(body); });
+    tree_.build(stored_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);
   }
 
   void updateObjects(const Frame& frame) override {
@@ -83,9 +97,12 @@ class Kd final : public BroadPhase {
       }
     });
     moved_ = 0;
-    for (const Worker& worker : workers_) moved_ += worker.moved.size() + worker.arrived.size();
+    for (Worker& worker : workers_) {
+      moved_ += worker.moved.size() + worker.arrived.size();
+      rest_.removed(std::exchange(worker.woken, 0));
+    }
     // Before the first search there are no pairs to keep.
-    incremental_ = searched_ && 2 * moved_ < tree_.size();
+    incremental_ = searched_ && 2 * moved_ < tree_.size() + rest_.size();
   }
 
   /// Drops the pairs that are searched for again.
@@ -120,6 +137,7 @@ class Kd final : public BroadPhase {
     team_->run([&](int part) {
       Worker& worker = workers_[static_cast<std::size_t>(part)];
       worker.searcher.search(scene, part, team_->size(), worker.pairs);
+      searchRest(worker, part);
       runs_[static_cast<std::size_t>(part)] =
           margin_ > 0 ? trueOverlaps(worker) : worker.pairs.run();
     });
@@ -133,17 +151,28 @@ class Kd final : public BroadPhase {
   void visitCounters(const CounterVisitor& visit) const override {
     std::uint64_t kept = 0;
     std::uint64_t skipped = 0;
+    std::uint64_t boxes_tested = 0;
     for (const Worker& worker : workers_) {
       kept += worker.kept;
       skipped += worker.searcher.skippedSubtrees();
+      boxes_tested += worker.searcher.boxesTested() + worker.rest.boxes_tested;
     }
     visit("moved bodies", moved_);
+    visit("bodies at rest", rest_.size());
+    visit("boxes looked at", boxes_tested);
     tree_.counts().visit(visit);
     visit("subtrees skipped in searches", skipped);
     visit("pairs kept", kept);
   }
 
-  [[nodiscard]] std::string validate() const override { return tree_.validate(); }
+  [[nodiscard]] std::string validate() const override {
+    for (std::uint32_t body = 0; body < stored_.size(); ++body) {
+      const int places = (tree_.holds(body) ? 1 : 0) + (rest_.holds(body) ? 1 : 0);
+      if (places != (stored_[body] == Tree::kGone ? 0 : 1)) return "a body came or went unseen";
+    }
+    const std::string fault = rest_.validate(stored_);
+    return fault.empty() ? tree_.validate() : fault;
+  }
 
  private:
   struct alignas(64) Worker {
@@ -154,6 +183,8 @@ class Kd final : public BroadPhase {
     PairBuffer answer;                   ///< those of them that overlap, if there is a margin
     std::vector<std::uint32_t> moved;    ///< in this frame: bodies in the tree, vanished ones too
     std::vector<std::uint32_t> arrived;  ///< in this frame: bodies not yet in the tree
+    std::size_t woken = 0;               ///< in this frame: bodies no longer at rest
+    Rest::Scratch rest;
     std::size_t kept = 0;
   };
 
@@ -183,11 +214,36 @@ class Kd final : public BroadPhase {
   void takeOver(Worker& worker, std::uint32_t body, const Aabb& box) {
     const auto margin = static_cast<float>(margin_);
     if (margin > 0) boxes_[body] = box;  // without a margin stored boxes are the boxes
-    const bool is_there = tree_.holds(body);
-    if (is_there && isStill(box, stored_[body], margin)) return;
+    const bool is_in_tree = tree_.holds(body);
+    const bool is_at_rest = rest_.holds(body);
+    if ((is_in_tree || is_at_rest) && isStill(box, stored_[body], margin)) return;
     stored_[body] = storedFor(box);
     moving_[body] = 1;
-    (is_there ? worker.moved : worker.arrived).push_back(body);
+    if (is_at_rest) {
+      rest_.remove(body);
+      ++worker.woken;
+    }
+    // One that vanishes from its rest passes through the tree: its pairs are dropped as all are.
+    (is_in_tree ? worker.moved : worker.arrived).push_back(body);
+  }
+
+  /// Adds the pairs of bodies in the tree and bodies at rest.
+  void searchRest(Worker& worker, int part) {
+    worker.rest.boxes_tested = 0;
+    if (rest_.size() == 0) return;
+    const auto search = [&](std::span<const std::uint32_t> bodies) {
+      for (const std::uint32_t body : bodies) {
+        if (!tree_.holds(body) || !rest_.meets(body)) continue;
+        rest_.search(body, stored_[body], part, *kernels_, worker.rest, worker.pairs);
+      }
+    };
+    if (incremental_) {
+      search(worker.moved);
+      search(worker.arrived);
+    } else {
+      const auto [begin, end] = share(tree_.size(), team_->size(), part);
+      search(tree_.bodies().subspan(begin, end - begin));
+    }
   }
 
   /// Calls work(worker, its share of the bodies) for all workers at once.
@@ -229,6 +285,8 @@ class Kd final : public BroadPhase {
   bool searched_ = false;
   bool incremental_ = false;  ///< pairs of two bodies that keep still are kept
   Tree tree_;
+  Rest rest_;
+  const OverlapKernels* kernels_ = nullptr;
   std::deque<Worker> workers_;
   std::vector<PairRun> runs_;
 };

@@ -46,7 +46,7 @@ Searcher::Searcher(Isa isa)
 void Searcher::search(const Scene& scene, int part, int parts, PairBuffer& pairs) {
   scene_ = &scene;
   pairs_ = &pairs;
-  skipped_ = 0;
+  skipped_ = boxes_tested_ = 0;
   const auto work_at = [&](int p) {
     return std::uint64_t{scene.tree.root().work} * static_cast<std::uint64_t>(p) /
            static_cast<std::uint64_t>(parts);
@@ -113,6 +113,7 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
   sections_.own_still = count - still;
   sections_.end = count;
 
+  boxes_tested_ += count;
   resize(boxes_, capacity_, count);
   for (std::size_t i = 0; i < count; ++i) setBox(boxes_, i, scene_->boxes[arranged_[i]]);
 }
