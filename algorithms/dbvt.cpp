@@ -172,7 +172,7 @@ class Dbvt final : public BulletBroadPhase {
     tree_.m_deferedcollide = false;  // nor here, where all go to rest.
     for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);
     tree_.m_deferedcollide = deferred;
-    tree_.m_sets[Tree::FIXED_SET].optimizeTopDown();
+    tree_.m_sets[Tree::FIXED_SET].optimizeTopDown(2);
     // As good as it can be: or Bullet would improve a hundredth of it in each of the next frames,
     // and whenever a body comes to rest.
     tree_.m_fixedleft = 0;

@@ -7,6 +7,8 @@
 // than half of the bodies keep still (and the pairs kept are complete), pairs of two still bodies
 // are kept from the last frame and only those with a moving body are searched for; else all are.
 // With a margin, those of the kept pairs that overlap in this frame are the answer, so it is exact.
+// Where events are asked for, a pair that is dropped may have ended and one that is found may have
+// begun: the boxes of its two bodies, before and now, tell.
 //
 // Bodies that do not meet each other, as a level's, stay out of the tree until they move for the
 // first time: kd/rest, in which each moving body looks for those that it overlaps. So a frame in
@@ -84,6 +86,7 @@ class Kd final : public BroadPhase {
     rest_.build(stored_, bodies, filter_, team_->size());
     std::erase_if(bodies, [this](std::uint32_t body) { return rest_.holds(body); });
     tree_.build(stored_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);
+    if (reports_events_) findFirstEvents();
   }
 
   void updateObjects(const Frame& frame) override {
@@ -107,6 +110,7 @@ class Kd final : public BroadPhase {
 
   /// Drops the pairs that are searched for again.
   void cleanCache() override {
+    if (reports_events_) forWorkers([this](Worker& worker, Range) { findEnded(worker); });
     forWorkers([this](Worker& worker, Range part) {
       if (incremental_) {
         if (moved_ > 0) worker.pairs.retain([this](Pair p) { return isKept(p); });
@@ -138,13 +142,25 @@ class Kd final : public BroadPhase {
       Worker& worker = workers_[static_cast<std::size_t>(part)];
       worker.searcher.search(scene, part, team_->size(), worker.pairs);
       searchRest(worker, part);
-      runs_[static_cast<std::size_t>(part)] =
-          margin_ > 0 ? trueOverlaps(worker) : worker.pairs.run();
+      if (reports_events_) {
+        findBegun(worker);
+      } else {
+        runs_[static_cast<std::size_t>(part)] =
+            margin_ > 0 ? trueOverlaps(worker) : worker.pairs.run();
+      }
     });
     searched_ = true;
+    if (!reports_events_) return;
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      began_[i] = workers_[i].began.run();
+      ended_[i] = workers_[i].ended.run();
+    }
   }
 
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+
+  void reportEvents() override { reports_events_ = true; }
+  [[nodiscard]] PairEvents events() const override { return {began_, ended_}; }
 
   void drawStructure(DebugDraw& draw) const override { tree_.draw(draw, world_); }
 
@@ -184,6 +200,10 @@ class Kd final : public BroadPhase {
     std::vector<std::uint32_t> moved;    ///< in this frame: bodies in the tree, vanished ones too
     std::vector<std::uint32_t> arrived;  ///< in this frame: bodies not yet in the tree
     std::size_t woken = 0;               ///< in this frame: bodies no longer at rest
+    // Of events only.
+    std::vector<std::uint32_t> changed;  ///< in this frame: its share of the bodies
+    PairBuffer began;
+    PairBuffer ended;
     Rest::Scratch rest;
     std::size_t kept = 0;
   };
@@ -192,7 +212,7 @@ class Kd final : public BroadPhase {
     return isEmpty(box) ? Tree::kGone : enlarged(box, static_cast<float>(margin_));
   }
 
-  /// Marks no body as moving.
+  /// Marks no body as moving: what is now was before.
   void forgetMoved() {
     forWorkers([this](Worker& worker, Range part) {
       if (incremental_) {
@@ -203,6 +223,8 @@ class Kd final : public BroadPhase {
       }
       worker.moved.clear();
       worker.arrived.clear();
+      for (const std::uint32_t body : worker.changed) before_[body] = boxOf(body);
+      worker.changed.clear();
     });
   }
 
@@ -213,6 +235,10 @@ class Kd final : public BroadPhase {
 
   void takeOver(Worker& worker, std::uint32_t body, const Aabb& box) {
     const auto margin = static_cast<float>(margin_);
+    if (reports_events_) {
+      before_[body] = boxOf(body);
+      worker.changed.push_back(body);
+    }
     if (margin > 0) boxes_[body] = box;  // without a margin stored boxes are the boxes
     const bool is_in_tree = tree_.holds(body);
     const bool is_at_rest = rest_.holds(body);
@@ -225,6 +251,47 @@ class Kd final : public BroadPhase {
     }
     // One that vanishes from its rest passes through the tree: its pairs are dropped as all are.
     (is_in_tree ? worker.moved : worker.arrived).push_back(body);
+  }
+
+  /// In this frame.
+  [[nodiscard]] Aabb boxOf(std::uint32_t body) const {
+    if (margin_ > 0) return boxes_[body];
+    return stored_[body] == Tree::kGone ? kEmptyBox : stored_[body];
+  }
+  [[nodiscard]] bool overlapped(Pair pair) const {
+    return broadmark::overlaps(before_[pair.a], before_[pair.b]);
+  }
+  [[nodiscard]] bool overlapNow(Pair pair) const {
+    return broadmark::overlaps(boxOf(pair.a), boxOf(pair.b));
+  }
+
+  /// All pairs of the initial pose begin.
+  void findFirstEvents() {
+    began_.resize(workers_.size());
+    ended_.resize(workers_.size());
+    before_.assign(stored_.size(), kEmptyBox);
+    cleanCache();
+    updateStructures();
+    searchOverlaps();
+    for (std::uint32_t body = 0; body < before_.size(); ++body) before_[body] = boxOf(body);
+  }
+
+  /// Before pairs are dropped. With a margin those that are kept may end, too.
+  void findEnded(Worker& worker) {
+    worker.ended.clear();
+    const bool kept_may_end = margin_ > 0;
+    if (moved_ == 0 && !kept_may_end) return;
+    for (const Pair pair : worker.pairs.run()) {
+      if (!kept_may_end && isKept(pair)) continue;
+      if (overlapped(pair) && !overlapNow(pair)) worker.ended.add(pair.a, pair.b);
+    }
+  }
+
+  void findBegun(Worker& worker) {
+    worker.began.clear();
+    for (const Pair pair : worker.pairs.run().subspan(margin_ > 0 ? 0 : worker.kept)) {
+      if (overlapNow(pair) && !overlapped(pair)) worker.began.add(pair.a, pair.b);
+    }
   }
 
   /// Adds the pairs of bodies in the tree and bodies at rest.
@@ -289,6 +356,10 @@ class Kd final : public BroadPhase {
   const OverlapKernels* kernels_ = nullptr;
   std::deque<Worker> workers_;
   std::vector<PairRun> runs_;
+  bool reports_events_ = false;
+  std::vector<Aabb> before_;  ///< in the frame before, if events are reported
+  std::vector<PairRun> began_;
+  std::vector<PairRun> ended_;
 };
 
 }  // namespace
@@ -296,7 +367,7 @@ class Kd final : public BroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "KD",
-      .traits = {.incremental = true, .changing_worlds = ChangingWorlds::native},
+      .traits = {.incremental = true, .events = true, .changing_worlds = ChangingWorlds::native},
       .description = {
           .principle = "tree",
           .optimisations = "incremental tree and pairs",

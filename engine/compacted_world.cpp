@@ -22,12 +22,7 @@ void CompactedWorld::initialize(const SceneInfo& scene, const Frame& first, Exec
   matrix_ = filter_.matrix();
   std::vector<std::uint32_t> all(scene.objects);
   std::iota(all.begin(), all.end(), 0U);
-  strangers_ = Strangers(filter_, all);
-  for (const std::uint32_t body : all) {
-    if (strangers_.contains(body)) stranger_bodies_.push_back(body);
-    if (strangers_.meet(body)) meeting_bodies_.push_back(body);
-  }
-  near_.emplace(scene.world);
+  findStrangers(scene, all);
   worlds_.emplace(scene);
   present_.assign(scene.objects, 0);
   places_.assign(scene.objects, kAbsent);
@@ -43,6 +38,19 @@ void CompactedWorld::initialize(const SceneInfo& scene, const Frame& first, Exec
   compacted.filter = {};
   compacted.world = worlds_->world();
   algorithm_->initialize(compacted, {first.index, boxes_, changed_}, execution);
+}
+
+void CompactedWorld::findStrangers(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
+  const Strangers strangers(filter_, bodies);
+  const auto meeting = static_cast<std::size_t>(
+      std::ranges::count_if(bodies, [&](std::uint32_t body) { return strangers.meet(body); }));
+  if (strangers.count() < meeting) return;  // to look who is near would cost more than it saves
+  strangers_ = strangers;
+  for (const std::uint32_t body : bodies) {
+    if (strangers_.contains(body)) stranger_bodies_.push_back(body);
+    if (strangers_.meet(body)) meeting_bodies_.push_back(body);
+  }
+  near_.emplace(scene.world);
 }
 
 void CompactedWorld::updateObjects(const Frame& frame) {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "broadmark/broad_phase.h"
@@ -46,6 +47,7 @@ class CompactedWorld final : public BroadPhase {
  private:
   static constexpr std::uint32_t kAbsent = 0xFFFF'FFFF;
 
+  void findStrangers(const SceneInfo& scene, std::span<const std::uint32_t> bodies);
   void takeOver(const Frame& frame);
   bool countPresent(const Frame& frame);
   void markMeeting(const Frame& frame);
@@ -66,7 +68,7 @@ class CompactedWorld final : public BroadPhase {
   std::vector<std::uint8_t> present_;                           ///< by body: 1 if it is
   std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present, by layer
   std::uint32_t meetable_ = 0;  ///< bit by layer: somebody is there whom it meets
-  Strangers strangers_;
+  Strangers strangers_;         ///< if that is worth it
   std::vector<std::uint32_t> stranger_bodies_;
   std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet strangers
   std::optional<NearGrid> near_;               ///< of these

@@ -85,16 +85,16 @@ class LivingWorld {
   std::mt19937 random_{1};
 };
 
-/// Unit cubes, a tenth of the space: nearly all stand still and do not meet each other; the last
-/// ones wander about.
+/// Unit cubes, a tenth of the space: nearly all stand still and, with `layers`, do not meet each
+/// other; the last ones wander about.
 class StaticLevel final : public LivingWorld {
  public:
-  StaticLevel(std::uint32_t still, std::uint32_t movers) : movers_(movers) {
+  StaticLevel(std::uint32_t still, std::uint32_t movers, bool layers = true) : movers_(movers) {
     const std::uint32_t all = still + movers;
     std::vector<BodyGroups> groups(all);
     for (std::uint32_t body = still; body < all; ++body) groups[body].layer = 1;
     begin("StaticLevel", inputs::uniform(all, 0, 1), inputs::cubeRoot(10.0 * all),
-          {groups, LayerMatrix().set(0, 1).set(1, 1)});
+          layers ? CollisionFilter(groups, LayerMatrix().set(0, 1).set(1, 1)) : CollisionFilter());
   }
 
  private:
@@ -155,7 +155,8 @@ class ComeAndGo final : public LivingWorld {
 /// Small worlds, all at the same place.
 class ManyWorlds final : public LivingWorld {
  public:
-  ManyWorlds(std::uint32_t worlds, std::uint32_t bodies_each) {
+  ManyWorlds(std::uint32_t worlds, std::uint32_t bodies_each)
+      : worlds_(worlds), bodies_each_(bodies_each) {
     std::vector<BodyGroups> groups;
     std::vector<Aabb> boxes;
     for (std::uint32_t world = 0; world < worlds; ++world) {
@@ -166,12 +167,31 @@ class ManyWorlds final : public LivingWorld {
     }
     begin("ManyWorlds", std::move(boxes), inputs::cubeRoot(10.0 * bodies_each),
           {groups, LayerMatrix().set(0, 0)});
+    all_.resize(bodies_each);
+    std::iota(all_.begin(), all_.end(), 0U);
+  }
+
+  [[nodiscard]] std::uint32_t worlds() const { return worlds_; }
+  /// One of the worlds, as if there were no other.
+  [[nodiscard]] SceneInfo sceneOfOne() const {
+    SceneInfo one = scene();
+    one.objects = bodies_each_;
+    one.filter = {};
+    return one;
+  }
+  [[nodiscard]] Frame frameOfOne(std::uint32_t world) const {
+    return {frame().index, frame().boxes.subspan(std::size_t{world} * bodies_each_, bodies_each_),
+            all_};
   }
 
  private:
   void change() override {
     for (std::uint32_t body = 0; body < size(); ++body) put(body, stepped(box(body), 0.2F));
   }
+
+  std::uint32_t worlds_;
+  std::uint32_t bodies_each_;
+  std::vector<std::uint32_t> all_;
 };
 
 /// Cases that take turns, a frame each; each is in a world of its own or shares one.
