@@ -10,6 +10,9 @@
 // Bullet has for that). By itself Bullet looks through only a tenth of its pairs a frame for stale
 // ones: here all of them are looked through, or they would pile up.
 //
+// Events are what Bullet's hash table tells as pairs come and go. A frame in which nothing changed
+// does not reach Bullet then.
+//
 // Bullet's margin is a global variable. An instance sets it for the length of a call and puts the
 // former value back, and the host lets nobody else use it meanwhile (traits.exclusive): so
 // instances with different margins may live at the same time.
@@ -20,6 +23,7 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -88,6 +92,7 @@ class Dbvt final : public BulletBroadPhase {
     BulletBroadPhase::initialize(scene, first, execution);
     all_present_ = scene.all_present;
     filterPairs(*tree_.m_paircache);
+    if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
     std::vector<std::uint32_t> bodies;
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
@@ -98,6 +103,7 @@ class Dbvt final : public BulletBroadPhase {
       if (proxies_[body] == nullptr) create(body);
     }
     updatePairs();
+    if (reportsEvents()) findEvents();
   }
 
   void updateStructures() override {
@@ -141,7 +147,43 @@ class Dbvt final : public BulletBroadPhase {
   }
 
  private:
+  /// Pairs that came and went, told by Bullet's hash table; one may do so several times.
+  struct Changes final : btOverlappingPairCallback {
+    std::vector<Pair> came;
+    std::vector<Pair> went;
+
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+      came.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                btDispatcher* /*dispatcher*/) override {
+      went.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
+                                               btDispatcher* /*dispatcher*/) override {}
+  };
+
+  /// A pair that went and came again has neither ended nor begun.
+  void findEvents() {
+    std::ranges::sort(changes_.came);
+    std::ranges::sort(changes_.went);
+    began_.clear();
+    ended_.clear();
+    std::ranges::set_difference(changes_.came, changes_.went, std::back_inserter(began_));
+    std::ranges::set_difference(changes_.went, changes_.came, std::back_inserter(ended_));
+    changes_.came.clear();
+    changes_.went.clear();
+    setEvents(began_, ended_);
+  }
+
   void findPairs() override {
+    if (reportsEvents()) {
+      if (!moved().empty()) updatePairs();
+      findEvents();
+      return;
+    }
     updatePairs();
     addPairs(*tree_.m_paircache, [](std::uint32_t, std::uint32_t) { return true; });
   }
@@ -230,6 +272,9 @@ class Dbvt final : public BulletBroadPhase {
 
   double margin_ = 0.05;  ///< Bullet's default
   bool all_present_ = true;
+  Changes changes_;
+  std::vector<Pair> began_;
+  std::vector<Pair> ended_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
   std::uint64_t reinsertions_ = 0;     ///< this frame's
@@ -241,6 +286,7 @@ std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "DBVT",
       .traits = {.incremental = true,
+                 .events = true,
                  .library_allocates = true,
                  .changing_worlds = ChangingWorlds::native,
                  .max_objects = 0x7FFF'FFFE,

@@ -145,6 +145,7 @@ std::string formatTable(std::span<const CaseResult> results) {
   std::string text = fmt::format("{} {}, {}", recording.scene.name, recording.scene.object_type,
                                  extentText(recording.scene.objects, recording.scene.frames));
   for (const auto& [name, value] : recording.swept) text += fmt::format(", {}={}", name, value);
+  if (results.front().answer == AnswerKind::events) text += ", events";
   text += '\n';
   std::vector<std::vector<std::string>> table = {{"", "algorithm", "threads", "ISA", "parameters",
                                                   "mean", "median", "p95", "pairs", "missed",

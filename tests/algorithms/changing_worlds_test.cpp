@@ -28,7 +28,7 @@ std::vector<NamedPresence> everyPresence() {
 class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> {
  protected:
   void SetUp() override {
-    for (const Configuration& way : configurations(GetParam())) {
+    for (const Configuration& way : everyConfiguration(GetParam())) {
       runs_.emplace_back(describe(GetParam(), way), TestRun(GetParam(), way));
     }
   }
