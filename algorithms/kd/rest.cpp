@@ -9,6 +9,7 @@
 #include <array>
 #include <iterator>
 
+#include "kd/set_box.h"
 #include "moments.h"
 
 namespace broadmark::kd {
@@ -47,13 +48,6 @@ void putInOrder(std::span<std::uint32_t> bodies, std::span<const Aabb> boxes, st
       [&](std::uint32_t body) { return Moments::centre(boxes[body], longest); });
   putInOrder(bodies.first(half), boxes, block);
   putInOrder(bodies.subspan(half), boxes, block);
-}
-
-void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.min(axis)[i] = box.min[axis];
-    boxes.max(axis)[i] = box.max[axis];
-  }
 }
 
 bool contains(const Aabb& outer, const Aabb& inner) { return merged(outer, inner) == outer; }

@@ -12,8 +12,8 @@
 #include "broadmark/collision_filter.h"
 #include "broadmark/pair.h"
 #include "broadmark/range.h"
-#include "simd/overlap_kernels.h"
 #include "broadmark/strangers.h"
+#include "simd/overlap_kernels.h"
 
 namespace broadmark::kd {
 

@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "boundary_near.h"
+#include "kd/set_box.h"
 #include "moments.h"
 
 namespace broadmark::kd {
@@ -21,13 +22,6 @@ namespace {
 
 /// Vector tests that cost as much as to sort a box and find its window.
 constexpr std::size_t kVectorsPerSorted = 16;
-
-void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.min(axis)[i] = box.min[axis];
-    boxes.max(axis)[i] = box.max[axis];
-  }
-}
 
 /// As BoxArrays::resize, but with room to spare once it has to grow.
 void resize(BoxArrays& boxes, std::size_t& capacity, std::size_t count) {
