@@ -11,6 +11,9 @@
 // - The beginning. Bullet inserts bodies one by one, O(n²) swaps; here all are sorted at once and
 //   swept once along the best axis.
 //
+// Events need no hash table: a pair that begins or ends is one that Bullet wants to add or remove,
+// or two ends have met or parted within the missing bit. The boxes before and now decide.
+//
 // Papers: D. Baraff, "Dynamic Simulation of Non-Penetrating Rigid Bodies", PhD thesis, Cornell,
 // 1992; P. Terdiman, "Sweep-and-prune", 2007. Library: Bullet 3, btAxisSweep3.
 
@@ -58,9 +61,9 @@ unsigned position(const Aabb& box, std::uint32_t body, int axis, bool is_max) {
 /// handle 0 is Bullet's sentinel at both ends of each axis.
 class Sweep final : public bt32BitAxisSweep3 {
  public:
-  /// Forms no pairs yet.
-  explicit Sweep(std::span<const Aabb> boxes)
-      : bt32BitAxisSweep3({0, 0, 0}, {1, 1, 1}, static_cast<unsigned>(boxes.size()), nullptr,
+  /// Forms no pairs yet. They go into `pairs`, or, if that is null, into Bullet's hash table.
+  Sweep(std::span<const Aabb> boxes, btOverlappingPairCache* pairs)
+      : bt32BitAxisSweep3({0, 0, 0}, {1, 1, 1}, static_cast<unsigned>(boxes.size()), pairs,
                           /*disableRaycastAccelerator=*/true) {
     m_numHandles = static_cast<unsigned>(boxes.size());
     m_firstFreeHandle = 0;
@@ -92,6 +95,25 @@ class Sweep final : public bt32BitAxisSweep3 {
       if (max < max_before) sortMaxDown(axis, max_edge, nullptr, true);
       swaps_ += distance(min_edge, min_edge_before) + distance(max_edge, max_edge_before);
     }
+  }
+
+  /// Calls visit(other) for each body that has an end at the position of this one's start, or a
+  /// start at that of its end.
+  template <class Visit>
+  void forEachTouching(std::uint32_t body, int axis, bool is_max, Visit visit) const {
+    const Handle& handle = *getHandle(body + 1);
+    const Edge* const edges = m_pEdges[axis];
+    const unsigned own = (is_max ? handle.m_maxEdges : handle.m_minEdges)[axis];
+    const auto meets = [&](unsigned e) {
+      return edges[e].m_handle != 0 && (edges[e].m_pos | 1U) == (edges[own].m_pos | 1U);
+    };
+    const auto show = [&](unsigned e) {
+      if ((edges[e].IsMax() != 0) != is_max && edges[e].m_handle != body + 1) {
+        visit(static_cast<std::uint32_t>(edges[e].m_handle) - 1);
+      }
+    };
+    for (unsigned e = own; meets(e - 1); --e) show(e - 1);
+    for (unsigned e = own; meets(e + 1); ++e) show(e + 1);
   }
 
   /// Sweeps once: two intervals meet where the one that begins later begins.
@@ -179,14 +201,26 @@ class AxisSweep final : public BulletBroadPhase {
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
-    sweep_ = std::make_unique<Sweep>(boxes());
+    sweep_ = std::make_unique<Sweep>(boxes(), reportsEvents() ? &candidates_ : nullptr);
     filterPairs(*sweep_->getOverlappingPairCache());
     sweep_->findFirstPairs();
+    if (!reportsEvents()) return;
+    before_.assign(boxes().size(), kEmptyBox);
+    findEvents();
+  }
+
+  void updateObjects(const Frame& frame) override {
+    if (reportsEvents()) {
+      for (const std::uint32_t body : moved()) before_[body] = boxes()[body];
+    }
+    BulletBroadPhase::updateObjects(frame);
   }
 
   void updateStructures() override {
     swaps_before_ = sweep_->swaps();
+    if (reportsEvents()) addTouching();
     for (const std::uint32_t body : moved()) sweep_->move(body, boxes()[body]);
+    if (reportsEvents()) addTouching();
   }
 
   /// Each axis of the world, the one along which the fewest bodies meet in another colour.
@@ -210,13 +244,69 @@ class AxisSweep final : public BulletBroadPhase {
   [[nodiscard]] std::string validate() const override { return sweep_->validate(boxes()); }
 
  private:
+  /// Pairs that may have begun or ended, some of them several times.
+  struct Candidates final : btNullPairCache {
+    std::vector<Pair> pairs;
+
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+      pairs.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                btDispatcher* /*dispatcher*/) override {
+      pairs.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+  };
+
+  /// Adds the bodies that those which moved touch now, as far as positions tell. Only where they
+  /// moved: on another axis nothing has come about.
+  void addTouching() {
+    for (const std::uint32_t body : moved()) {
+      const auto add = [&](std::uint32_t other) {
+        candidates_.pairs.push_back(orderedPair(body, other));
+      };
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto moved_at = [&](auto side) {
+          return (before_[body].*side)[axis] != (boxes()[body].*side)[axis];
+        };
+        if (moved_at(&Aabb::min)) sweep_->forEachTouching(body, axis, false, add);
+        if (moved_at(&Aabb::max)) sweep_->forEachTouching(body, axis, true, add);
+      }
+    }
+  }
+
+  void findEvents() {
+    began_.clear();
+    ended_.clear();
+    for (const Pair pair : candidates_.pairs) {
+      const bool before = broadmark::overlaps(before_[pair.a], before_[pair.b]);
+      const bool now = broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]);
+      if (before == now || !isWanted(pair)) continue;
+      (now ? began_ : ended_).push_back(pair);
+    }
+    candidates_.pairs.clear();
+    for (std::vector<Pair>* const pairs : {&began_, &ended_}) {
+      std::ranges::sort(*pairs);
+      pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+    }
+    setEvents(began_, ended_);
+  }
+
   void findPairs() override {
+    if (reportsEvents()) return findEvents();
     addPairs(*sweep_->getOverlappingPairCache(), [this](std::uint32_t a, std::uint32_t b) {
       return broadmark::overlaps(boxes()[a], boxes()[b]);
     });
   }
 
   Aabb world_;
+  // Of events only.
+  std::vector<Aabb> before_;  ///< in the frame before
+  Candidates candidates_;
+  std::vector<Pair> began_;
+  std::vector<Pair> ended_;
+
   std::unique_ptr<Sweep> sweep_;
   std::uint64_t swaps_before_ = 0;  ///< this frame's
 };
@@ -228,6 +318,7 @@ std::vector<Algorithm> variants() {
            .family = "AxisSweep",
            .summary = "Bullet's incremental sweep and prune on three axes",
            .traits = {.incremental = true,
+                      .events = true,
                       .changing_worlds = ChangingWorlds::native,
                       .max_objects = kMaxObjects},
            .description = {.principle = "sorting",

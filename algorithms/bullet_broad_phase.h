@@ -1,4 +1,5 @@
-// What the wrappers of Bullet's broad phases share: which bodies moved, and Bullet's pairs as ours.
+// What the wrappers of Bullet's broad phases share: which bodies moved, and Bullet's pairs, or what
+// is new about them, as ours.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
@@ -22,12 +23,23 @@ class BulletBroadPhase : public BoxBroadPhase {
     std::iota(moved_.begin(), moved_.end(), 0U);
   }
 
-  void updateObjects(const Frame& frame) final {
+  void updateObjects(const Frame& frame) override {
     moved_.assign(frame.changed->begin(), frame.changed->end());
     BoxBroadPhase::updateObjects(frame);
   }
 
+  void reportEvents() final { reports_events_ = true; }
+  [[nodiscard]] PairEvents events() const final { return {{&began_run_, 1}, {&ended_run_, 1}}; }
+
  protected:
+  /// Whether the answer is events; set before initialize().
+  [[nodiscard]] bool reportsEvents() const { return reports_events_; }
+  /// Makes these the events of the frame; they lie there until the next ones. Each once.
+  void setEvents(const std::vector<Pair>& began, const std::vector<Pair>& ended) {
+    began_run_ = began;
+    ended_run_ = ended;
+  }
+
   /// The bodies whose boxes differ from those of the frame before, which came and went included;
   /// after initialize() all.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
@@ -36,6 +48,8 @@ class BulletBroadPhase : public BoxBroadPhase {
   void filterPairs(btOverlappingPairCache& cache) {
     if (!wanted_.filter.wantsAll()) cache.setOverlapFilterCallback(&wanted_);
   }
+
+  [[nodiscard]] bool isWanted(Pair pair) const { return wanted_.filter.wanted(pair.a, pair.b); }
 
   /// Adds those of the library's pairs for which keep(a, b).
   template <class Keep>
@@ -51,6 +65,9 @@ class BulletBroadPhase : public BoxBroadPhase {
   static std::uint32_t bodyOf(const btBroadphaseProxy& proxy) {
     return static_cast<std::uint32_t>(proxy.m_uniqueId) - 1;
   }
+  static Pair pairOf(const btBroadphaseProxy& a, const btBroadphaseProxy& b) {
+    return orderedPair(bodyOf(a), bodyOf(b));
+  }
 
  private:
   struct Wanted final : btOverlapFilterCallback {
@@ -63,6 +80,9 @@ class BulletBroadPhase : public BoxBroadPhase {
 
   Wanted wanted_;
   std::vector<std::uint32_t> moved_;
+  bool reports_events_ = false;
+  PairRun began_run_;
+  PairRun ended_run_;
 };
 
 }  // namespace broadmark

@@ -10,6 +10,9 @@
 // Bullet has for that). By itself Bullet looks through only a tenth of its pairs a frame for stale
 // ones: here all of them are looked through, or they would pile up.
 //
+// Events are what Bullet's hash table tells as pairs come and go. A frame in which nothing changed
+// does not reach Bullet then.
+//
 // Bullet's margin is a global variable. An instance sets it for the length of a call and puts the
 // former value back, and the host lets nobody else use it meanwhile (traits.exclusive): so
 // instances with different margins may live at the same time.
@@ -20,12 +23,15 @@
 #include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
+#include "broadmark/strangers.h"
 #include "bullet_broad_phase.h"
 #include "variants.h"
 
@@ -86,11 +92,18 @@ class Dbvt final : public BulletBroadPhase {
     BulletBroadPhase::initialize(scene, first, execution);
     all_present_ = scene.all_present;
     filterPairs(*tree_.m_paircache);
+    if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
+    std::vector<std::uint32_t> bodies;
     for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
-      if (!isEmpty(boxes()[body])) create(body);
+      if (!isEmpty(boxes()[body])) bodies.push_back(body);
+    }
+    putToRest(Strangers(scene.filter, bodies), bodies);
+    for (const std::uint32_t body : bodies) {
+      if (proxies_[body] == nullptr) create(body);
     }
     updatePairs();
+    if (reportsEvents()) findEvents();
   }
 
   void updateStructures() override {
@@ -134,7 +147,43 @@ class Dbvt final : public BulletBroadPhase {
   }
 
  private:
+  /// Pairs that came and went, told by Bullet's hash table; one may do so several times.
+  struct Changes final : btOverlappingPairCallback {
+    std::vector<Pair> came;
+    std::vector<Pair> went;
+
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+      came.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                btDispatcher* /*dispatcher*/) override {
+      went.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
+                                               btDispatcher* /*dispatcher*/) override {}
+  };
+
+  /// A pair that went and came again has neither ended nor begun.
+  void findEvents() {
+    std::ranges::sort(changes_.came);
+    std::ranges::sort(changes_.went);
+    began_.clear();
+    ended_.clear();
+    std::ranges::set_difference(changes_.came, changes_.went, std::back_inserter(began_));
+    std::ranges::set_difference(changes_.went, changes_.came, std::back_inserter(ended_));
+    changes_.came.clear();
+    changes_.went.clear();
+    setEvents(began_, ended_);
+  }
+
   void findPairs() override {
+    if (reportsEvents()) {
+      if (!moved().empty()) updatePairs();
+      findEvents();
+      return;
+    }
     updatePairs();
     addPairs(*tree_.m_paircache, [](std::uint32_t, std::uint32_t) { return true; });
   }
@@ -152,6 +201,25 @@ class Dbvt final : public BulletBroadPhase {
     proxies_[body] = static_cast<btDbvtProxy*>(
         tree_.createProxy(vectorOf(box.min), vectorOf(box.max), BOX_SHAPE_PROXYTYPE, nullptr,
                           btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter, nullptr));
+  }
+
+  /// Puts bodies that never meet into the tree at rest, before there is anybody else.
+  void putToRest(const Strangers& strangers, std::span<const std::uint32_t> bodies) {
+    if (strangers.count() == 0) return;
+    const bool deferred = tree_.m_deferedcollide;
+    tree_.m_deferedcollide = true;  // nobody looks for pairs when created,
+    for (const std::uint32_t body : bodies) {
+      if (strangers.contains(body)) create(body);
+    }
+    tree_.m_deferedcollide = false;  // nor here, where all go to rest.
+    for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);
+    tree_.m_deferedcollide = deferred;
+    // From above down to two bodies: Bullet's usual way is cubic in the last 128.
+    tree_.m_sets[Tree::FIXED_SET].optimizeTopDown(2);
+    // As good as it can be: or Bullet would improve a hundredth of it in each of the next frames,
+    // and again whenever a body comes to rest.
+    tree_.m_fixedleft = 0;
+    tree_.m_fupdates = 0;
   }
 
   /// For each proxy that it destroys Bullet would go through all pairs: here that is done once.
@@ -205,6 +273,9 @@ class Dbvt final : public BulletBroadPhase {
 
   double margin_ = 0.05;  ///< Bullet's default
   bool all_present_ = true;
+  Changes changes_;
+  std::vector<Pair> began_;
+  std::vector<Pair> ended_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
   std::uint64_t reinsertions_ = 0;     ///< this frame's
@@ -216,6 +287,7 @@ std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "DBVT",
       .traits = {.incremental = true,
+                 .events = true,
                  .library_allocates = true,
                  .changing_worlds = ChangingWorlds::native,
                  .max_objects = 0x7FFF'FFFE,

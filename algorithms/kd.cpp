@@ -7,9 +7,15 @@
 // than half of the bodies keep still (and the pairs kept are complete), pairs of two still bodies
 // are kept from the last frame and only those with a moving body are searched for; else all are.
 // With a margin, those of the kept pairs that overlap in this frame are the answer, so it is exact.
+// Where events are asked for, a pair that is dropped may have ended and one that is found may have
+// begun: the boxes of its two bodies, before and now, tell.
 //
-// kd/tree: the tree and its update. kd/search: the search. Both are shared out over the team, which
-// goes beyond the paper.
+// Bodies that do not meet each other, as a level's, stay out of the tree until they move for the
+// first time: kd/rest, in which each moving body looks for those that it overlaps. So a frame in
+// which few of very many bodies move costs only what these do.
+//
+// kd/tree: the tree and its update. kd/search: the search. Both are shared out over the team. That
+// and the bodies at rest go beyond the paper.
 //
 // Paper: Y. R. Serpa and M. A. F. Rodrigues, "Flexible Use of Temporal and Spatial Reasoning for
 // Fast and Scalable CPU Broad-Phase Collision Detection Using KD-Trees", Computer Graphics Forum,
@@ -20,9 +26,12 @@
 #include <deque>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "kd/rest.h"
 #include "kd/search.h"
 #include "kd/tree.h"
 #include "variants.h"
@@ -69,7 +78,15 @@ class Kd final : public BroadPhase {
       worker.arrived.reserve(stored_.size() / workers_.size() + 1);
     }
     runs_.resize(workers_.size());
-    tree_.build(stored_, static_cast<std::size_t>(objects_per_leaf_), *team_);
+    kernels_ = &overlapKernels(execution.isa());
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t body = 0; body < stored_.size(); ++body) {
+      if (stored_[body] != Tree::kGone) bodies.push_back(body);
+    }
+    rest_.build(stored_, bodies, filter_, team_->size());
+    std::erase_if(bodies, [this](std::uint32_t body) { return rest_.holds(body); });
+    tree_.build(stored_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);
+    if (reports_events_) findFirstEvents();
   }
 
   void updateObjects(const Frame& frame) override {
@@ -83,13 +100,17 @@ class Kd final : public BroadPhase {
       }
     });
     moved_ = 0;
-    for (const Worker& worker : workers_) moved_ += worker.moved.size() + worker.arrived.size();
+    for (Worker& worker : workers_) {
+      moved_ += worker.moved.size() + worker.arrived.size();
+      rest_.removed(std::exchange(worker.woken, 0));
+    }
     // Before the first search there are no pairs to keep.
-    incremental_ = searched_ && 2 * moved_ < tree_.size();
+    incremental_ = searched_ && 2 * moved_ < tree_.size() + rest_.size();
   }
 
   /// Drops the pairs that are searched for again.
   void cleanCache() override {
+    if (reports_events_) forWorkers([this](Worker& worker, Range) { findEnded(worker); });
     forWorkers([this](Worker& worker, Range part) {
       if (incremental_) {
         if (moved_ > 0) worker.pairs.retain([this](Pair p) { return isKept(p); });
@@ -120,30 +141,54 @@ class Kd final : public BroadPhase {
     team_->run([&](int part) {
       Worker& worker = workers_[static_cast<std::size_t>(part)];
       worker.searcher.search(scene, part, team_->size(), worker.pairs);
-      runs_[static_cast<std::size_t>(part)] =
-          margin_ > 0 ? trueOverlaps(worker) : worker.pairs.run();
+      searchRest(worker, part);
+      if (reports_events_) {
+        findBegun(worker);
+      } else {
+        runs_[static_cast<std::size_t>(part)] =
+            margin_ > 0 ? trueOverlaps(worker) : worker.pairs.run();
+      }
     });
     searched_ = true;
+    if (!reports_events_) return;
+    for (std::size_t i = 0; i < workers_.size(); ++i) {
+      began_[i] = workers_[i].began.run();
+      ended_[i] = workers_[i].ended.run();
+    }
   }
 
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+
+  void reportEvents() override { reports_events_ = true; }
+  [[nodiscard]] PairEvents events() const override { return {began_, ended_}; }
 
   void drawStructure(DebugDraw& draw) const override { tree_.draw(draw, world_); }
 
   void visitCounters(const CounterVisitor& visit) const override {
     std::uint64_t kept = 0;
     std::uint64_t skipped = 0;
+    std::uint64_t boxes_tested = 0;
     for (const Worker& worker : workers_) {
       kept += worker.kept;
       skipped += worker.searcher.skippedSubtrees();
+      boxes_tested += worker.searcher.boxesTested() + worker.rest.boxes_tested;
     }
     visit("moved bodies", moved_);
+    visit("bodies at rest", rest_.size());
+    visit("boxes looked at", boxes_tested);
     tree_.counts().visit(visit);
     visit("subtrees skipped in searches", skipped);
     visit("pairs kept", kept);
   }
 
-  [[nodiscard]] std::string validate() const override { return tree_.validate(); }
+  [[nodiscard]] std::string validate() const override {
+    for (std::uint32_t body = 0; body < stored_.size(); ++body) {
+      const int places = (tree_.holds(body) ? 1 : 0) + (rest_.holds(body) ? 1 : 0);
+      if (places != (stored_[body] == Tree::kGone ? 0 : 1)) return "a body came or went unseen";
+    }
+    const std::string fault = rest_.validate(stored_);
+    return fault.empty() ? tree_.validate() : fault;
+  }
 
  private:
   struct alignas(64) Worker {
@@ -154,6 +199,12 @@ class Kd final : public BroadPhase {
     PairBuffer answer;                   ///< those of them that overlap, if there is a margin
     std::vector<std::uint32_t> moved;    ///< in this frame: bodies in the tree, vanished ones too
     std::vector<std::uint32_t> arrived;  ///< in this frame: bodies not yet in the tree
+    std::size_t woken = 0;               ///< in this frame: bodies no longer at rest
+    // Of events only.
+    std::vector<std::uint32_t> changed;  ///< in this frame: its share of the bodies
+    PairBuffer began;
+    PairBuffer ended;
+    Rest::Scratch rest;
     std::size_t kept = 0;
   };
 
@@ -161,7 +212,7 @@ class Kd final : public BroadPhase {
     return isEmpty(box) ? Tree::kGone : enlarged(box, static_cast<float>(margin_));
   }
 
-  /// Marks no body as moving.
+  /// Marks no body as moving: what is now was before.
   void forgetMoved() {
     forWorkers([this](Worker& worker, Range part) {
       if (incremental_) {
@@ -172,6 +223,8 @@ class Kd final : public BroadPhase {
       }
       worker.moved.clear();
       worker.arrived.clear();
+      for (const std::uint32_t body : worker.changed) before_[body] = boxOf(body);
+      worker.changed.clear();
     });
   }
 
@@ -182,12 +235,82 @@ class Kd final : public BroadPhase {
 
   void takeOver(Worker& worker, std::uint32_t body, const Aabb& box) {
     const auto margin = static_cast<float>(margin_);
+    if (reports_events_) {
+      before_[body] = boxOf(body);
+      worker.changed.push_back(body);
+    }
     if (margin > 0) boxes_[body] = box;  // without a margin stored boxes are the boxes
-    const bool is_there = tree_.holds(body);
-    if (is_there && isStill(box, stored_[body], margin)) return;
+    const bool is_in_tree = tree_.holds(body);
+    const bool is_at_rest = rest_.holds(body);
+    if ((is_in_tree || is_at_rest) && isStill(box, stored_[body], margin)) return;
     stored_[body] = storedFor(box);
     moving_[body] = 1;
-    (is_there ? worker.moved : worker.arrived).push_back(body);
+    if (is_at_rest) {
+      rest_.remove(body);
+      ++worker.woken;
+    }
+    // One that vanishes from its rest passes through the tree: its pairs are dropped as all are.
+    (is_in_tree ? worker.moved : worker.arrived).push_back(body);
+  }
+
+  /// In this frame.
+  [[nodiscard]] Aabb boxOf(std::uint32_t body) const {
+    if (margin_ > 0) return boxes_[body];
+    return stored_[body] == Tree::kGone ? kEmptyBox : stored_[body];
+  }
+  [[nodiscard]] bool overlapped(Pair pair) const {
+    return broadmark::overlaps(before_[pair.a], before_[pair.b]);
+  }
+  [[nodiscard]] bool overlapNow(Pair pair) const {
+    return broadmark::overlaps(boxOf(pair.a), boxOf(pair.b));
+  }
+
+  /// All pairs of the initial pose begin.
+  void findFirstEvents() {
+    began_.resize(workers_.size());
+    ended_.resize(workers_.size());
+    before_.assign(stored_.size(), kEmptyBox);
+    cleanCache();
+    updateStructures();
+    searchOverlaps();
+    for (std::uint32_t body = 0; body < before_.size(); ++body) before_[body] = boxOf(body);
+  }
+
+  /// Before pairs are dropped. With a margin those that are kept may end, too.
+  void findEnded(Worker& worker) {
+    worker.ended.clear();
+    const bool kept_may_end = margin_ > 0;
+    if (moved_ == 0 && !kept_may_end) return;
+    for (const Pair pair : worker.pairs.run()) {
+      if (!kept_may_end && isKept(pair)) continue;
+      if (overlapped(pair) && !overlapNow(pair)) worker.ended.add(pair.a, pair.b);
+    }
+  }
+
+  void findBegun(Worker& worker) {
+    worker.began.clear();
+    for (const Pair pair : worker.pairs.run().subspan(margin_ > 0 ? 0 : worker.kept)) {
+      if (overlapNow(pair) && !overlapped(pair)) worker.began.add(pair.a, pair.b);
+    }
+  }
+
+  /// Adds the pairs of bodies in the tree and bodies at rest.
+  void searchRest(Worker& worker, int part) {
+    worker.rest.boxes_tested = 0;
+    if (rest_.size() == 0) return;
+    const auto search = [&](std::span<const std::uint32_t> bodies) {
+      for (const std::uint32_t body : bodies) {
+        if (!tree_.holds(body) || !rest_.meets(body)) continue;
+        rest_.search(body, stored_[body], part, *kernels_, worker.rest, worker.pairs);
+      }
+    };
+    if (incremental_) {
+      search(worker.moved);
+      search(worker.arrived);
+    } else {
+      const auto [begin, end] = share(tree_.size(), team_->size(), part);
+      search(tree_.bodies().subspan(begin, end - begin));
+    }
   }
 
   /// Calls work(worker, its share of the bodies) for all workers at once.
@@ -229,8 +352,14 @@ class Kd final : public BroadPhase {
   bool searched_ = false;
   bool incremental_ = false;  ///< pairs of two bodies that keep still are kept
   Tree tree_;
+  Rest rest_;
+  const OverlapKernels* kernels_ = nullptr;
   std::deque<Worker> workers_;
   std::vector<PairRun> runs_;
+  bool reports_events_ = false;
+  std::vector<Aabb> before_;  ///< in the frame before, if events are reported
+  std::vector<PairRun> began_;
+  std::vector<PairRun> ended_;
 };
 
 }  // namespace
@@ -238,7 +367,7 @@ class Kd final : public BroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "KD",
-      .traits = {.incremental = true, .changing_worlds = ChangingWorlds::native},
+      .traits = {.incremental = true, .events = true, .changing_worlds = ChangingWorlds::native},
       .description = {
           .principle = "tree",
           .optimisations = "incremental tree and pairs",

@@ -11,6 +11,9 @@
 // All of it is shared out: first bodies, then cells, then pairs by their lower body. No two workers
 // touch the same cell or the same part of the set.
 //
+// These changes are the events, too. A grid that is built anew finds all pairs: then they are
+// compared with those that were there.
+//
 // If many bodies each touched very many cells, the cells' lists would be as long as the product of
 // both. When the average body touches more than kMostCellsPerBody cells, the grid is rebuilt with
 // half the cells per axis, or fewer; later, when they would fit, with more.
@@ -66,6 +69,7 @@ class Tracy final : public BroadPhase {
       worker.work.ended = std::vector<PairBuffer>(team_size);
     }
     pairs_.resize(team_size);
+    if (reports_events_) pairs_before_.resize(team_size);
     runs_.reserve(team_size);
     shares_.resize(team_size);
 
@@ -81,8 +85,10 @@ class Tracy final : public BroadPhase {
         std::clamp(wanted, 1.0, static_cast<double>(Grid::kMostCellsPerAxis)));
     rebuild(affordable(wanted_cells_));
     searchOverlaps();
-    cleanCache();
+    if (!reports_events_) cleanCache();
   }
+
+  void reportEvents() override { reports_events_ = true; }
 
   void updateObjects(const Frame& frame) override {
     team_->run([&](int worker) {
@@ -119,24 +125,24 @@ class Tracy final : public BroadPhase {
   }
 
   void searchOverlaps() override {
-    team_->run([this](int part) {
-      PairSet& pairs = pairs_[static_cast<std::size_t>(part)];
-      for (const Worker& worker : workers_) {
-        for (const Pair pair : worker.work.ended[static_cast<std::size_t>(part)].run()) {
-          pairs.erase(pair);
-        }
+    team_->run([this](int worker) {
+      const auto part = static_cast<std::size_t>(worker);
+      PairSet& pairs = pairs_[part];
+      for (const Worker& from : workers_) {
+        for (const Pair pair : from.work.ended[part].run()) pairs.erase(pair);
       }
-      for (const Worker& worker : workers_) {
-        for (const Pair pair : worker.work.begun[static_cast<std::size_t>(part)].run()) {
-          pairs.insert(pair);
-        }
+      for (const Worker& from : workers_) {
+        for (const Pair pair : from.work.begun[part].run()) pairs.insert(pair);
       }
+      if (reports_events_ && rebuilds_ > 0) compareWithBefore(part);
     });
     runs_.clear();
     for (const PairSet& pairs : pairs_) runs_.push_back(pairs.run());
+    if (reports_events_) gatherEvents();
   }
 
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+  [[nodiscard]] PairEvents events() const override { return {begun_runs_, ended_runs_}; }
 
   void drawStructure(DebugDraw& draw) const override;
   void visitCounters(const CounterVisitor& visit) const override;
@@ -252,9 +258,30 @@ class Tracy final : public BroadPhase {
     return 2 * cellsTouchedIn(Grid(world_, more)) <= mostCellsTouched() ? more : present;
   }
 
+  /// All pairs have begun anew: leaves those that did, and adds those that ended.
+  void compareWithBefore(std::size_t part) {
+    const PairSet& before = pairs_before_[part];
+    for (Worker& worker : workers_) {
+      worker.work.begun[part].retain([&](Pair pair) { return !before.contains(pair); });
+    }
+    for (const Pair pair : before.run()) {
+      if (!pairs_[part].contains(pair)) workers_.front().work.ended[part].add(pair.a, pair.b);
+    }
+  }
+
+  void gatherEvents() {
+    begun_runs_.clear();
+    ended_runs_.clear();
+    for (const Worker& worker : workers_) {
+      for (const PairBuffer& pairs : worker.work.begun) begun_runs_.push_back(pairs.run());
+      for (const PairBuffer& pairs : worker.work.ended) ended_runs_.push_back(pairs.run());
+    }
+  }
+
   /// Starts over with another grid; all pairs are found anew.
   void rebuild(std::uint32_t cells_per_axis) {
     ++rebuilds_;
+    if (reports_events_) pairs_.swap(pairs_before_);
     grid_ = Grid(world_, cells_per_axis);
     cells_.clear();
     cells_.resize(grid_.cellCount());
@@ -305,6 +332,11 @@ class Tracy final : public BroadPhase {
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
   std::vector<PairRun> runs_;
   std::uint64_t rebuilds_ = 0;
+  bool reports_events_ = false;
+  // Of events only.
+  std::vector<PairSet> pairs_before_;  ///< the last rebuild
+  std::vector<PairRun> begun_runs_;
+  std::vector<PairRun> ended_runs_;
 };
 
 /// Level 0: the occupied cells; level 1: how the first axis is cut into chunks in each of them.
@@ -378,7 +410,7 @@ std::string Tracy::validate() const {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "Tracy",
-      .traits = {.incremental = true, .changing_worlds = ChangingWorlds::native},
+      .traits = {.incremental = true, .events = true, .changing_worlds = ChangingWorlds::native},
       .description = {.principle = "grid, sorting",
                       .optimisations = "segmented interval lists",
                       .time = "O(n + s), s swaps of endpoints",

@@ -114,9 +114,12 @@ class CaseList {
 void takeCasePart(Case& made, const std::string& part, const std::string& name) {
   const AlgorithmTraits& traits = made.algorithm.traits;
   const auto isa = kIsas.find(part);
+  const auto answer = kAnswerKinds.find(part);
   const std::size_t equals = part.find('=');
   if (isa && traits.vectorised) {
     made.isa = *isa;
+  } else if (answer) {
+    made.answer = *answer;
   } else if (equals != std::string::npos && equals > 0) {
     made.parameters[part.substr(0, equals)] = part.substr(equals + 1);
   } else if (part.size() > 1 && part[0] == 't' && part[1] >= '0' && part[1] <= '9' &&
@@ -124,10 +127,11 @@ void takeCasePart(Case& made, const std::string& part, const std::string& name) 
     made.threads = parseThreadCount(part.substr(1));
   } else {
     throw InputError(fmt::format(
-        "'{}': '{}' is not {}{}KEY=VALUE", name, part,
+        "'{}': '{}' is not {}{}an answer ({}), KEY=VALUE", name, part,
         traits.vectorised ? fmt::format("an instruction set ({}), ", fmt::join(kIsas.names(), ", "))
                           : "",
-        traits.parallel ? "a number of threads (t4), " : ""));
+        traits.parallel ? "a number of threads (t4), " : "",
+        fmt::join(kAnswerKinds.names(), ", ")));
   }
 }
 
@@ -181,7 +185,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   const auto add = [&](const Algorithm& algorithm, Isa isa, int count) {
     const ParameterValues own = parametersOf(algorithm, parameters, known);
     for (ParameterValues& values : combinations(*algorithm.create(), own)) {
-      cases.add(makeCase(algorithm, isa, count, options.device, std::move(values)));
+      cases.add(makeCase(algorithm, isa, count, options.device, std::move(values), options.answer));
     }
   };
 
@@ -206,7 +210,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   return cases.take();
 }
 
-Case caseNamed(const std::string& name, const std::string& device) {
+Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
   constexpr std::string_view kLibraryEnd = ".so:";
   const auto library = name.find(kLibraryEnd);
   const std::size_t begin = library == std::string::npos ? 0 : library + kLibraryEnd.size();
@@ -216,7 +220,7 @@ Case caseNamed(const std::string& name, const std::string& device) {
   const Algorithm algorithm =
       requireAlgorithm(name.substr(begin, end - begin), availableAlgorithms(plugins));
 
-  Case made = makeCase(algorithm, bestIsa(), allCores(), device, {});
+  Case made = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
   for (std::size_t from = end + 1; from < name.size();) {
     const std::size_t to = std::min(name.find('/', from), name.size());
     takeCasePart(made, name.substr(from, to - from), name);

@@ -16,6 +16,7 @@ struct CaseOptions {
   std::vector<int> threads;             ///< empty: as many as there are cores
   std::vector<Isa> isas;                ///< empty: the widest
   std::string device;                   ///< compute device: "" for the first
+  AnswerKind answer = AnswerKind::pairs;
 };
 
 /// The algorithms that the selectors (ids, families, globs, "all") name, each once, in the order of
@@ -33,10 +34,11 @@ std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selector
 std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
                               const std::vector<Algorithm>& known);
 
-/// The case of this name, as caseName() writes it: "kd-mt/avx2/t4/margin=0.1"; an algorithm of a
-/// plug-in has the library's file in front: "libmine.so:my-sweep". What is left out is as wide as
-/// the processor. Throws InputError.
-Case caseNamed(const std::string& name, const std::string& device);
+/// The case of this name, as caseName() writes it: "kd-mt/avx2/t4/events/margin=0.1"; an algorithm
+/// of a plug-in has the library's file in front: "libmine.so:my-sweep". What is left out is as wide
+/// as the processor, or `answer`. Throws InputError.
+Case caseNamed(const std::string& name, const std::string& device,
+               AnswerKind answer = AnswerKind::pairs);
 
 /// The algorithm of this id, or null.
 const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known);

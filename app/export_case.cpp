@@ -65,6 +65,9 @@ std::string reproducingCommand(const Case& run, const fs::path& recording) {
   if (algorithm.traits.vectorised) add("--isa", std::string(isaName(run.isa)));
   if (algorithm.traits.parallel) add("--threads", fmt::format("{}", run.threads));
   if (!run.device.empty()) add("--device", quoted(run.device));
+  if (run.answer != AnswerKind::pairs) {
+    add("--answer", std::string(kAnswerKinds.nameOf(run.answer)));
+  }
   for (const auto& [key, value] : run.parameters)
     add("--param", quoted(fmt::format("{}={}", key, value)));
   add("--check", "full");

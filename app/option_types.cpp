@@ -216,6 +216,12 @@ std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& optio
   return {size, gl};
 }
 
+CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
+  return addNamed(app, "--answer", "KIND", answer, kAnswerKinds,
+                  "what algorithms report of a frame: pairs: all; events: those that began and "
+                  "those that ended since the frame before");
+}
+
 CLI::Option* addDevice(CLI::App& app, std::string& device) {
   CLI::Option* option = app.add_option(
       "--device", device,

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/case.h"
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "hosts.h"
@@ -101,6 +102,8 @@ CLI::Option* addQuiet(CLI::App&, bool& quiet);
 CLI::Option* addRecorders(CLI::App&, std::vector<std::string>& recorders);
 /// --size and --gl. Help shows them only if there is a renderer.
 std::vector<CLI::Option*> addPictureOptions(CLI::App&, PictureOptions&);
+/// --answer.
+CLI::Option* addAnswer(CLI::App&, AnswerKind& answer);
 /// --device. Help shows it only if there is OpenCL.
 CLI::Option* addDevice(CLI::App&, std::string& device);
 /// Where cases run: --in-process, --pin, --hard-limit, --memory-limit

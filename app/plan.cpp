@@ -51,9 +51,12 @@ void addCases(PlanEntry& entry, const std::vector<Case>& selected, const Session
   if (!options.cases.algorithms.empty()) {
     throw InputError("--algorithm: the source names its own algorithm");
   }
-  // The case of a results file states its device, too.
+  // The case of a results file states its device and its answer, too.
   if (entry.known) return;
-  for (Case& run : entry.cases) run.device = options.cases.device;
+  for (Case& run : entry.cases) {
+    run.device = options.cases.device;
+    run.answer = options.cases.answer;
+  }
 }
 
 /// Throws InputError for a --param that no scene and no algorithm has.

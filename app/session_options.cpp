@@ -118,6 +118,7 @@ void SessionParser::Parts::addCases() {
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
+  tag(addAnswer(app, cases.answer), kCase);
   tag(addDevice(app, cases.device), kCase);
   tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
           ->type_name("REGEX"),

@@ -148,6 +148,7 @@ std::string formatTable(std::span<const CaseResult> results) {
   for (const auto& [name, value] : recording.reading) {
     text += fmt::format(", {}={}", name, value);
   }
+  if (results.front().answer == AnswerKind::events) text += ", events";
   text += '\n';
   std::vector<std::vector<std::string>> table = {{"", "algorithm", "threads", "ISA", "parameters",
                                                   "mean", "median", "p95", "pairs", "missed",

@@ -9,12 +9,13 @@
 namespace broadmark {
 
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
-              ParameterValues parameters) {
+              ParameterValues parameters, AnswerKind answer) {
   return {.algorithm = algorithm,
           .isa = algorithm.traits.vectorised ? isa : Isa::scalar,
           .threads = algorithm.traits.parallel ? threads : 1,
           .device = std::move(device),
-          .parameters = std::move(parameters)};
+          .parameters = std::move(parameters),
+          .answer = answer};
 }
 
 std::string caseName(const Case& run) {
@@ -22,6 +23,7 @@ std::string caseName(const Case& run) {
   std::string name = run.algorithm.id;
   if (traits.vectorised) name += fmt::format("/{}", isaName(run.isa));
   if (traits.parallel) name += fmt::format("/t{}", run.threads);
+  if (run.answer != AnswerKind::pairs) name += fmt::format("/{}", kAnswerKinds.nameOf(run.answer));
   for (const auto& [key, value] : run.parameters) name += fmt::format("/{}={}", key, value);
   return name;
 }

@@ -9,6 +9,7 @@
 #include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
 #include "compacted_world.h"
+#include "events_from_pairs.h"
 
 namespace broadmark {
 namespace {
@@ -86,14 +87,33 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   instance_ = makeInstanceFor(scene);
   const auto start = Clock::now();
   instance_->initialize(scene, first, *execution_);
-  return nanoseconds(Clock::now() - start);
+  const auto end = Clock::now();
+  if (case_.answer == AnswerKind::events) takeAnswer();
+  return nanoseconds(end - start);
 }
 
 std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) const {
+  const AlgorithmTraits& traits = case_.algorithm.traits;
   std::unique_ptr<BroadPhase> instance = makeInstance(case_);
-  const bool compacted = case_.algorithm.traits.changing_worlds == ChangingWorlds::compacted;
-  if (!compacted || !isChangingWorld(scene)) return instance;
-  return std::make_unique<CompactedWorld>(std::move(instance));
+  bool knows_events = traits.events;
+  if (traits.changing_worlds == ChangingWorlds::compacted && isChangingWorld(scene)) {
+    instance = std::make_unique<CompactedWorld>(std::move(instance));
+    knows_events = false;  // its bodies' numbers change from frame to frame
+  }
+  if (case_.answer == AnswerKind::pairs) return instance;
+  if (!knows_events) return std::make_unique<EventsFromPairs>(std::move(instance));
+  instance->reportEvents();
+  return instance;
+}
+
+/// Asked once a frame: whoever looks at the answer sees the same one. Returns its size.
+std::uint64_t LocalHost::takeAnswer() {
+  if (case_.answer == AnswerKind::events) {
+    events_ = instance_->events();
+    return eventCount(events_);
+  }
+  answer_ = instance_->overlaps();
+  return pairCount(answer_);
 }
 
 void LocalHost::pinThreads() {
@@ -115,14 +135,13 @@ FrameTimes LocalHost::runCounted(const Frame& frame) {
 FrameRun LocalHost::step(const Frame& frame) {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   FrameRun run{.times = runCounted(frame)};
-  // Asked once: whoever looks at the answer sees the same one.
-  answer_ = instance_->overlaps();
-  run.pairs = pairCount(answer_);
+  run.pairs = takeAnswer();
   return run;
 }
 
 void LocalHost::stop() {
   answer_ = {};
+  events_ = {};
   if (instance_ == nullptr) return;
   processor_counts_ = processor_->counts();
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);

@@ -68,8 +68,12 @@ bool CaseRun::start(const SceneInfo& scene, const Frame& first) {
   total_ns_ = 0;
   initialize_ns_ = 0;
   has_instance_ = true;  // for stop(), however far it comes
-  if (!attempt([&] { initialize_ns_ = host_->start(scene, changed_bodies_.complete(first)); }))
-    return false;
+  followed_.clear();
+  const bool started = attempt([&] {
+    initialize_ns_ = host_->start(scene, changed_bodies_.complete(first));
+    followEvents(first);
+  });
+  if (!started) return false;
   if (seconds(initialize_ns_) <= policy_.initialize_limit_seconds) return true;
   fail(Status::timeout, fmt::format("initialisation took {:.3g} s: over the limit of {:.3g} s",
                                     seconds(initialize_ns_), policy_.initialize_limit_seconds));
@@ -81,7 +85,11 @@ bool CaseRun::step(const Frame& frame) {
   frame_ = frame.index;
   const Frame complete = changed_bodies_.complete(frame);
   changed_count_ = complete.changed->size();
-  if (!attempt([&] { last_ = host_->step(complete); })) return false;
+  const bool stepped = attempt([&] {
+    last_ = host_->step(complete);
+    followEvents(frame);
+  });
+  if (!stepped) return false;
   ++frames_;
   total_ns_ += last_.times[Phase::total];
   const double mean_s = seconds(total_ns_) / frames_;
@@ -92,18 +100,25 @@ bool CaseRun::step(const Frame& frame) {
   return false;
 }
 
+void CaseRun::followEvents(const Frame& frame) {
+  if (answersEvents() && checks()) followed_.apply(host_->events(), frame.boxes.size());
+}
+
 std::optional<FrameDifference> CaseRun::check(const Frame& frame, Oracle& oracle) {
   if (!checks()) return std::nullopt;
-  if (policy_.check == CheckMode::hash && margin_ == 0) {
-    PairDigest digest;
-    if (!attempt([&] { digest = host_->digest(); })) return std::nullopt;
-    if (digest == oracle.pairDigest(frame.boxes, filter_))
+  if (policy_.check == CheckMode::hash && margin_ == 0 && followed_.impossible().empty()) {
+    PairDigest found;
+    if (!attempt([&] { found = answersEvents() ? digest(followed_.pairs()) : host_->digest(); }))
+      return std::nullopt;
+    if (found == oracle.pairDigest(frame.boxes, filter_))
       return FrameDifference{.frame = frame.index};
   }
-  PairRuns answer;
-  if (!attempt([&] { answer = host_->answer(); })) return std::nullopt;
+  PairRuns given;
+  if (!attempt([&] { given = answersEvents() ? followed_.pairs() : host_->answer(); }))
+    return std::nullopt;
   FrameDifference difference =
-      findDifference(answer, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
+      findDifference(given, oracle.pairs(frame.boxes, filter_), frame, margin_, filter_);
+  difference.addInvalid(followed_.impossible());
   if (difference.isMismatch()) {
     fail(Status::mismatch, atFrame(mismatchText(difference)));
   }
@@ -123,7 +138,7 @@ Answer CaseRun::ask(Answer (CaseHost::*question)()) {
   return answer;
 }
 
-PairRuns CaseRun::answer() { return ask(&CaseHost::answer); }
+PairRuns CaseRun::answer() { return answersEvents() ? followed_.pairs() : ask(&CaseHost::answer); }
 Counts CaseRun::counters() { return ask(&CaseHost::counters); }
 Counts CaseRun::setup() { return ask(&CaseHost::setup); }
 RecordedDrawing CaseRun::structure() { return ask(&CaseHost::structure); }

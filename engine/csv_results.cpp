@@ -123,6 +123,7 @@ Columns resultColumns() {
        column("recording_file", [](R r) { return r.recording.path; }),
        column("scene_params", [](R r) { return parametersText(r.recording.scene_parameters); }),
        column("device", [](R r) { return r.device; }),
+       column("answer", [](R r) { return kAnswerKinds.nameOf(r.answer); }),
        column("status", [](R r) { return statusName(r.status); }),
        column("reason", [](R r) { return r.reason; }),
        column("repetitions", [](R r) { return r.repetitions.size(); }),

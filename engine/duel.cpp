@@ -62,6 +62,7 @@ class Duel {
   DuelResult run(FrameSource& frames) {
     for (bool first = true; !ended_; first = false) {
       runPass(frames, first);
+      for (const auto& run : runs_) run->stopChecking();
       if (frames.scene().frames == 0) ended_ = true;
     }
     for (const auto& run : runs_) run->stop();

@@ -402,6 +402,7 @@ Json toJson(const CaseResult& result) {
                {"device", result.device},
                {"plugin", result.plugin},
                {"params", toJson(result.parameters)},
+               {"answer", kAnswerKinds.nameOf(result.answer)},
                {"environment", result.environment},
                {"conditions", toJson(result.conditions)},
                {"status", statusName(result.status)},
@@ -447,6 +448,7 @@ CaseResult caseFrom(const JsonFields& json) {
   if (json.has("device")) result.device = json.text("device");
   if (json.has("plugin")) result.plugin = json.text("plugin");
   result.parameters = parametersFrom(json.at("params"), json.path("params"));
+  if (json.has("answer")) result.answer = named(json, "answer", kAnswerKinds);
   result.status = named(json, "status", kStatuses);
   result.reason = json.text("reason");
   result.pairs_mean = json.object("pairs").number("mean");

@@ -198,6 +198,10 @@ PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter
   return find(boxes, filter, false).digest;
 }
 
+void FrameDifference::addInvalid(PairRun pairs) {
+  for (const Pair pair : pairs) note(invalid_count, invalid_pairs, pair);
+}
+
 std::string mismatchText(const FrameDifference& difference) {
   return fmt::format("{} missed, {} false, {} invalid", difference.missed_count,
                      difference.false_count, difference.invalid_count);

@@ -155,6 +155,7 @@ CaseResult beginCase(const Case& run, const RecordingReference& recording) {
   result.device = run.device;
   result.plugin = run.algorithm.plugin;
   result.parameters = parameterValues(*makeInstance(run));
+  result.answer = run.answer;
   return result;
 }
 

@@ -14,6 +14,7 @@ namespace broadmark::kd {
 /// child's. Only populations are kept; where slices begin follows on the way down. So to shift the
 /// slice of a whole subtree is one block move that touches no node.
 struct Node {
+  Node* parent = nullptr;    ///< null: the root
   Node* children = nullptr;  ///< left and right; null: a leaf
   float plane = 0;
   int axis = 0;
@@ -24,12 +25,16 @@ struct Node {
   std::uint32_t escaped = 0;
   std::uint32_t work = 0;   ///< own bodies of the touched nodes of the subtree
   bool own_touched = true;  ///< in this frame own bodies moved, came or went
-  bool touched = true;      ///< here or anywhere below
+  bool touched = true;      ///< here or anywhere below; else nothing of this node has changed
   bool refitted = false;    ///< in parallel, before its parent
 
   [[nodiscard]] bool isLeaf() const { return children == nullptr; }
   [[nodiscard]] Node& left() const { return children[0]; }
   [[nodiscard]] Node& right() const { return children[1]; }
+  void setChildren(Node* pair) {
+    children = pair;
+    if (!isLeaf()) left().parent = right().parent = this;
+  }
 };
 
 /// Pairs of nodes, which stay where they are. Workers may take and release them at the same time.

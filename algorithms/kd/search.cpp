@@ -14,6 +14,7 @@
 #include <algorithm>
 
 #include "boundary_near.h"
+#include "kd/set_box.h"
 #include "moments.h"
 
 namespace broadmark::kd {
@@ -21,13 +22,6 @@ namespace {
 
 /// Vector tests that cost as much as to sort a box and find its window.
 constexpr std::size_t kVectorsPerSorted = 16;
-
-void setBox(BoxArrays& boxes, std::size_t i, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.min(axis)[i] = box.min[axis];
-    boxes.max(axis)[i] = box.max[axis];
-  }
-}
 
 /// As BoxArrays::resize, but with room to spare once it has to grow.
 void resize(BoxArrays& boxes, std::size_t& capacity, std::size_t count) {
@@ -46,7 +40,7 @@ Searcher::Searcher(Isa isa)
 void Searcher::search(const Scene& scene, int part, int parts, PairBuffer& pairs) {
   scene_ = &scene;
   pairs_ = &pairs;
-  skipped_ = 0;
+  skipped_ = boxes_tested_ = 0;
   const auto work_at = [&](int p) {
     return std::uint64_t{scene.tree.root().work} * static_cast<std::uint64_t>(p) /
            static_cast<std::uint64_t>(parts);
@@ -113,6 +107,7 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
   sections_.own_still = count - still;
   sections_.end = count;
 
+  boxes_tested_ += count;
   resize(boxes_, capacity_, count);
   for (std::size_t i = 0; i < count; ++i) setBox(boxes_, i, scene_->boxes[arranged_[i]]);
 }

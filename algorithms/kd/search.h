@@ -36,6 +36,8 @@ class Searcher {
 
   /// Subtrees that the last search had no need to enter.
   [[nodiscard]] std::uint64_t skippedSubtrees() const { return skipped_; }
+  /// Boxes that it looked at.
+  [[nodiscard]] std::uint64_t boxesTested() const { return boxes_tested_; }
 
  private:
   /// Bodies kept further up that reach into a cell: a stretch of lists_, the moving ones first.
@@ -74,6 +76,7 @@ class Searcher {
   std::uint64_t work_begin_ = 0;
   std::uint64_t work_end_ = 0;
   std::uint64_t skipped_ = 0;
+  std::uint64_t boxes_tested_ = 0;
 
   std::vector<std::uint32_t> lists_;  ///< a stack
 

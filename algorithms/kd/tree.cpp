@@ -29,8 +29,9 @@ namespace {
 /// Subtrees that the tree is cut into, for each worker.
 constexpr std::size_t kTasksPerWorker = 8;
 
-/// Makes the subtree's marks right, given own_touched of each of its nodes.
+/// Sums up the work in the touched part of the subtree.
 void summarise(Node& node) {
+  if (!node.touched) return;
   node.touched = node.own_touched;
   node.work = node.own_touched ? node.own : 0;
   if (node.isLeaf()) return;
@@ -41,16 +42,27 @@ void summarise(Node& node) {
   }
 }
 
-void markAll(Node& node, bool touched) {
-  node.own_touched = touched;
+void touchAll(Node& node) {
+  node.own_touched = node.touched = true;
   if (node.isLeaf()) return;
-  markAll(node.left(), touched);
-  markAll(node.right(), touched);
+  touchAll(node.left());
+  touchAll(node.right());
+}
+
+/// Makes the touched part of the subtree as if it had never been touched.
+void forgetTouched(Node& node) {
+  if (!node.touched) return;
+  node.own_touched = node.touched = false;
+  node.work = 0;
+  if (node.isLeaf()) return;
+  forgetTouched(node.left());
+  forgetTouched(node.right());
 }
 
 }  // namespace
 
-void Tree::build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, ThreadTeam& team) {
+void Tree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> bodies,
+                 std::size_t objects_per_leaf, ThreadTeam& team) {
   boxes_ = boxes;
   objects_per_leaf_ = objects_per_leaf;
   team_ = &team;
@@ -60,24 +72,27 @@ void Tree::build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, Thre
   bodies_.clear();
   bodies_.reserve(boxes.size());
   homes_.assign(boxes.size(), nullptr);
-  std::vector<std::uint32_t> there;
-  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-    if (boxes[body] != kGone) there.push_back(body);
-  }
   beginUpdate(true);
-  admit(there);
+  admit(bodies);
   update();
 }
 
 void Tree::beginUpdate(bool all) {
   for (Worker& worker : workers_) worker.counts = {};
-  markAll(root_, all);
+  all ? touchAll(root_) : forgetTouched(root_);
 }
 
 void Tree::touch(std::uint32_t body) {
-  const std::atomic_ref<bool> touched(homes_[body]->own_touched);
   // Mostly it has been set already; then the line stays shared between the workers.
-  if (!touched.load(std::memory_order_relaxed)) touched.store(true, std::memory_order_relaxed);
+  const auto set = [](bool& mark) {
+    const std::atomic_ref<bool> shared(mark);
+    const bool before = shared.load(std::memory_order_relaxed);
+    if (!before) shared.store(true, std::memory_order_relaxed);
+    return !before;
+  };
+  Node* node = homes_[body];
+  set(node->own_touched);
+  while (node != nullptr && set(node->touched)) node = node->parent;
 }
 
 void Tree::admit(std::span<const std::uint32_t> bodies) {
@@ -87,7 +102,6 @@ void Tree::admit(std::span<const std::uint32_t> bodies) {
 }
 
 void Tree::update() {
-  summarise(root_);
   nodes_.reserve();
   const std::size_t parts = team_->size() == 1 ? 1 : workers_.size() * kTasksPerWorker;
   grain_ = bodies_.size() / parts;
@@ -342,7 +356,7 @@ void Tree::erase(Node& node, const Place& place, Worker& worker) {
     giveToRight(right, end - right.size, left.size + node.own, worker);
   }
   const Node& kept = keep_left ? left : right;
-  node.children = kept.children;
+  node.setChildren(kept.children);
   node.plane = kept.plane;
   node.axis = kept.axis;
   node.own = kept.own;
@@ -356,7 +370,7 @@ bool Tree::partition(Node& node, const Place& place, Worker& worker) {
   if (node.own <= objects_per_leaf_) return false;
   if (!findSplit(node, {at(place.begin), node.own}, worker)) return false;
   ++worker.counts.partitions;
-  node.children = nodes_.take();
+  node.setChildren(nodes_.take());
   node.own_touched = true;
   return true;
 }

@@ -53,9 +53,10 @@ struct UpdateCounts {
 
 class Tree {
  public:
-  /// Puts all bodies that are there into a new tree. `boxes`, one per body, and `team` must outlive
-  /// the tree; leaves are split when they hold more than `objects_per_leaf`.
-  void build(std::span<const Aabb> boxes, std::size_t objects_per_leaf, ThreadTeam& team);
+  /// Puts these bodies into a new tree. `boxes`, one for every body that may ever be in it, and
+  /// `team` must outlive the tree; leaves are split when they hold more than `objects_per_leaf`.
+  void build(std::span<const Aabb> boxes, std::span<const std::uint32_t> bodies,
+             std::size_t objects_per_leaf, ThreadTeam& team);
 
   /// The box of a body that is not there.
   static constexpr Aabb kGone = {{Cell::kFar, Cell::kFar, Cell::kFar, 0},

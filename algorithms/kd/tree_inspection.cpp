@@ -54,8 +54,7 @@ std::string Tree::validate() const {
     seen[body] = 1;
   }
   for (std::uint32_t body = 0; body < seen.size(); ++body) {
-    const bool is_there = boxes_[body] != kGone;
-    if (is_there != (seen[body] != 0) || is_there != holds(body)) {
+    if (holds(body) != (seen[body] != 0) || (holds(body) && boxes_[body] == kGone)) {
       return fmt::format("body {} came or went unseen", body);
     }
   }
@@ -78,7 +77,12 @@ std::string Tree::validateNode(const Node& node, const Place& place) const {
       return fmt::format("body {} does not straddle its node's plane", body);
     }
   }
+  if (node.parent != nullptr && node.touched && !node.parent->touched) {
+    return "a node is touched and its parent is not";
+  }
+  if (!node.touched && (node.own_touched || node.work != 0)) return "a touched node was forgotten";
   if (node.isLeaf()) return {};
+  if (node.left().parent != &node || node.right().parent != &node) return "a parent is wrong";
   std::string fault = validateNode(node.left(), leftPlace(node, place));
   if (fault.empty()) fault = validateNode(node.right(), rightPlace(node, place));
   return fault;

@@ -18,6 +18,10 @@ class PairSet {
  public:
   [[nodiscard]] PairRun run() const { return pairs_; }
 
+  [[nodiscard]] bool contains(Pair pair) const {
+    return !pairs_.empty() && table_[placeFor(pair)] != kEmpty;
+  }
+
   void clear() {
     pairs_.clear();
     table_.assign(table_.size(), kEmpty);

@@ -31,6 +31,7 @@ struct Options {
   std::vector<std::string> variants;
   std::filesystem::path program;  ///< another build of this program; "": none
   std::string device;
+  AnswerKind answer = AnswerKind::pairs;
   SceneOptions scene;
   ParameterValues parameters;
   ReadingOptions reading;
@@ -60,7 +61,8 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   std::vector<DuelSide> sides;
   const auto add = [&](const HostOptions& hosts, const std::string& where) {
     for (const std::string& variant : options.variants) {
-      sides.push_back({variant + where, caseNamed(variant, options.device), hostMaker(hosts)});
+      sides.push_back(
+          {variant + where, caseNamed(variant, options.device, options.answer), hostMaker(hosts)});
     }
   };
   add(options.hosts, "");
@@ -131,9 +133,10 @@ std::function<int()> add(CLI::App& app) {
                  fmt::format("what to run on, one recording: {}", sourceKindsText()))
       ->type_name("SOURCE")
       ->required();
-  app.add_option("variants", options->variants,
-                 "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
-                 "[/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID…")
+  app.add_option(
+         "variants", options->variants,
+         "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
+         "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID…")
       ->type_name("VARIANT")
       ->required();
   addPath(app, "--with", "PROGRAM", options->program,
@@ -153,6 +156,7 @@ std::function<int()> add(CLI::App& app) {
   addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
            "answers of the first pass: full: as exact pair sets; hash: counts and hashes; off");
   addDevice(app, options->device);
+  addAnswer(app, options->answer);
   addSceneOptions(app, options->scene);
   addParameters(app, options->parameters);
   addReadingOptions(app, options->reading);

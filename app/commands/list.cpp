@@ -74,13 +74,17 @@ const char* inChangingWorlds(const Algorithm& algorithm) {
   return "not at all";
 }
 
+const char* eventsOf(const Algorithm& algorithm) {
+  return algorithm.traits.events ? "by itself" : "from the pairs of two frames";
+}
+
 /// What the columns have no room for, in sentences.
 std::string detailsOf(const Algorithm& algorithm) {
   const AlgorithmDescription& description = algorithm.description;
-  std::string text =
-      fmt::format("{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. {}",
-                  algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
-                  description.space, inChangingWorlds(algorithm), description.source);
+  std::string text = fmt::format(
+      "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. Events: {}. {}",
+      algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
+      description.space, inChangingWorlds(algorithm), eventsOf(algorithm), description.source);
   std::vector<std::string_view> original;
   for (const OriginalId& id : originalIds()) {
     if (id.algorithm == algorithm.id) original.push_back(id.name);

@@ -12,7 +12,7 @@ LaneSpec LaneEdit::spec() const {
   const std::unique_ptr<BroadPhase> fresh = algorithm.create();
   return {.number = number,
           .run = makeCase(algorithm, isa, threads, device,
-                          changedValues(parameterValues(*parameters), *fresh))};
+                          changedValues(parameterValues(*parameters), *fresh), answer)};
 }
 
 LaneEdit& Lanes::add(const std::string& algorithm_id) {
@@ -26,6 +26,7 @@ LaneEdit& Lanes::add(const Case& run) {
   if (run.algorithm.traits.vectorised) added.isa = run.isa;
   if (run.algorithm.traits.parallel) added.threads = run.threads;
   added.device = run.device;
+  added.answer = run.answer;
   setParameters(*added.parameters, run.parameters);
   changed();
   return added;

@@ -20,6 +20,7 @@ struct LaneEdit {
   Isa isa = bestIsa();
   int threads = 1;
   std::string device = {};
+  AnswerKind answer = AnswerKind::pairs;
 
   [[nodiscard]] LaneSpec spec() const;
 };

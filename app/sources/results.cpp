@@ -123,7 +123,7 @@ OpenedSource open(NamedSource& source, const OpeningOptions& options) {
   const CaseResult& result = resultOf(results, options.case_id, source.name());
   const Algorithm& algorithm = algorithmOf(result, options.algorithms);
   const Case run = makeCase(algorithm, result.isa, result.threads, result.device,
-                            changedValues(result.parameters, *algorithm.create()));
+                            changedValues(result.parameters, *algorithm.create()), result.answer);
   opened.entries.push_back({.source = sourceOf(result.recording, source.path()),
                             .cases = {run},
                             .original = {},

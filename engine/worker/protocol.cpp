@@ -112,9 +112,13 @@ void SharedMemory::requireHeld(std::uint64_t offset, std::uint64_t count,
 }
 
 Json toJson(const Case& run) {
-  return {{"algorithm", run.algorithm.id}, {"plugin", run.algorithm.plugin},
-          {"isa", isaName(run.isa)},       {"threads", run.threads},
-          {"device", run.device},          {"parameters", run.parameters}};
+  return {{"algorithm", run.algorithm.id},
+          {"plugin", run.algorithm.plugin},
+          {"isa", isaName(run.isa)},
+          {"threads", run.threads},
+          {"device", run.device},
+          {"parameters", run.parameters},
+          {"answer", kAnswerKinds.nameOf(run.answer)}};
 }
 
 Case caseFrom(const Json& json,
@@ -128,6 +132,7 @@ Case caseFrom(const Json& json,
   const auto known = kIsas.find(isa);
   if (!known) throw UnsupportedError("there is no instruction set " + isa);
   run.isa = *known;
+  run.answer = kAnswerKinds.find(json.at("answer").get<std::string>()).value();
   return run;
 }
 

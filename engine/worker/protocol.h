@@ -1,13 +1,14 @@
 // What a process says to its worker process, and hears from it.
 //
 // A message is one JSON object in one packet. At first the worker says who it is:
-//   {"protocol": 2, "program": "0.1.0"}
+//   {"protocol": 3, "program": "0.1.0"}
 // Then it answers one call after the other, with what stands behind the arrow or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
 //   call        says                                              answer
 //   case        algorithm, plugin, isa, threads, device,
-//               parameters {}, memory_limit_bytes (0: none), pin  {}
+//               parameters {}, answer ("pairs" | "events"),
+//               memory_limit_bytes (0: none), pin                 {}
 //   start       scene {name, object_type, objects, frames, world, initialize_ns, pinned
 //               all_present}, filter (null: all pairs are wanted);
 //               shared are the boxes of frame 0, then what the
@@ -16,6 +17,8 @@
 //               then their boxes, are shared
 //   digest                                                        count, hash
 //   answer                                                        pairs: so many are shared
+//   events                                                        began, then ended: so many pairs
+//                                                                 are shared
 //   counters, setup                                               counts {}
 //   structure                                                     boxes, lines: so many are
 //                                                                 shared; left_out
@@ -38,7 +41,7 @@
 
 namespace broadmark::worker {
 
-inline constexpr int kProtocolVersion = 2;
+inline constexpr int kProtocolVersion = 3;
 
 // The worker's descriptors.
 inline constexpr int kChannelDescriptor = 3;

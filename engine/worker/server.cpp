@@ -64,11 +64,11 @@ class Server {
   using Call = Json (Server::*)(const Json&);
   static const std::map<std::string, Call>& calls() {
     static const std::map<std::string, Call> all = {
-        {"case", &Server::takeCase}, {"start", &Server::start},
-        {"step", &Server::step},     {"digest", &Server::digest},
-        {"answer", &Server::pairs},  {"counters", &Server::counters},
-        {"setup", &Server::setup},   {"structure", &Server::structure},
-        {"stop", &Server::stop}};
+        {"case", &Server::takeCase},       {"start", &Server::start},
+        {"step", &Server::step},           {"digest", &Server::digest},
+        {"answer", &Server::pairs},        {"events", &Server::events},
+        {"counters", &Server::counters},   {"setup", &Server::setup},
+        {"structure", &Server::structure}, {"stop", &Server::stop}};
     return all;
   }
 
@@ -123,10 +123,21 @@ class Server {
   }
 
   Json pairs(const Json& /*message*/) {
-    std::uint64_t offset = 0;
     const PairRuns runs = host().answer();
-    for (const PairRun run : runs) offset = answers_.write(run, offset);
+    sharePairs(runs, 0);
     return {{"pairs", pairCount(runs)}};
+  }
+
+  Json events(const Json& /*message*/) {
+    const PairEvents events = host().events();
+    sharePairs(events.ended, sharePairs(events.began, 0));
+    return {{"began", pairCount(events.began)}, {"ended", pairCount(events.ended)}};
+  }
+
+  /// Returns the offset behind them.
+  std::uint64_t sharePairs(PairRuns runs, std::uint64_t offset) {
+    for (const PairRun run : runs) offset = answers_.write(run, offset);
+    return offset;
   }
 
   Json counters(const Json& /*message*/) { return {{"counts", host().counters()}}; }

@@ -195,6 +195,15 @@ PairRuns WorkerProcess::answer() {
   return {&answer_run_, 1};
 }
 
+PairEvents WorkerProcess::events() {
+  const Json counts = talk(calling("events"));
+  const auto began = counts.at("began").get<std::size_t>();
+  link_->answers.read(answer_, began + counts.at("ended").get<std::size_t>());
+  answer_run_ = PairRun(answer_).first(began);
+  ended_run_ = PairRun(answer_).subspan(began);
+  return {{&answer_run_, 1}, {&ended_run_, 1}};
+}
+
 Counts WorkerProcess::counters() { return talk(calling("counters")).at("counts").get<Counts>(); }
 
 Counts WorkerProcess::setup() { return talk(calling("setup")).at("counts").get<Counts>(); }

@@ -260,6 +260,7 @@ def _row(case: dict[str, Any]) -> dict[str, Any]:
         "recording_file": "" if simulated else source,
         "scene_params": _joined(source) if simulated else "",
         "device": case.get("device", ""),
+        "answer": case.get("answer", "pairs"),
         "status": case["status"],
         "reason": case["reason"],
         "repetitions": len(times),

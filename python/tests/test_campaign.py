@@ -98,6 +98,15 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
     assert f"written: {tmp_path / 'the output/results.json'}" in out
 
 
+def test_a_campaign_may_ask_for_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+    file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd"], answer="events")
+    status, _, err = run(file)
+    assert status == 0, err
+    cases = results(tmp_path).cases
+    assert set(cases["answer"]) == {"events"} and set(cases["status"]) == {"ok"}
+    assert all("/events" in one for one in cases["id"])
+
+
 def test_results_lead_back_to_their_recordings(
     write: Any, run: Any, tmp_path: pathlib.Path
 ) -> None:

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "algorithms/runs.h"
+#include "support/changing_worlds.h"
 
 namespace broadmark::tests {
 namespace {
@@ -83,6 +84,7 @@ TEST(Kd, FindsPairsOfASceneThatNeverMoves) {
              const std::uint64_t right = rightPairs(frames[0]).size();
              EXPECT_EQ(counters.at("pairs kept"), frame == 1 ? 0 : right);
              EXPECT_EQ(counters.at("subtrees skipped in searches"), frame == 1 ? 0U : 1U);
+             EXPECT_EQ(counters.at("boxes looked at") == 0, frame > 1);
            });
   }
 }
@@ -105,6 +107,37 @@ TEST(Kd, StaysIncrementalWhereLittleMoves) {
              EXPECT_GT(counters.at("subtrees skipped in updates"), 3U);
              EXPECT_GT(counters.at("subtrees skipped in searches"), 3U);
            });
+  }
+}
+
+// Few move among very many that never do, and that do not meet each other: no pair of these is
+// looked for, from the beginning on, and the others look at what is around them only.
+TEST(Kd, LooksOnlyAroundWhatMovesInALevel) {
+  constexpr std::uint32_t kLevel = 20'000;
+  constexpr std::uint32_t kMovers = 50;
+  const std::vector<Aabb> start = inputs::uniform(kLevel + kMovers, 0, 1);
+  Frames frames = randomSteps(
+      start, 8, 0.2F, [](std::size_t i, std::uint32_t frame) { return i >= kLevel && frame != 5; });
+  const CollisionFilter filter = filterOf(
+      kLevel + kMovers, LayerMatrix().set(0, 1).set(1, 1), [](inputs::Random&, std::uint32_t body) {
+        return BodyGroups{.layer = std::uint8_t{body >= kLevel}};
+      });
+  SceneInfo scene = sceneOf(frames);
+  scene.filter = filter;
+  for (const int threads : {1, 3}) {
+    TestRun run(algorithmOf(threads == 1 ? "kd" : "kd-mt"), {bestIsa(), threads});
+    run.start(scene, frames[0]);
+    for (std::uint32_t i = 1; i < frames.size(); ++i) {
+      std::vector<Pair> right = sweptPairs(frames[i]);
+      std::erase_if(right, [&](Pair pair) { return !filter.wanted(pair.a, pair.b); });
+      ASSERT_EQ(sorted(run.step(frames[i])), right) << "in frame " << i;
+      ASSERT_EQ(run.broadPhase().validate(), "") << "in frame " << i;
+      auto counters = countersOf(run.broadPhase());
+      EXPECT_EQ(counters.at("bodies at rest"), kLevel);
+      EXPECT_EQ(counters.at("moved bodies"), i == 5 ? 0 : kMovers);
+      EXPECT_LT(counters.at("boxes looked at"), i == 5 ? 1 : 300 * kMovers) << "in frame " << i;
+      EXPECT_EQ(counters.at("partitions"), 0U);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // Running any listed algorithm over given boxes, in every way it can be run.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,6 +18,7 @@
 #include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
+#include "broadmark/followed_pairs.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "support/inputs.h"
@@ -34,6 +36,7 @@ namespace broadmark::tests {
 struct Configuration {
   Isa isa = Isa::scalar;
   int threads = 1;
+  AnswerKind answer = AnswerKind::pairs;
 };
 
 /// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
@@ -52,9 +55,26 @@ inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
   return all;
 }
 
+/// Those for events: every team, with the widest instruction set.
+inline std::vector<Configuration> eventConfigurations(const Algorithm& algorithm) {
+  std::vector<Configuration> ways = configurations(algorithm);
+  const Isa widest = std::ranges::max_element(ways, {}, &Configuration::isa)->isa;
+  std::erase_if(ways, [&](const Configuration& way) { return way.isa != widest; });
+  for (Configuration& way : ways) way.answer = AnswerKind::events;
+  return ways;
+}
+
+/// All of both.
+inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm) {
+  std::vector<Configuration> all = configurations(algorithm);
+  const std::vector<Configuration> of_events = eventConfigurations(algorithm);
+  all.insert(all.end(), of_events.begin(), of_events.end());
+  return all;
+}
+
 inline Case caseOf(const Algorithm& algorithm, const Configuration& way,
                    const ParameterValues& parameters = {}) {
-  return makeCase(algorithm, way.isa, way.threads, "", parameters);
+  return makeCase(algorithm, way.isa, way.threads, "", parameters, way.answer);
 }
 
 inline std::string describe(const Algorithm& algorithm, const Configuration& way) {
@@ -149,14 +169,19 @@ class TestRun {
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
     index_ = 0;
     host_->start(scene, changed_bodies_->complete({0, first}));
+    followed_.clear();
+    if (run_.answer == AnswerKind::events) follow(first.size());
     return *this;
   }
   TestRun& start(const std::vector<Aabb>& first) { return start(sceneOf({first}), first); }
 
-  /// Runs the four phases on the next frame.
+  /// Runs the four phases on the next frame. Returns the pairs, those that events have led to; then
+  /// also throws std::logic_error for one that cannot be.
   PairRuns step(const std::vector<Aabb>& boxes) {
     times_ = host_->step(changed_bodies_->complete({++index_, boxes})).times;
-    return broadPhase().overlaps();
+    if (run_.answer == AnswerKind::pairs) return broadPhase().overlaps();
+    follow(boxes.size());
+    return followed_.pairs();
   }
 
   /// The instance: between start() and the next one.
@@ -166,9 +191,19 @@ class TestRun {
   [[nodiscard]] float margin() const { return makeInstance(run_)->margin(); }
 
  private:
+  void follow(std::size_t bodies) {
+    followed_.apply(host_->events(), bodies);
+    for (const Pair pair : followed_.impossible()) {
+      throw std::logic_error(fmt::format("frame {}: {}-{} cannot be: {} began, {} ended", index_,
+                                         pair.a, pair.b, pairCount(host_->events().began),
+                                         pairCount(host_->events().ended)));
+    }
+  }
+
   Case run_;
   std::unique_ptr<LocalHost> host_;
   std::unique_ptr<ChangedBodies> changed_bodies_;
+  FollowedPairs followed_;
   FrameTimes times_;
   std::uint32_t index_ = 0;
 };

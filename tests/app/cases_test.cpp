@@ -200,13 +200,16 @@ TEST(OriginalCase, HasTheSettingsThreadsAndParameters) {
 }
 
 TEST(CaseNamed, IsTheInverseOfCaseName) {
-  for (const char* name : {"sap", "kd-mt/avx2/t3", "kd-mt/avx2/t3/margin=0.5/objects_per_leaf=20",
-                           "time-validator/phase_us=7"}) {
+  for (const char* name :
+       {"sap", "kd-mt/avx2/t3", "kd-mt/avx2/t3/margin=0.5/objects_per_leaf=20", "sap/events",
+        "kd-mt/avx2/t3/events/margin=0.5", "time-validator/phase_us=7"}) {
     EXPECT_EQ(caseName(caseNamed(name, "")), name);
   }
   EXPECT_EQ(caseNamed("kd/scalar", "").isa, Isa::scalar);
   EXPECT_EQ(caseNamed("kd", "").isa, bestIsa());
   EXPECT_EQ(caseNamed("sap", "0").device, "0");
+  EXPECT_EQ(caseNamed("sap", "", AnswerKind::events).answer, AnswerKind::events);
+  EXPECT_EQ(caseNamed("sap/pairs", "", AnswerKind::events).answer, AnswerKind::pairs);
 }
 
 TEST(CaseNamed, RefusesWhatTheAlgorithmDoesNotHeed) {

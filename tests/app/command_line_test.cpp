@@ -122,6 +122,8 @@ TEST(Session, ValuesAreUnderstood) {
                                           "x.*",
                                           "--device",
                                           "pocl",
+                                          "--answer",
+                                          "events",
                                           "--plugin",
                                           "p",
                                           "--plugin",
@@ -149,6 +151,7 @@ TEST(Session, ValuesAreUnderstood) {
   EXPECT_EQ(options.outputs.at("json"), "r");
   EXPECT_EQ(options.filter, "x.*");
   EXPECT_EQ(options.cases.device, "pocl");
+  EXPECT_EQ(options.cases.answer, AnswerKind::events);
   EXPECT_THAT(options.plugins, ElementsAre("p", "q"));
   EXPECT_FALSE(options.hosts.in_process);
   EXPECT_EQ(options.hosts.hard_limit_seconds, 2.5);
@@ -246,10 +249,10 @@ TEST(Session, ACaseOfResultsStatesItself) {
   EXPECT_EQ(parseSession({"--headless", "r.json", "--case", "x"}).case_id, "x");
   for (const Arguments& stated :
        {Arguments{"--algorithm", "sap"}, Arguments{"--threads", "1"}, Arguments{"--isa", "sse2"},
-        Arguments{"--device", "0"}, Arguments{"--objects", "5"}, Arguments{"--object-type", "a"},
-        Arguments{"--frames", "5"}, Arguments{"--seed", "2"}, Arguments{"--density", "1"},
-        Arguments{"--engine", "ode"}, Arguments{"--input", "a"}, Arguments{"--param", "a=b"},
-        Arguments{"--filter", "x"}, Arguments{"--shard", "0/2"}}) {
+        Arguments{"--device", "0"}, Arguments{"--answer", "events"}, Arguments{"--objects", "5"},
+        Arguments{"--object-type", "a"}, Arguments{"--frames", "5"}, Arguments{"--seed", "2"},
+        Arguments{"--density", "1"}, Arguments{"--engine", "ode"}, Arguments{"--input", "a"},
+        Arguments{"--param", "a=b"}, Arguments{"--filter", "x"}, Arguments{"--shard", "0/2"}}) {
     expectRefused({"--headless", "r.json", "--case", "x", stated[0], stated[1]},
                   {"--case", stated[0]});
   }

@@ -157,11 +157,15 @@ TEST(Plan, ParametersOfEveryCaseAreChecked) {
   EXPECT_THAT(complaint(asked), AllOf(HasSubstr("density"), HasSubstr("'7'")));
 }
 
-TEST(Plan, TheDeviceIsThatOfEveryCase) {
+TEST(Plan, DeviceAndAnswerAreThoseOfEveryCase) {
   SessionOptions asked = options();
   asked.cases.device = "0";
+  asked.cases.answer = AnswerKind::events;
   for (const PlanEntry& entry : makePlan(asked).entries) {
-    for (const Case& run : entry.cases) EXPECT_EQ(run.device, "0");
+    for (const Case& run : entry.cases) {
+      EXPECT_EQ(run.device, "0");
+      EXPECT_EQ(run.answer, AnswerKind::events);
+    }
   }
 }
 

@@ -112,6 +112,15 @@ TEST_F(Compare, MissingCasesFailUnlessAllowed) {
   EXPECT_THAT(lineWith(added.out, gone), HasSubstr("added"));
 }
 
+TEST_F(Compare, PairsAreNotComparedWithEvents) {
+  runQuietly({"--headless", "freefall", "--objects", "60", "--frames", "8", "--algorithm",
+              "sap,bf,sap-simd", "--answer", "events", "--json", "events.json"});
+  const Ended ended = run({"compare", "before.json", "events.json"});
+  EXPECT_EQ(ended.status, 3) << ended.out;
+  EXPECT_THAT(lineWith(ended.out, "/bf/events"), HasSubstr("added"));
+  EXPECT_EQ(run({"compare", "before.json", "events.json", "--by", "answer"}).status, 2);
+}
+
 TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
   const Ended ended = run({"compare", "before.json", "--by", "algorithm", "--fail-above", "1e9"});
   EXPECT_EQ(ended.status, 0) << ended.err;

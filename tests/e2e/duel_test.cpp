@@ -45,6 +45,13 @@ TEST_F(Duel, RanksMoreThanTwo) {
   }
 }
 
+TEST_F(Duel, OfPairsAndEvents) {
+  const Ended ended = run(duelOf({"kd", "kd/events", "tracy/events"}, {"--seconds", "0.5"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const char* word : {"kd/events", "tracy/events"}) EXPECT_THAT(ended.out, HasSubstr(word));
+  EXPECT_EQ(run(duelOf({"bf", "sap"}, {"--seconds", "0.2", "--answer", "events"})).status, 0);
+}
+
 TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
   const Ended ended = run(duelOf({"bf", "sap"}, {"--seconds", "0.5", "--json", "-"}));
   EXPECT_EQ(ended.status, 0) << ended.err;

@@ -121,6 +121,22 @@ TEST_F(FailedCase, OfAChangingWorldKeepsWhatTheFaultNeeds) {
   }
 }
 
+TEST_F(FailedCase, OfWrongEvents) {
+  runFaulty("brownian", {"--objects", "200", "--frames", "60", "--engine", "kinematic", "--answer",
+                         "events"});
+  for (const std::string algorithm : {"faulty", "faulty-extra"}) {
+    SCOPED_TRACE(algorithm);
+    EXPECT_EQ(caseOf(algorithm).at("status"), "mismatch");
+    const Ended ended = run(aboutCase(idOf(algorithm), {"--export-case", "events.aabbs"}));
+    ASSERT_EQ(ended.status, 0) << ended.out << ended.err;
+    EXPECT_LE(RecordingReader(file("events.aabbs")).scene().objects, 3U);
+    const std::string command = linesOf(ended.out).back();
+    EXPECT_THAT(command, HasSubstr(" --answer events "));
+    EXPECT_EQ(shell(command + " --json shown.json"), 1) << readFile(file("shell.out"));
+    EXPECT_EQ(caseOf(algorithm, "shown.json").at("answer"), "events");
+  }
+}
+
 TEST_F(FailedCase, RunsAgainAsItDid) {
   simulateFaulty();
   const Json before = caseOf("faulty");

@@ -99,6 +99,22 @@ TEST_F(Run, MainJob) {
   }
 }
 
+TEST_F(Run, EventsOfEveryAlgorithm) {
+  const auto of_pairs = casesOf({"--algorithm", "bf"});
+  EXPECT_EQ(of_pairs.at(0).at("answer"), "pairs");
+  for (const char* check : {"full", "hash"}) {
+    const Json cases = casesOf({"--answer", "events", "--check", check});
+    for (const Json& one : cases) {
+      SCOPED_TRACE(one.at("id").get<std::string>());
+      EXPECT_EQ(one.at("answer"), "events");
+      EXPECT_THAT(one.at("id").get<std::string>(), HasSubstr("/events"));
+      EXPECT_THAT(one.at("status"), testing::AnyOf("ok", "unsupported"));
+      EXPECT_EQ(one.at("checked"), true);
+      EXPECT_LT(one.at("pairs").at("max"), of_pairs.at(0).at("pairs").at("max"));
+    }
+  }
+}
+
 TEST_F(Run, ARecordingGivesTheSameAnswersAsItsSimulation) {
   const Json simulated = casesOf({"--record", "kept", "--algorithm", "sap"});
   runQuietly({"--headless", recordingIn("kept", "FreeFall Cubes N60 F5frames"), "--algorithm",

@@ -32,6 +32,7 @@ class TimedHost final : public CaseHost {
   void stop() override {}
   PairDigest digest() override { return {}; }
   PairRuns answer() override { return {}; }
+  PairEvents events() override { return {}; }
   Counts counters() override { return {}; }
   Counts setup() override { return {}; }
   RecordedDrawing structure() override { return {}; }

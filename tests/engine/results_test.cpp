@@ -76,6 +76,7 @@ Results everything() {
   full.device = "pthread";
   full.plugin = "my plug-in.so";
   full.parameters = {{"cells", "2"}, {"margin", "0.01"}};
+  full.answer = AnswerKind::events;
   full.status = Status::mismatch;
   full.reason = "frame 1: 1 missed, 1 false, 1 invalid";
   full.pairs_mean = 1.0 / 3;
@@ -154,6 +155,7 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_THAT(full.conditions.warnings, testing::ElementsAre("busy"));
   EXPECT_EQ(full.device, "pthread");
   EXPECT_EQ(full.plugin, "my plug-in.so");
+  EXPECT_EQ(full.answer, AnswerKind::events);
   EXPECT_EQ(full.parameters, (ParameterValues{{"cells", "2"}, {"margin", "0.01"}}));
   const CaseResult& bare = copy.cases.at(1);
   EXPECT_FALSE(bare.recording.seed);
@@ -270,7 +272,8 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   for (const auto& item : whole["cases"][0].items()) {
     // Without conditions it is taken for results/1.
     const std::set<std::string> optional = {"peak_bytes", "counters",   "setup",     "device",
-                                            "plugin",     "conditions", "processor", "bodies"};
+                                            "plugin",     "conditions", "processor", "bodies",
+                                            "answer"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());
@@ -297,11 +300,12 @@ Json asResults1() {
 
 TEST(ResultsJson, FilesOfEarlierVersionsAreRead) {
   Json json = asResults1();
-  for (const char* key : {"counters", "device", "plugin"}) json["cases"][0].erase(key);
+  for (const char* key : {"counters", "device", "plugin", "answer"}) json["cases"][0].erase(key);
   json["environment"].erase("host");
   const Results results = parseResults(json.dump(), "a.json");
   EXPECT_EQ(results.cases[0].device, "");
   EXPECT_EQ(results.cases[0].plugin, "");
+  EXPECT_EQ(results.cases[0].answer, AnswerKind::pairs);
   EXPECT_EQ(results.environments.at(0).host, "");
   EXPECT_EQ(results.environments.at(0).cpu, everything().environments[0].cpu);
   EXPECT_TRUE(results.complete) << "they did not say";

@@ -19,6 +19,7 @@ struct ChangingWorld {
   std::string name;
   CollisionFilter filter;
   std::vector<std::vector<Aabb>> frames;
+  std::optional<Aabb> bounds = {};  ///< what the scene calls its world; else what holds all boxes
 };
 
 /// Which bodies are there in a frame.
@@ -76,6 +77,8 @@ inline std::vector<NamedFilter> filters(std::size_t n) {
   // Layer 0: fixtures, layer 1: bodies that meet all, layer 2: triggers, which meet only these.
   const LayerMatrix usual = LayerMatrix().set(0, 1).set(1, 1).set(2, 1);
   const LayerMatrix one = LayerMatrix().set(0, 0);
+  // Layer 0: a level, layer 1: bodies in it.
+  const LayerMatrix level = LayerMatrix().set(0, 1).set(1, 1);
   const auto any = [=](Random& r, std::uint32_t) {
     return BodyGroups{.layer = layer(r, 31),
                       .world = number(r, 2),
@@ -86,6 +89,11 @@ inline std::vector<NamedFilter> filters(std::size_t n) {
       {"fixtures and triggers",
        filterOf(n, usual,
                 [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
+      {"a level and a few bodies", filterOf(n, level,
+                                            [=](Random& r, std::uint32_t) {
+                                              const bool is_level = r.integer(0, 9) > 0;
+                                              return BodyGroups{.layer = std::uint8_t{!is_level}};
+                                            })},
       {"32 layers",
        filterOf(n, some,
                 [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},

@@ -29,6 +29,7 @@ struct AlgorithmTraits {
   bool vectorised = false;   ///< heeds the instruction set
   bool on_device = false;    ///< runs on a compute device, whose driver starts threads itself
   bool incremental = false;  ///< keeps pairs from frame to frame
+  bool events = false;       ///< knows by itself which pairs begin and end: BroadPhase::events()
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
   /// A library that it calls allocates in a steady state; the algorithm cannot prevent that.

@@ -30,6 +30,10 @@ struct TransferTimes {
 /// Per run: setParameters, initialize, then for every frame 1…F the four phases in the order below,
 /// each timed, then overlaps(). An instance is run once, over one scene, from one thread; it may
 /// use the workers of its Execution. A steady state allocates nothing.
+///
+/// One that knows by itself which pairs begin and end (traits.events) may be told so, by
+/// reportEvents(), before initialize: then its answer is events(), and nobody asks for overlaps().
+/// For all others events are made of the answers of two frames, as part of phase 4.
 class BroadPhase : public Parametrised {
  public:
   /// 0: exact. Otherwise conservative: an extra pair is allowed when the two boxes overlap once
@@ -52,6 +56,13 @@ class BroadPhase : public Parametrised {
   /// The answer for this frame: every overlapping pair once, a < b, in any order. Owned by the
   /// algorithm; valid until the next updateObjects.
   [[nodiscard]] virtual PairRuns overlaps() const = 0;
+
+  /// Called before initialize(), if traits.events: the answer is to be events().
+  virtual void reportEvents() {}
+  /// The events of this frame, in any order; after initialize() those of the initial pose, all of
+  /// whose pairs began. A conservative algorithm's are those of its own set of pairs. Owned by the
+  /// algorithm; valid until the next updateObjects.
+  [[nodiscard]] virtual PairEvents events() const { return {}; }
 
   /// Copying within the phases of the last frame (algorithms on a compute device).
   [[nodiscard]] virtual TransferTimes transfers() const { return {}; }

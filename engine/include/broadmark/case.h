@@ -7,9 +7,16 @@
 #include "broadmark/algorithm.h"
 #include "broadmark/execution.h"
 #include "broadmark/frame.h"
+#include "broadmark/names.h"
 #include "broadmark/parameters.h"
 
 namespace broadmark {
+
+/// What the answer for a frame is: all pairs, or only those that began or ended since the frame
+/// before.
+enum class AnswerKind { pairs, events };
+inline constexpr NameTable kAnswerKinds{
+    {NamedValue{AnswerKind::pairs, "pairs"}, {AnswerKind::events, "events"}}};
 
 /// What to run.
 struct Case {
@@ -18,13 +25,14 @@ struct Case {
   int threads = 1;
   std::string device = {};          ///< as Execution::device()
   ParameterValues parameters = {};  ///< those that differ from the default
+  AnswerKind answer = AnswerKind::pairs;
 };
 
 /// A case of `algorithm`; what it does not heed is left at its neutral value.
 Case makeCase(const Algorithm& algorithm, Isa isa, int threads, std::string device,
-              ParameterValues parameters);
+              ParameterValues parameters, AnswerKind answer = AnswerKind::pairs);
 
-/// "bf-simd-mt/avx2/t4/key=value": what of a case does not depend on the recording.
+/// "bf-simd-mt/avx2/t4/events/key=value": what of a case does not depend on the recording.
 std::string caseName(const Case&);
 
 /// A new instance of the case's algorithm with its parameters. Throws InputError for a bad one.

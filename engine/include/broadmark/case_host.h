@@ -25,7 +25,7 @@ using Counts = std::map<std::string, std::uint64_t>;
 /// What running one frame gave.
 struct FrameRun {
   FrameTimes times;
-  std::uint64_t pairs = 0;  ///< in the answer, duplicates included
+  std::uint64_t pairs = 0;  ///< in the answer, duplicates included; of events all that there are
 };
 
 /// Holds at most one instance of a case's algorithm, and calls it. Its frames say what changed.
@@ -47,9 +47,13 @@ class CaseHost {
   virtual void stop() = 0;
 
   // Of the frame that was run last. Only between start() and stop().
+  // The first two where the case's answer is pairs, the third where it is events: these are there
+  // for the initial pose, too.
   virtual PairDigest digest() = 0;
   /// Valid until the next call.
   virtual PairRuns answer() = 0;
+  /// Valid until the next call.
+  virtual PairEvents events() = 0;
   virtual Counts counters() = 0;
   virtual Counts setup() = 0;
   virtual RecordedDrawing structure() = 0;
@@ -82,6 +86,7 @@ class LocalHost final : public CaseHost {
   void stop() override;
   PairDigest digest() override { return broadmark::digest(answer_); }
   PairRuns answer() override { return answer_; }
+  PairEvents events() override { return events_; }
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
@@ -94,6 +99,7 @@ class LocalHost final : public CaseHost {
  private:
   FrameTimes runCounted(const Frame& frame);
   std::unique_ptr<BroadPhase> makeInstanceFor(const SceneInfo& scene) const;
+  std::uint64_t takeAnswer();
   void pinThreads();
 
   Case case_;
@@ -106,6 +112,7 @@ class LocalHost final : public CaseHost {
   ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
   PairRuns answer_;
+  PairEvents events_;
 };
 
 /// Asked now and then during long work; true ends it.

@@ -11,6 +11,7 @@
 #include "broadmark/case.h"
 #include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
+#include "broadmark/followed_pairs.h"
 #include "broadmark/frame_times.h"
 #include "broadmark/oracle.h"
 #include "broadmark/status.h"
@@ -43,6 +44,9 @@ struct RunPolicy {
 /// What an algorithm throws becomes the status, and ends the pass; only InputError and Cancelled go
 /// on to the caller. So does the end of the host's process: the next start() has a new one. Any
 /// number of runs may live at the same time, on one thread or on several.
+///
+/// Where the answer is events, what is judged is the set of pairs that they have led to since the
+/// initial pose, and whether each of them can be.
 class CaseRun {
  public:
   /// Checks the parameters; threads and structures are made by start(). `cancelled` ends what the
@@ -57,6 +61,8 @@ class CaseRun {
   [[nodiscard]] bool checks() const {
     return policy_.check != CheckMode::off && case_.algorithm.traits.finds_pairs;
   }
+  /// Judges no more answers.
+  void stopChecking() { policy_.check = CheckMode::off; }
 
   /// Begins a pass: a fresh instance at the initial pose. Returns whether it is running: what the
   /// processor, the number of bodies or the time limit forbids is a status. Throws InputError (a
@@ -96,6 +102,7 @@ class CaseRun {
 
   // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
   // while hasInstance().
+  /// Of events: the pairs that they have led to, if checks(); else empty.
   PairRuns answer();
   Counts counters();
   Counts setup();
@@ -109,6 +116,9 @@ class CaseRun {
   template <class Answer>
   Answer ask(Answer (CaseHost::*question)());
   void fail(Status status, std::string reason);
+  [[nodiscard]] bool answersEvents() const { return case_.answer == AnswerKind::events; }
+  /// Takes the events of this frame into account, if they are to be judged.
+  void followEvents(const Frame& frame);
   [[nodiscard]] std::string atFrame(std::string_view what) const;
 
   Case case_;
@@ -122,6 +132,7 @@ class CaseRun {
   std::string reason_;
   CollisionFilter filter_;  ///< of the present scene
   ChangedBodies changed_bodies_;
+  FollowedPairs followed_;  ///< what events have led to
   std::uint64_t changed_count_ = 0;
   std::uint32_t frame_ = 0;  ///< that was begun last
   std::int64_t initialize_ns_ = 0;

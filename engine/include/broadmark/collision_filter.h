@@ -64,6 +64,9 @@ class CollisionFilter {
   /// The same for copies of one filter, and for no other while it exists.
   [[nodiscard]] const void* address() const { return data_.get(); }
 
+  [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
+    return data_ == nullptr || data_->layers.empty() ? 0 : data_->layers[body];
+  }
   /// As given; default values beyond what was given.
   [[nodiscard]] BodyGroups groupsOf(std::uint32_t body) const;
   [[nodiscard]] LayerMatrix matrix() const;

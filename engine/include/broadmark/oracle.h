@@ -63,7 +63,8 @@ class Oracle {
 /// An extra pair was reported though the two boxes do not overlap, or are not wanted: it is
 /// *allowed* when they are wanted and overlap once enlarged by the algorithm's margin, else it is
 /// *false*. An invalid pair is a duplicate, has
-/// a >= b, or names a body that does not exist.
+/// a >= b, or names a body that does not exist; of events also one that cannot be, as
+/// FollowedPairs says.
 struct FrameDifference {
   /// At most this many pairs of each kind are listed; the counts are always complete.
   static constexpr std::size_t kListed = 1000;
@@ -79,6 +80,7 @@ struct FrameDifference {
   std::vector<Pair> allowed_extra_pairs;
   std::vector<Pair> invalid_pairs;
 
+  void addInvalid(PairRun pairs);
   /// Allowed extra pairs are no mismatch.
   [[nodiscard]] bool isMismatch() const { return missed_count + false_count + invalid_count > 0; }
 };

@@ -28,11 +28,22 @@ using PairRun = std::span<const Pair>;
 /// A whole answer: one run or several (one per worker needs no merging), borrowed.
 using PairRuns = std::span<const PairRun>;
 
+/// What is new about the pairs since the frame before, borrowed: those that began, which were not
+/// there, and those that ended, which were. Each pair once, and in one of the two only.
+struct PairEvents {
+  PairRuns began;
+  PairRuns ended;
+};
+
 /// Number of pairs in all runs, duplicates included.
 constexpr std::uint64_t pairCount(PairRuns runs) {
   std::uint64_t count = 0;
   for (const PairRun run : runs) count += run.size();
   return count;
+}
+/// Number of events.
+constexpr std::uint64_t eventCount(const PairEvents& events) {
+  return pairCount(events.began) + pairCount(events.ended);
 }
 
 /// For each of `bodies` bodies, in how many of the pairs it is. Bodies that do not exist count for

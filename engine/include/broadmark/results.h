@@ -32,8 +32,8 @@ struct Repetition {
   ProcessorCounts processor = {};                 ///< sums over the frames' four phases
 };
 
-/// What is counted in each frame: pairs in the answer, bodies whose boxes are not those of the
-/// frame before, and wrong pairs as in FrameDifference.
+/// What is counted in each frame: pairs in the answer (of events: that began or ended), bodies
+/// whose boxes are not those of the frame before, and wrong pairs as in FrameDifference.
 enum class FrameCount { pairs, changed_bodies, missed, false_pairs, allowed_extra, invalid };
 inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
                                          {FrameCount::changed_bodies, "changed_bodies"},
@@ -81,12 +81,14 @@ struct CaseResult {
   std::string device;          ///< the compute device asked for, as Execution::device()
   std::string plugin;          ///< the file that the algorithm was loaded from; "": built in
   ParameterValues parameters;  ///< all, defaults included
+  AnswerKind answer = AnswerKind::pairs;
   Conditions conditions;
   std::size_t environment = 0;  ///< where it ran: one of Results::environments
 
   Status status = Status::ok;
   std::string reason;  ///< for every status but ok
 
+  // As FrameCount::pairs.
   double pairs_mean = 0;
   std::uint64_t pairs_max = 0;
   std::optional<Population> bodies;  ///< nothing where nobody is ever absent

@@ -50,6 +50,7 @@ class WorkerProcess final : public CaseHost {
   void stop() override;
   PairDigest digest() override;
   PairRuns answer() override;
+  PairEvents events() override;
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
@@ -75,7 +76,8 @@ class WorkerProcess final : public CaseHost {
   bool pinned_ = false;
   std::vector<Aabb> changed_boxes_;
   std::vector<Pair> answer_;
-  PairRun answer_run_;
+  PairRun answer_run_;  ///< of events: those that began
+  PairRun ended_run_;
 };
 
 /// Finds an algorithm by its id and the file of its plug-in ("": built in). Throws InputError.

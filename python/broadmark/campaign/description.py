@@ -259,6 +259,7 @@ CAMPAIGN_KEYS: dict[str, Callable[[Any], Any]] = {
     "algorithm": _list,
     "plugin": _texts,
     "device": _text,
+    "answer": _text,
     "repetitions": _repetitions,
     "precision": _precision,
     "most_seconds": _number,

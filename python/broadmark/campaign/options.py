@@ -14,7 +14,7 @@ from broadmark.program import as_options, call
 from broadmark.recordings import write_recording
 
 #: Options of a campaign that are part of its selections; the others tell how cases are measured.
-OF_SELECTIONS = ("plugin", "device")
+OF_SELECTIONS = ("plugin", "device", "answer")
 
 
 def parameter_options(parameters: Values) -> list[str]:
@@ -29,7 +29,7 @@ def selection_options(campaign: Campaign, selection: Selection) -> list[str]:
         *as_options(algorithm=selection.algorithms, threads=selection.threads, isa=selection.isas),
         *parameter_options(selection.parameters),
         *itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))),
-        *as_options(device=campaign.options.get("device")),
+        *as_options(**{name: campaign.options.get(name) for name in ("device", "answer")}),
     ]
 
 

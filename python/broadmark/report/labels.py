@@ -39,6 +39,7 @@ def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str
             " isa": case["isa"],
             " threads": case["threads"],
             " device": case.get("device") or "",
+            " answer": case.get("answer", "pairs"),
         }
         return {**own, **case["params"]}
 
@@ -60,6 +61,8 @@ def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str
             parts.append(f"t{case['threads']}")
         if " device" in told and case.get("device"):
             parts.append(case["device"])
+        if " answer" in told:
+            parts.append(case.get("answer", "pairs"))
         parts += [f"{name}={value}" for name, value in case["params"].items() if name in told]
         return "/".join(map(str, parts))
 

@@ -34,7 +34,7 @@ def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
 
 
 def variant_words(case: dict[str, Any]) -> list[str]:
-    """Algorithm, threads, instruction set and parameters of a case."""
+    """Algorithm, threads, instruction set, answer and parameters of a case."""
     algorithm = case["algorithm"]
     return as_options(
         plugin=case.get("plugin") or None,
@@ -42,6 +42,7 @@ def variant_words(case: dict[str, Any]) -> list[str]:
         threads=case["threads"],
         isa=case["isa"] if case.get("vectorised") else None,
         device=case.get("device") or None,
+        answer=None if case.get("answer", "pairs") == "pairs" else case["answer"],
         param={f"{algorithm}:{name}": value for name, value in case["params"].items()},
     )
 

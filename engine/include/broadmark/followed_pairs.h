@@ -1,0 +1,42 @@
+// The set of pairs that events lead to, frame by frame.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "broadmark/pair.h"
+
+namespace broadmark {
+
+/// Keeps the pairs that have begun and not ended. For who is told events and wants all pairs:
+/// the one who checks them, for instance.
+class FollowedPairs {
+ public:
+  FollowedPairs() = default;
+  FollowedPairs(FollowedPairs&&) = default;
+  FollowedPairs& operator=(FollowedPairs&&) = default;
+
+  /// No pair has begun.
+  void clear();
+  /// Takes the events of the next frame, of a scene with that many bodies. O(k + e log e), k pairs
+  /// and e events; O(1) if there is none.
+  void apply(const PairEvents& events, std::size_t bodies);
+
+  /// All pairs now, ascending. Valid until the next call of clear() or apply().
+  [[nodiscard]] PairRuns pairs() const { return {&run_, 1}; }
+  /// Of the last frame's events those that cannot be, each pair once, ascending: it began though it
+  /// was there, ended though it was not, came more than once, or is none (a >= b, or a body that
+  /// does not exist). What ended and began in one frame is left as it was.
+  [[nodiscard]] PairRun impossible() const { return impossible_; }
+
+ private:
+  std::vector<Pair> pairs_;  ///< ascending
+  PairRun run_;              ///< all of them
+  std::vector<Pair> impossible_;
+  // Of the present frame, ascending.
+  std::vector<Pair> began_;
+  std::vector<Pair> ended_;
+  std::vector<Pair> next_;
+};
+
+}  // namespace broadmark

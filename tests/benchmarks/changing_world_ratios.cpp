@@ -1,0 +1,134 @@
+// What a frame costs in worlds that change. What is compared takes turns, frame by frame, so that
+// ratios mean something. Exit status 1 if a target is missed.
+//
+//   changing_world_ratios [PART [ROUNDS]]
+//
+// PART: level    a level of 1,000,000 bodies that stand still, and 100 that move: at most 100 µs
+//       traffic  1 % of 128,000 bodies removed and as many added: at most what moving 2 % costs
+//       culling  a level in layers beside the same boxes without any
+//       worlds   256 worlds at one place in one case beside a case each
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "benchmarks/changing_worlds.h"
+
+namespace {
+
+using namespace broadmark;
+using namespace broadmark::benchmarks;
+
+Case caseOf(const std::string& id, AnswerKind answer = AnswerKind::pairs) {
+  return makeCase(findAlgorithm(id).value(), bestIsa(), 1, "", {}, answer);
+}
+
+/// Prints the times and the ratio of two entrants, and whether that is at most `target`; 0: any.
+bool compare(const std::string& what, const WorldContest::Entrant& a,
+             const WorldContest::Entrant& b, double target = 0) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < a.us.size(); ++i) ratios.push_back(a.us[i] / b.us[i]);
+  const double ratio = quantile(ratios, 0.5);
+  const bool met = target == 0 || ratio <= target;
+  fmt::print("{:20} {:12} {:10.1f} us  {:12} {:10.1f} us  ratio {:6.3f} [{:.3f}, {:.3f}]  {}\n",
+             what, a.name, quantile(a.us, 0.5), b.name, quantile(b.us, 0.5), ratio,
+             quantile(ratios, 0.25), quantile(ratios, 0.75),
+             target == 0 ? ""
+             : met       ? "ok"
+                         : "MISSED");
+  return met;
+}
+
+bool level(int rounds) {
+  constexpr double kMost_us = 100;
+  StaticLevel world(1'000'000, 100);
+  int met = 0;
+  for (const std::string id : {"kd", "dbvt-d", "dbvt-f", "tracy"}) {
+    for (const auto& [answer, name] : kAnswerKinds.entries) {
+      WorldContest contest;  // alone: a frame of another would take the caches
+      if (!contest.add(id, caseOf(id, answer), world)) continue;
+      contest.run(5, rounds);
+      WorldContest::Entrant& entrant = contest.entrants()[0];
+      const double us = std::accumulate(entrant.us.begin(), entrant.us.end(), 0.0) /
+                        static_cast<double>(entrant.us.size());
+      fmt::print("level {:8} {:7} start {:7.2f} s  mean {:8.1f} us  median {:8.1f}  p99 {:8.1f}\n",
+                 id, name, static_cast<double>(entrant.start_ns) * 1e-9, us,
+                 quantile(entrant.us, 0.5), quantile(entrant.us, 0.99));
+      met += us <= kMost_us && answer == AnswerKind::events ? 1 : 0;
+    }
+  }
+  return met >= 2;  // two families
+}
+
+bool traffic(int rounds) {
+  constexpr std::uint32_t kBodies = 128'000;
+  bool met = true;
+  SomeMove moving(kBodies, kBodies / 50);
+  ComeAndGo changing(kBodies, kBodies / 100);
+  for (const std::string id : {"kd", "tracy", "dbvt-f", "dbvt-d"}) {
+    WorldContest contest;
+    contest.add("remove, add", caseOf(id), changing);
+    contest.add("move", caseOf(id), moving);
+    contest.run(5, rounds);
+    met &= compare("traffic " + id, contest.entrants()[0], contest.entrants()[1], 1);
+  }
+  return met;
+}
+
+void culling(int rounds) {
+  StaticLevel layered(100'000, 100, true);
+  StaticLevel plain(100'000, 100, false);
+  for (const std::string id : {"grid-bf", "grid-sap", "grid2d-sap", "sap-simd", "kd"}) {
+    WorldContest contest;
+    contest.add("layers", caseOf(id), layered);
+    contest.add("none", caseOf(id), plain);
+    contest.run(3, rounds);
+    compare("culling " + id, contest.entrants()[0], contest.entrants()[1]);
+  }
+}
+
+void worlds(int rounds) {
+  ManyWorlds all(256, 100);
+  for (const std::string id : {"bf-simd", "sap-simd", "grid-bf", "grid-sap", "kd", "dbvt-d"}) {
+    WorldContest contest;
+    contest.add("together", caseOf(id), all);
+    WorldContest::Entrant apart = {.name = "apart"};
+    std::vector<std::unique_ptr<CaseHost>> hosts;
+    for (std::uint32_t world = 0; world < all.worlds(); ++world) {
+      hosts.push_back(makeLocalHost(caseOf(id), {}));
+      hosts.back()->start(all.sceneOfOne(), all.frameOfOne(world));
+    }
+    for (int round = -3; round < rounds; ++round) {
+      contest.run(round < 0 ? 1 : 0, round < 0 ? 0 : 1);
+      double us = 0;
+      for (std::uint32_t world = 0; world < all.worlds(); ++world) {
+        const FrameRun run = hosts[world]->step(all.frameOfOne(world));
+        us += static_cast<double>(run.times[Phase::total]) * 1e-3;
+      }
+      if (round >= 0) apart.us.push_back(us);
+    }
+    compare("worlds " + id, contest.entrants()[0], apart);
+  }
+}
+
+int run(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  const std::string_view part = argc > 1 ? argv[1] : "all";
+  const int rounds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 100;
+  const auto is_asked = [&](std::string_view name) { return part == "all" || part == name; };
+  bool met = true;
+  if (is_asked("level")) met &= level(rounds);
+  if (is_asked("traffic")) met &= traffic(rounds);
+  if (is_asked("culling")) culling(rounds);
+  if (is_asked("worlds")) worlds(rounds);
+  return met ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return broadmark::benchmarks::runMain("changing_world_ratios", run, argc, argv);
+}

@@ -1,0 +1,222 @@
+// What an algorithm that knows only boxes gets to see of a world that changes: as little as can be.
+
+#include "compacted_world.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "broadmark/oracle.h"
+#include "near_grid.h"
+#include "support/changing_worlds.h"
+
+namespace broadmark::tests {
+namespace {
+
+using Boxes = std::vector<Aabb>;
+
+/// Reports all pairs, and keeps what it was shown.
+class Witness final : public BoxBroadPhase {
+ public:
+  using BoxBroadPhase::boxes;
+  [[nodiscard]] std::size_t pairsFormed() const { return formed_; }
+
+ private:
+  void findPairs() override {
+    formed_ = 0;
+    for (const Pair pair : bruteForcePairs(boxes())) {
+      pairs().add(pair.a, pair.b);
+      ++formed_;
+    }
+  }
+
+  std::size_t formed_ = 0;
+};
+
+/// A witness in a world of its own.
+class Watched {
+ public:
+  Watched(const CollisionFilter& filter, const Boxes& first, const Aabb& bounds)
+      : boxes_(first), filter_(filter) {
+    auto witness = std::make_unique<Witness>();
+    witness_ = witness.get();
+    world_ = std::make_unique<CompactedWorld>(std::move(witness));
+    SceneInfo scene;
+    scene.objects = static_cast<std::uint32_t>(first.size());
+    scene.world = bounds;
+    scene.all_present = false;
+    scene.filter = filter;
+    world_->initialize(scene, {0, boxes_, std::span<const std::uint32_t>()}, execution_);
+  }
+
+  /// Runs a frame and checks the answer.
+  void step(const Boxes& boxes) {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+      if (boxes[body] != boxes_[body]) changed.push_back(body);
+    }
+    boxes_ = boxes;
+    world_->updateObjects({++index_, boxes_, changed});
+    world_->cleanCache();
+    world_->updateStructures();
+    world_->searchOverlaps();
+    std::vector<Pair> answer;
+    for (const PairRun run : world_->overlaps()) {
+      answer.insert(answer.end(), run.begin(), run.end());
+    }
+    std::ranges::sort(answer);
+    EXPECT_EQ(answer, bruteForcePairs(boxes_, filter_)) << "in frame " << index_;
+    EXPECT_EQ(world_->validate(), "");
+  }
+
+  [[nodiscard]] const Boxes& shown() const { return witness_->boxes(); }
+  [[nodiscard]] std::size_t pairsFormed() const { return witness_->pairsFormed(); }
+
+ private:
+  Boxes boxes_;
+  CollisionFilter filter_;
+  Execution execution_{1, Isa::scalar};
+  Witness* witness_ = nullptr;
+  std::unique_ptr<CompactedWorld> world_;
+  std::uint32_t index_ = 0;
+};
+
+constexpr Aabb kBounds = {{0, 0, 0, 0}, {100, 100, 100, 0}};
+
+Aabb unitAt(float x, float y = 0, float z = 0) { return inputs::boxAt({x, y, z}, {1, 1, 1}); }
+
+CollisionFilter layers(const std::vector<std::uint8_t>& of_bodies, const LayerMatrix& matrix) {
+  std::vector<BodyGroups> groups;
+  for (const std::uint8_t layer : of_bodies) groups.push_back({.layer = layer});
+  return {groups, matrix};
+}
+
+TEST(CompactedWorld, ShowsNobodyWhoCanMeetNobody) {
+  // Layer 2 meets layer 1, and layer 0 itself only.
+  const CollisionFilter filter = layers({0, 0, 1, 2, 2}, LayerMatrix().set(0, 0).set(1, 2));
+  Boxes boxes(5, unitAt(0));
+  boxes[2] = kEmptyBox;
+  Watched watched(filter, boxes, kBounds);
+  watched.step(boxes);
+  EXPECT_EQ(watched.shown().size(), 2U);
+  boxes[2] = unitAt(0.5F);
+  watched.step(boxes);
+  EXPECT_EQ(watched.shown().size(), 5U);
+  boxes[3] = boxes[4] = kEmptyBox;
+  watched.step(boxes);
+  EXPECT_EQ(watched.shown().size(), 2U);
+  boxes[0] = kEmptyBox;
+  watched.step(boxes);
+  EXPECT_EQ(watched.shown().size(), 1U);
+}
+
+TEST(CompactedWorld, ShowsOfALevelOnlyWhatIsNearSomebody) {
+  constexpr std::size_t kLevel = 1000;
+  std::vector<std::uint8_t> of_bodies(kLevel + 1, 0);
+  of_bodies.back() = 1;
+  Boxes boxes;
+  for (std::size_t i = 0; i < kLevel; ++i) {
+    boxes.push_back(unitAt(static_cast<float>(i % 10) * 10, static_cast<float>(i / 10 % 10) * 10,
+                           static_cast<float>(i / 100) * 10));
+  }
+  boxes.push_back(unitAt(0.5F, 0.5F, 0.5F));
+  Watched watched(layers(of_bodies, LayerMatrix().set(0, 1)), boxes, kBounds);
+  for (int step = 0; step < 20; ++step) {
+    boxes.back() = unitAt(static_cast<float>(step) * 10 + 0.5F, 50, 90.5F);
+    watched.step(boxes);
+    EXPECT_LT(watched.shown().size(), 20U);
+  }
+  // Beyond the world, where its last one has gone.
+  boxes.back() = boxes.front() = unitAt(-1e6F, 1e9F, 500);
+  watched.step(boxes);
+  EXPECT_EQ(watched.pairsFormed(), 1U);
+  boxes.back() = kEmptyBox;
+  watched.step(boxes);
+  EXPECT_TRUE(watched.shown().empty());
+}
+
+TEST(CompactedWorld, FormsNoPairsOfTwoWorlds) {
+  constexpr std::uint32_t kEach = 4;
+  constexpr std::uint32_t kAll = 600;
+  const CollisionFilter filter = filterOf(
+      kAll, LayerMatrix().set(0, 0),
+      [](inputs::Random&, std::uint32_t body) { return BodyGroups{.world = 1000 - body / kEach}; });
+  const auto boxes = [](std::uint32_t frame) {
+    return inputs::generate(kAll, frame, 5, [](inputs::Random& random, std::size_t) {
+      return inputs::boxAt(random.inCube(2), {1, 1, 1});
+    });
+  };
+  Watched watched(filter, boxes(0), {{0, 0, 0, 0}, {3, 3, 3, 0}});
+  for (std::uint32_t frame = 1; frame < 5; ++frame) {
+    watched.step(boxes(frame));
+    EXPECT_EQ(watched.shown().size(), kAll);
+    EXPECT_LE(watched.pairsFormed(), kAll * (kEach - 1) / 2);
+  }
+}
+
+// Where adding an offset rounds, boxes come to touch that do not.
+TEST(CompactedWorld, JudgesBoxesWhereTheyAre) {
+  const CollisionFilter filter(
+      {{BodyGroups{}, BodyGroups{}, BodyGroups{.world = 1}, BodyGroups{.world = 1}}},
+      LayerMatrix().set(0, 0));
+  const float gap = 1 + 0x1p-23F;  // the next number
+  const Boxes boxes = {unitAt(0), inputs::boxAt({gap, 0, 0}, {1, 1, 1}), unitAt(0),
+                       inputs::boxAt({gap, 0, 0}, {1, 1, 1})};
+  Watched watched(filter, boxes, {{0, 0, 0, 0}, {1e6F, 1e6F, 1e6F, 0}});
+  watched.step(boxes);
+  EXPECT_EQ(watched.pairsFormed(), 1U);
+}
+
+// As large as floats: the worlds stay where they are.
+TEST(CompactedWorld, LeavesHugeWorldsAtTheirPlace) {
+  constexpr std::uint32_t kAll = 60;
+  const CollisionFilter filter =
+      filterOf(kAll, LayerMatrix().set(0, 0),
+               [](inputs::Random&, std::uint32_t body) { return BodyGroups{.world = body % 3}; });
+  const Boxes boxes = inputs::limits(kAll, 0, 1);
+  Aabb bounds = boxes[0];
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);
+  Watched watched(filter, boxes, bounds);
+  watched.step(inputs::limits(kAll, 1, 1));
+  EXPECT_EQ(watched.shown(), inputs::limits(kAll, 1, 1));
+}
+
+// Boxes of all inputs in worlds of all kinds, too small and degenerate ones among them.
+TEST(NearGrid, KnowsEveryOverlap) {
+  const Aabb nothing = kEmptyBox;
+  for (const inputs::Input& input : inputs::kAll) {
+    SCOPED_TRACE(input.name);
+    const Boxes boxes = input.boxes(80, 1, 3);
+    Aabb all = boxes[0];
+    for (const Aabb& box : boxes) all = merged(all, box);
+    for (const Aabb& world : {all, kBounds, boxes[0], nothing, Aabb{}}) {
+      NearGrid grid(world);
+      for (const Aabb& marked : boxes) {
+        grid.clear();
+        grid.mark(marked);
+        for (const Aabb& box : boxes) {
+          EXPECT_TRUE(grid.isNear(box) || !overlaps(marked, box));
+        }
+      }
+    }
+  }
+}
+
+TEST(NearGrid, TellsApartWhatIsFar) {
+  NearGrid grid(kBounds);
+  grid.mark(unitAt(50, 50, 50));
+  EXPECT_TRUE(grid.isNear(unitAt(50, 50, 51)));
+  EXPECT_FALSE(grid.isNear(unitAt(50, 50, 60)));
+  EXPECT_FALSE(grid.isNear(unitAt(50, 60, 50)));
+  EXPECT_FALSE(grid.isNear(unitAt(60, 50, 50)));
+  EXPECT_FALSE(grid.isNear(unitAt(0, 0, 0)));
+  grid.clear();
+  EXPECT_FALSE(grid.isNear(unitAt(50, 50, 50)));
+}
+
+}  // namespace
+}  // namespace broadmark::tests
