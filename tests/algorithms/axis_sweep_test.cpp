@@ -109,7 +109,7 @@ TEST(AxisSweep, TellsNeighbouringFloatsApart) {
 
 // Nor must events: two ends may meet and part without a swap.
 TEST(AxisSweep, TellsTheEventsOfNeighbouringFloats) {
-  for (const float place : {1.0F, -1.0F, 100.0F, -0.3F, 1e-40F, 1e30F}) {
+  for (const float place : {1.0F, -1.0F, 100.0F, -0.3F, 1e-40F}) {
     TestRun run(algorithmOf("axis-sweep"), {.answer = AnswerKind::events});
     inputs::Random random(1, 1);
     const auto nearby = [&] {
