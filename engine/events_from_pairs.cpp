@@ -1,35 +1,12 @@
-// Sorting by counting, and comparing.
+// Sorting by radix, and merging.
 
 #include "events_from_pairs.h"
 
 #include <algorithm>
-#include <numeric>
+#include <bit>
 #include <utility>
 
 namespace broadmark {
-namespace {
-
-/// Adds the pairs of `body` with what is in `some` and not in `others`; both ascend. What is there
-/// more often counts, too.
-void addDifference(std::span<const std::uint32_t> some, std::span<const std::uint32_t> others,
-                   std::uint32_t body, PairBuffer& pairs) {
-  auto other = others.begin();
-  for (const std::uint32_t one : some) {
-    while (other != others.end() && *other < one) ++other;
-    if (other != others.end() && *other == one) {
-      ++other;
-    } else {
-      pairs.add(body, one);
-    }
-  }
-}
-
-void addAsItIs(Pair pair, PairBuffer& pairs) {
-  *pairs.room(1) = pair;
-  pairs.advance(1);
-}
-
-}  // namespace
 
 EventsFromPairs::EventsFromPairs(std::unique_ptr<BroadPhase> algorithm)
     : algorithm_(std::move(algorithm)) {}
@@ -41,12 +18,9 @@ void EventsFromPairs::visitParameters(const ParameterVisitor& visit) {
 void EventsFromPairs::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   team_ = &execution.team();
   bodies_ = first.boxes.size();
+  body_bits_ = static_cast<int>(std::bit_width(bodies_));
   parts_ = std::vector<Part>(static_cast<std::size_t>(team_->size()));
-  for (std::size_t worker = 0; worker < parts_.size(); ++worker) {
-    parts_[worker].found = std::vector<PairBuffer>(parts_.size());
-    const std::size_t groups = (bodies_ + parts_.size() - 1 - worker) / parts_.size();
-    for (Groups& each : parts_[worker].groups) each.begins.assign(groups + 1, 0);
-  }
+  for (Part& part : parts_) part.found.resize(parts_.size());
   began_.resize(parts_.size());
   ended_.resize(parts_.size());
   algorithm_->initialize(scene, first, execution);
@@ -59,11 +33,11 @@ void EventsFromPairs::initialize(const SceneInfo& scene, const Frame& first, Exe
 void EventsFromPairs::searchOverlaps() {
   algorithm_->searchOverlaps();
   const PairRuns answer = algorithm_->overlaps();
-  now_ ^= 1;
   team_->run([&](int worker) { shareOut(answer, static_cast<std::size_t>(worker)); });
   team_->run([&](int worker) {
-    group(static_cast<std::size_t>(worker));
-    compare(static_cast<std::size_t>(worker));
+    gather(static_cast<std::size_t>(worker));
+    sort(parts_[static_cast<std::size_t>(worker)]);
+    compare(parts_[static_cast<std::size_t>(worker)]);
   });
   for (std::size_t worker = 0; worker < parts_.size(); ++worker) {
     began_[worker] = parts_[worker].began.run();
@@ -71,9 +45,16 @@ void EventsFromPairs::searchOverlaps() {
   }
 }
 
+/// Of every so many blocks of bodies one: low numbers are lower bodies more often than high ones.
+std::size_t EventsFromPairs::ownerOf(Pair pair) const {
+  constexpr std::uint32_t kBlock = 64;
+  if (parts_.size() == 1) return 0;
+  return pair.a / kBlock % static_cast<std::uint32_t>(parts_.size());
+}
+
 void EventsFromPairs::shareOut(PairRuns answer, std::size_t worker) {
   Part& part = parts_[worker];
-  for (PairBuffer& found : part.found) found.clear();
+  for (Keys& found : part.found) found.clear();
   part.began.clear();
   part.ended.clear();
   auto [begin, end] =
@@ -82,44 +63,63 @@ void EventsFromPairs::shareOut(PairRuns answer, std::size_t worker) {
     const std::size_t from = std::min(begin, run.size());
     const std::size_t to = std::min(end, run.size());
     for (const Pair pair : run.subspan(from, to - from)) {
-      const bool is_pair = pair.a < pair.b && pair.b < bodies_;
-      addAsItIs(pair, is_pair ? part.found[pair.a % parts_.size()] : part.began);
+      if (pair.a < pair.b && pair.b < bodies_) [[likely]] {
+        part.found[ownerOf(pair)].push_back(keyOf(pair));
+      } else {
+        *part.began.room(1) = pair;  // as wrong as it is
+        part.began.advance(1);
+      }
     }
     begin -= from;
     end -= to;
   }
 }
 
-void EventsFromPairs::group(std::size_t worker) {
-  const auto workers = static_cast<std::uint32_t>(parts_.size());
-  Groups& groups = parts_[worker].groups[now_];
-  std::ranges::fill(groups.begins, 0);
-  for (const Part& part : parts_) {
-    for (const Pair pair : part.found[worker].run()) ++groups.begins[pair.a / workers];
-  }
-  std::inclusive_scan(groups.begins.begin(), groups.begins.end(), groups.begins.begin());
-  groups.others.resize(groups.begins.back());
-  for (const Part& part : parts_) {
-    for (const Pair pair : part.found[worker].run()) {
-      groups.others[--groups.begins[pair.a / workers]] = pair.b;
-    }
+void EventsFromPairs::gather(std::size_t worker) {
+  Part& part = parts_[worker];
+  part.now.swap(part.before);
+  part.now.clear();
+  for (const Part& from : parts_) {
+    part.now.insert(part.now.end(), from.found[worker].begin(), from.found[worker].end());
   }
 }
 
-void EventsFromPairs::compare(std::size_t worker) {
-  Part& part = parts_[worker];
-  Groups& groups = part.groups[now_];
-  const Groups& groups_before = part.groups[now_ ^ 1];
-  for (std::size_t i = 0; i + 1 < groups.begins.size(); ++i) {
-    std::sort(groups.others.begin() + static_cast<std::ptrdiff_t>(groups.begins[i]),
-              groups.others.begin() + static_cast<std::ptrdiff_t>(groups.begins[i + 1]));
-    const std::span<const std::uint32_t> now = groups.of(i);
-    const std::span<const std::uint32_t> before = groups_before.of(i);
-    if (std::ranges::equal(now, before)) continue;
-    const auto body = static_cast<std::uint32_t>(i * parts_.size() + worker);
-    addDifference(now, before, body, part.began);
-    addDifference(before, now, body, part.ended);
+void EventsFromPairs::sort(Part& part) const {
+  constexpr int kDigitBits = 11;
+  constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
+  constexpr std::size_t kFew = 512;  // for these comparing takes less
+  if (part.now.size() < kFew) {
+    std::ranges::sort(part.now);
+    return;
   }
+  part.spare.resize(part.now.size());
+  for (int shift = 0; shift < 2 * body_bits_; shift += kDigitBits) {
+    const auto digit = [shift](std::uint64_t key) { return key >> shift & (kDigits - 1); };
+    std::array<std::size_t, kDigits> places{};
+    for (const std::uint64_t key : part.now) ++places[digit(key)];
+    std::size_t end = 0;
+    for (std::size_t& place : places) end += std::exchange(place, end);
+    for (const std::uint64_t key : part.now) part.spare[places[digit(key)]++] = key;
+    part.now.swap(part.spare);
+  }
+}
+
+void EventsFromPairs::compare(Part& part) const {
+  const auto add = [this](std::uint64_t key, PairBuffer& pairs) {
+    const std::uint64_t mask = (std::uint64_t{1} << body_bits_) - 1;
+    pairs.add(static_cast<std::uint32_t>(key >> body_bits_),
+              static_cast<std::uint32_t>(key & mask));
+  };
+  auto before = part.before.begin();
+  for (const std::uint64_t key : part.now) {
+    for (; before != part.before.end() && *before < key; ++before) add(*before, part.ended);
+    if (before != part.before.end() && *before == key) {
+      ++before;
+    } else {
+      add(key, part.began);
+    }
+  }
+  for (; before != part.before.end(); ++before) add(*before, part.ended);
 }
 
 void EventsFromPairs::visitCounters(const CounterVisitor& visit) const {

@@ -1,14 +1,13 @@
 // Events, for algorithms that know only the set of pairs of each frame.
 //
-// The pairs of a frame are sorted by their lower body, by counting, and each body's few by the
-// other one; then body for body those of the two last frames are compared. O(n + k), n bodies and k
-// pairs, shared out over the team by the lower body. A steady state allocates nothing.
+// The pairs of a frame are sorted, by radix, and merged with those of the frame before: what is in
+// one of the two lists only has begun or ended. O(k), k the pairs, shared out over the team by the
+// lower body. A steady state allocates nothing.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "broadmark/broad_phase.h"
@@ -39,33 +38,32 @@ class EventsFromPairs final : public BroadPhase {
   [[nodiscard]] std::string validate() const override { return algorithm_->validate(); }
 
  private:
-  /// Pairs by their lower body: each body's others, ascending.
-  struct Groups {
-    std::vector<std::size_t> begins;  ///< by group; and where the last one ends
-    std::vector<std::uint32_t> others;
-
-    [[nodiscard]] std::span<const std::uint32_t> of(std::size_t group) const {
-      return std::span(others).subspan(begins[group], begins[group + 1] - begins[group]);
-    }
-  };
-  /// A worker's: group g of worker w is body g · workers + w. Low numbers are lower bodies more
-  /// often than high ones, so that each gets some of both.
+  /// Pairs as numbers, which sort as they do.
+  using Keys = std::vector<std::uint64_t>;
+  /// A worker's: the pairs of its bodies.
   struct alignas(64) Part {
-    std::vector<PairBuffer> found;  ///< in the worker's share of the answer, by whose part it is
-    std::array<Groups, 2> groups;   ///< of the two last frames, taking turns
+    std::vector<Keys> found;  ///< in the worker's share of the answer, by whose they are
+    Keys now;                 ///< ascending, once sorted
+    Keys before;              ///< likewise
+    Keys spare;               ///< for sorting
     PairBuffer began;
     PairBuffer ended;
   };
 
+  [[nodiscard]] std::uint64_t keyOf(Pair pair) const {
+    return std::uint64_t{pair.a} << body_bits_ | pair.b;
+  }
+  [[nodiscard]] std::size_t ownerOf(Pair pair) const;
   void shareOut(PairRuns answer, std::size_t worker);
-  void group(std::size_t worker);
-  void compare(std::size_t worker);
+  void gather(std::size_t worker);
+  void sort(Part& part) const;
+  void compare(Part& part) const;
 
   std::unique_ptr<BroadPhase> algorithm_;
   ThreadTeam* team_ = nullptr;
   std::size_t bodies_ = 0;
+  int body_bits_ = 0;  ///< that a body's number takes
   std::vector<Part> parts_;
-  std::size_t now_ = 0;  ///< which of the groups are this frame's
   std::vector<PairRun> began_;
   std::vector<PairRun> ended_;
 };

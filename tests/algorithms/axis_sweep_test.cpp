@@ -107,6 +107,28 @@ TEST(AxisSweep, TellsNeighbouringFloatsApart) {
   }
 }
 
+// Nor must events: two ends may meet and part without a swap.
+TEST(AxisSweep, TellsTheEventsOfNeighbouringFloats) {
+  for (const float place : {1.0F, -1.0F, 100.0F, -0.3F, 1e-40F}) {
+    TestRun run(algorithmOf("axis-sweep"), {.answer = AnswerKind::events});
+    inputs::Random random(1, 1);
+    const auto nearby = [&] {
+      float one = place;
+      for (int steps = random.integer(0, 3); steps > 0; --steps) one = std::nextafter(one, 1e38F);
+      return one;
+    };
+    std::vector<Aabb> boxes = {{{place - 1, 0, 0, 0}, {place, 1, 1, 0}},
+                               {{place, 0, 0, 0}, {place + 1, 1, 1, 0}}};
+    run.start(boxes);
+    for (int frame = 0; frame < 100; ++frame) {
+      if (random.integer(0, 2) > 0) boxes[0].max[0] = nearby();
+      if (random.integer(0, 2) > 0) boxes[1].min[0] = nearby();
+      if (frame % 10 == 0) boxes = shifted(boxes, frame % 20 == 0 ? 0.5F : -0.5F);
+      EXPECT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << place << ", frame " << frame;
+    }
+  }
+}
+
 TEST(AxisSweep, SurvivesTheLimitsOfFloats) {
   TestRun run = startedAt(inputs::limits(300, 0, 1));
   for (std::uint32_t frame = 1; frame < 4; ++frame) {

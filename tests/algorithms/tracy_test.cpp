@@ -12,22 +12,27 @@
 namespace broadmark::tests {
 namespace {
 
-/// A run of Tracy that checks its structure and its answers.
+/// A run of Tracy that checks its structure and its answers; and beside it one for events.
 class Checked {
  public:
   Checked(const std::string& id, int threads, int objects_per_cell, const Aabb& world,
           const std::vector<Aabb>& first)
       : run_(algorithmOf(id), {Isa::scalar, threads},
-             {{"objects_per_cell", std::to_string(objects_per_cell)}}) {
+             {{"objects_per_cell", std::to_string(objects_per_cell)}}),
+        events_(algorithmOf(id), {Isa::scalar, threads, AnswerKind::events},
+                {{"objects_per_cell", std::to_string(objects_per_cell)}}) {
     SceneInfo scene;
     scene.objects = static_cast<std::uint32_t>(first.size());
     scene.world = world;
     run_.start(scene, first);
+    events_.start(scene, first);
   }
 
   void step(const std::vector<Aabb>& boxes) {
     ++index_;
-    EXPECT_EQ(sorted(run_.step(boxes)), sweptPairs(boxes)) << "in frame " << index_;
+    const std::vector<Pair> right = sweptPairs(boxes);
+    EXPECT_EQ(sorted(run_.step(boxes)), right) << "in frame " << index_;
+    EXPECT_EQ(sorted(events_.step(boxes)), right) << "of events, in frame " << index_;
     EXPECT_EQ(run_.broadPhase().validate(), "") << "in frame " << index_;
   }
 
@@ -36,6 +41,7 @@ class Checked {
 
  private:
   TestRun run_;
+  TestRun events_;
   std::uint32_t index_ = 0;
 };
 
