@@ -11,8 +11,8 @@ namespace broadmark {
 struct Plan;
 struct SessionOptions;
 
-/// Throws InputError when no recording of the scene can be written to `file`, or when it is `original` (which
-/// may be ""): to fail before a long search rather than after it.
+/// Throws InputError when no recording of the scene can be written to `file`, or when it is
+/// `original` (which may be ""): to fail before a long search rather than after it.
 void requireExportable(const std::filesystem::path& file, const std::filesystem::path& original,
                        const SceneInfo& scene);
 

@@ -33,7 +33,7 @@ struct SessionOptions {
   std::vector<std::string> sources;
   SceneOptions scene;
   CaseOptions cases;
-  ParameterValues parameters;         ///< --param: of algorithms or scenes
+  ParameterValues parameters;  ///< --param: of algorithms or scenes
   ReadingOptions reading;
   std::vector<std::string> plugins;   ///< libraries with more algorithms
   std::string case_id;                ///< of the results file that is the source; "": none

@@ -42,7 +42,8 @@ PosrotReader::PosrotReader(const std::filesystem::path& path)
     : PosrotReader(openForReading(path), path.string()) {}
 
 PosrotReader::PosrotReader(FileDescriptor file, std::string name)
-    : OriginalRecording(std::move(file), std::move(name)), balls_(scene().object_type == "Spheres") {}
+    : OriginalRecording(std::move(file), std::move(name)),
+      balls_(scene().object_type == "Spheres") {}
 
 void PosrotReader::readSizes() {
   unturned_.resize(scene().objects);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,8 +60,10 @@ std::string recordingFault(const Aabb& box, bool all_present);
 
 template <class T>
 void appendBytes(std::vector<std::byte>& bytes, std::span<const T> values) {
-  const auto raw = std::as_bytes(values);
-  bytes.insert(bytes.end(), raw.begin(), raw.end());
+  if (values.empty()) return;
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + values.size_bytes());
+  std::memcpy(bytes.data() + begin, values.data(), values.size_bytes());
 }
 
 /// All bytes before the first frame.

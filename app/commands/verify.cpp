@@ -215,9 +215,9 @@ int run(const Options& options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("files", options->files,
-                 fmt::format("{}; or what can be imported: {}", recordingKindsText(),
-                             importKindsText()))
+  app.add_option(
+         "files", options->files,
+         fmt::format("{}; or what can be imported: {}", recordingKindsText(), importKindsText()))
       ->type_name("FILE")
       ->required();
   CLI::Option* describe = app.add_flag(

@@ -271,9 +271,8 @@ TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {
     // Without conditions it is taken for results/1.
-    const std::set<std::string> optional = {"peak_bytes", "counters",   "setup",     "device",
-                                            "plugin",     "conditions", "processor", "bodies",
-                                            "answer"};
+    const std::set<std::string> optional = {"peak_bytes", "counters",  "setup",  "device", "plugin",
+                                            "conditions", "processor", "bodies", "answer"};
     if (optional.contains(item.key()) || item.key() == "summary") continue;  // that is derived
     Json json = whole;
     json["cases"][0].erase(item.key());
