@@ -278,8 +278,9 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
         throw InputError(fmt::format("{}: {}", name, error.what()));
       }
     };
-    added.push_back(
-        addValue(app, name, parameterRange(parameter), set, doc, parameterText(parameter)));
+    const bool choice = std::holds_alternative<Choice*>(parameter.value);
+    const std::string type = choice ? parameterRange(parameter) : "NUMBER";
+    added.push_back(addValue(app, name, type, set, doc, parameterText(parameter)));
   });
   return added;
 }

@@ -22,7 +22,7 @@ using testing::SizeIs;
 class Sources : public testing::Test {
  protected:
   /// A file with this text.
-  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+  std::string write(const std::string& name, const std::string& text) const {
     const auto path = directory_ / name;
     writeTextFile(path, text);
     return path.string();
@@ -55,6 +55,39 @@ TEST_F(Sources, KindsAreDescribed) {
     EXPECT_THAT(sourceKindsText(), HasSubstr(kind.what));
   }
   EXPECT_THAT(texts, SizeIs(10));
+}
+
+TEST_F(Sources, ImportedFiles) {
+  OpeningOptions options;
+  options.reading.radius = 2;
+  options.reading.swept = true;
+  const PlanEntry entry = entryOf(write("p.xyz", "1\n\nA 0 0 0\n"), options);
+  ASSERT_TRUE(entry.source.imported);
+  EXPECT_FALSE(entry.source.simulation);
+  EXPECT_EQ(entry.source.reference.scene.name, "p swept");
+  EXPECT_EQ(entry.source.reference.reading, (ParameterValues{{"radius", "2"}, {"swept", "on"}}));
+  std::filesystem::create_directory(directory_ / "more");
+  write("more/a.csv", "0,0,0,0,0,1,1,1\n");
+  EXPECT_EQ(entryOf((directory_ / "more").string()).source.reference.scene.name, "a");
+}
+
+TEST_F(Sources, AnythingCanBeSwept) {
+  OpeningOptions options;
+  options.reading.swept = true;
+  for (const std::string& name : {std::string("freefall"), recording()}) {
+    const RecordingReference reference = entryOf(name, options).source.reference;
+    EXPECT_THAT(reference.scene.name, testing::EndsWith(" swept"));
+    EXPECT_EQ(reference.reading, (ParameterValues{{"swept", "on"}}));
+  }
+}
+
+TEST_F(Sources, ReadingOptionsMustMeanSomething) {
+  ReadingOptions reading;
+  reading.frame_rate = 5;
+  std::vector<PlanEntry> entries;
+  entries.push_back(entryOf("freefall", {.reading = reading}));
+  EXPECT_THAT(inputErrorOf([&] { requireReadingUsed(reading, entries); }),
+              HasSubstr("--frame-rate"));
 }
 
 TEST_F(Sources, BuiltInScenes) {

@@ -118,6 +118,7 @@ Results everything() {
   bare.id = "bare";
   bare.recording.scene_parameters = {{"density", "0.1"}};
   bare.recording.swept = {{"density", "0.1"}};
+  bare.recording.reading = {{"swept", "on"}};
   bare.status = Status::unsupported;
   return results;
 }
@@ -163,6 +164,7 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_EQ(bare.recording.path, "");
   EXPECT_EQ(bare.recording.scene_parameters, (ParameterValues{{"density", "0.1"}}));
   EXPECT_EQ(bare.recording.swept, bare.recording.scene_parameters);
+  EXPECT_EQ(bare.recording.reading, (ParameterValues{{"swept", "on"}}));
   EXPECT_EQ(bare.status, Status::unsupported);
 }
 
@@ -422,7 +424,7 @@ void eachKey(const Json& json, Visit&& visit) {
   for (const auto& [key, value] : json.items()) {
     if (json.is_object()) visit(key);
     if (key != "params" && key != "counters" && key != "setup" && key != "source" &&
-        key != "swept") {
+        key != "swept" && key != "reading") {
       if (value.is_structured()) eachKey(value, visit);
     }
   }
