@@ -327,6 +327,19 @@ TEST(BadRecording2, IdsAndBoxesAreNamedWithTheirPlace) {
               HasSubstr("frame 0, body 1 (" + byte(0, 24) + "): the box is inverted"));
 }
 
+TEST(BadRecording2, AFrameThatWasReadHalfwayIsForgotten) {
+  const TemporaryDirectory directory;
+  Frames frames(3, chain(40));
+  for (const int body : {3, 7}) frames[2][body] = unitBox(9);
+  write(directory / "a.broadmark", sceneOf(frames), frames);
+  Bytes bytes = bytesOf(directory / "a.broadmark");
+  put(bytes, frameOf(bytes, 2) + 32 + 24, std::numeric_limits<float>::infinity());
+  Recording2Reader reader = readerOf(sealed(bytes));
+  expectFrame(reader.at(1), frames, 1);
+  EXPECT_THAT(inputErrorOf([&] { reader.next(); }), HasSubstr("frame 2, body 7"));
+  expectFrame(reader.at(1), frames, 1);
+}
+
 TEST(BadRecording2, IdsAscend) {
   const TemporaryDirectory directory;
   Frames frames(2, chain(40));
@@ -398,9 +411,9 @@ TEST(BadRecording2, AbsurdCountsTakeNoMemory) {
 TEST(BadRecording2, AnIndexThatLeadsNowhere) {
   const Bytes whole = smallRecording();
   const std::size_t entry = indexOf(whole) + kEntryBytes;
-  const auto spoilt = [&](std::size_t offset, auto value) {
+  const auto spoilt = [&](int offset, auto value) {
     Bytes bytes = whole;
-    put(bytes, entry + offset, value);
+    put(bytes, entry + static_cast<std::size_t>(offset), value);
     Hasher hasher;  // of the index, which leads elsewhere
     hasher.add(std::as_bytes(std::span(bytes)).first(frameOf(whole, 0)));
     hasher.add(std::as_bytes(std::span(bytes)).subspan(indexOf(whole), 3 * kEntryBytes));
@@ -413,6 +426,7 @@ TEST(BadRecording2, AnIndexThatLeadsNowhere) {
   EXPECT_THAT(spoilt(8, 4U), HasSubstr("index: frame 1"));
   EXPECT_THAT(spoilt(12, 2U), HasSubstr("index: frame 1"));
   EXPECT_THAT(spoilt(12, 1U), HasSubstr("index: frame 2"));
+  EXPECT_THAT(spoilt(-20, 1U), HasSubstr("index: frame 0")) << "the first one is a key frame";
 }
 
 TEST(Recording2Writer, LeavesNothingUnlessFinished) {

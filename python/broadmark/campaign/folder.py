@@ -23,7 +23,13 @@ from broadmark.campaign.plan import Recording, shrunk
 from broadmark.errors import InputError
 from broadmark.files import whole_file
 
-KINDS = {"aabbs": "Recordings_AABBs", "posrot": "Recordings_PositionRotation"}
+KINDS = {
+    "aabbs": "Recordings_AABBs",
+    "broadmark": "Recordings_Broadmark",
+    "posrot": "Recordings_PositionRotation",
+}
+#: Those that a scene is run on: `bake` takes the first that can hold it.
+BOX_KINDS = ("aabbs", "broadmark")
 
 
 class Folder:
@@ -68,15 +74,24 @@ class Folder:
         """Where `bake` puts a recording, into a folder of its kind."""
         return self.path / "recordings" / recording.series.variation
 
-    def file(self, recording: Recording, kind: str = "aabbs") -> pathlib.Path:
-        """A recording's file, whether it is there or not."""
+    def file(self, recording: Recording) -> pathlib.Path:
+        """The file that a recording is run on, whether it is there or not."""
+        files = [self._file(recording, kind) for kind in BOX_KINDS]
+        return next((file for file in files if file.exists()), files[0])
+
+    def poses(self, recording: Recording) -> pathlib.Path:
+        """The file that a recording is split from, likewise."""
+        return self._file(recording, "posrot")
+
+    def is_baked(self, recording: Recording) -> bool:
+        there = self.file(recording).exists()
+        return there and (not recording.is_split or self.poses(recording).exists())
+
+    def _file(self, recording: Recording, kind: str) -> pathlib.Path:
         series = recording.series
         name = self._names[series.scene.lower(), series.object_type.lower()]
         stem = f"{name} N{recording.objects} F{recording.frames}frames"
         return self.home(recording) / KINDS[kind] / f"{stem}.{kind}"
-
-    def is_baked(self, recording: Recording) -> bool:
-        return all(self.file(recording, kind).exists() for kind in kinds_of(recording))
 
     def runs(self, recording: Recording) -> pathlib.Path:
         return self.path / "runs" / recording.name
@@ -118,6 +133,6 @@ class Folder:
             yield file
 
 
-def kinds_of(recording: Recording) -> list[str]:
-    """The kinds that a recording is baked as."""
-    return ["aabbs", "posrot"] if recording.is_split else ["aabbs"]
+def recorders_of(recording: Recording) -> list[str] | None:
+    """The kinds that a recording is baked as; None: what suits the scene."""
+    return ["aabbs", "posrot"] if recording.is_split else None

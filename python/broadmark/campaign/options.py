@@ -70,7 +70,9 @@ def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
             )
         except InputError as error:
             raise InputError(f"{campaign.path}: {block.where}: {error}") from None
-        found = re.findall(r"/(([^/ ]+) ([^/ ]+)) N\d+ F\d+frames.*\.aabbs$", listed, re.MULTILINE)
+        found = re.findall(
+            r"/(([^/ ]+) ([^/ ]+)) N\d+ F\d+frames.*\.(?:aabbs|broadmark)$", listed, re.MULTILINE
+        )
         names |= {(scene.lower(), kind.lower()): name for name, scene, kind in found}
     return names
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from broadmark.campaign.attempts import Tail, outcome_of, variant_of, whole
 from broadmark.campaign.description import Campaign, Selection, Value
 from broadmark.campaign.estimate import Estimate
-from broadmark.campaign.folder import Folder, kinds_of
+from broadmark.campaign.folder import Folder, recorders_of
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.options import filter_for, measuring_options, selection_options
 from broadmark.campaign.plan import Recording, levels, with_sources
@@ -87,7 +87,7 @@ class Runner:
             follow(
                 "bake",
                 *itertools.chain(*(("--parameters", file) for file in files)),
-                *as_options(recorder=kinds_of(recordings[0]), quiet=True),
+                *as_options(recorder=recorders_of(recordings[0]), quiet=True),
                 *("--output", str(self.folder.home(recordings[0]))),
                 tick=self.progress.tick,
             )
@@ -100,7 +100,7 @@ class Runner:
             "object_type": series.object_type,
         }
         if recording.source:
-            source = self.folder.file(recording.source, "posrot").absolute()
+            source = self.folder.poses(recording.source).absolute()
             parameters |= {"engine": "splitter", "input": os.fspath(source)}
         else:
             parameters |= series.parameters
