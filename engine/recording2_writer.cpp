@@ -72,7 +72,7 @@ class Recording2File final : public BoxRecordingFile {
     const auto require = [&](std::size_t body) {
       if (isRecordable(frame.boxes[body], scene_.all_present)) return;
       throw InputError(fmt::format("{}: frame {}, body {}: the box {}", file_->name(), frame.index,
-                                   body, faultOf(frame.boxes[body], scene_.all_present)));
+                                   body, recordingFault(frame.boxes[body], scene_.all_present)));
     };
     if (frame.index == 0) {
       for (std::size_t body = 0; body < frame.boxes.size(); ++body) require(body);
