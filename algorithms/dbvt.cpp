@@ -214,10 +214,10 @@ class Dbvt final : public BulletBroadPhase {
     tree_.m_deferedcollide = false;  // nor here, where all go to rest.
     for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);
     tree_.m_deferedcollide = deferred;
-    // From above down to two bodies: Bullet's usual way is cubic in the last 128.
-    tree_.m_sets[Tree::FIXED_SET].optimizeTopDown(2);
-    // As good as it can be: or Bullet would improve a hundredth of it in each of the next frames,
-    // and again whenever a body comes to rest.
+    // What Bullet would do bit by bit in the next hundred frames, and again whenever a body comes
+    // to rest. (Its optimizeTopDown() fails where boxes have one centre.)
+    btDbvt& at_rest = tree_.m_sets[Tree::FIXED_SET];
+    at_rest.optimizeIncremental(at_rest.m_leaves);
     tree_.m_fixedleft = 0;
     tree_.m_fupdates = 0;
   }

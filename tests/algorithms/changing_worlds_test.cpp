@@ -166,8 +166,8 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemWhereOneBodyChangesOrNone) {
 }
 
 // At the same place, three bodies each; some poke out of the place by more than its size.
-TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInThousandsOfWorlds) {
-  constexpr std::uint32_t kWorlds = 1500;
+TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInAThousandWorlds) {
+  constexpr std::uint32_t kWorlds = 1000;
   const CollisionFilter filter =
       filterOf(3 * kWorlds, LayerMatrix().set(0, 0), [](inputs::Random&, std::uint32_t body) {
         return BodyGroups{.world = 7 * (body % kWorlds)};
@@ -180,7 +180,7 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInThousandsOfWorlds) {
           return inputs::boxAt(random.inCube(side), {1, 1, 1});
         }));
   }
-  check({"thousands of worlds", filter, frames, Aabb{{0, 0, 0, 0}, {5, 5, 5, 0}}});
+  check({"a thousand worlds", filter, frames, Aabb{{0, 0, 0, 0}, {5, 5, 5, 0}}});
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithmInChangingWorlds,
