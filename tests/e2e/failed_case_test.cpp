@@ -91,8 +91,8 @@ TEST_F(FailedCase, IsShrunkAndShownByACommand) {
 }
 
 TEST_F(FailedCase, OfWrongEvents) {
-  runFaulty("brownian", {"--objects", "200", "--frames", "60", "--engine", "kinematic", "--answer",
-                         "events"});
+  runFaulty("brownian",
+            {"--objects", "200", "--frames", "60", "--engine", "kinematic", "--answer", "events"});
   for (const std::string algorithm : {"faulty", "faulty-extra"}) {
     SCOPED_TRACE(algorithm);
     EXPECT_EQ(caseOf(algorithm).at("status"), "mismatch");
