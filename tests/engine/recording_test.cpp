@@ -210,7 +210,7 @@ TEST(RecordingWriter, RefusesScenesThatAreNotRecordable) {
   EXPECT_TRUE(directory.empty());
 
   RecordingWriter longest({.name = std::string(127, 'x')});
-  longest.write({});
+  longest.write(std::vector<Aabb>());
   EXPECT_EQ(longest.finishTemporary()->scene().name, std::string(127, 'x'));
 }
 

@@ -75,8 +75,10 @@ AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
     body.linear_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
     body.angular_velocity = random() % 2 == 0 ? Vec3{} : anyVector(random, 1e6F);
     body.layer = static_cast<std::uint8_t>(random() % 32);
-    if (random() % 2 == 0) body.appears = random() % 1000;
-    if (random() % 2 == 0) body.vanishes = body.appears + 1 + random() % 1000;
+    if (random() % 2 == 0) body.appears = static_cast<std::uint32_t>(random() % 1000);
+    if (random() % 2 == 0) {
+      body.vanishes = body.appears + 1 + static_cast<std::uint32_t>(random() % 1000);
+    }
     scene.bodies.push_back(body);
   }
   return scene;

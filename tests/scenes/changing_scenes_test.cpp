@@ -85,7 +85,7 @@ TEST(ShooterScene, HasFourLayers) {
   EXPECT_EQ(matrix, wanted);
   const Frames frames = allFrames(*simulation);
 
-  for (const std::uint8_t layer : {0, 3}) {
+  for (const std::uint8_t layer : {std::uint8_t{0}, std::uint8_t{3}}) {
     for (const std::uint32_t body : bodiesIn(scene, layer)) {
       EXPECT_FALSE(isEmpty(frames[0][body]) || everMoves(frames, body)) << body;
     }
