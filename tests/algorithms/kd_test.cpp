@@ -27,8 +27,8 @@ std::uint64_t structuralWork(const BroadPhase& broad_phase) {
 /// number) after each.
 template <class Look>
 void follow(const std::string& id, int threads, const ParameterValues& parameters,
-            const Frames& frames, Look look) {
-  const Configuration way = {bestIsa(), threads};
+            const Frames& frames, Look look, AnswerKind answer = AnswerKind::pairs) {
+  const Configuration way = {bestIsa(), threads, answer};
   SCOPED_TRACE(describe(algorithmOf(id), way));
   TestRun run(algorithmOf(id), way, parameters);
   run.start(sceneOf(frames), frames[0]);
@@ -44,6 +44,7 @@ void follow(const ParameterValues& parameters, const Frames& frames) {
   const auto nothing = [](const BroadPhase&, std::size_t) {};
   follow("kd", 1, parameters, frames, nothing);
   follow("kd-mt", 3, parameters, frames, nothing);
+  follow("kd-mt", 2, parameters, frames, nothing, AnswerKind::events);
 }
 
 void shift(Aabb& box, const Vec3& way) {
