@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -271,16 +272,26 @@ class World final : public btDiscreteDynamicsWorld {
   /// Support may have gone: the next step fixes no body.
   void releaseAll() { release_all_ = true; }
 
-  /// Wakes the bodies that touch this one, and holds them no longer. The others that they carry
-  /// follow as soon as these move.
+  /// Wakes the bodies that touch this one, and all that are connected with these, and holds them no
+  /// longer: they may have leant on it.
   void releaseThoseAt(const btRigidBody& body) {
+    std::set<int> islands;  // Bullet's numbers of bodies that are connected, of the last step
+    const auto add = [&](const btCollisionObject& other) {
+      if (!other.isStaticObject()) islands.insert(other.getIslandTag());
+    };
     btDispatcher& contacts = *getDispatcher();
     for (int i = 0; i < contacts.getNumManifolds(); ++i) {
       const btPersistentManifold& contact = *contacts.getManifoldByIndexInternal(i);
       if (contact.getNumContacts() == 0) continue;
-      if (contact.getBody0() == &body) release(*contact.getBody1());
-      if (contact.getBody1() == &body) release(*contact.getBody0());
+      if (contact.getBody0() == &body) add(*contact.getBody1());
+      if (contact.getBody1() == &body) add(*contact.getBody0());
     }
+    if (islands.empty()) return;
+    forEachBody([&](btRigidBody& other) {
+      if (other.isStaticObject() || !islands.contains(other.getIslandTag())) return;
+      rest(other).held = false;
+      other.activate();
+    });
   }
 
  protected:
@@ -322,13 +333,6 @@ class World final : public btDiscreteDynamicsWorld {
 
   static Rest& rest(const btCollisionObject& body) {
     return *static_cast<Rest*>(body.getUserPointer());
-  }
-
-  static void release(const btCollisionObject& body) {
-    if (body.isStaticObject()) return;
-    rest(body).held = false;
-    rest(body).stillness.end();
-    body.activate();
   }
 
   static void setShareOfImpulses(btRigidBody& body, btScalar share) {

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
@@ -200,6 +201,14 @@ class OdeBody : public PhysicsBody {
     slow_time_ = 0;
   }
 
+  /// Something that the body may lean on has vanished. Wakes it; until findSupport().
+  void loseSupport() {
+    support_lost_ = !frozen_;
+    wake();
+  }
+  void findSupport() { support_lost_ = false; }
+  [[nodiscard]] bool supportLost() const { return support_lost_; }
+
   /// Called after every substep: falls asleep after a time of little energy. The library itself
   /// ignores bodies that touch nothing.
   void rest(double sleep_threshold, double time) {
@@ -253,6 +262,7 @@ class OdeBody : public PhysicsBody {
   double mean_inertia_ = 0;  ///< per mass
   double slow_time_ = 0;     ///< since it has become slow
   bool frozen_ = false;
+  bool support_lost_ = false;
   Pose frozen_pose_;
 };
 
@@ -287,10 +297,11 @@ class OdeEngine final : public PhysicsEngine {
     // Contacts are not kept from step to step: all that are near may have leant on it.
     const dGeomID space_as_geom = reinterpret_cast<dGeomID>(space_.get());
     dSpaceCollide2(ode_body.geom(), space_as_geom, nullptr, [](void*, dGeomID a, dGeomID b) {
-      static_cast<OdeBody*>(dGeomGetData(a))->wake();
-      static_cast<OdeBody*>(dGeomGetData(b))->wake();
+      bodyOf(a).loseSupport();
+      bodyOf(b).loseSupport();
     });
     bodies_.remove(ode_body);
+    support_lost_ = true;
   }
 
   void addWall(const HalfSpace& wall) override { walls_.push_back(wall); }
@@ -305,6 +316,7 @@ class OdeEngine final : public PhysicsEngine {
   [[nodiscard]] Vec3 gravity() const override { return gravity_; }
 
   void step() override {
+    if (std::exchange(support_lost_, false)) wakeUnsupported();
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       // Sleeping bodies, too: a body that is awake wakes those that it touches, and these need
       // their support in the same step.
@@ -333,9 +345,32 @@ class OdeEngine final : public PhysicsEngine {
     return 1 - std::pow(1 - per_second, time_);
   }
 
+  static OdeBody& bodyOf(dGeomID geom) { return *static_cast<OdeBody*>(dGeomGetData(geom)); }
+
+  /// Wakes all bodies that are connected with one that has lost its support: the library lets a
+  /// body that is woken by another fall asleep at once, while that has hardly begun to fall.
+  void wakeUnsupported() {
+    using Near = std::vector<std::pair<OdeBody*, OdeBody*>>;
+    Near near;
+    dSpaceCollide(space_.get(), &near, [](void* pairs, dGeomID a, dGeomID b) {
+      if (bodyOf(a).frozen() || bodyOf(b).frozen()) return;
+      static_cast<Near*>(pairs)->emplace_back(&bodyOf(a), &bodyOf(b));
+    });
+    for (bool spread = true; spread;) {
+      spread = false;
+      for (const auto& [a, b] : near) {
+        if (a->supportLost() == b->supportLost()) continue;
+        a->loseSupport();
+        b->loseSupport();
+        spread = true;
+      }
+    }
+    bodies_.each([](OdeBody& body) { body.findSupport(); });
+  }
+
   void touch(dGeomID geom_a, dGeomID geom_b) {
-    const auto& a = *static_cast<const OdeBody*>(dGeomGetData(geom_a));
-    const auto& b = *static_cast<const OdeBody*>(dGeomGetData(geom_b));
+    const OdeBody& a = bodyOf(geom_a);
+    const OdeBody& b = bodyOf(geom_b);
     if (a.frozen() && b.frozen()) return;
     std::array<dContactGeom, kContactsPerPair> points;
     const int count =
@@ -384,6 +419,7 @@ class OdeEngine final : public PhysicsEngine {
   unsigned long random_ = 0;
   Vec3 gravity_{};
   LayerMatrix layers_ = LayerMatrix::all();
+  bool support_lost_ = false;  ///< by any body, since the last step
   World world_;
   Space space_;
   JointGroup contacts_;
