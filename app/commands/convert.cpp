@@ -68,7 +68,7 @@ int run(const Options& options) {
       *input,
       [&](const Frame& frame) {
         if (scene.all_present) requirePresent(frame, options.output);
-        writer.write(frame.boxes);
+        writer.write(frame);
       },
       [&](std::uint32_t frame) {
         progress.update(frame);

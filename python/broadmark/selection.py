@@ -30,9 +30,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--filter", metavar="REGEX", help="only cases whose id matches")
 
 
-def read_selected(options: argparse.Namespace) -> Results:
-    """The results that the options of `add_options` name."""
+def read_selected(options: argparse.Namespace, may_be_empty: bool = False) -> Results:
+    """The results that the options of `add_options` name. Without a case they are an error, unless
+    they `may_be_empty` and had none to choose from."""
     results = read_results(*options.results)
+    may_be_empty = may_be_empty and not len(results.cases)
     for path in results.partial:
         print(f"{path}: partial: its run did not come to an end", file=sys.stderr)
     cases = results.cases
@@ -49,7 +51,7 @@ def read_selected(options: argparse.Namespace) -> Results:
                 f"--machine '{options.machine}': is part of {len(chosen)} names of {_listed(known)}"
             )
         results = results.select(results.cases["machine"] == chosen[0])
-    if not len(results.cases):
+    if not len(results.cases) and not may_be_empty:
         raise InputError("no case is left of these results: mend --filter or --machine")
     return results
 

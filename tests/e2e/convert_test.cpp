@@ -89,7 +89,7 @@ TEST_F(Convert, TheSamePairsAreFound) {
 
 TEST_F(Convert, SaysWhatAabbsCannotHold) {
   writeChanging("a.broadmark", true);
-  expectRefusal({"convert", "a.broadmark", "a.aabbs"},
+  expectRefusal({"convert", "--quiet", "a.broadmark", "a.aabbs"},
                 {"a.aabbs", "body 1 is absent in frame 1", ".broadmark"});
   writeChanging("b.broadmark", false);
   runQuietly({"convert", "b.broadmark", "b.aabbs"});
@@ -109,7 +109,7 @@ TEST_F(Convert, DamagedOnesAreFound) {
   bytes[bytes.size() / 2] ^= 1;
   writeFile(file("bad.broadmark"), bytes);
   expectRefusal({"verify", "bad.broadmark"}, {"bad.broadmark", "damaged"});
-  expectRefusal({"convert", "bad.broadmark", "a.aabbs"}, {"bad.broadmark", "damaged"});
+  expectRefusal({"convert", "--quiet", "bad.broadmark", "a.aabbs"}, {"bad.broadmark", "damaged"});
   runQuietly({"convert", recordingIn("out", kStem), kChanging});  // the same boxes, another source
   EXPECT_THAT(run({"verify", kChanging}).err, HasSubstr("changed since it was baked"));
 }

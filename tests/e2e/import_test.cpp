@@ -48,7 +48,7 @@ TEST_F(Import, ResultsTellHowTheSourceWasRead) {
   runQuietly({"--headless", "r.json", "--case", result["id"], "--json", "again.json"});
   EXPECT_EQ(readJson(file("again.json"))["cases"][0]["recording"], recording);
   writeFile(file("p.xyz"), "1\n\nA 0 0 0\n1\n\nA 2 0 0\n");
-  expectRefusal({"--headless", "r.json", "--case", result["id"]}, {"p.xyz", "hash"});
+  expectRefusal({"--headless", "r.json", "--quiet", "--case", result["id"]}, {"p.xyz", "hash"});
 }
 
 TEST_F(Import, ScenesAndRecordingsCanBeSwept) {

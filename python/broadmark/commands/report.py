@@ -28,7 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> None:
-    results = selection.read_selected(options)
+    results = selection.read_selected(options, may_be_empty=True)
     for note in write_report(
         results, options.output, title=options.title, pictures=options.pictures
     ):
