@@ -182,7 +182,7 @@ TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
   const CollisionFilter filter = filters(kBodies)[1].filter;
   write(directory / "a.broadmark", sceneOf(frames, false, filter), frames);
   Recording2Reader whole(directory / "a.broadmark");
-  const Part part{.bodies = {1, 5, 30, 31, 59}, .frames = {2, 3, 7}};
+  const Part part = partOf(whole.scene(), {1, 5, 30, 31, 59}, {2, 3, 7});
   writePart(directory / "b.broadmark", whole, part);
   Recording2Reader reader(directory / "b.broadmark");
   EXPECT_EQ(reader.scene().filter, filter.of(part.bodies));
