@@ -206,7 +206,7 @@ class AxisSweep final : public BulletBroadPhase {
     sweep_->findFirstPairs();
     if (!reportsEvents()) return;
     before_.assign(boxes().size(), kEmptyBox);
-    findEvents();
+    gatherEvents();
   }
 
   void updateObjects(const Frame& frame) override {
@@ -276,25 +276,23 @@ class AxisSweep final : public BulletBroadPhase {
     }
   }
 
-  void findEvents() {
-    began_.clear();
-    ended_.clear();
-    for (const Pair pair : candidates_.pairs) {
-      const bool before = broadmark::overlaps(before_[pair.a], before_[pair.b]);
-      const bool now = broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]);
-      if (before == now || !isWanted(pair)) continue;
-      (now ? began_ : ended_).push_back(pair);
-    }
+  void gatherEvents() {
+    findEvents([this](std::vector<Pair>& began, std::vector<Pair>& ended) {
+      for (const Pair pair : candidates_.pairs) {
+        const bool before = broadmark::overlaps(before_[pair.a], before_[pair.b]);
+        const bool now = broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]);
+        if (before != now && isWanted(pair)) (now ? began : ended).push_back(pair);
+      }
+      for (std::vector<Pair>* const pairs : {&began, &ended}) {
+        std::ranges::sort(*pairs);
+        pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
+      }
+    });
     candidates_.pairs.clear();
-    for (std::vector<Pair>* const pairs : {&began_, &ended_}) {
-      std::ranges::sort(*pairs);
-      pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
-    }
-    setEvents(began_, ended_);
   }
 
   void findPairs() override {
-    if (reportsEvents()) return findEvents();
+    if (reportsEvents()) return gatherEvents();
     addPairs(*sweep_->getOverlappingPairCache(), [this](std::uint32_t a, std::uint32_t b) {
       return broadmark::overlaps(boxes()[a], boxes()[b]);
     });
@@ -304,8 +302,6 @@ class AxisSweep final : public BulletBroadPhase {
   // Of events only.
   std::vector<Aabb> before_;  ///< in the frame before
   Candidates candidates_;
-  std::vector<Pair> began_;
-  std::vector<Pair> ended_;
 
   std::unique_ptr<Sweep> sweep_;
   std::uint64_t swaps_before_ = 0;  ///< this frame's

@@ -34,10 +34,14 @@ class BulletBroadPhase : public BoxBroadPhase {
  protected:
   /// Whether the answer is events; set before initialize().
   [[nodiscard]] bool reportsEvents() const { return reports_events_; }
-  /// Makes these the events of the frame; they lie there until the next ones. Each once.
-  void setEvents(const std::vector<Pair>& began, const std::vector<Pair>& ended) {
-    began_run_ = began;
-    ended_run_ = ended;
+  /// Has find(began, ended) put this frame's events, each once, into two empty vectors.
+  template <class Find>
+  void findEvents(Find find) {
+    began_.clear();
+    ended_.clear();
+    find(began_, ended_);
+    began_run_ = began_;
+    ended_run_ = ended_;
   }
 
   /// The bodies whose boxes differ from those of the frame before, which came and went included;
@@ -81,6 +85,8 @@ class BulletBroadPhase : public BoxBroadPhase {
   Wanted wanted_;
   std::vector<std::uint32_t> moved_;
   bool reports_events_ = false;
+  std::vector<Pair> began_;
+  std::vector<Pair> ended_;
   PairRun began_run_;
   PairRun ended_run_;
 };

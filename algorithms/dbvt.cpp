@@ -94,16 +94,13 @@ class Dbvt final : public BulletBroadPhase {
     filterPairs(*tree_.m_paircache);
     if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
-    std::vector<std::uint32_t> bodies;
-    for (std::uint32_t body = 0; body < proxies_.size(); ++body) {
-      if (!isEmpty(boxes()[body])) bodies.push_back(body);
-    }
+    const std::vector<std::uint32_t> bodies = first.presentBodies();
     putToRest(Strangers(scene.filter, bodies), bodies);
     for (const std::uint32_t body : bodies) {
       if (proxies_[body] == nullptr) create(body);
     }
     updatePairs();
-    if (reportsEvents()) findEvents();
+    if (reportsEvents()) gatherEvents();
   }
 
   void updateStructures() override {
@@ -166,22 +163,21 @@ class Dbvt final : public BulletBroadPhase {
   };
 
   /// A pair that went and came again has neither ended nor begun.
-  void findEvents() {
+  void gatherEvents() {
     std::ranges::sort(changes_.came);
     std::ranges::sort(changes_.went);
-    began_.clear();
-    ended_.clear();
-    std::ranges::set_difference(changes_.came, changes_.went, std::back_inserter(began_));
-    std::ranges::set_difference(changes_.went, changes_.came, std::back_inserter(ended_));
+    findEvents([this](std::vector<Pair>& began, std::vector<Pair>& ended) {
+      std::ranges::set_difference(changes_.came, changes_.went, std::back_inserter(began));
+      std::ranges::set_difference(changes_.went, changes_.came, std::back_inserter(ended));
+    });
     changes_.came.clear();
     changes_.went.clear();
-    setEvents(began_, ended_);
   }
 
   void findPairs() override {
     if (reportsEvents()) {
       if (!moved().empty()) updatePairs();
-      findEvents();
+      gatherEvents();
       return;
     }
     updatePairs();
@@ -274,8 +270,6 @@ class Dbvt final : public BulletBroadPhase {
   double margin_ = 0.05;  ///< Bullet's default
   bool all_present_ = true;
   Changes changes_;
-  std::vector<Pair> began_;
-  std::vector<Pair> ended_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
   std::uint64_t reinsertions_ = 0;     ///< this frame's

@@ -79,10 +79,7 @@ class Kd final : public BroadPhase {
     }
     runs_.resize(workers_.size());
     kernels_ = &overlapKernels(execution.isa());
-    std::vector<std::uint32_t> bodies;
-    for (std::uint32_t body = 0; body < stored_.size(); ++body) {
-      if (stored_[body] != Tree::kGone) bodies.push_back(body);
-    }
+    std::vector<std::uint32_t> bodies = first.presentBodies();
     rest_.build(stored_, bodies, filter_, team_->size());
     std::erase_if(bodies, [this](std::uint32_t body) { return rest_.holds(body); });
     tree_.build(stored_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);

@@ -43,11 +43,15 @@ namespace {
 
 /// On average; evenly spread small bodies touch 1 to 3.
 constexpr std::uint64_t kMostCellsPerBody = 8;
+/// When fewer bodies than one of so many have moved, each is looked up in its cells; otherwise it
+/// takes less to look at all bodies of these cells.
+constexpr std::size_t kFew = 64;
 
 struct alignas(64) Worker {
   CellWork work;
   Mailbox mailbox;
-  std::uint64_t cells_touched = 0;  ///< by the worker's share of the bodies
+  std::vector<std::uint32_t> moved;  ///< in this frame, of the worker's share of the bodies
+  std::uint64_t cells_touched = 0;   ///< by the worker's share of the bodies
 };
 
 /// Directly on BroadPhase: the pairs are a set that is kept from frame to frame.
@@ -67,6 +71,7 @@ class Tracy final : public BroadPhase {
     for (Worker& worker : workers_) {
       worker.work.begun = std::vector<PairBuffer>(team_size);
       worker.work.ended = std::vector<PairBuffer>(team_size);
+      worker.moved.reserve(count / team_size + 2 * kWordBits);
     }
     pairs_.resize(team_size);
     if (reports_events_) pairs_before_.resize(team_size);
@@ -92,13 +97,14 @@ class Tracy final : public BroadPhase {
 
   void updateObjects(const Frame& frame) override {
     team_->run([&](int worker) {
+      std::vector<std::uint32_t>& moved = workerOf(worker).moved;
+      for (const std::uint32_t body : moved) bodies_.moved[body / kWordBits] = 0;
+      // Whole words of bits: no two workers write to the same.
       const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
-      std::fill(bodies_.moved.begin() + static_cast<std::ptrdiff_t>(begin),
-                bodies_.moved.begin() + static_cast<std::ptrdiff_t>(end), 0);
-      for (auto body = std::ranges::lower_bound(*frame.changed, begin * kWordBits);
-           body != frame.changed->end() && *body < end * kWordBits; ++body) {
-        takeOver(*body, frame.boxes[*body]);
-      }
+      const std::span<const std::uint32_t> changed = *frame.changed;
+      moved.assign(std::ranges::lower_bound(changed, begin * kWordBits),
+                   std::ranges::lower_bound(changed, end * kWordBits));
+      for (const std::uint32_t body : moved) takeOver(body, frame.boxes[body]);
     });
   }
 
@@ -113,7 +119,10 @@ class Tracy final : public BroadPhase {
   }
 
   void updateStructures() override {
-    if (std::ranges::none_of(bodies_.moved, [](std::uint64_t word) { return word != 0; })) return;
+    std::size_t moved = 0;
+    for (const Worker& worker : workers_) moved += worker.moved.size();
+    if (moved == 0) return;
+    bodies_.few_moved = kFew * moved < bodies_.boxes[kNow].size();
     team_->run([this](int worker) { findCells(worker); });
     if (const std::uint32_t cells = suitableCellsPerAxis(); cells != grid_.cellsPerAxis()) {
       rebuild(cells);
@@ -158,67 +167,63 @@ class Tracy final : public BroadPhase {
     bodies_.moved[body / kWordBits] |= std::uint64_t{1} << body % kWordBits;
   }
 
-  /// Calls visit(body) for the bodies of a worker's share that have moved.
-  template <class Visit>
-  void forEachMoved(int worker, Visit visit) {
-    const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
-    for (std::size_t word = begin; word < end; ++word) {
-      for (std::uint64_t bits = bodies_.moved[word]; bits != 0; bits &= bits - 1) {
-        visit(static_cast<std::uint32_t>(word * kWordBits) +
-              static_cast<std::uint32_t>(std::countr_zero(bits)));
-      }
-    }
-  }
-
   void findCells(int worker) {
     std::uint64_t& touched = workerOf(worker).cells_touched;
-    forEachMoved(worker, [&](std::uint32_t body) {
+    for (const std::uint32_t body : workerOf(worker).moved) {
       CellRange& now = bodies_.ranges[kNow][body];
       bodies_.ranges[kBefore][body] = std::exchange(now, grid_.range(bodies_.boxes[kNow][body]));
       touched += now.size();
       touched -= bodies_.ranges[kBefore][body].size();
-    });
+    }
   }
 
   /// The merge of a body's old cells and its new ones.
   void tellCells(int worker) {
     Mailbox& mailbox = workerOf(worker).mailbox;
-    forEachMoved(worker, [&](std::uint32_t body) {
+    for (const std::uint32_t body : workerOf(worker).moved) {
       const CellRange& before = bodies_.ranges[kBefore][body];
       const CellRange& now = bodies_.ranges[kNow][body];
-      grid_.forEachCell(before,
-                        [&](const CellPosition&, std::size_t cell) { mailbox.notify(cell); });
-      if (now == before) return;
+      grid_.forEachCell(before, [&](const CellPosition&, std::size_t cell) {
+        bodies_.few_moved ? mailbox.notify(cell, body) : mailbox.notify(cell);
+      });
+      if (now == before) continue;
       grid_.forEachCell(now, [&](const CellPosition& position, std::size_t cell) {
         if (!before.contains(position)) mailbox.announce(cell, body);
       });
-    });
+    }
   }
 
-  void updateCells(int worker) {
-    shares_.forEachCell(worker, [&](std::size_t cell) {
-      if (!isConcerned(cell)) return;
-      cells_[cell].update(bodies_, workerOf(worker).work, [&](auto enter) {
-        for (const Worker& from : workers_) from.mailbox.read(cell, enter);
-      });
-      for (Worker& from : workers_) from.mailbox.forget(cell);
-    });
-  }
-
-  [[nodiscard]] bool isConcerned(std::size_t cell) const {
-    return std::ranges::any_of(workers_,
-                               [&](const Worker& worker) { return worker.mailbox.concerns(cell); });
-  }
-
+  /// Of the cells that have messages.
   void shareOutCells() {
+    concerned_.clear();
+    for (const Worker& worker : workers_) worker.mailbox.listCells(concerned_);
+    std::ranges::sort(concerned_);
+    const auto twice = std::ranges::unique(concerned_);
+    concerned_.erase(twice.begin(), twice.end());
     // A body that moves passes a fixed part of those in its cell.
-    const auto cost = [&](std::size_t cell) {
-      const std::uint64_t size = isConcerned(cell) ? cells_[cell].size() : 0;
+    const auto cost = [&](std::size_t i) {
+      const std::uint64_t size = cells_[concerned_[i]].size();
       return 1 + size * (64 + size);
     };
     std::uint64_t total = 0;
-    for (std::size_t cell = 0; cell < cells_.size(); ++cell) total += cost(cell);
-    shares_.shareOut(cells_.size(), cost, total);
+    for (std::size_t i = 0; i < concerned_.size(); ++i) total += cost(i);
+    shares_.shareOut(concerned_.size(), cost, total);
+  }
+
+  void updateCells(int worker) {
+    shares_.forEachIndex(worker, [&](std::size_t i) {
+      const std::uint32_t cell = concerned_[i];
+      CellWork& work = workerOf(worker).work;
+      work.moved.clear();
+      for (const Worker& from : workers_) {
+        from.mailbox.moved().forEach(cell,
+                                     [&](std::uint32_t body) { work.moved.push_back(body); });
+      }
+      cells_[cell].update(bodies_, work, [&](auto enter) {
+        for (const Worker& from : workers_) from.mailbox.arrivals().forEach(cell, enter);
+      });
+      for (Worker& from : workers_) from.mailbox.forget(cell);
+    });
   }
 
   /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
@@ -285,6 +290,7 @@ class Tracy final : public BroadPhase {
     grid_ = Grid(world_, cells_per_axis);
     cells_.clear();
     cells_.resize(grid_.cellCount());
+    concerned_.reserve(workers_.size() * cells_.size());
     for (Worker& worker : workers_) {
       worker.mailbox.resize(cells_.size());
       worker.cells_touched = 0;
@@ -314,19 +320,20 @@ class Tracy final : public BroadPhase {
         cells_.size(), [&](std::size_t cell) { return 1 + bodies_in(cell).size(); },
         cells_.size() + bodies.size());
     team_->run([&](int worker) {
-      shares_.forEachCell(worker, [&](std::size_t cell) {
+      shares_.forEachIndex(worker, [&](std::size_t cell) {
         cells_[cell].build(grid_.position(cell), bodies_in(cell), bodies_, workerOf(worker).work);
       });
     });
   }
 
-  std::int64_t objects_per_cell_ = 200;
+  std::int64_t objects_per_cell_ = 100;
   ThreadTeam* team_ = nullptr;
   Aabb world_;
   std::uint32_t wanted_cells_ = 1;  ///< per axis, bodies permitting
   Grid grid_;
   Bodies bodies_;
   std::vector<Cell> cells_;
+  std::vector<std::uint32_t> concerned_;  ///< in this frame: cells in which something has moved
   CellShares shares_;
   std::vector<Worker> workers_;
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
@@ -391,7 +398,9 @@ std::string Tracy::validate() const {
       ++cells_of_body[body];
     });
     if (twice) return "body twice in a cell";
-    if (isConcerned(cell)) return "messages left unread";
+    for (const Worker& worker : workers_) {
+      if (worker.mailbox.concerns(cell)) return "messages left unread";
+    }
   }
   std::uint64_t touched = 0;
   for (const Worker& worker : workers_) touched += worker.cells_touched;

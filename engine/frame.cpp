@@ -8,6 +8,14 @@
 
 namespace broadmark {
 
+std::vector<std::uint32_t> Frame::presentBodies() const {
+  std::vector<std::uint32_t> present;
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    if (!isEmpty(boxes[body])) present.push_back(body);
+  }
+  return present;
+}
+
 Frame IndexedFrames::at(std::uint32_t index) {
   if (index > scene().frames) {
     throw InputError(

@@ -9,7 +9,6 @@
 #include <array>
 #include <iterator>
 
-#include "kd/set_box.h"
 #include "moments.h"
 
 namespace broadmark::kd {
@@ -83,7 +82,7 @@ void Rest::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> bod
 void Rest::addLevel(std::span<const Aabb> boxes) {
   BoxArrays& level = levels_.emplace_back();
   level.resize(first_ + boxes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) setBox(level, first_ + i, boxes[i]);
+  for (std::size_t i = 0; i < boxes.size(); ++i) level.set(first_ + i, boxes[i]);
 }
 
 Range Rest::blockAt(const BoxArrays& level, std::size_t block) const {
@@ -104,7 +103,7 @@ std::vector<Aabb> Rest::blockBoxes(const BoxArrays& level) const {
 
 /// The boxes around it stay as large as they were.
 void Rest::remove(std::uint32_t body) {
-  setBox(levels_[0], first_ + places_[body], kEmptyBox);
+  levels_[0].set(first_ + places_[body], kEmptyBox);
   places_[body] = kNowhere;
 }
 
@@ -114,7 +113,7 @@ void Rest::search(std::uint32_t body, const Aabb& box, int worker, const Overlap
   scratch.blocks.assign(1, 0);
   for (std::size_t depth = levels_.size(); depth-- > 0;) {
     BoxArrays& level = levels_[depth];
-    setBox(level, row, box);
+    level.set(row, box);
     scratch.hits.clear();
     for (const std::uint32_t block : scratch.blocks) {
       kernels.test_tile(level, {row, row + 1}, blockAt(level, block), scratch.hits);

@@ -14,7 +14,6 @@
 #include <algorithm>
 
 #include "boundary_near.h"
-#include "kd/set_box.h"
 #include "moments.h"
 
 namespace broadmark::kd {
@@ -109,7 +108,7 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
 
   boxes_tested_ += count;
   resize(boxes_, capacity_, count);
-  for (std::size_t i = 0; i < count; ++i) setBox(boxes_, i, scene_->boxes[arranged_[i]]);
+  for (std::size_t i = 0; i < count; ++i) boxes_.set(i, scene_->boxes[arranged_[i]]);
 }
 
 void Searcher::test() {

@@ -83,18 +83,29 @@ void Cell::sortOutMoved(const Bodies& all, CellWork& work) {
   work.jumping.clear();
   work.staying.clear();
   work.entered.clear();
+  if (all.few_moved) {
+    for (const std::uint32_t body : work.moved) {
+      const auto place = std::ranges::find(bodies_, body) - bodies_.begin();
+      sortOut(static_cast<std::uint32_t>(place), all, work);
+    }
+    return;
+  }
   for (std::uint32_t slot = 0; slot < bodies_.size(); ++slot) {
     const std::uint32_t body = bodies_[slot];
-    if (body == kNobody || !all.hasMoved(body)) continue;
-    slots_[slot].boxes[kNow] = all.boxes[kNow][body];
-    const CellRange& range = all.ranges[kNow][body];
-    if (!range.contains(position_)) {
-      work.leaving.push_back(slot);
-      continue;
-    }
-    crossings_[slot][kNow] = range.crossing(position_);
-    (jumps(slot) ? work.jumping : work.staying).push_back(slot);
+    if (body != kNobody && all.hasMoved(body)) sortOut(slot, all, work);
   }
+}
+
+void Cell::sortOut(std::uint32_t slot, const Bodies& all, CellWork& work) {
+  const std::uint32_t body = bodies_[slot];
+  slots_[slot].boxes[kNow] = all.boxes[kNow][body];
+  const CellRange& range = all.ranges[kNow][body];
+  if (!range.contains(position_)) {
+    work.leaving.push_back(slot);
+    return;
+  }
+  crossings_[slot][kNow] = range.crossing(position_);
+  (jumps(slot) ? work.jumping : work.staying).push_back(slot);
 }
 
 /// Whether it is cheaper to remove a body and insert it anew than to sort it from here to there.

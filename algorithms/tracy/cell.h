@@ -46,6 +46,7 @@ struct Bodies {
   std::array<std::vector<Aabb>, 2> boxes;        ///< by moment; what has not moved: kNow only
   std::array<std::vector<CellRange>, 2> ranges;  ///< likewise
   std::vector<std::uint64_t> moved;              ///< a bit per body
+  bool few_moved = false;                        ///< so few that cells are told who
   CollisionFilter filter;
 
   [[nodiscard]] bool hasMoved(std::uint32_t body) const {
@@ -68,7 +69,9 @@ struct alignas(64) CellWork {
   std::vector<PairBuffer> ended;
   WorkCounts counts;
 
-  // Slots of the present cell.
+  /// Bodies of the present cell that have moved, if few have.
+  std::vector<std::uint32_t> moved;
+  // Its slots.
   std::vector<std::uint32_t> leaving;
   std::vector<std::uint32_t> jumping;
   std::vector<std::uint32_t> staying;
@@ -86,8 +89,8 @@ class Cell {
   void build(const CellPosition& position, std::span<const std::uint32_t> bodies, const Bodies& all,
              CellWork& work);
 
-  /// Takes note of all bodies that have moved: those in the cell and those that enter it, which
-  /// for_each_arrival(visit) shows by calling visit(body).
+  /// Takes note of all bodies that have moved: those in the cell (if few, they are in work.moved)
+  /// and those that enter it, which for_each_arrival(visit) shows by calling visit(body).
   template <class ForEachArrival>
   void update(const Bodies& all, CellWork& work, ForEachArrival for_each_arrival) {
     sortOutMoved(all, work);
@@ -140,6 +143,7 @@ class Cell {
   }
 
   void sortOutMoved(const Bodies& all, CellWork& work);
+  void sortOut(std::uint32_t slot, const Bodies& all, CellWork& work);
   [[nodiscard]] bool jumps(std::uint32_t slot) const;
   void leave(std::uint32_t slot, CellWork& work);
   void enter(std::uint32_t body, const Bodies& all, CellWork& work);

@@ -7,13 +7,13 @@
 
 namespace broadmark::tracy {
 
-/// Contiguous shares of the cells, all with about the same work. Fixed shares rather than a common
-/// queue: who does what, and so the memory that each needs, is the same in every run.
+/// Contiguous shares of a list of cells, all with about the same work. Fixed shares rather than a
+/// common queue: who does what, and so the memory that each needs, is the same in every run.
 class CellShares {
  public:
   void resize(std::size_t workers) { first_cells_.resize(workers + 1); }
 
-  /// `total` is the sum of cost(cell) over the cells [0, cells).
+  /// `total` is the sum of cost(i) over the places [0, cells) in the list.
   template <class Cost>
   void shareOut(std::size_t cells, Cost cost, std::uint64_t total) {
     const std::size_t workers = first_cells_.size() - 1;
@@ -27,11 +27,11 @@ class CellShares {
     first_cells_.back() = cells;
   }
 
-  /// Calls visit(cell) for the cells of a worker's share.
+  /// Calls visit(i) for the places in the list of a worker's share.
   template <class Visit>
-  void forEachCell(int worker, Visit visit) const {
+  void forEachIndex(int worker, Visit visit) const {
     const auto first = first_cells_.begin() + worker;
-    for (std::size_t cell = first[0]; cell < first[1]; ++cell) visit(cell);
+    for (std::size_t i = first[0]; i < first[1]; ++i) visit(i);
   }
 
  private:

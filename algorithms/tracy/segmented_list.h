@@ -115,7 +115,7 @@ class SegmentedList {
     Endpoint* first = begin(id);
     for (std::size_t count = chunks_[id].count; count > 0;) {
       const std::size_t half = (count + 1) / 2;
-      first += first[half - 1] < endpoint ? half : 0;
+      first += half * static_cast<std::size_t>(first[half - 1] < endpoint);
       count -= half;
     }
     return first;

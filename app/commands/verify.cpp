@@ -62,8 +62,8 @@ Column change(const char* heading, double Changes::*which) {
           }};
 }
 
-std::vector<Column> columns(const SceneInfo& scene) {
-  std::vector<Column> all = {
+std::vector<Column> boxColumns() {
+  return {
       plain("density", &RangeStatistics::density),
       plain("pairs/body", &RangeStatistics::pairs_per_body),
       {"moving", [](const RangeStatistics& range) { return percent(range.moving_share); }},
@@ -78,13 +78,14 @@ std::vector<Column> columns(const SceneInfo& scene) {
       {"outside",
        [](const RangeStatistics& range) { return fmt::format("{}", range.max_outside); }},
   };
-  if (scene.all_present) return all;
-  const std::vector<Column> population = {
+}
+
+/// Of worlds in which bodies come and go.
+std::vector<Column> populationColumns() {
+  return {
       plain("fewest", &RangeStatistics::min_bodies), plain("bodies", &RangeStatistics::mean_bodies),
       plain("most", &RangeStatistics::max_bodies),   change("appear", &Changes::appeared),
       change("vanish", &Changes::vanished),          change("change", &Changes::changed)};
-  all.insert(all.end(), population.begin(), population.end());
-  return all;
 }
 
 /// Rows of cells, each after a margin.
@@ -121,13 +122,13 @@ std::string formatFilter(const FilterStatistics& filter) {
   return text;
 }
 
-std::string formatDescription(const SceneInfo& scene, const SceneDescription& description) {
-  const std::vector<Column> figures = columns(scene);
+/// A row for each part of the scene.
+std::string rangeTable(const std::vector<Column>& columns, const SceneDescription& description) {
   std::vector<std::vector<std::string>> rows = {{"", "frames"}};
-  for (const Column& figure : figures) rows.front().emplace_back(figure.heading);
+  for (const Column& column : columns) rows.front().emplace_back(column.heading);
   const auto add = [&](std::string frames, const RangeStatistics& range) {
     rows.push_back({"", std::move(frames)});
-    for (const Column& figure : figures) rows.back().push_back(figure.cell(range));
+    for (const Column& column : columns) rows.back().push_back(column.cell(range));
   };
   add("initial", description.initial);
   for (const RangeStatistics& part : description.parts) {
@@ -136,7 +137,12 @@ std::string formatDescription(const SceneInfo& scene, const SceneDescription& de
         part);
   }
   if (description.overall) add("all", *description.overall);
-  std::string text = rightAligned(rows);
+  return rightAligned(rows);
+}
+
+std::string formatDescription(const SceneInfo& scene, const SceneDescription& description) {
+  std::string text = rangeTable(boxColumns(), description);
+  if (!scene.all_present) text += "\n" + rangeTable(populationColumns(), description);
   if (description.filter) text += "\n" + formatFilter(*description.filter);
   return text;
 }

@@ -228,7 +228,7 @@ class Stillness {
 
 /// What the world knows of a body beyond what Bullet does. Each body's user pointer leads to its
 /// own.
-struct Rest {
+struct BodyState {
   std::uint8_t layer = 0;
   Stillness stillness;
   bool held = false;       ///< in the last step: still and supported
@@ -241,17 +241,17 @@ class LayerFilter final : public btOverlapFilterCallback {
   explicit LayerFilter(const LayerMatrix& layers) : layers_(layers) {}
 
   bool needBroadphaseCollision(btBroadphaseProxy* a, btBroadphaseProxy* b) const override {
-    const Rest* rest_a = restOf(*a);
-    const Rest* rest_b = restOf(*b);
-    if (rest_a == nullptr || rest_b == nullptr) return true;
-    return layers_.collide(rest_a->layer, rest_b->layer);
+    const BodyState* state_a = stateOf(*a);
+    const BodyState* state_b = stateOf(*b);
+    if (state_a == nullptr || state_b == nullptr) return true;
+    return layers_.collide(state_a->layer, state_b->layer);
   }
 
  private:
   /// Null: a wall.
-  static const Rest* restOf(const btBroadphaseProxy& proxy) {
+  static const BodyState* stateOf(const btBroadphaseProxy& proxy) {
     const auto& object = *static_cast<const btCollisionObject*>(proxy.m_clientObject);
-    return static_cast<const Rest*>(object.getUserPointer());
+    return static_cast<const BodyState*>(object.getUserPointer());
   }
 
   LayerMatrix layers_;
@@ -289,7 +289,7 @@ class World final : public btDiscreteDynamicsWorld {
     if (islands.empty()) return;
     forEachBody([&](btRigidBody& other) {
       if (other.isStaticObject() || !islands.contains(other.getIslandTag())) return;
-      rest(other).held = false;
+      stateOf(other).held = false;
       other.activate();
     });
   }
@@ -299,8 +299,8 @@ class World final : public btDiscreteDynamicsWorld {
     findDisturbed();
     const bool release_all = std::exchange(release_all_, false);
     forEachBody([&](btRigidBody& body) {
-      if (release_all || rest(body).disturbed) rest(body).held = false;
-      if (!rest(body).held) return;
+      if (release_all || stateOf(body).disturbed) stateOf(body).held = false;
+      if (!stateOf(body).held) return;
       setShareOfImpulses(body, 0);
       body.clearForces();
     });
@@ -311,7 +311,7 @@ class World final : public btDiscreteDynamicsWorld {
   void integrateTransforms(btScalar time_step) override {
     forEachBody([&](btRigidBody& body) {
       limitAngularSpeed(body);
-      bool& held = rest(body).held;
+      bool& held = stateOf(body).held;
       held = held || mayBeHeld(body, time_step);
       if (!held) return;
       body.setLinearVelocity(btVector3(0, 0, 0));
@@ -320,8 +320,8 @@ class World final : public btDiscreteDynamicsWorld {
     btDiscreteDynamicsWorld::integrateTransforms(time_step);
     forEachBody([&](btRigidBody& body) {
       // To the last bit: the solver pushes bodies apart, and integration rounds.
-      if (rest(body).held) body.setCenterOfMassTransform(rest(body).stillness.pose());
-      if (body.isActive()) rest(body).stillness.update(body, time_step);
+      if (stateOf(body).held) body.setCenterOfMassTransform(stateOf(body).stillness.pose());
+      if (body.isActive()) stateOf(body).stillness.update(body, time_step);
     });
   }
 
@@ -331,8 +331,8 @@ class World final : public btDiscreteDynamicsWorld {
     for (int i = 0; i < m_nonStaticRigidBodies.size(); ++i) action(*m_nonStaticRigidBodies[i]);
   }
 
-  static Rest& rest(const btCollisionObject& body) {
-    return *static_cast<Rest*>(body.getUserPointer());
+  static BodyState& stateOf(const btCollisionObject& body) {
+    return *static_cast<BodyState*>(body.getUserPointer());
   }
 
   static void setShareOfImpulses(btRigidBody& body, btScalar share) {
@@ -341,7 +341,7 @@ class World final : public btDiscreteDynamicsWorld {
   }
 
   void findDisturbed() {
-    forEachBody([](btRigidBody& body) { rest(body).disturbed = false; });
+    forEachBody([](btRigidBody& body) { stateOf(body).disturbed = false; });
     btDispatcher& contacts = *getDispatcher();
     for (int i = 0; i < contacts.getNumManifolds(); ++i) {
       const btPersistentManifold& contact = *contacts.getManifoldByIndexInternal(i);
@@ -349,8 +349,8 @@ class World final : public btDiscreteDynamicsWorld {
       const btCollisionObject& a = *contact.getBody0();
       const btCollisionObject& b = *contact.getBody1();
       if (a.isStaticObject() || b.isStaticObject()) continue;
-      if (!rest(a).stillness.lasts()) rest(b).disturbed = true;
-      if (!rest(b).stillness.lasts()) rest(a).disturbed = true;
+      if (!stateOf(a).stillness.lasts()) stateOf(b).disturbed = true;
+      if (!stateOf(b).stillness.lasts()) stateOf(a).disturbed = true;
     }
   }
 
@@ -364,7 +364,8 @@ class World final : public btDiscreteDynamicsWorld {
 
   /// Whether the body has been still for long, and is supported.
   [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
-    if (!body.isActive() || !rest(body).stillness.lasts() || Stillness::isEnded(body)) return false;
+    if (!body.isActive() || !stateOf(body).stillness.lasts() || Stillness::isEnded(body))
+      return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
     return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
   }
@@ -378,8 +379,8 @@ class BulletBody : public PhysicsBody {
   BulletBody(const BodyDescription& description,
              const btRigidBody::btRigidBodyConstructionInfo& info, World& world)
       : shape_(description.shape), world_(world), body_(info) {
-    rest_.layer = description.layer;
-    body_.setUserPointer(&rest_);
+    state_.layer = description.layer;
+    body_.setUserPointer(&state_);
     body_.setLinearVelocity(toBullet(description.linear_velocity));
     body_.setAngularVelocity(toBullet(description.angular_velocity));
     world_.addRigidBody(&body_);
@@ -433,7 +434,7 @@ class BulletBody : public PhysicsBody {
   [[nodiscard]] bool restless() const { return body_.getActivationState() == ACTIVE_TAG; }
   /// Does nothing to a frozen body.
   void wake() {
-    rest_.stillness.end();
+    state_.stillness.end();
     world_.releaseAll();
     body_.activate();
   }
@@ -441,7 +442,7 @@ class BulletBody : public PhysicsBody {
  private:
   Shape shape_;
   World& world_;
-  Rest rest_;
+  BodyState state_;
   btRigidBody body_;
 };
 

@@ -23,6 +23,12 @@ class BoxArrays {
   float* max(int axis) { return array(axis + 3); }
 
   [[nodiscard]] Aabb box(std::size_t i) const;
+  void set(std::size_t i, const Aabb& box) {
+    for (int axis = 0; axis < 3; ++axis) {
+      min(axis)[i] = box.min[axis];
+      max(axis)[i] = box.max[axis];
+    }
+  }
 
   /// Makes room for `size` boxes (kept when it suffices) and writes the padding behind them. The
   /// boxes themselves are left as they are.

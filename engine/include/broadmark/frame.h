@@ -39,6 +39,9 @@ struct Frame {
   /// algorithm always gets them, found out before the clock starts. A source knows in all of its
   /// frames or in none; in frame 0 there are none.
   std::optional<std::span<const std::uint32_t>> changed = {};
+
+  /// The ids of the bodies that are present, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> presentBodies() const;
 };
 
 /// Where frames come from, one after the other: a recording, or a live simulation. Who runs a case
