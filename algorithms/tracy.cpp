@@ -184,7 +184,11 @@ class Tracy final : public BroadPhase {
       const CellRange& before = bodies_.ranges[kBefore][body];
       const CellRange& now = bodies_.ranges[kNow][body];
       grid_.forEachCell(before, [&](const CellPosition&, std::size_t cell) {
-        bodies_.few_moved ? mailbox.notify(cell, body) : mailbox.notify(cell);
+        if (bodies_.few_moved) {
+          mailbox.notify(cell, body);
+        } else {
+          mailbox.notify(cell);
+        }
       });
       if (now == before) continue;
       grid_.forEachCell(now, [&](const CellPosition& position, std::size_t cell) {
@@ -216,8 +220,7 @@ class Tracy final : public BroadPhase {
       CellWork& work = workerOf(worker).work;
       work.moved.clear();
       for (const Worker& from : workers_) {
-        from.mailbox.moved().forEach(cell,
-                                     [&](std::uint32_t body) { work.moved.push_back(body); });
+        from.mailbox.moved().forEach(cell, [&](std::uint32_t body) { work.moved.push_back(body); });
       }
       cells_[cell].update(bodies_, work, [&](auto enter) {
         for (const Worker& from : workers_) from.mailbox.arrivals().forEach(cell, enter);
