@@ -329,6 +329,7 @@ class Tracy final : public BroadPhase {
     });
   }
 
+  /// Half of the original's 200: as fast where all bodies move, and faster where few do.
   std::int64_t objects_per_cell_ = 100;
   ThreadTeam* team_ = nullptr;
   Aabb world_;

@@ -130,6 +130,37 @@ TEST(Tracy, HoldsWithCellsOfAFewBodies) {
   }
 }
 
+// So few that each is looked up in its cells: they move a little, jump, vanish and come back.
+TEST(Tracy, FindsFewMoversAmongMany) {
+  constexpr std::size_t kCount = 1000;
+  constexpr std::size_t kMovers = 12;
+  constexpr float kEdge = 12;
+  for (const int threads : {1, 2, 3}) {
+    SCOPED_TRACE(threads);
+    std::vector<Aabb> boxes = inputs::assorted(kCount, 0, 5);
+    Checked run(threads > 1 ? "tracy-mt" : "tracy", threads, 4, cubeFrom(0, kEdge), boxes);
+    inputs::Random random(3, 1);
+    const auto any_body = [&] {
+      return static_cast<std::size_t>(random.uniform(0, kCount - 0.5F));
+    };
+    for (int frame = 0; frame < 60; ++frame) {
+      for (std::size_t i = 0; i < kMovers; ++i) {
+        Aabb& box = boxes[i % 2 == 0 ? i : any_body()];
+        const float dice = random.uniform(0, 1);
+        if (isEmpty(box)) {
+          box = boxes[kCount - 1 - i];  // identical to another, if that is there
+        } else if (dice < 0.2F) {
+          box = kEmptyBox;
+        } else {
+          moveBy(box, anyWay(random, dice < 0.4F ? kEdge : 0.3F));
+        }
+      }
+      run.step(boxes);
+      if (HasFailure()) return;
+    }
+  }
+}
+
 // The intersection moves from cell to cell, but the pair neither begins nor ends.
 TEST(Tracy, KeepsPairsThatChangeCells) {
   std::vector<Aabb> boxes(8, cubeFrom(0, 0.4F));
