@@ -238,7 +238,7 @@ class Kd final : public BroadPhase {
     }
     if (margin > 0) boxes_[body] = box;  // without a margin stored boxes are the boxes
     const bool is_in_tree = tree_.holds(body);
-    const bool is_at_rest = rest_.holds(body);
+    const bool is_at_rest = !is_in_tree && rest_.holds(body);
     if ((is_in_tree || is_at_rest) && isStill(box, stored_[body], margin)) return;
     stored_[body] = storedFor(box);
     moving_[body] = 1;
