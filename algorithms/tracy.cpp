@@ -1,9 +1,9 @@
 // Tracy: a uniform grid whose every cell is an incremental sweep and prune. A body that stays where
-// it is costs one comparison; what moves is sorted anew, from its last place to the new one, and
-// each swap of a start and an end is an event at which a pair may begin or end. Pairs are kept from
-// frame to frame. O(n + s), s the swaps: for each moved body about the distance times the endpoints
-// per unit of length in a cell. The grid does what no incremental sweep can: keep apart bodies that
-// overlap on one or two axes only.
+// it is costs at most a look at a bit; what moves is sorted anew, from its last place to the new
+// one, and each swap of a start and an end is an event at which a pair may begin or end. Pairs are
+// kept from frame to frame. O(n + s), s the swaps: for each moved body about the distance times the
+// endpoints per unit of length in a cell. The grid does what no incremental sweep can: keep apart
+// bodies that overlap on one or two axes only.
 //
 // A frame: find the bodies that have moved and the cells that they touch now; notify these cells;
 // let each of them find the pairs that began and ended in it (tracy/cell.h, with the proof that
@@ -23,10 +23,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
