@@ -160,8 +160,12 @@ class WallContact final : public btCollisionAlgorithm {
 constexpr btScalar kHoldAfter = 0.5F;
 /// A body is still while it stays nearer to one place than this share of a free fall of that time.
 constexpr btScalar kStillShare = 0.2F;
-/// A body is supported when contacts carry at least this share of its weight.
-constexpr btScalar kCarriedShare = 0.75F;
+/// A body is supported when contacts carry at least this share of its weight. Those of a large pile
+/// carry it now more, now less.
+constexpr btScalar kCarriedShare = 0.25F;
+/// A held body is let go when its velocities would take it away from its place in this time, in
+/// seconds. Trembling would, too, in a longer one.
+constexpr btScalar kLetGoWithin = 0.1F;
 
 /// For how long a body has been still: all of it near to one place. Its velocity tells less: few
 /// iterations leave each body of a large pile trembling, and sinking slowly into those below.
@@ -184,7 +188,7 @@ class Stillness {
   /// Where the body was in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
 
-  /// Whether its velocities would take a still body away from its place.
+  /// Whether its velocities would soon take a still body away from its place.
   static bool isEnded(const btRigidBody& body) {
     btScalar speed = body.getLinearVelocity().length();
     const btVector3 extents = halfExtents(body);
@@ -192,7 +196,7 @@ class Stillness {
       const btVector3 arm = body.getWorldTransform().getBasis().getColumn(axis);
       speed += extents[axis] * body.getAngularVelocity().cross(arm).length();
     }
-    return speed * kHoldAfter > reachOf(body);
+    return speed * kLetGoWithin > reachOf(body);
   }
 
  private:
