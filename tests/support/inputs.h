@@ -21,6 +21,7 @@ using Generator = std::vector<Aabb> (*)(std::size_t n, std::uint32_t frame, std:
 struct Input {
   std::string_view name;
   Generator boxes;
+  bool all_overlap = false;  ///< each box every other one
 };
 
 using Vec3 = std::array<float, 3>;
@@ -252,9 +253,9 @@ inline std::vector<Aabb> limits(std::size_t n, std::uint32_t frame, std::uint64_
 /// The usual, the easy and the awkward ones. `limits` is not among them: see there.
 inline constexpr std::array kAll = {
     Input{"uniform", uniform},     Input{"assorted", assorted},
-    Input{"touching", touching},   Input{"identical", identical},
+    Input{"touching", touching},   Input{"identical", identical, true},
     Input{"flat", flat},           Input{"zero size", zeroSize},
-    Input{"nested", nested},       Input{"huge", huge},
+    Input{"nested", nested, true}, Input{"huge", huge},
     Input{"tiny", tiny},           Input{"far away", farAway},
     Input{"clustered", clustered}, Input{"still", still},
     Input{"drifting", drifting},   Input{"teleporting", teleporting},
