@@ -316,6 +316,7 @@ std::vector<Algorithm> variants() {
            .traits = {.incremental = true,
                       .events = true,
                       .changing_worlds = ChangingWorlds::native,
+                      .instance_per_world = true,
                       .max_objects = kMaxObjects},
            .description = {.principle = "sorting",
                            .optimisations = "incremental, pairs in a hash table",

@@ -94,7 +94,7 @@ class Simd final : public SimdBroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "BF",
-      .traits = {.changing_worlds = ChangingWorlds::compacted},
+      .traits = {.changing_worlds = ChangingWorlds::compacted, .instance_per_world = true},
       .description = {
           .principle = "brute force",
           .time = "O(n²)",

@@ -364,7 +364,10 @@ class Kd final : public BroadPhase {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "KD",
-      .traits = {.incremental = true, .events = true, .changing_worlds = ChangingWorlds::native},
+      .traits = {.incremental = true,
+                 .events = true,
+                 .changing_worlds = ChangingWorlds::native,
+                 .instance_per_world = true},
       .description = {
           .principle = "tree",
           .optimisations = "incremental tree and pairs",

@@ -421,14 +421,16 @@ std::string Tracy::validate() const {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  const Algorithm family = {
-      .family = "Tracy",
-      .traits = {.incremental = true, .events = true, .changing_worlds = ChangingWorlds::native},
-      .description = {.principle = "grid, sorting",
-                      .optimisations = "segmented interval lists",
-                      .time = "O(n + s), s swaps of endpoints",
-                      .space = "O(n + k)",
-                      .source = "Tracy, Buss and Woods 2009"}};
+  const Algorithm family = {.family = "Tracy",
+                            .traits = {.incremental = true,
+                                       .events = true,
+                                       .changing_worlds = ChangingWorlds::native,
+                                       .instance_per_world = true},
+                            .description = {.principle = "grid, sorting",
+                                            .optimisations = "segmented interval lists",
+                                            .time = "O(n + s), s swaps of endpoints",
+                                            .space = "O(n + k)",
+                                            .source = "Tracy, Buss and Woods 2009"}};
   const auto create = [] { return std::make_unique<Tracy>(); };
   return {
       variantOf(family, create, "tracy", "incremental sweep and prune in the cells of a grid"),

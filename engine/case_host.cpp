@@ -10,6 +10,7 @@
 #include "broadmark/exclusive_use.h"
 #include "compacted_world.h"
 #include "events_from_pairs.h"
+#include "worlds_apart.h"
 
 namespace broadmark {
 namespace {
@@ -62,6 +63,31 @@ void requireRunnable(const Case& run, const SceneInfo& scene) {
   }
 }
 
+/// Whether the bodies' numbers that the algorithm sees change from frame to frame.
+bool isCompacted(const Case& run, const SceneInfo& scene) {
+  return run.algorithm.traits.changing_worlds == ChangingWorlds::compacted &&
+         isChangingWorld(scene);
+}
+
+/// Whether each of several worlds is for an instance of its own.
+bool isApart(const Case& run, const SceneInfo& scene) {
+  // From here on this is quicker than to put them side by side, where bodies share an axis or a
+  // column of cells with those of other worlds.
+  constexpr std::size_t kManyBodies = 100;
+  const AlgorithmTraits& traits = run.algorithm.traits;
+  const std::size_t worlds = WorldsApart::countIn(scene);
+  if (worlds < 2) return false;
+  if (traits.instance_per_world) return true;
+  return traits.changing_worlds == ChangingWorlds::compacted && !traits.on_device &&
+         scene.objects / worlds >= kManyBodies;
+}
+
+std::unique_ptr<BroadPhase> makeForOneWorld(const Case& run, const SceneInfo& scene) {
+  std::unique_ptr<BroadPhase> instance = makeInstance(run);
+  if (!isCompacted(run, scene)) return instance;
+  return std::make_unique<CompactedWorld>(std::move(instance));
+}
+
 CounterVisitor into(Counts& counts) {
   return [&counts](std::string_view name, std::uint64_t count) { counts.emplace(name, count); };
 }
@@ -94,14 +120,14 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
 
 std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) const {
   const AlgorithmTraits& traits = case_.algorithm.traits;
-  std::unique_ptr<BroadPhase> instance = makeInstance(case_);
-  bool knows_events = traits.events;
-  if (traits.changing_worlds == ChangingWorlds::compacted && isChangingWorld(scene)) {
-    instance = std::make_unique<CompactedWorld>(std::move(instance));
-    knows_events = false;  // its bodies' numbers change from frame to frame
-  }
+  const auto make = [this](const SceneInfo& world) { return makeForOneWorld(case_, world); };
+  std::unique_ptr<BroadPhase> instance =
+      isApart(case_, scene) ? std::make_unique<WorldsApart>(scene, make, traits.exclusive.empty())
+                            : make(scene);
   if (case_.answer == AnswerKind::pairs) return instance;
-  if (!knows_events) return std::make_unique<EventsFromPairs>(std::move(instance));
+  if (!traits.events || isCompacted(case_, scene)) {
+    return std::make_unique<EventsFromPairs>(std::move(instance));
+  }
   instance->reportEvents();
   return instance;
 }

@@ -74,6 +74,14 @@ const char* inChangingWorlds(const Algorithm& algorithm) {
   return "not at all";
 }
 
+const char* ofSeveralWorlds(const Algorithm& algorithm) {
+  const AlgorithmTraits& traits = algorithm.traits;
+  if (traits.changing_worlds == ChangingWorlds::unknown) return "not at all";
+  if (traits.instance_per_world) return "an instance for each";
+  if (traits.changing_worlds == ChangingWorlds::native) return "by itself";
+  return traits.on_device ? "side by side" : "side by side if small, else an instance for each";
+}
+
 const char* eventsOf(const Algorithm& algorithm) {
   return algorithm.traits.events ? "by itself" : "from the pairs of two frames";
 }
@@ -82,9 +90,11 @@ const char* eventsOf(const Algorithm& algorithm) {
 std::string detailsOf(const Algorithm& algorithm) {
   const AlgorithmDescription& description = algorithm.description;
   std::string text = fmt::format(
-      "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. Events: {}. {}",
+      "{}: {}. Optimisations: {}. Time {}. Space {}. Worlds that change: {}. Several worlds at one "
+      "place: {}. Events: {}. {}",
       algorithm.id, algorithm.summary, optimisationsOf(algorithm), description.time,
-      description.space, inChangingWorlds(algorithm), eventsOf(algorithm), description.source);
+      description.space, inChangingWorlds(algorithm), ofSeveralWorlds(algorithm),
+      eventsOf(algorithm), description.source);
   std::vector<std::string_view> original;
   for (const OriginalId& id : originalIds()) {
     if (id.algorithm == algorithm.id) original.push_back(id.name);

@@ -169,20 +169,27 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemWhereOneBodyChangesOrNone) {
   }
 }
 
-// At the same place, three bodies each; some poke out of the place by more than its size.
+// At the same place, a few bodies each; some poke out of the place by more than its size. A third
+// of the worlds is still; others appear late, with all of their bodies, vanish for a frame, or are
+// never there.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInAThousandWorlds) {
   constexpr std::uint32_t kWorlds = 1000;
-  const CollisionFilter filter =
-      filterOf(3 * kWorlds, LayerMatrix().set(0, 0), [](inputs::Random&, std::uint32_t body) {
-        return BodyGroups{.world = 7 * (body % kWorlds)};
+  constexpr std::uint32_t kAll = 2500;
+  const CollisionFilter filter = filterOf(
+      kAll, LayerMatrix().set(0, 0).set(1, 1), [](inputs::Random& random, std::uint32_t body) {
+        return BodyGroups{.layer = std::uint8_t{body % 11 == 0},
+                          .world = static_cast<std::uint32_t>(7 * random.integer(1, kWorlds))};
       });
   std::vector<std::vector<Aabb>> frames;
-  for (std::uint32_t frame = 0; frame < 4; ++frame) {
-    frames.push_back(
-        inputs::generate(3 * kWorlds, frame, 1, [](inputs::Random& random, std::size_t body) {
-          const float side = body % 50 == 49 ? 100.0F : 4.0F;
-          return inputs::boxAt(random.inCube(side), {1, 1, 1});
-        }));
+  for (std::uint32_t frame = 0; frame < 5; ++frame) {
+    std::vector<Aabb>& boxes = frames.emplace_back(kAll, kEmptyBox);
+    for (std::uint32_t body = 0; body < kAll; ++body) {
+      const std::uint32_t world = filter.worlds()[body] / 7;
+      if (world % 6 > frame || world % 10 == frame) continue;
+      inputs::Random random(body, world % 3 == 0 ? 0 : frame);
+      const float side = body % 50 == 49 ? 100.0F : 4.0F;
+      boxes[body] = inputs::boxAt(random.inCube(side), {1, 1, 1});
+    }
   }
   check({"a thousand worlds", filter, frames, Aabb{{0, 0, 0, 0}, {5, 5, 5, 0}}});
 }

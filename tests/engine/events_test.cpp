@@ -21,7 +21,7 @@ namespace {
 
 using Pairs = std::vector<Pair>;
 
-constexpr std::uint32_t kBodies = 40;
+constexpr std::uint32_t kWanderers = 40;
 
 std::vector<Pair> sortedPairs(PairRuns runs) {
   Pairs pairs;
@@ -58,7 +58,7 @@ class FromPairs {
       : answer_(std::move(first)),
         execution_(threads, Isa::scalar),
         events_(std::make_unique<Told>(answer_)) {
-    events_.initialize({.objects = kBodies}, {0, boxes_, std::span<const std::uint32_t>()},
+    events_.initialize({.objects = kWanderers}, {0, boxes_, std::span<const std::uint32_t>()},
                        execution_);
   }
 
@@ -75,7 +75,7 @@ class FromPairs {
   }
 
  private:
-  std::vector<Aabb> boxes_ = std::vector<Aabb>(kBodies);
+  std::vector<Aabb> boxes_ = std::vector<Aabb>(kWanderers);
   Pairs answer_;
   Execution execution_;
   EventsFromPairs events_;
@@ -96,8 +96,8 @@ TEST(EventsFromPairs, AreTheDifferencesOfSetsWhateverTheTeam) {
       std::set<Pair> now;
       const int most = frame % 5 == 0 ? 0 : 20 * frame;
       for (int i = 0; i < most; ++i) {
-        const auto a = static_cast<std::uint32_t>(random.integer(0, kBodies - 2));
-        const auto b = static_cast<std::uint32_t>(random.integer(0, kBodies - 2));
+        const auto a = static_cast<std::uint32_t>(random.integer(0, kWanderers - 2));
+        const auto b = static_cast<std::uint32_t>(random.integer(0, kWanderers - 2));
         now.insert(orderedPair(a, b >= a ? b + 1 : b));
       }
       Pairs answer(now.begin(), now.end());
@@ -119,7 +119,7 @@ TEST(EventsFromPairs, FaultsInTheAnswerAreEventsToo) {
   for (const int threads : {1, 3}) {
     FromPairs events(threads, {{0, 1}});
     EXPECT_EQ(events.eventsOf({{0, 1}, {0, 1}}).first, (Pairs{{0, 1}})) << "begins twice";
-    const Pairs none = {{1, 0}, {2, 2}, {3, kBodies}, {0xFFFF'FFFF, 0xFFFF'FFFF}};
+    const Pairs none = {{1, 0}, {2, 2}, {3, kWanderers}, {0xFFFF'FFFF, 0xFFFF'FFFF}};
     EXPECT_EQ(events.eventsOf(none), std::pair(none, Pairs{{0, 1}, {0, 1}}));
     EXPECT_EQ(events.eventsOf(none), std::pair(none, Pairs())) << "in every frame";
   }
@@ -178,11 +178,11 @@ class Wandering final : public IndexedFrames {
 
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
-    boxes_ = inputs::teleporting(kBodies, index, 1);
+    boxes_ = inputs::teleporting(kWanderers, index, 1);
     return boxes_;
   }
 
-  SceneInfo scene_{"Wandering", "Boxes", kBodies, 6, {{-9, -9, -9, 0}, {9, 9, 9, 0}}};
+  SceneInfo scene_{"Wandering", "Boxes", kWanderers, 6, {{-9, -9, -9, 0}, {9, 9, 9, 0}}};
   std::vector<Aabb> boxes_;
 };
 

@@ -29,7 +29,7 @@ using testing::StartsWith;
 
 using Frames = std::vector<std::vector<Aabb>>;
 
-constexpr std::uint32_t kBodies = 60;
+constexpr std::uint32_t kSlots = 60;
 
 /// Boxes of which some change, come and go in each frame.
 Frames changingFrames(std::uint32_t bodies, std::uint32_t frames, int share_of_changes,
@@ -87,7 +87,7 @@ TEST(Recording2, WhatIsWrittenIsReadBackInAnyOrder) {
   const TemporaryDirectory directory;
   for (const bool all_present : {true, false}) {
     for (const int share : {0, 2, 30, 100}) {
-      const Frames frames = changingFrames(kBodies, 40, share, all_present);
+      const Frames frames = changingFrames(kSlots, 40, share, all_present);
       const SceneInfo scene = sceneOf(frames, all_present);
       const auto path = directory / "a.broadmark";
       const std::string hash = write(path, scene, frames);
@@ -113,8 +113,8 @@ TEST(Recording2, WhatIsWrittenIsReadBackInAnyOrder) {
 
 TEST(Recording2, KeepsWhatPairsAreWanted) {
   const TemporaryDirectory directory;
-  const Frames frames = changingFrames(kBodies, 3, 10, false);
-  for (const auto& [name, filter] : filters(kBodies)) {
+  const Frames frames = changingFrames(kSlots, 3, 10, false);
+  for (const auto& [name, filter] : filters(kSlots)) {
     const SceneInfo scene = sceneOf(frames, true, filter);
     const auto path = directory / "a.broadmark";
     if (!filter.wantsAll()) {
@@ -178,8 +178,8 @@ TEST(Recording2, TellsZeroesApart) {
 
 TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
   const TemporaryDirectory directory;
-  const Frames frames = changingFrames(kBodies, 9, 40, false);
-  const CollisionFilter filter = filters(kBodies)[1].filter;
+  const Frames frames = changingFrames(kSlots, 9, 40, false);
+  const CollisionFilter filter = filters(kSlots)[1].filter;
   write(directory / "a.broadmark", sceneOf(frames, false, filter), frames);
   Recording2Reader whole(directory / "a.broadmark");
   const Part part = partOf(whole.scene(), {1, 5, 30, 31, 59}, {2, 3, 7});
@@ -445,7 +445,7 @@ TEST(Recording2Writer, LeavesNothingUnlessFinished) {
 TEST(Recording2Writer, TakesASourcesWordForWhatChanged) {
   const TemporaryDirectory directory;
   for (const int share : {0, 2, 100}) {
-    const Frames frames = changingFrames(kBodies, 40, share, false);
+    const Frames frames = changingFrames(kSlots, 40, share, false);
     const SceneInfo scene = sceneOf(frames);
     RecordingWriter writer(directory / "told.broadmark", scene);
     for (std::uint32_t f = 0; f <= 40; ++f) {

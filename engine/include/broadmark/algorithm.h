@@ -36,6 +36,11 @@ struct AlgorithmTraits {
   bool library_allocates = false;
   /// What it makes of bodies that are absent, and of pairs that are not wanted.
   ChangingWorlds changing_worlds = ChangingWorlds::unknown;
+  /// Each of several worlds at one place has an instance of its own, however small they are: for
+  /// one that pays for bodies at the same place, whatever their worlds, or for those far away.
+  /// Without it a `compacted` one has small worlds side by side in one instance, unless it is on a
+  /// device, where that goes for all worlds; a `native` one gets all bodies as they are.
+  bool instance_per_world = false;
   /// Largest number of bodies it can handle.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
   /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two
