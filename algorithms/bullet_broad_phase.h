@@ -1,31 +1,23 @@
-// What the wrappers of Bullet's broad phases share: which bodies moved, and Bullet's pairs, or what
-// is new about them, as ours.
+// What the wrappers of Bullet's broad phases share: Bullet's pairs, or what is new about them, as
+// ours.
 #pragma once
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
-#include "broadmark/broad_phase.h"
+#include "moved_boxes.h"
 
 namespace broadmark {
 
-/// Keeps the boxes, and hands on to Bullet only those that changed, as a game does for bodies
-/// awake. Body i is the proxy with Bullet's unique id i + 1.
-class BulletBroadPhase : public BoxBroadPhase {
+/// Bullet is handed on only the boxes that changed. Body i is the proxy with Bullet's unique id i
+/// + 1.
+class BulletBroadPhase : public MovedBoxes {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BoxBroadPhase::initialize(scene, first, execution);
+    MovedBoxes::initialize(scene, first, execution);
     wanted_.filter = scene.filter;
-    moved_.resize(boxes().size());
-    std::iota(moved_.begin(), moved_.end(), 0U);
-  }
-
-  void updateObjects(const Frame& frame) override {
-    moved_.assign(frame.changed->begin(), frame.changed->end());
-    BoxBroadPhase::updateObjects(frame);
   }
 
   void reportEvents() final { reports_events_ = true; }
@@ -43,10 +35,6 @@ class BulletBroadPhase : public BoxBroadPhase {
     began_run_ = began_;
     ended_run_ = ended_;
   }
-
-  /// The bodies whose boxes differ from those of the frame before, which came and went included;
-  /// after initialize() all.
-  [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
 
   /// Has Bullet form only pairs that are wanted.
   void filterPairs(btOverlappingPairCache& cache) {
@@ -83,7 +71,6 @@ class BulletBroadPhase : public BoxBroadPhase {
   };
 
   Wanted wanted_;
-  std::vector<std::uint32_t> moved_;
   bool reports_events_ = false;
   std::vector<Pair> began_;
   std::vector<Pair> ended_;

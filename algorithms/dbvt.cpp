@@ -284,6 +284,7 @@ std::vector<Algorithm> variants() {
                  .events = true,
                  .library_allocates = true,
                  .changing_worlds = ChangingWorlds::native,
+                 .instance_per_world = true,
                  .max_objects = 0x7FFF'FFFE,
                  .exclusive = std::string(kBulletTreeMargin)},
       .description = {.principle = "tree",

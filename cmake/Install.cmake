@@ -13,7 +13,13 @@ install(TARGETS ${installed} EXPORT broadmark_targets
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
 # What finds the libraries that ours link to.
-set(dependencies Bullet)
+set(dependencies Library Bullet)
+if(BROADMARK_EMBREE)
+  list(APPEND dependencies Embree)
+endif()
+if(BROADMARK_FCL)
+  list(APPEND dependencies Fcl)
+endif()
 if(BROADMARK_ODE)
   list(APPEND dependencies Ode)
 endif()

@@ -23,8 +23,11 @@ TEST_F(Parts, AreShownWhereTheyAreIncluded) {
       {parts::kOpenCl, {"--help"}, {"--device", ", devices,"}},
       {parts::kOpenCl, {"list"}, {"Compute devices", "gpu-", "b3-"}},
       {parts::kCgal, {"list"}, {"cgal: "}},
+      {parts::kBoost, {"list"}, {"boost-rtree: "}},
+      {parts::kEmbree, {"list"}, {"embree-morton: "}},
+      {parts::kFcl, {"list"}, {"fcl: "}},
       {parts::kAssimp, {"import", "--help"}, {".ply", ".gltf"}},
-      {parts::kOde, {"list"}, {"  ode: "}}};
+      {parts::kOde, {"list"}, {"  ode: ", "ode-hash: "}}};
   for (const Shown& shown : all) {
     const Ended ended = run(shown.call);
     EXPECT_EQ(ended.status, 0) << ended.err;
@@ -55,8 +58,12 @@ TEST_F(Parts, AreRefusedWhereTheyAreLeftOut) {
       {parts::kOpenCl, with("--algorithm", "gpu-grid"), "'gpu-grid'"},
       {parts::kOpenCl, {"list", "devices"}, "'devices'"},
       {parts::kCgal, with("--algorithm", "cgal"), "'cgal'"},
+      {parts::kBoost, with("--algorithm", "boost-rtree"), "'boost-rtree'"},
+      {parts::kEmbree, with("--algorithm", "embree-sah"), "'embree-sah'"},
+      {parts::kFcl, with("--algorithm", "fcl"), "'fcl'"},
       {parts::kAssimp, {"--headless", "a.ply"}, "BROADMARK_ASSIMP"},
-      {parts::kOde, with("--engine", "ode"), "'ode'"}};
+      {parts::kOde, with("--engine", "ode"), "'ode'"},
+      {parts::kOde, with("--algorithm", "ode-sap"), "'ode-sap'"}};
   for (const Refused& refused : all) {
     if (!refused.part.included) expectRefusal(refused.call, {refused.word});
   }

@@ -1,0 +1,142 @@
+// Boost's R-tree: nodes of up to 8 children, each with the box around it; each body's box is
+// looked up in it. The packed variant builds the tree anew every frame, all boxes at once; the
+// incremental one takes the bodies that moved out of it and puts them in again. O(n log n + k)
+// time, for m bodies that move O(m log n) to update the tree, if few boxes on a node overlap. O(n +
+// k) space.
+//
+// The manual ("R-tree", "Introduction" and "Creation and Modification") advises the packing
+// algorithm, by the constructor that takes a range, where all values are known: it builds
+// faster and its trees answer faster; a value that changes is to be removed and inserted. Of the
+// three balancing algorithms "Performance" has the quadratic one between the linear one, quickest
+// to insert, and the R*-tree, quickest to answer.
+//
+// Bodies are looked up in the order in which the tree has them, so that one finds in the cache what
+// the one before has read. Each pair is found from both sides, and kept from one. Bounds are only
+// compared, as floats: the answer is exact.
+//
+// Nothing is drawn: the library does not show its nodes.
+//
+// Papers: A. Guttman, "R-Trees: A Dynamic Index Structure for Spatial Searching", SIGMOD 1984;
+// S. Leutenegger et al., "STR: A Simple and Efficient Algorithm for R-Tree Packing", ICDE 1997.
+// Library: Boost.Geometry, "Spatial Indexes".
+
+#define BOOST_ALLOW_DEPRECATED_HEADERS  // Boost's own: no notes on them
+#include <boost/geometry/algorithms/covered_by.hpp>
+#include <boost/geometry/core/cs.hpp>
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+#include <boost/iterator/function_output_iterator.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "broadmark/algorithm.h"
+#include "moved_boxes.h"
+#include "variants.h"
+
+namespace broadmark::boost_rtree {
+namespace {
+
+namespace index = boost::geometry::index;
+using Point = boost::geometry::model::point<float, 3, boost::geometry::cs::cartesian>;
+using Box = boost::geometry::model::box<Point>;
+using Value = std::pair<Box, std::uint32_t>;
+/// A body has one value.
+struct SameBody {
+  bool operator()(const Value& a, const Value& b) const { return a.second == b.second; }
+};
+using Tree = index::rtree<Value, index::quadratic<8>, index::indexable<Value>, SameBody>;
+
+Value valueOf(const Aabb& box, std::uint32_t body) {
+  return {Box(Point(box.min[0], box.min[1], box.min[2]), Point(box.max[0], box.max[1], box.max[2])),
+          body};
+}
+
+/// Keeps the values, and finds pairs by looking each of them up.
+class RTree : public MovedBoxes {
+ public:
+  [[nodiscard]] std::string validate() const override {
+    return tree_.size() == boxes().size() ? "" : "the tree has not one value for each body";
+  }
+
+ protected:
+  /// Makes the tree of all boxes.
+  void pack() {
+    values_.clear();
+    for (const Aabb& box : boxes()) {
+      values_.push_back(valueOf(box, static_cast<std::uint32_t>(values_.size())));
+    }
+    tree_ = Tree(values_);
+  }
+
+  /// By body: as in the tree.
+  std::vector<Value> values_;
+  Tree tree_;
+
+ private:
+  void findPairs() override {
+    for (const Value& value : tree_) {
+      const auto add = [&](const Value& found) {
+        if (value.second < found.second) pairs().add(value.second, found.second);
+      };
+      tree_.query(index::intersects(value.first), boost::make_function_output_iterator(add));
+    }
+  }
+};
+
+class Packed final : public RTree {
+ public:
+  void updateStructures() override { pack(); }
+};
+
+class Incremental final : public RTree {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    RTree::initialize(scene, first, execution);
+    pack();
+  }
+
+  void updateStructures() override {
+    for (; values_.size() > boxes().size(); values_.pop_back()) tree_.remove(values_.back());
+    for (const std::uint32_t body : moved()) {
+      const Value value = valueOf(boxes()[body], body);
+      if (body < values_.size()) {
+        tree_.remove(values_[body]);
+        values_[body] = value;
+      } else {
+        values_.push_back(value);
+      }
+      tree_.insert(value);
+    }
+  }
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  const Algorithm family = {
+      .family = "Boost R-tree",
+      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
+      .description = {
+          .principle = "tree",
+          .time = "O(n log n + k)",
+          .space = "O(n + k)",
+          .source = "Boost.Geometry, index::rtree; Guttman 1984; Leutenegger et al. 1997"}};
+  const auto packed = [] { return std::make_unique<Packed>(); };
+  const auto incremental = [] { return std::make_unique<Incremental>(); };
+  std::vector<Algorithm> all = {
+      variantOf(family, packed, "boost-rtree-packed",
+                "Boost.Geometry's R-tree, packed from scratch every frame"),
+      variantOf(
+          family, incremental, "boost-rtree",
+          "Boost.Geometry's R-tree, from which the bodies that moved are taken and put back")};
+  all[0].description.optimisations = "packed at once";
+  all[1].description.optimisations = "tree kept from frame to frame";
+  return all;
+}
+
+}  // namespace broadmark::boost_rtree

@@ -1,0 +1,168 @@
+// FCL's dynamic trees of boxes (DynamicAABBTreeCollisionManager), with nodes that point to each
+// other or, the other flavour, in an array: a leaf whose box changed is taken out and put in again,
+// and the tree is descended against itself. O(m log n + n + k) a frame for m bodies that move, if
+// the tree is balanced. O(n + k) space.
+//
+// As the library has it: all objects are registered at once, then setup() is called; in a frame,
+// update() with those that moved ("update the manager by explicitly given the set of objects
+// update"). update() without arguments refits the tree to all of them, which is quicker, but leaves
+// a tree of large nodes when bodies pass each other. Where more than half of the bodies have left
+// their boxes altogether all are registered anew, which is quicker than to move so many leaves. All
+// objects share one shape, which nobody looks at; their boxes are set directly.
+//
+// The flavour with an array has faults in its update(): it puts a leaf back near where it was,
+// however far it went, forgets an only leaf, and when it balances the tree from the top it numbers
+// the leaves anew, after which it updates wrong ones. There a body that moved is unregistered and
+// registered again; all are registered at once only in the beginning, as that leaks memory.
+//
+// The library works in double precision. It takes boxes for the same that differ by less than 100
+// epsilon of a corner's distance from the origin, so each box is given a rim wider than that; and a
+// leaf whose new box is inside of its old one keeps that. Pairs are tested with the boxes
+// themselves, so the answer is exact.
+//
+// Nothing is drawn: the library does not show its trees.
+//
+// Paper: J. Pan, S. Chitta, D. Manocha, "FCL: A General Purpose Library for Collision and Proximity
+// Queries", ICRA 2012. Library: the Flexible Collision Library.
+
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
+#include <fcl/broadphase/broadphase_dynamic_AABB_tree_array.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision_object.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <type_traits>
+#include <vector>
+
+#include "broadmark/algorithm.h"
+#include "moved_boxes.h"
+#include "variants.h"
+
+namespace broadmark::fcl_tree {
+namespace {
+
+/// A body in the library's eyes.
+class Body final : public fcl::CollisionObjectd {
+ public:
+  Body(const std::shared_ptr<fcl::CollisionGeometryd>& shape, std::uint32_t number)
+      : fcl::CollisionObject<double>(shape), number_(number) {}
+
+  [[nodiscard]] std::uint32_t number() const { return number_; }
+
+  /// Whether the body has left the box that it had.
+  bool place(const Aabb& box) {
+    const fcl::AABBd before = aabb;
+    double farthest = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      farthest = std::max<double>({farthest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
+    }
+    constexpr double kRim = 1e-13;  // above 100 epsilon times the square root of 3
+    for (int axis = 0; axis < 3; ++axis) {
+      aabb.min_[axis] = box.min[axis] - kRim * farthest;
+      aabb.max_[axis] = box.max[axis] + kRim * farthest;
+    }
+    return !aabb.overlap(before);
+  }
+
+ private:
+  std::uint32_t number_;
+};
+
+using Bodies = std::vector<fcl::CollisionObjectd*>;
+using Nodes = fcl::DynamicAABBTreeCollisionManagerd;
+using Array = fcl::DynamicAABBTreeCollisionManager_Arrayd;
+
+void update(Nodes& manager, const Bodies& moved) {
+  if (!moved.empty()) manager.update(moved);  // or the tree would be balanced further
+}
+
+void update(Array& manager, const Bodies& moved) {
+  for (fcl::CollisionObjectd* const body : moved) {
+    manager.unregisterObject(body);
+    manager.registerObject(body);
+  }
+}
+
+template <class Manager>
+class Fcl final : public MovedBoxes {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    MovedBoxes::initialize(scene, first, execution);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
+    registerAll();
+  }
+
+  void updateStructures() override {
+    for (; bodies_.size() > boxes().size(); bodies_.pop_back()) {
+      manager_.unregisterObject(&bodies_.back());
+    }
+    const std::size_t known = bodies_.size();
+    std::size_t jumps = boxes().size() - known;
+    updated_.clear();
+    for (const std::uint32_t number : moved()) {
+      if (number < known) {
+        jumps += bodies_[number].place(boxes()[number]) ? 1 : 0;
+        updated_.push_back(&bodies_[number]);
+      } else {
+        create(number);
+      }
+    }
+    if (std::is_same_v<Manager, Nodes> && jumps > bodies_.size() / 2) return registerAll();
+    update(manager_, updated_);
+    for (std::size_t body = known; body < bodies_.size(); ++body) {
+      manager_.registerObject(&bodies_[body]);
+    }
+  }
+
+ private:
+  void create(std::uint32_t number) { bodies_.emplace_back(shape_, number).place(boxes()[number]); }
+
+  void registerAll() {
+    updated_.clear();
+    for (Body& body : bodies_) updated_.push_back(&body);
+    manager_.clear();
+    manager_.registerObjects(updated_);
+    manager_.setup();
+  }
+
+  void findPairs() override { manager_.collide(this, report); }
+
+  static bool report(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* self) {
+    static_cast<Fcl*>(self)->add(static_cast<Body*>(a)->number(), static_cast<Body*>(b)->number());
+    constexpr bool kEnough = false;
+    return kEnough;
+  }
+  void add(std::uint32_t a, std::uint32_t b) {
+    if (broadmark::overlaps(boxes()[a], boxes()[b])) pairs().add(a, b);
+  }
+
+  std::shared_ptr<fcl::CollisionGeometryd> shape_ = std::make_shared<fcl::Sphered>(1);
+  std::deque<Body> bodies_;  ///< the manager holds their addresses
+  Bodies updated_;
+  Manager manager_;
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  const Algorithm family = {
+      .family = "FCL",
+      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
+      .description = {.principle = "tree",
+                      .optimisations = "tree kept from frame to frame",
+                      .time = "O(m log n + n + k), m bodies that move",
+                      .space = "O(n + k)",
+                      .source = "FCL, DynamicAABBTreeCollisionManager; Pan et al. 2012"}};
+  return {variantOf(
+              family, [] { return std::make_unique<Fcl<Nodes>>(); }, "fcl",
+              "FCL's dynamic tree of boxes, of nodes that point to each other"),
+          variantOf(
+              family, [] { return std::make_unique<Fcl<Array>>(); }, "fcl-array",
+              "FCL's dynamic tree of boxes, its nodes in an array")};
+}
+
+}  // namespace broadmark::fcl_tree

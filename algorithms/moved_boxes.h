@@ -1,0 +1,35 @@
+// What algorithms share whose library is told what moves: the boxes, and which of them changed.
+#pragma once
+
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "broadmark/broad_phase.h"
+
+namespace broadmark {
+
+/// Keeps the boxes, and the bodies whose boxes differ from those of the frame before, as a game
+/// knows which bodies are awake.
+class MovedBoxes : public BoxBroadPhase {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    moved_.resize(boxes().size());
+    std::iota(moved_.begin(), moved_.end(), 0U);
+  }
+
+  void updateObjects(const Frame& frame) override {
+    moved_.assign(frame.changed->begin(), frame.changed->end());
+    BoxBroadPhase::updateObjects(frame);
+  }
+
+ protected:
+  /// The bodies that moved, came or went, ascending; after initialize() all.
+  [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }
+
+ private:
+  std::vector<std::uint32_t> moved_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,189 @@
+// ODE's spaces. The hash space: grids of several resolutions in one hash table, a box in the grid
+// whose cells are just larger than it, and looked up in that and all coarser ones. The
+// sweep-and-prune space: a sweep along one axis over boxes sorted by radix. Both do all of it every
+// frame; what they keep are the boxes, of which only those that moved are asked for again. Hash:
+// O(n + k) time by the idea, but pairs are marked in a table of n² bits, cleared every frame, and
+// places are mixed so simply (100 x + 10 y + z) that large worlds crowd the hash table. Sweep:
+// O(n^5/3 + k) time for bodies spread evenly, O(n + k) space.
+//
+// Each body is a geom of a class of our own, whose bounding box is the body's (manual, "User
+// defined classes"). A geom that moved is marked by setting its position. The levels of the hash
+// space, its smallest and largest cells, are set for the boxes of each frame (dHashSpaceSetLevels):
+// the smallest so that most boxes are in one grid, but not so small that numbers of cells overflow,
+// which would end the program. The sweep takes the axes in an order that the header advises, X, Z,
+// Y.
+//
+// Debian's ODE works in double precision and only compares bounds; the sweep sorts them as floats,
+// which they were. So the answers are exact.
+//
+// Nothing is drawn: the library shows neither grids nor axes.
+//
+// Library: the Open Dynamics Engine, manual, "Collision Detection"; its sweep follows P. Terdiman's
+// OPCODE.
+
+#include <ode/ode.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "broadmark/algorithm.h"
+#include "moved_boxes.h"
+#include "variants.h"
+
+namespace broadmark::ode_spaces {
+namespace {
+
+/// The hash space numbers the bits of its table of pairs, a row of whole bytes for each body, by
+/// int.
+constexpr std::uint64_t kMaxHashedObjects = 131'071;
+
+/// What a geom of our class knows.
+struct Place {
+  const std::vector<Aabb>* boxes;
+  std::uint32_t body;
+};
+
+const Place& placeOf(dGeomID geom) { return *static_cast<Place*>(dGeomGetClassData(geom)); }
+
+void giveBounds(dGeomID geom, dReal bounds[6]) {
+  const Place& place = placeOf(geom);
+  const Aabb& box = (*place.boxes)[place.body];
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds[2 * axis] = box.min[axis];
+    bounds[2 * axis + 1] = box.max[axis];
+  }
+}
+
+/// The class of our geoms. The library is initialised, and knows of the class, once for the
+/// process.
+int geomClass() {
+  static const int number = [] {
+    dInitODE2(0);
+    const dGeomClass with_bounds = {.bytes = sizeof(Place),
+                                    .collider = [](int) -> dColliderFn* { return nullptr; },
+                                    .aabb = giveBounds,
+                                    .aabb_test = nullptr,
+                                    .dtor = nullptr};
+    return dCreateGeomClass(&with_bounds);
+  }();
+  return number;
+}
+
+struct DestroySpace {
+  void operator()(dxSpace* space) const { dSpaceDestroy(space); }  // its geoms, too
+};
+
+class OdeSpace : public MovedBoxes {
+ public:
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    MovedBoxes::initialize(scene, first, execution);
+    const int geom_class = geomClass();  // before anything else of the library
+    space_.reset(makeSpace());
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) add(geom_class);
+    prepare(*space_);
+    dSpaceClean(space_.get());
+  }
+
+  void updateStructures() override {
+    for (; geoms_.size() > boxes().size(); geoms_.pop_back()) dGeomDestroy(geoms_.back());
+    for (const std::uint32_t body : moved()) {
+      if (body < geoms_.size()) {
+        dGeomSetPosition(geoms_[body], boxes()[body].min[0], boxes()[body].min[1],
+                         boxes()[body].min[2]);
+      } else {
+        add(geomClass());
+      }
+    }
+    if (!moved().empty()) prepare(*space_);
+    dSpaceClean(space_.get());
+  }
+
+ private:
+  virtual dxSpace* makeSpace() = 0;
+  /// Called when boxes have changed.
+  virtual void prepare(dxSpace& /*space*/) {}
+
+  void add(int geom_class) {
+    dxGeom* const geom = dCreateGeom(geom_class);
+    *static_cast<Place*>(dGeomGetClassData(geom)) = {&boxes(),
+                                                     static_cast<std::uint32_t>(geoms_.size())};
+    geoms_.push_back(geom);
+    dSpaceAdd(space_.get(), geom);
+  }
+
+  void findPairs() override { dSpaceCollide(space_.get(), this, report); }
+  static void report(void* self, dGeomID a, dGeomID b) {
+    static_cast<OdeSpace*>(self)->pairs().add(placeOf(a).body, placeOf(b).body);
+  }
+
+  std::unique_ptr<dxSpace, DestroySpace> space_;
+  std::vector<dxGeom*> geoms_;  ///< by body; the space owns them
+};
+
+class Hash final : public OdeSpace {
+  dxSpace* makeSpace() override { return dHashSpaceCreate(nullptr); }
+
+  void prepare(dxSpace& space) override {
+    if (boxes().empty()) return;
+    double edges = 0;
+    double longest = 0;
+    double farthest = 0;
+    for (const Aabb& box : boxes()) {
+      double edge = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        edge = std::max(edge, double{box.max[axis]} - double{box.min[axis]});
+        farthest = std::max<double>({farthest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
+      }
+      edges += edge;
+      longest = std::max(longest, edge);
+    }
+    constexpr double kMeanEdges = 2;  // quicker than 1 or 4, as measured
+    constexpr int kBitsOfCell = 30;
+    const int smallest = std::max(levelOf(kMeanEdges * edges / static_cast<double>(boxes().size())),
+                                  levelOf(farthest) - kBitsOfCell);
+    dHashSpaceSetLevels(&space, smallest, std::max(smallest, levelOf(longest)));
+  }
+
+  /// Cells of 2 to this power are just larger than a box of this size.
+  static int levelOf(double edge) {
+    int level = 0;
+    std::frexp(edge, &level);
+    return level;
+  }
+};
+
+class Sap final : public OdeSpace {
+  dxSpace* makeSpace() override { return dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XZY); }
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  const Algorithm family = {
+      .family = "ODE",
+      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted}};
+  Algorithm hash = variantOf(
+      family, [] { return std::make_unique<Hash>(); }, "ode-hash",
+      "ODE's hash space, grids of several resolutions");
+  hash.traits.max_objects = kMaxHashedObjects;
+  hash.description = {.principle = "grid",
+                      .optimisations = "several resolutions in a hash table",
+                      .time = "O(n² + k), n² for clearing bits",
+                      .space = "O(n² + k)",
+                      .source = "ODE, dHashSpace"};
+  Algorithm sap = variantOf(
+      family, [] { return std::make_unique<Sap>(); }, "ode-sap",
+      "ODE's sweep-and-prune space, sorted by radix every frame");
+  sap.description = {.principle = "sorting",
+                     .optimisations = "radix sort",
+                     .time = "O(n² + k), O(n^5/3 + k) if spread evenly",
+                     .space = "O(n + k)",
+                     .source = "ODE, dSweepAndPruneSpace; Terdiman, OPCODE"};
+  return {hash, sap};
+}
+
+}  // namespace broadmark::ode_spaces
