@@ -42,7 +42,7 @@ namespace avx2 {
 }  // namespace avx2
 BROADMARK_TARGET_END
 
-BROADMARK_TARGET_BEGIN("avx512f")
+BROADMARK_TARGET_BEGIN("avx512f,avx512bw")
 namespace avx512 {
 #include "simd/vector_avx512.inl"
 #include BROADMARK_KERNELS

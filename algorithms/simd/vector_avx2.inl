@@ -16,3 +16,54 @@ inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max
 inline Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
 inline bool none(Mask mask) { return bits(mask) == 0; }
+
+using Keys = __m256i;
+inline Keys loadKeys(const std::uint32_t* from) {
+  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
+}
+inline Keys broadcastKey(std::uint32_t key) { return _mm256_set1_epi32(static_cast<int>(key)); }
+inline unsigned withinLimits(Keys keys, Keys limits) {
+  const Keys above = _mm256_subs_epu8(keys, limits);
+  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(above, _mm256_setzero_si256())));
+}
+
+inline void loadCorners(const float* corners, Vector (&axes)[3]) {
+  Vector rows[4];  // corners r and r + 4
+  for (int r = 0; r < 4; ++r) {
+    rows[r] = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(corners + 8 * r)),
+                                   _mm_loadu_ps(corners + 8 * (r + 4)), 1);
+  }
+  const Vector low_01 = _mm256_unpacklo_ps(rows[0], rows[1]);
+  const Vector low_23 = _mm256_unpacklo_ps(rows[2], rows[3]);
+  axes[0] = _mm256_shuffle_ps(low_01, low_23, 0x44);
+  axes[1] = _mm256_shuffle_ps(low_01, low_23, 0xEE);
+  axes[2] = _mm256_shuffle_ps(_mm256_unpackhi_ps(rows[0], rows[1]),
+                              _mm256_unpackhi_ps(rows[2], rows[3]), 0x44);
+}
+inline void store(float* to, Vector value) { _mm256_storeu_ps(to, value); }
+inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
+  const Vector step = _mm256_mul_ps(_mm256_sub_ps(value, broadcast(low)), broadcast(factor));
+  const Vector kept = _mm256_min_ps(_mm256_max_ps(step, _mm256_setzero_ps()), broadcast(last));
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_cvttps_epi32(kept));
+}
+
+inline constexpr std::size_t kHitRows = 4;
+inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
+inline Keys lanesFrom(std::uint32_t position) {
+  return _mm256_add_epi32(broadcastKey(position), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+}
+inline Keys movedOn(Keys positions) {
+  return _mm256_add_epi32(positions, _mm256_set1_epi32(kLanes));
+}
+inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
+                                const Keys (&ends)[kHitRows]) {
+  __m256i hits[kHitRows];
+  for (std::size_t r = 0; r < kHitRows; ++r) {
+    const __m256i above = _mm256_subs_epu8(keys, limits[r]);
+    hits[r] = _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
+                               _mm256_cmpgt_epi32(ends[r], positions));
+  }
+  const __m256i packed = _mm256_packs_epi16(_mm256_packs_epi32(hits[0], hits[1]),
+                                            _mm256_packs_epi32(hits[2], hits[3]));
+  return static_cast<unsigned>(_mm256_movemask_epi8(packed));
+}

@@ -22,3 +22,48 @@ inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max
 inline Mask either(Mask a, Mask b) { return _mm512_kor(a, b); }
 inline unsigned bits(Mask mask) { return mask; }
 inline bool none(Mask mask) { return _mm512_kortestz(mask, mask) != 0; }
+
+using Keys = __m512i;
+inline Keys loadKeys(const std::uint32_t* from) { return _mm512_loadu_si512(from); }
+inline Keys broadcastKey(std::uint32_t key) { return _mm512_set1_epi32(static_cast<int>(key)); }
+inline unsigned withinLimits(Keys keys, Keys limits) {
+  const Keys above = _mm512_subs_epu8(keys, limits);
+  return _mm512_testn_epi32_mask(above, above);
+}
+
+inline void loadCorners(const float* corners, Vector (&axes)[3]) {
+  constexpr int kStride = 8;
+  const __m512i lanes =
+      _mm512_setr_epi32(0, kStride, 2 * kStride, 3 * kStride, 4 * kStride, 5 * kStride, 6 * kStride,
+                        7 * kStride, 8 * kStride, 9 * kStride, 10 * kStride, 11 * kStride,
+                        12 * kStride, 13 * kStride, 14 * kStride, 15 * kStride);
+  for (int axis = 0; axis < 3; ++axis) {
+    axes[axis] = _mm512_i32gather_ps(lanes, corners + axis, sizeof(float));
+  }
+}
+inline void store(float* to, Vector value) { _mm512_storeu_ps(to, value); }
+inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
+  const Vector step = _mm512_mul_ps(_mm512_sub_ps(value, broadcast(low)), broadcast(factor));
+  const Vector kept = _mm512_min_ps(_mm512_max_ps(step, _mm512_setzero_ps()), broadcast(last));
+  _mm512_storeu_si512(to, _mm512_cvttps_epi32(kept));
+}
+
+inline constexpr std::size_t kHitRows = 4;
+inline constexpr std::size_t kHitLanes = 16;
+inline Keys lanesFrom(std::uint32_t position) {
+  return _mm512_add_epi32(broadcastKey(position),
+                          _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+}
+inline Keys movedOn(Keys positions) {
+  return _mm512_add_epi32(positions, _mm512_set1_epi32(kLanes));
+}
+inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
+                                const Keys (&ends)[kHitRows]) {
+  std::uint64_t hits = 0;
+  for (std::size_t r = 0; r < kHitRows; ++r) {
+    const unsigned of_row =
+        withinLimits(keys, limits[r]) & _mm512_cmplt_epu32_mask(positions, ends[r]);
+    hits |= std::uint64_t{of_row} << (r * kHitLanes);
+  }
+  return hits;
+}

@@ -18,3 +18,46 @@ inline unsigned bits(Mask mask) {
   return vaddvq_u32(vandq_u32(mask, kLaneBits));
 }
 inline bool none(Mask mask) { return vmaxvq_u32(mask) == 0; }
+
+using Keys = uint32x4_t;
+inline Keys loadKeys(const std::uint32_t* from) { return vld1q_u32(from); }
+inline Keys broadcastKey(std::uint32_t key) { return vdupq_n_u32(key); }
+inline unsigned withinLimits(Keys keys, Keys limits) {
+  const Keys above =
+      vreinterpretq_u32_u8(vqsubq_u8(vreinterpretq_u8_u32(keys), vreinterpretq_u8_u32(limits)));
+  return bits(vceqzq_u32(above));
+}
+
+inline void loadCorners(const float* corners, Vector (&axes)[3]) {
+  Vector rows[4];
+  for (int r = 0; r < 4; ++r) rows[r] = vld1q_f32(corners + 8 * r);
+  const float32x4x2_t low = vzipq_f32(rows[0], rows[2]);   // x0 x2 y0 y2, z0 z2 ..
+  const float32x4x2_t high = vzipq_f32(rows[1], rows[3]);  // x1 x3 y1 y3, z1 z3 ..
+  const float32x4x2_t both = vzipq_f32(low.val[0], high.val[0]);
+  axes[0] = both.val[0];
+  axes[1] = both.val[1];
+  axes[2] = vzipq_f32(low.val[1], high.val[1]).val[0];
+}
+inline void store(float* to, Vector value) { vst1q_f32(to, value); }
+inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
+  const Vector step = vmulq_f32(vsubq_f32(value, broadcast(low)), broadcast(factor));
+  const Vector kept = vminq_f32(vmaxnmq_f32(step, broadcast(0)), broadcast(last));
+  vst1q_u32(to, vcvtq_u32_f32(kept));
+}
+
+inline constexpr std::size_t kHitRows = 4;
+inline constexpr std::size_t kHitLanes = 4;
+inline Keys lanesFrom(std::uint32_t position) {
+  constexpr Keys kLaneNumbers = {0, 1, 2, 3};
+  return vaddq_u32(broadcastKey(position), kLaneNumbers);
+}
+inline Keys movedOn(Keys positions) { return vaddq_u32(positions, vdupq_n_u32(kLanes)); }
+inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
+                                const Keys (&ends)[kHitRows]) {
+  std::uint64_t hits = 0;
+  for (std::size_t r = 0; r < kHitRows; ++r) {
+    const unsigned of_row = withinLimits(keys, limits[r]) & bits(vcltq_u32(positions, ends[r]));
+    hits |= std::uint64_t{of_row} << (r * kHitLanes);
+  }
+  return hits;
+}

@@ -19,3 +19,48 @@ inline Mask either(Mask a, Mask b) { return a | b; }
 /// Lane i is bit i.
 inline unsigned bits(Mask mask) { return mask; }
 inline bool none(Mask mask) { return mask == 0; }
+
+/// Keys: 32 bits each, four bytes. Loaded from any address.
+using Keys = std::uint32_t;
+inline Keys loadKeys(const std::uint32_t* from) { return *from; }
+inline Keys broadcastKey(std::uint32_t key) { return key; }
+/// The lanes in which no byte of the key is above that of the limits; lane i is bit i.
+inline unsigned withinLimits(Keys keys, Keys limits) {
+  // Even and odd bytes apart, each in front of a bit from which it may borrow.
+  constexpr Keys kBytes = 0x00FF'00FF;
+  constexpr Keys kBorrow = 0x0100'0100;
+  const Keys even = (kBorrow | (limits & kBytes)) - (keys & kBytes);
+  const Keys odd = (kBorrow | (limits >> 8 & kBytes)) - (keys >> 8 & kBytes);
+  return (even & odd & kBorrow) == kBorrow ? 1 : 0;
+}
+
+/// The coordinates of kLanes corners, eight floats apart, by axis.
+inline void loadCorners(const float* corners, Vector (&axes)[3]) {
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = corners[axis];
+}
+/// To any address.
+inline void store(float* to, Vector value) { *to = value; }
+/// (value - low) * factor as whole numbers from 0 to `last`; NaN becomes 0.
+inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
+  const float step = (value - low) * factor;
+  const float at_least = step > 0 ? step : 0;
+  *to = static_cast<std::uint32_t>(static_cast<std::int32_t>(at_least < last ? at_least : last));
+}
+
+/// Rows that are tested at once, and how many lanes of a row are neighbours in the bits of hits:
+/// bit (l / kHitLanes * kHitRows + r) * kHitLanes + l % kHitLanes is row r and lane l.
+inline constexpr std::size_t kHitRows = 4;
+inline constexpr std::size_t kHitLanes = 1;
+/// `position` and those behind it.
+inline Keys lanesFrom(std::uint32_t position) { return position; }
+/// By a vector.
+inline Keys movedOn(Keys positions) { return positions + kLanes; }
+/// The hits of four rows: withinLimits(), and the position is below the row's end.
+inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
+                                const Keys (&ends)[kHitRows]) {
+  std::uint64_t hits = 0;
+  for (std::size_t r = 0; r < kHitRows; ++r) {
+    hits |= std::uint64_t{withinLimits(keys, limits[r]) & (positions < ends[r] ? 1U : 0U)} << r;
+  }
+  return hits;
+}

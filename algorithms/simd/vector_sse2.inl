@@ -15,3 +15,45 @@ inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max
 inline Mask either(Mask a, Mask b) { return _mm_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm_movemask_ps(mask)); }
 inline bool none(Mask mask) { return bits(mask) == 0; }
+
+using Keys = __m128i;
+inline Keys loadKeys(const std::uint32_t* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
+inline Keys broadcastKey(std::uint32_t key) { return _mm_set1_epi32(static_cast<int>(key)); }
+inline unsigned withinLimits(Keys keys, Keys limits) {
+  const Keys above = _mm_subs_epu8(keys, limits);
+  return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(above, _mm_setzero_si128())));
+}
+
+inline void loadCorners(const float* corners, Vector (&axes)[3]) {
+  Vector rows[4];
+  for (int r = 0; r < 4; ++r) rows[r] = _mm_loadu_ps(corners + 8 * r);
+  _MM_TRANSPOSE4_PS(rows[0], rows[1], rows[2], rows[3]);
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = rows[axis];
+}
+inline void store(float* to, Vector value) { _mm_storeu_ps(to, value); }
+inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
+  const Vector step = _mm_mul_ps(_mm_sub_ps(value, broadcast(low)), broadcast(factor));
+  const Vector kept = _mm_min_ps(_mm_max_ps(step, _mm_setzero_ps()), broadcast(last));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_cvttps_epi32(kept));
+}
+
+inline constexpr std::size_t kHitRows = 4;
+inline constexpr std::size_t kHitLanes = 4;
+inline Keys lanesFrom(std::uint32_t position) {
+  return _mm_add_epi32(broadcastKey(position), _mm_setr_epi32(0, 1, 2, 3));
+}
+inline Keys movedOn(Keys positions) { return _mm_add_epi32(positions, _mm_set1_epi32(kLanes)); }
+inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
+                                const Keys (&ends)[kHitRows]) {
+  __m128i hits[kHitRows];
+  for (std::size_t r = 0; r < kHitRows; ++r) {
+    const __m128i above = _mm_subs_epu8(keys, limits[r]);
+    hits[r] = _mm_and_si128(_mm_cmpeq_epi32(above, _mm_setzero_si128()),
+                            _mm_cmplt_epi32(positions, ends[r]));
+  }
+  const __m128i packed =
+      _mm_packs_epi16(_mm_packs_epi32(hits[0], hits[1]), _mm_packs_epi32(hits[2], hits[3]));
+  return static_cast<unsigned>(_mm_movemask_epi8(packed));
+}

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "algorithms/runs.h"
+#include "support/changing_worlds.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define BROADMARK_COUNTS_ALLOCATIONS 0
@@ -74,11 +75,14 @@ std::vector<Algorithm> ourPairFinders() {
 
 /// Allocations while the same frames come around once more. The boxes move, so that incremental
 /// algorithms have work to do.
-long allocationsPerRound(const Algorithm& algorithm, const Configuration& way) {
+long allocationsPerRound(const Algorithm& algorithm, const Configuration& way, std::size_t bodies,
+                         const CollisionFilter& filter = {}) {
   constexpr int kRoundsBefore = 3;
-  const auto frames = framesOf({"drifting", inputs::drifting}, 2000, 6);
+  const auto frames = framesOf({"drifting", inputs::drifting}, bodies, 6);
+  SceneInfo scene = sceneOf(frames);
+  scene.filter = filter;
   TestRun run(algorithm, way);
-  run.start(sceneOf(frames), frames[0]);
+  run.start(scene, frames[0]);
   long before = 0;
   for (int round = 0; round <= kRoundsBefore; ++round) {
     before = allocations;
@@ -107,7 +111,18 @@ TEST(SteadyStateCheck, CounterSeesAllocations) {
 
 TEST_P(SteadyState, AllocatesNothing) {
   for (const Configuration& way : everyConfiguration(GetParam())) {
-    EXPECT_EQ(allocationsPerRound(GetParam(), way), 0) << describe(GetParam(), way);
+    EXPECT_EQ(allocationsPerRound(GetParam(), way, 2000), 0) << describe(GetParam(), way);
+  }
+}
+
+TEST_P(SteadyState, AllocatesNothingInSeveralWorlds) {
+  constexpr std::size_t kBodies = 300;
+  const CollisionFilter filter =
+      filterOf(kBodies, LayerMatrix().set(0, 0),
+               [](inputs::Random&, std::uint32_t body) { return BodyGroups{.world = body % 5}; });
+  for (const Configuration& way : everyConfiguration(GetParam())) {
+    EXPECT_EQ(allocationsPerRound(GetParam(), way, kBodies, filter), 0)
+        << describe(GetParam(), way);
   }
 }
 

@@ -1,0 +1,143 @@
+// Copies of boxes, sorted into columns in one pass: each column is a chain of small chunks, so that
+// nobody needs to know beforehand how many copies there will be.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "columns/copies.h"
+#include "large_array.h"
+
+namespace broadmark::columns {
+
+/// The chains of one worker. They keep their memory when they are cleared.
+class Chains {
+ public:
+  /// Empties all chains; there are `columns` of them from now on.
+  void clear(std::size_t columns) {
+    chains_.assign(columns, {});
+    ends_.assign(columns, nullptr);
+    if (slabs_.empty()) slabs_.emplace_back(kFewestInSlab);
+    slab_ = used_in_slab_ = used_before_ = 0;
+  }
+  /// Empties one chain.
+  void drop(std::size_t column) {
+    chains_[column] = {};
+    ends_[column] = nullptr;
+  }
+
+  void append(std::size_t column, const Copy& copy) {
+    Copy*& end = ends_[column];
+    if (reinterpret_cast<std::uintptr_t>(end) % kChunkBytes == 0) [[unlikely]]
+      lengthen(column);
+    *end++ = copy;
+  }
+
+  [[nodiscard]] std::size_t count(std::size_t column) const {
+    const Chain& chain = chains_[column];
+    return chain.last == nullptr ? 0 : chain.before + inLastChunk(column) - firstPlace(column);
+  }
+  /// Copies in all chains.
+  [[nodiscard]] std::size_t count() const {
+    std::size_t copies = 0;
+    for (std::size_t column = 0; column < chains_.size(); ++column) copies += count(column);
+    return copies;
+  }
+  /// As many or fewer, known at once: the first and the last chunk of a chain may be nearly empty.
+  [[nodiscard]] std::size_t leastCount() const {
+    const std::size_t chunks = used_before_ + used_in_slab_;
+    return chunks > 2 * chains_.size() ? (chunks - 2 * chains_.size()) * kCopies : 0;
+  }
+
+  /// Calls visit(copy) for each copy in a column, in the order in which they came.
+  template <class Visit>
+  void forEach(std::size_t column, Visit visit) const {
+    const Chunk* chunk = chains_[column].first;
+    std::size_t place = firstPlace(column);
+    for (std::size_t left = chains_[column].before; left > 0; left -= kCopies) {
+      // Only processors know how far ahead of a loop they look; no further than a chunk, here.
+      for (const Copy& copy : chunk->next->copies) __builtin_prefetch(&copy);
+      for (; place < kCopies; ++place) visit(chunk->copies[place]);
+      place = 0;
+      chunk = chunk->next;
+    }
+    const std::size_t end = inLastChunk(column);
+    for (; place < end; ++place) visit(chunk->copies[place]);
+  }
+
+ private:
+  static constexpr std::size_t kChunkBytes = 2048;
+  static constexpr std::size_t kCopies = kChunkBytes / sizeof(Copy) - 1;
+  /// Aligned to its size: from the address of a place follows how full the chunk is.
+  struct alignas(kChunkBytes) Chunk {
+    Chunk* next;
+    std::array<Copy, kCopies> copies;
+  };
+  static_assert(sizeof(Chunk) == kChunkBytes);
+  /// Slabs double in size, from this many chunks up to that of a huge page.
+  static constexpr std::size_t kFewestInSlab = 16;
+  static constexpr std::size_t kMostInSlab = (std::size_t{1} << 21) / kChunkBytes;
+
+  struct Chain {
+    Chunk* first = nullptr;
+    Chunk* last = nullptr;
+    std::size_t before = 0;  ///< places in all chunks but the last one
+  };
+
+  [[nodiscard]] std::size_t inLastChunk(std::size_t column) const {
+    const Chunk* const last = chains_[column].last;
+    return last == nullptr ? 0 : static_cast<std::size_t>(ends_[column] - last->copies.data());
+  }
+
+  /// Where a chain begins in its first chunk. Were it the same for all, the places where the next
+  /// copies go would lie a multiple of 2 KiB apart, where they push each other out of the caches.
+  static std::size_t firstPlace(std::size_t column) { return column * 29 % kCopies; }
+
+  void lengthen(std::size_t column) {
+    Chunk* const chunk = newChunk();
+    Chain& chain = chains_[column];
+    std::size_t place = 0;
+    if (chain.last == nullptr) {
+      chain.first = chunk;
+      place = firstPlace(column);
+    } else {
+      chain.last->next = chunk;
+      chain.before += kCopies;
+    }
+    chain.last = chunk;
+    ends_[column] = chunk->copies.data() + place;
+  }
+
+  Chunk* newChunk() {
+    if (used_in_slab_ == slabs_[slab_].size) {
+      used_before_ += used_in_slab_;
+      used_in_slab_ = 0;
+      if (++slab_ == slabs_.size())
+        slabs_.emplace_back(std::min(2 * slabs_.back().size, kMostInSlab));
+    }
+    return slabs_[slab_].chunks.get() + used_in_slab_++;
+  }
+
+  struct Slab {
+    explicit Slab(std::size_t chunks_in_it)
+        : size(chunks_in_it),
+          chunks(static_cast<Chunk*>(allocateLarge(size * kChunkBytes, kChunkBytes))) {}
+
+    std::size_t size;
+    std::unique_ptr<Chunk[], FreeMemory> chunks;
+  };
+
+  std::vector<Chain> chains_;
+  /// Of each chain: where the next copy goes. At the end of a chunk: into a new one.
+  std::vector<Copy*> ends_;
+  std::vector<Slab> slabs_;
+  std::size_t slab_ = 0;          ///< the one that chunks are taken from
+  std::size_t used_in_slab_ = 0;  ///< chunks
+  std::size_t used_before_ = 0;   ///< in the slabs before it
+};
+
+}  // namespace broadmark::columns

@@ -1,0 +1,68 @@
+// What is kept of a box in a column: on the sweep axis its bounds, on the axes that are cut its
+// key, 32 bits, and whose it is.
+//
+// The key is four bytes: the first step on both axes, and the last step on both, counted down from
+// 255. A copy's limits are the bytes that another copy's key may have at most: its own last steps,
+// and its first steps counted down. So two copies overlap on both axes, in steps, if no byte of
+// one's key is above the other's limits: one comparison of vectors of bytes tests a vector of
+// copies on four sides.
+//
+// That is exact but where bounds share a step. Only then are the boxes themselves looked at.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "large_array.h"
+#include "marked_body.h"
+
+namespace broadmark::columns {
+
+/// First and last steps on two axes, from 0 to 255.
+constexpr std::uint32_t keyOf(std::uint32_t first_a, std::uint32_t first_b, std::uint32_t last_a,
+                              std::uint32_t last_b) {
+  return first_a | first_b << 8 | (255 - last_a) << 16 | (255 - last_b) << 24;
+}
+/// The limits for other copies' keys that follow from a key.
+constexpr std::uint32_t limitsOf(std::uint32_t key) { return ~(key << 16 | key >> 16); }
+/// Whether a key that is within the limits is as high as one of them: a step is shared.
+constexpr bool sharesStep(std::uint32_t key, std::uint32_t limits) {
+  const std::uint32_t below = limits - key;  // byte by byte: none is borrowed from
+  return ((below - 0x0101'0101) & ~below & 0x8080'8080) != 0;
+}
+
+/// A box in one of the columns that it touches.
+struct alignas(16) Copy {
+  float min;  ///< on the sweep axis
+  float max;  ///< likewise
+  std::uint32_t key;
+  MarkedBody body;
+};
+
+/// All copies, column by column, within each in the order of their lower bounds, roughly. Behind
+/// the last one there is padding for whole vectors and groups of rows.
+struct Sorted {
+  static constexpr std::size_t kPadding = 64;
+
+  LargeArray<Copy> copies;
+  LargeArray<std::uint32_t> keys;  ///< of the copies, for the sweep
+  LargeArray<std::uint32_t> ends;  ///< copy i is to be tested against those in (i, ends[i])
+  std::size_t size = 0;
+
+  /// The copies keep their values; new ones have none yet.
+  void resize(std::size_t count) {
+    size = count;
+    const auto resize_padded = [&](auto& array) {
+      array.resize(count + kPadding);
+      std::fill_n(array.data() + count, kPadding,
+                  typename std::remove_cvref_t<decltype(array[0])>());
+    };
+    resize_padded(copies);
+    resize_padded(keys);
+    resize_padded(ends);
+  }
+};
+
+}  // namespace broadmark::columns

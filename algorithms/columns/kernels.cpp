@@ -1,0 +1,40 @@
+#include "columns/kernels.h"
+
+#include "columns/copies.h"
+#include "columns/hits.h"
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 takes the undefined operand inside its own AVX-512 intrinsics for ours (GCC bug 105593).
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+
+#define BROADMARK_KERNELS "columns/kernels.inl"
+#include "simd/for_each_isa.inl"
+
+namespace broadmark::columns {
+
+const Kernels& kernels(Isa isa) {
+  switch (isa) {
+#if defined(__x86_64__)
+    case Isa::sse2:
+      return simd::sse2::kKernels;
+    case Isa::avx2:
+      return simd::avx2::kKernels;
+    case Isa::avx512:
+      return simd::avx512::kKernels;
+#elif defined(__aarch64__)
+    case Isa::neon:
+      return simd::neon::kKernels;
+#endif
+    default:
+      return simd::scalar::kKernels;
+  }
+}
+
+}  // namespace broadmark::columns

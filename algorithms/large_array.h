@@ -1,0 +1,72 @@
+// Arrays of millions of entries, in huge pages where the system grants them: scattered accesses
+// then miss the processor's table of pages far less often.
+#pragma once
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
+namespace broadmark {
+
+struct FreeMemory {
+  void operator()(void* memory) const { std::free(memory); }
+};
+
+/// Uninitialised memory for `bytes` bytes; that of a huge page and more in huge pages, if possible.
+/// Throws std::bad_alloc.
+inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
+  constexpr std::size_t kHugePage = std::size_t{1} << 21;
+  if (bytes >= kHugePage) alignment = kHugePage;
+  bytes = (bytes + alignment - 1) / alignment * alignment;
+  void* const memory = std::aligned_alloc(alignment, bytes);
+  if (memory == nullptr) throw std::bad_alloc();
+#if defined(MADV_HUGEPAGE)
+  if (bytes >= kHugePage) ::madvise(memory, bytes, MADV_HUGEPAGE);  // else pages are small
+#endif
+  return memory;
+}
+
+/// A growing array that initialises nothing. It keeps its memory when it shrinks.
+template <class T>
+class LargeArray {
+  static_assert(std::is_trivially_copyable_v<T>);
+
+ public:
+  /// New entries have no value yet; the others keep theirs.
+  void resize(std::size_t size) {
+    if (size > capacity_) {
+      // Growing again by a little each time must not mean new memory each time.
+      const std::size_t capacity = size + size / 8 + 64;
+      std::unique_ptr<T[], FreeMemory> bigger(static_cast<T*>(allocateLarge(capacity * sizeof(T))));
+      for (std::size_t i = 0; i < size_; ++i) bigger[i] = memory_[i];
+      memory_ = std::move(bigger);
+      capacity_ = capacity;
+    }
+    size_ = size;
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const { return size_ == 0; }
+  T* data() { return memory_.get(); }
+  [[nodiscard]] const T* data() const { return memory_.get(); }
+  T& operator[](std::size_t i) { return memory_[i]; }
+  const T& operator[](std::size_t i) const { return memory_[i]; }
+  T* begin() { return data(); }
+  T* end() { return data() + size_; }
+  [[nodiscard]] const T* begin() const { return data(); }
+  [[nodiscard]] const T* end() const { return data() + size_; }
+
+ private:
+  std::unique_ptr<T[], FreeMemory> memory_;
+  std::size_t size_ = 0;
+  std::size_t capacity_ = 0;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,372 @@
+// Columns and what they are made of: layouts, chains, keys, the kernels of every instruction set.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "algorithms/runs.h"
+#include "columns/chains.h"
+#include "columns/copies.h"
+#include "columns/hits.h"
+#include "columns/kernels.h"
+#include "columns/layout.h"
+
+namespace broadmark::tests {
+namespace {
+
+using columns::BoxBlock;
+using columns::Chains;
+using columns::Copy;
+using columns::Layout;
+using columns::StepScale;
+
+constexpr columns::Costs kCosts = {.copy = 150};
+
+std::vector<Isa> everyIsa() {
+  std::vector<Isa> all;
+  for (const auto& [isa, name] : kIsas.entries) {
+    if (isaSupported(isa)) all.push_back(isa);
+  }
+  return all;
+}
+
+/// First and last steps on both axes.
+struct StepBox {
+  std::uint32_t first[2];
+  std::uint32_t last[2];
+  [[nodiscard]] std::uint32_t key() const {
+    return columns::keyOf(first[0], first[1], last[0], last[1]);
+  }
+};
+
+/// Few different steps, and those at both ends: most boxes share some.
+StepBox randomSteps(inputs::Random& random) {
+  constexpr std::array<std::uint32_t, 6> kSteps = {0, 1, 127, 128, 254, 255};
+  StepBox box;
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto a = static_cast<std::size_t>(random.integer(0, 5));
+    const auto b = static_cast<std::size_t>(random.integer(0, 5));
+    box.first[axis] = kSteps[std::min(a, b)];
+    box.last[axis] = kSteps[std::max(a, b)];
+  }
+  return box;
+}
+
+bool overlapInSteps(const StepBox& a, const StepBox& b) {
+  return a.first[0] <= b.last[0] && b.first[0] <= a.last[0] && a.first[1] <= b.last[1] &&
+         b.first[1] <= a.last[1];
+}
+
+TEST(ColumnKeys, TellSharedSteps) {
+  inputs::Random random(1, 0);
+  int shared = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const StepBox a = randomSteps(random);
+    const StepBox b = randomSteps(random);
+    if (!overlapInSteps(a, b)) continue;
+    const bool expected = a.first[0] == b.last[0] || b.first[0] == a.last[0] ||
+                          a.first[1] == b.last[1] || b.first[1] == a.last[1];
+    ASSERT_EQ(columns::sharesStep(b.key(), columns::limitsOf(a.key())), expected);
+    shared += expected ? 1 : 0;
+  }
+  EXPECT_GT(shared, 500);
+}
+
+// The sweep of every instruction set against its definition, on windows of all lengths.
+TEST(ColumnKernels, FindThePairsInTheWindows) {
+  constexpr std::size_t kCount = 300;
+  inputs::Random random(2, 0);
+  std::vector<StepBox> steps;
+  columns::Sorted sorted;
+  sorted.resize(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    steps.push_back(randomSteps(random));
+    // Bounds never decide, nor do boxes: what is tested are the keys.
+    sorted.copies[i] = {0, 0, steps[i].key(), static_cast<MarkedBody>(i)};
+    sorted.keys[i] = steps[i].key();
+    const int length = i % 7 == 0 ? 200 : 12;  // some far longer than their neighbours'
+    sorted.ends[i] = static_cast<std::uint32_t>(
+        std::min<std::size_t>(kCount, i + 1 + static_cast<std::size_t>(random.integer(0, length))));
+  }
+  const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
+  std::vector<Pair> right;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    for (std::uint32_t j = i + 1; j < sorted.ends[i]; ++j) {
+      if (overlapInSteps(steps[i], steps[j])) right.push_back({i, j});
+    }
+  }
+  for (const Isa isa : everyIsa()) {
+    PairBuffer pairs;
+    columns::HitSink sink(columns::kernels(isa), sorted, boxes.data(), pairs);
+    constexpr std::size_t kRows = columns::Kernels::kSweptRows;
+    for (std::size_t row = 0; row < kCount; row += kRows) {
+      columns::kernels(isa).sweep(sorted.keys.data(), sorted.ends.data(),
+                                  {row, std::min(row + kRows, kCount)}, sink);
+      sink.flush();
+    }
+    const PairRun run = pairs.run();
+    EXPECT_EQ(tests::sorted({&run, 1}), right) << isaName(isa);
+  }
+}
+
+// A lower coordinate never gets a higher step, and all instruction sets agree.
+TEST(ColumnKernels, FindTheSameSteps) {
+  for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
+    const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
+    const Layout layout(boxes, 1'000'000, kCosts);
+    for (const Isa isa : everyIsa()) {
+      for (const std::size_t count : {1U, 7U, 16U, 33U, 128U}) {
+        BoxBlock block;
+        columns::kernels(isa).find_steps(boxes.data(), count, layout.scales(), block);
+        for (std::size_t k = 0; k < count; ++k) {
+          for (int which = 0; which < 2; ++which) {
+            const StepScale& scale = layout.scales().of[which];
+            ASSERT_EQ(block.low[which][k], scale.of(boxes[k].min[scale.axis])) << isaName(isa);
+            ASSERT_EQ(block.high[which][k], scale.of(boxes[k].max[scale.axis])) << isaName(isa);
+          }
+          ASSERT_EQ(block.min[k], boxes[k].min[layout.scales().sweep_axis]);
+          ASSERT_LT(block.columns[k], layout.size());
+        }
+      }
+    }
+  }
+}
+
+TEST(ColumnLayout, StepsKeepTheOrderOfCoordinates) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  for (const inputs::Generator boxes : {inputs::uniform, inputs::limits, inputs::tiny, inputs::huge,
+                                        inputs::identical, inputs::zeroSize}) {
+    const Layout layout(boxes(200, 0, 1), 100'000, kCosts);
+    for (const StepScale& scale : layout.scales().of) {
+      std::uint32_t before = 0;
+      for (const float x : {-kMost, -1e30F, -100.0F, -1.0F, -1e-40F, 0.0F, 1e-45F, 0.3F, 1.0F, 2.0F,
+                            20.0F, 1e30F, kMost}) {
+        ASSERT_GE(scale.of(x), before);
+        ASSERT_LE(static_cast<float>(scale.of(x)), scale.last);
+        before = scale.of(x);
+      }
+    }
+  }
+}
+
+TEST(ColumnLayout, NothingAndOneThingAreOneColumn) {
+  EXPECT_EQ(Layout().size(), 1U);
+  EXPECT_EQ(Layout({}, 0, kCosts).size(), 1U);
+  EXPECT_EQ(Layout(inputs::identical(50, 0, 1), 1'000'000, kCosts).size(), 1U);
+}
+
+TEST(ColumnLayout, HasMoreColumnsForMoreBoxes) {
+  const std::vector<Aabb> sample = inputs::uniform(2000, 0, 1);
+  EXPECT_GT(Layout(sample, 2'000'000, kCosts).size(), Layout(sample, 2000, kCosts).size());
+  EXPECT_GT(Layout(sample, 2'000'000, kCosts).size(),
+            Layout(sample, 2'000'000, {.copy = 10'000}).size());
+}
+
+// A line is swept along, and a plane is not cut through.
+TEST(ColumnLayout, CutsWhereBoxesExtend) {
+  const Layout plane(inputs::onePlane(2000, 0, 1), 100'000, kCosts);
+  EXPECT_NE(plane.scales().sweep_axis, 2);
+  EXPECT_GT(plane.size(), 4U);
+  const std::vector<Aabb> line = inputs::generate(2000, 0, 1, [](inputs::Random& random, auto) {
+    return inputs::boxAt({0, random.uniform(0, 4000), 0}, {1, 1, 1});
+  });
+  EXPECT_EQ(Layout(line, 2000, kCosts).scales().sweep_axis, 1);
+}
+
+TEST(ColumnLayout, WidensDownToOneColumn) {
+  Layout layout(inputs::uniform(2000, 0, 1), 1'000'000, kCosts);
+  ASSERT_GT(layout.size(), 64U);
+  std::size_t before = layout.size();
+  while (layout.size() > 1) {
+    layout.widen();
+    ASSERT_LT(layout.size(), before);
+    before = layout.size();
+  }
+}
+
+TEST(ColumnChains, KeepCopiesInTheirOrder) {
+  constexpr std::uint32_t kColumns = 40;
+  Chains chains;
+  for (const std::uint32_t copies : {0U, 1U, 126U, 127U, 128U, 254U, 1000U}) {
+    chains.clear(kColumns);
+    for (std::uint32_t i = 0; i < copies; ++i) {
+      for (std::uint32_t column = 0; column < kColumns; ++column) {
+        chains.append(column, {0, 0, column, i});
+      }
+    }
+    chains.drop(3);
+    EXPECT_EQ(chains.count(), std::size_t{kColumns - 1} * copies);
+    EXPECT_LE(chains.leastCount(), std::size_t{kColumns} * copies);
+    for (std::uint32_t column = 0; column < kColumns; ++column) {
+      const std::uint32_t expected = column == 3 ? 0 : copies;
+      ASSERT_EQ(chains.count(column), expected);
+      std::uint32_t next = 0;
+      chains.forEach(column, [&](const Copy& copy) {
+        ASSERT_EQ(copy.key, column);
+        ASSERT_EQ(copy.body, next++);
+      });
+      ASSERT_EQ(next, expected);
+    }
+  }
+}
+
+/// Edges from 0.02 to 200: the largest boxes are over all.
+std::vector<Aabb> allSizes(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
+  return inputs::generate(n, frame, seed, [](inputs::Random& random, std::size_t) {
+    const float edge = 0.02F * std::pow(10'000.0F, std::pow(random.uniform(0, 1), 4.0F));
+    return inputs::boxAt(random.inCube(60), {edge, edge, edge});
+  });
+}
+
+/// Dense clusters of all sizes in an empty world.
+std::vector<Aabb> clusters(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
+  return inputs::generate(n, frame, seed, [](inputs::Random& random, std::size_t i) {
+    const auto cluster = static_cast<float>(i % 5);
+    const float spread = std::pow(4.0F, cluster);
+    inputs::Vec3 corner = random.inCube(spread);
+    for (float& x : corner) x += cluster * 3e4F;
+    return inputs::boxAt(corner, {1, 1, 1});
+  });
+}
+
+class ColumnsFamily : public testing::TestWithParam<Algorithm> {
+ protected:
+  /// In every configuration: with columns as they are, with as many as there may be, and with all
+  /// split that can be.
+  void check(const std::vector<Aabb>& boxes) {
+    const std::vector<Pair> right = sweptPairs(boxes);
+    for (const Configuration& way : configurations(GetParam())) {
+      for (const ParameterValues& parameters :
+           {ParameterValues{}, ParameterValues{{"copy_cost", "1"}},
+            ParameterValues{{"copy_cost", "1"}, {"crowded", "1"}}}) {
+        SCOPED_TRACE(caseName(caseOf(GetParam(), way, parameters)));
+        TestRun run(GetParam(), way, parameters);
+        SceneInfo scene;
+        scene.objects = static_cast<std::uint32_t>(boxes.size());
+        run.start(scene, inputs::clustered(boxes.size(), 99, 1));
+        ASSERT_EQ(sorted(run.step(boxes)), right);
+        ASSERT_EQ(run.broadPhase().validate(), "");
+        ASSERT_EQ(countersOf(run.broadPhase()).count("copies"), 1U);
+      }
+    }
+  }
+};
+
+TEST_P(ColumnsFamily, FindTheRightPairsInManyColumns) {
+  for (const inputs::Input& input : inputs::kAll) {
+    SCOPED_TRACE(input.name);
+    check(input.boxes(400, 1, 5));
+    if (HasFatalFailure()) return;
+  }
+}
+
+TEST_P(ColumnsFamily, CopeWithBoxesOfAllSizesAndPlaces) {
+  for (const inputs::Generator boxes : {allSizes, clusters, inputs::limits}) {
+    check(boxes(700, 0, 1));
+    if (HasFatalFailure()) return;
+  }
+  check({});
+  check({inputs::boxAt({0, 0, 0}, {1, 1, 1})});
+}
+
+TEST_P(ColumnsFamily, CopeWithEveryNumberOfBodies) {
+  for (std::size_t n = 0; n <= 70; ++n) {
+    const std::vector<Aabb> boxes = inputs::touching(n, 0, n);
+    TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1}, {{"copy_cost", "1"}});
+    run.start(boxes);
+    ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << n;
+  }
+}
+
+// One giant over all, and a plate on every axis, are copied into every column, and nothing else is.
+TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
+  std::vector<Aabb> boxes = inputs::uniform(3000, 0, 1);
+  boxes[5] = inputs::boxAt({-1e6F, -1e6F, -1e6F}, {2e6F, 2e6F, 2e6F});
+  for (int axis = 0; axis < 3; ++axis) {
+    Aabb& plate = boxes[100 + static_cast<std::size_t>(axis)];
+    plate = boxes[5];
+    plate.min[axis] = 15;
+    plate.max[axis] = 15.5F;
+  }
+  check(boxes);
+  TestRun run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "5"}});
+  run.start(boxes);
+  run.step(boxes);
+  const Counters counters = countersOf(run.broadPhase());
+  EXPECT_GT(counters.at("columns"), 20U);
+  EXPECT_LT(counters.at("copies"), 2 * boxes.size() + 4 * counters.at("columns"));
+}
+
+/// Small boxes where the sample of the root looks, and plates elsewhere: as the columns choose it.
+std::vector<Aabb> misleading(std::size_t n) {
+  std::set<std::size_t> sampled;
+  for (std::size_t k = 0; k < 256; ++k) {
+    sampled.insert(static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{n} >> 32);
+  }
+  return inputs::generate(n, 0, 1, [&](inputs::Random& random, std::size_t i) {
+    const inputs::Vec3 corner = random.inCube(100);
+    if (sampled.contains(i)) return inputs::boxAt(corner, {0.1F, 0.1F, 0.1F});
+    return inputs::boxAt({corner[0], 0, 0}, {0.01F, 100, 100});
+  });
+}
+
+TEST_P(ColumnsFamily, DoNotCopyWithoutLimit) {
+  const std::vector<Aabb> boxes = misleading(4000);
+  TestRun run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "1"}});
+  run.start(boxes);
+  EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+  EXPECT_LT(countersOf(run.broadPhase()).at("copies"), 10 * boxes.size());
+}
+
+TEST_P(ColumnsFamily, SplitCrowdedColumns) {
+  std::vector<Aabb> boxes = inputs::clustered(20'000, 1, 1);
+  for (std::size_t i = 0; i < boxes.size(); i += 2) {
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes[i].min[axis] += 1e5F;
+      boxes[i].max[axis] += 1e5F;
+    }
+  }
+  TestRun run(GetParam(), {bestIsa(), 1});
+  run.start(boxes);
+  EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+  EXPECT_EQ(run.broadPhase().validate(), "");
+  const Counters counters = countersOf(run.broadPhase());
+  EXPECT_GE(counters.at("split columns"), 2U);
+  EXPECT_LT(counters.at("tests"), 150 * boxes.size());
+  // Their own columns are drawn in their place, a level further down.
+  const RecordedDrawing drawing = drawingOf(run.broadPhase());
+  EXPECT_TRUE(std::ranges::any_of(drawing.boxes(), [](const auto& box) { return box.level == 1; }));
+  EXPECT_LE(drawing.boxes().size(), counters.at("columns"));
+}
+
+TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
+  if (!GetParam().traits.parallel) GTEST_SKIP() << "uses one thread";
+  for (const inputs::Generator boxes_of : {inputs::uniform, clusters, inputs::assorted}) {
+    const std::vector<Aabb> boxes = boxes_of(3000, 1, 1);
+    std::vector<Pair> first;
+    for (const int threads : {1, 2, 3, 5, 8}) {
+      TestRun run(GetParam(), {bestIsa(), threads}, {{"copy_cost", "5"}, {"crowded", "5"}});
+      run.start(boxes);
+      std::vector<Pair> pairs;
+      for (const PairRun part : run.step(boxes))
+        pairs.insert(pairs.end(), part.begin(), part.end());
+      ASSERT_FALSE(pairs.empty());
+      if (first.empty()) first = pairs;
+      ASSERT_EQ(pairs, first) << threads << " threads";
+    }
+  }
+}
+
+std::vector<Algorithm> columnsFamily() {
+  std::vector<Algorithm> all = pairFinders();
+  std::erase_if(all, [](const Algorithm& algorithm) { return algorithm.family != "Columns"; });
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, ColumnsFamily, testing::ValuesIn(columnsFamily()),
+                         [](const auto& tested) { return testName(tested.param); });
+
+}  // namespace
+}  // namespace broadmark::tests
