@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <memory>
 #include <string>
@@ -46,6 +47,8 @@ constexpr std::size_t kMostCopies = 4;
 constexpr int kMostLevels = 8;
 
 constexpr std::size_t kBlock = BoxBlock::kBoxes;
+/// The boxes themselves are looked at rarely: so many of them should not take up the caches.
+constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
 /// A column has as many buckets as copies, but no more than this.
 constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
 
@@ -215,6 +218,7 @@ void Columns::updateObjects(const Frame& frame) {
 bool Columns::copyBoxes(const Frame& frame) {
   const Layout layout = parts_.front().layout;
   const std::size_t limit = kMostCopies * boxes_.size() + 4 * columns_.size();
+  const bool past_caches = boxes_.size() >= kBoxesPastCaches;
   team().run([&](int worker) {
     Chains& chains = workerData(worker).chains;
     chains.clear(columns_.size());
@@ -225,12 +229,17 @@ bool Columns::copyBoxes(const Frame& frame) {
       const std::size_t first = k * kBlock;
       const std::size_t count = std::min(kBlock, boxes_.size() - first);
       const Aabb* const boxes = frame.boxes.data() + first;
-      std::copy_n(boxes, count, boxes_.data() + first);
       kernels_->find_steps(boxes, count, layout.scales(), block);
+      if (past_caches) {
+        kernels_->keep_boxes(boxes, count, boxes_.data() + first);
+      } else {
+        std::copy_n(boxes, count, boxes_.data() + first);
+      }
       forEachCopy(
           layout, block, count, [&](std::size_t i) { return static_cast<MarkedBody>(first + i); },
           [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
     }
+    if (past_caches) std::atomic_thread_fence(std::memory_order_seq_cst);
   });
   std::size_t copies = 0;
   for (const Worker& worker : workers_) copies += worker.chains.count();

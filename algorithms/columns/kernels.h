@@ -44,6 +44,10 @@ struct Kernels {
   void (*find_steps)(const Aabb* boxes, std::size_t count, const StepScales& scales,
                      BoxBlock& block);
 
+  /// Copies `count` boxes past the caches: to memory that is not looked at soon, from the beginning
+  /// of a cache line on. Other threads see them after a fence.
+  void (*keep_boxes)(const Aabb* from, std::size_t count, Aabb* to);
+
   /// Tests all copies in `rows`, at most kSweptRows, the first of which is a multiple of that,
   /// against their windows.
   void (*sweep)(const std::uint32_t* keys, const std::uint32_t* ends, Range rows, HitSink& hits);

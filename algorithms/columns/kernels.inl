@@ -57,6 +57,15 @@ void findSteps(const Aabb* boxes, std::size_t count, const columns::StepScales& 
   }
 }
 
+void keepBoxes(const Aabb* from, std::size_t count, Aabb* to) {
+  const std::size_t floats = count * sizeof(Aabb) / sizeof(float);
+  const auto* const source = reinterpret_cast<const float*>(from);
+  auto* const target = reinterpret_cast<float*>(to);
+  std::size_t i = 0;
+  for (; i + kLanes <= floats; i += kLanes) copyPast(source + i, target + i);
+  for (; i < floats; ++i) target[i] = source[i];
+}
+
 /// Which row and which lane a bit of hits is of.
 constexpr std::size_t rowOf(std::size_t bit) { return bit / kHitLanes % kHitRows; }
 constexpr std::size_t laneOf(std::size_t bit) {
@@ -146,7 +155,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
 }
 
 inline constexpr columns::Kernels kKernels = [] {
-  columns::Kernels kernels = {{}, {}, findSteps, sweep};
+  columns::Kernels kernels = {{}, {}, findSteps, keepBoxes, sweep};
   for (std::size_t bit = 0; bit < 64; ++bit) {
     kernels.row_of[bit] = static_cast<std::uint8_t>(rowOf(bit));
     kernels.lane_of[bit] = static_cast<std::uint8_t>(laneOf(bit));

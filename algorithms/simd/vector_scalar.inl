@@ -40,6 +40,9 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
 }
 /// To any address.
 inline void store(float* to, Vector value) { *to = value; }
+/// Copies kLanes numbers past the caches, if possible: from any address to one that is a multiple
+/// of the vector's size.
+inline void copyPast(const float* from, float* to) { *to = *from; }
 /// (value - low) * factor as whole numbers from 0 to `last`; NaN becomes 0.
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const float step = (value - low) * factor;

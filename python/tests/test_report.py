@@ -88,7 +88,8 @@ def test_without_d3_its_package_is_named(
 
 def test_commands_run_the_case_again(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
     results = broadmark.read_results(some_results / "results.json")
-    (number,) = results.cases.index[results.cases["id"] == "FreeFall/Cubes/N200/F4/s1/kd/avx2"][:1]
+    is_kd = results.cases["id"].str.startswith("FreeFall/Cubes/N200/F4/s1/kd/")
+    (number,) = results.cases.index[is_kd][:1]
     data = page_data(results)
     columns = data["columns"]
     recording = data["recordings"][columns["recording"][number]]

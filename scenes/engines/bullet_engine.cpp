@@ -163,9 +163,11 @@ constexpr btScalar kStillShare = 0.2F;
 /// A body is supported when contacts carry at least this share of its weight. Those of a large pile
 /// carry it now more, now less.
 constexpr btScalar kCarriedShare = 0.25F;
-/// A held body is let go when its velocities would take it away from its place in this time, in
-/// seconds. Trembling would, too, in a longer one.
-constexpr btScalar kLetGoWithin = 0.1F;
+/// A body is not held when its velocities would take it away from its place in this time, in
+/// seconds: among bodies that are still, too, whose trembling would do that in a longer one.
+constexpr btScalar kLeavesWithin = 0.1F;
+/// The same beside bodies that are not still: what they push must be free to go.
+constexpr btScalar kPushedWithin = kHoldAfter;
 
 /// For how long a body has been still: all of it near to one place. Its velocity tells less: few
 /// iterations leave each body of a large pile trembling, and sinking slowly into those below.
@@ -188,15 +190,15 @@ class Stillness {
   /// Where the body was in the last update.
   [[nodiscard]] const btTransform& pose() const { return pose_; }
 
-  /// Whether its velocities would soon take a still body away from its place.
-  static bool isEnded(const btRigidBody& body) {
+  /// Whether its velocities would take a still body away from its place in this time.
+  static bool endsWithin(btScalar time, const btRigidBody& body) {
     btScalar speed = body.getLinearVelocity().length();
     const btVector3 extents = halfExtents(body);
     for (int axis = 0; axis < 3; ++axis) {
       const btVector3 arm = body.getWorldTransform().getBasis().getColumn(axis);
       speed += extents[axis] * body.getAngularVelocity().cross(arm).length();
     }
-    return speed * kLetGoWithin > reachOf(body);
+    return speed * time > reachOf(body);
   }
 
  private:
@@ -368,8 +370,9 @@ class World final : public btDiscreteDynamicsWorld {
 
   /// Whether the body has been still for long, and is supported.
   [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
-    if (!body.isActive() || !stateOf(body).stillness.lasts() || Stillness::isEnded(body))
-      return false;
+    const BodyState& state = stateOf(body);
+    if (!body.isActive() || !state.stillness.lasts()) return false;
+    if (Stillness::endsWithin(state.disturbed ? kPushedWithin : kLeavesWithin, body)) return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
     return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
   }
