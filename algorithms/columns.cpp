@@ -21,6 +21,8 @@
 // 2005, 7.1 and 7.5), small integers that bound boxes (as in quantised bounding volume
 // hierarchies).
 
+#include "columns.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -36,6 +38,7 @@
 #include "columns/kernels.h"
 #include "columns/layout.h"
 #include "row_shares.h"
+#include "sample.h"
 #include "variants.h"
 
 namespace broadmark::columns {
@@ -134,18 +137,6 @@ class Columns final : public PairBroadPhase {
   Sorted sorted_;
   RowShares shares_;
 };
-
-/// Of how many boxes the layout for so many is chosen.
-std::size_t sampleSize(std::size_t count) {
-  return std::min(count, std::clamp<std::size_t>(count / 32, 256, 2048));
-}
-
-/// The k-th of a sample of `of` of `count`. Spread by the golden ratio and not by a stride, since
-/// scenes give bodies their shapes by number, in turn.
-std::size_t sampled(std::size_t k, std::size_t of, std::size_t count) {
-  if (of == count) return k;
-  return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
-}
 
 /// Calls visit(column, copy) for every column that boxes of a block touch. `body(k)` is whose box k
 /// is, with the marks that all its copies get.
@@ -474,6 +465,8 @@ std::string Columns::validate() const {
 
 }  // namespace
 
+std::unique_ptr<BroadPhase> create() { return std::make_unique<Columns>(); }
+
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "Columns",
@@ -483,7 +476,6 @@ std::vector<Algorithm> variants() {
                       .time = "O(n + w), w pairs that share a column and overlap along it",
                       .space = "O(n + k)",
                       .source = "Broadmark; Ericson 2005, 7.1 and 7.5"}};
-  const auto create = [] { return std::make_unique<Columns>(); };
   return {variantOf(family, create, "columns", "columns chosen by a sample, a sweep in each",
                     {.vectorised = true}),
           variantOf(family, create, "columns-mt",

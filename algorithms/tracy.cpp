@@ -31,11 +31,11 @@
 #include <utility>
 #include <vector>
 
+#include "pair_set.h"
 #include "tracy/cell.h"
 #include "tracy/cell_shares.h"
 #include "tracy/grid.h"
 #include "tracy/mailbox.h"
-#include "tracy/pair_set.h"
 #include "variants.h"
 
 namespace broadmark::tracy {

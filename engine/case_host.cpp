@@ -6,10 +6,9 @@
 
 #include <chrono>
 
+#include "broadmark/adapters.h"
 #include "broadmark/cores.h"
 #include "broadmark/exclusive_use.h"
-#include "compacted_world.h"
-#include "events_from_pairs.h"
 #include "worlds_apart.h"
 
 namespace broadmark {
@@ -42,10 +41,6 @@ FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
   times[Phase::download] = transfers.download_ns;
   times[Phase::total] = nanoseconds(end - start);
   return times;
-}
-
-bool isChangingWorld(const SceneInfo& scene) {
-  return !scene.all_present || !scene.filter.wantsAll();
 }
 
 void requireRunnable(const Case& run, const SceneInfo& scene) {
@@ -85,7 +80,7 @@ bool isApart(const Case& run, const SceneInfo& scene) {
 std::unique_ptr<BroadPhase> makeForOneWorld(const Case& run, const SceneInfo& scene) {
   std::unique_ptr<BroadPhase> instance = makeInstance(run);
   if (!isCompacted(run, scene)) return instance;
-  return std::make_unique<CompactedWorld>(std::move(instance));
+  return compacted(std::move(instance));
 }
 
 CounterVisitor into(Counts& counts) {
@@ -126,7 +121,7 @@ std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) c
                             : make(scene);
   if (case_.answer == AnswerKind::pairs) return instance;
   if (!traits.events || isCompacted(case_, scene)) {
-    return std::make_unique<EventsFromPairs>(std::move(instance));
+    return withEvents(std::move(instance));
   }
   instance->reportEvents();
   return instance;

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "broadmark/adapters.h"
+
 namespace broadmark {
 
 CompactedWorld::CompactedWorld(std::unique_ptr<BroadPhase> algorithm)
@@ -199,6 +201,14 @@ std::string CompactedWorld::validate() const {
     if (places_[bodies_[place]] != place) return "a body is not where it is said to be";
   }
   return algorithm_->validate();
+}
+
+bool isChangingWorld(const SceneInfo& scene) {
+  return !scene.all_present || !scene.filter.wantsAll();
+}
+
+std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm) {
+  return std::make_unique<CompactedWorld>(std::move(algorithm));
 }
 
 }  // namespace broadmark

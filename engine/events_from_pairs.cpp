@@ -6,6 +6,8 @@
 #include <bit>
 #include <utility>
 
+#include "broadmark/adapters.h"
+
 namespace broadmark {
 
 EventsFromPairs::EventsFromPairs(std::unique_ptr<BroadPhase> algorithm)
@@ -126,6 +128,10 @@ void EventsFromPairs::visitCounters(const CounterVisitor& visit) const {
   visit("pairs begun", pairCount(began_));
   visit("pairs ended", pairCount(ended_));
   algorithm_->visitCounters(visit);
+}
+
+std::unique_ptr<BroadPhase> withEvents(std::unique_ptr<BroadPhase> algorithm) {
+  return std::make_unique<EventsFromPairs>(std::move(algorithm));
 }
 
 }  // namespace broadmark

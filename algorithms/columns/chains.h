@@ -11,6 +11,7 @@
 
 #include "columns/copies.h"
 #include "large_array.h"
+#include "prefetch.h"
 
 namespace broadmark::columns {
 
@@ -60,7 +61,7 @@ class Chains {
     std::size_t place = firstPlace(column);
     for (std::size_t left = chains_[column].before; left > 0; left -= kCopies) {
       // Only processors know how far ahead of a loop they look; no further than a chunk, here.
-      for (const Copy& copy : chunk->next->copies) __builtin_prefetch(&copy);
+      for (const Copy& copy : chunk->next->copies) prefetch(&copy);
       for (; place < kCopies; ++place) visit(chunk->copies[place]);
       place = 0;
       chunk = chunk->next;

@@ -11,6 +11,8 @@
 #include <bit>
 #include <utility>
 
+#include "prefetch.h"
+
 namespace broadmark::columns {
 
 namespace {
@@ -70,8 +72,8 @@ void HitSink::takeOneEach() {
 /// Has the boxes decide.
 void HitSink::decide() {
   for (std::size_t k = 0; k < doubts_; ++k) {
-    __builtin_prefetch(&boxes_[doubtful_[k].a]);
-    __builtin_prefetch(&boxes_[doubtful_[k].b]);
+    prefetch(&boxes_[doubtful_[k].a]);
+    prefetch(&boxes_[doubtful_[k].b]);
   }
   Pair* const room = pairs_.room(doubts_);
   std::size_t count = 0;

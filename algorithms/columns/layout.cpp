@@ -8,43 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+
+#include "sample.h"
 
 namespace broadmark::columns {
 namespace {
-
-constexpr std::size_t kMostSampled = 2048;
-
-/// What the sample tells about one axis. In double: there no float overflows.
-struct Axis {
-  double low = 0;
-  double high = 0;
-  [[nodiscard]] double extent() const { return high - low; }
-  /// How much of the extent an edge takes up, at most all of it.
-  [[nodiscard]] double part(const Aabb& box, int axis) const {
-    const double edge = static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
-    return edge < extent() ? edge / extent() : 1;
-  }
-};
-
-/// Where nine tenths of the boxes lie, and a quarter of that more on both sides: for most
-/// distributions that holds nearly everything. A few boxes far off don't stretch it.
-Axis measure(std::span<const Aabb> sample, int axis) {
-  std::array<double, kMostSampled> memory;
-  const std::span bounds(memory.data(), sample.size());
-  const auto quantile = [&](double part, auto bound) {
-    std::ranges::transform(sample, bounds.begin(), bound);
-    const double last = static_cast<double>(bounds.size() - 1);
-    const auto at = bounds.begin() + static_cast<std::ptrdiff_t>(part * last);
-    std::nth_element(bounds.begin(), at, bounds.end());
-    return std::pair(*at, part < 0.5 ? *std::min_element(bounds.begin(), at + 1)
-                                     : *std::max_element(at, bounds.end()));
-  };
-  const auto [low, least] = quantile(0.05, [=](const Aabb& box) { return box.min[axis]; });
-  const auto [high, most] = quantile(0.95, [=](const Aabb& box) { return box.max[axis]; });
-  const double more = (high - low) / 4;
-  return {std::max(least, low - more), std::min(most, high + more)};
-}
 
 /// Mean parts of the extents that boxes take up.
 struct Parts {
@@ -52,7 +20,7 @@ struct Parts {
   std::array<double, 3> without{};  ///< by axis: the product of the two others
 };
 
-Parts meanParts(std::span<const Aabb> sample, const std::array<Axis, 3>& axes) {
+Parts meanParts(std::span<const Aabb> sample, const std::array<Bulk, 3>& axes) {
   Parts mean;
   for (const Aabb& box : sample) {
     std::array<double, 3> part;
@@ -91,8 +59,8 @@ double meetingPart(std::span<const Aabb> sample, int axis) {
 Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& costs) {
   sample = sample.first(std::min(sample.size(), kMostSampled));
   if (sample.empty()) return;
-  std::array<Axis, 3> measured;
-  for (int axis = 0; axis < 3; ++axis) measured[axis] = measure(sample, axis);
+  std::array<Bulk, 3> measured;
+  for (int axis = 0; axis < 3; ++axis) measured[axis] = bulkOf(sample, axis);
   const Parts parts = meanParts(sample, measured);
 
   std::array<int, 3> axes = {0, 1, 2};
@@ -130,16 +98,16 @@ Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& cos
       if (copies * costs.copy > cost_) break;
     }
   }
-  const auto factor = [](double steps, const Axis& axis) {
+  const auto factor = [](double steps, const Bulk& axis) {
     constexpr double kMost = std::numeric_limits<float>::max();
     return axis.extent() > 0 ? static_cast<float>(std::min(steps / axis.extent(), kMost)) : 0;
   };
-  const Axis& swept = measured[axes[0]];
+  const Bulk& swept = measured[axes[0]];
   scales_.sweep_axis = axes[0];
   sweep_low_ = static_cast<float>(swept.low);
   sweep_factor_ = factor(1, swept);
   for (int which = 0; which < 2; ++which) {
-    const Axis& cut = measured[axes[which + 1]];
+    const Bulk& cut = measured[axes[which + 1]];
     const int steps = counts_[which] << kStepBits;
     scales_.of[which] = {.axis = axes[which + 1],
                          .low = static_cast<float>(cut.low),

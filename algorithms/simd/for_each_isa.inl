@@ -58,6 +58,26 @@ namespace neon {  // part of every such processor: no target to set
 
 #endif
 
+/// The kernels for an instruction set, which this processor must support: what the file calls
+/// kKernels.
+const auto& kernelsFor(Isa isa) {
+  switch (isa) {
+#if defined(__x86_64__)
+    case Isa::sse2:
+      return sse2::kKernels;
+    case Isa::avx2:
+      return avx2::kKernels;
+    case Isa::avx512:
+      return avx512::kKernels;
+#elif defined(__aarch64__)
+    case Isa::neon:
+      return neon::kKernels;
+#endif
+    default:
+      return scalar::kKernels;
+  }
+}
+
 }  // namespace
 }  // namespace broadmark::simd
 

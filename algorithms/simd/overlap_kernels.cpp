@@ -16,22 +16,6 @@
 
 namespace broadmark {
 
-const OverlapKernels& overlapKernels(Isa isa) {
-  switch (isa) {
-#if defined(__x86_64__)
-    case Isa::sse2:
-      return simd::sse2::kKernels;
-    case Isa::avx2:
-      return simd::avx2::kKernels;
-    case Isa::avx512:
-      return simd::avx512::kKernels;
-#elif defined(__aarch64__)
-    case Isa::neon:
-      return simd::neon::kKernels;
-#endif
-    default:
-      return simd::scalar::kKernels;
-  }
-}
+const OverlapKernels& overlapKernels(Isa isa) { return simd::kernelsFor(isa); }
 
 }  // namespace broadmark

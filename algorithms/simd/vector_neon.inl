@@ -28,6 +28,17 @@ inline unsigned withinLimits(Keys keys, Keys limits) {
   return bits(vceqzq_u32(above));
 }
 
+struct TestBox {
+  float32x4_t min;
+  float32x4_t max;
+};
+inline TestBox testBox(const float* box) { return {vld1q_f32(box), vld1q_f32(box + 4)}; }
+inline unsigned meets(const float* box, const TestBox& other) {
+  const uint32x4_t on_axes =
+      vandq_u32(vcleq_f32(vld1q_f32(box), other.max), vcleq_f32(other.min, vld1q_f32(box + 4)));
+  return vminvq_u32(vsetq_lane_u32(~0U, on_axes, 3)) != 0 ? 1 : 0;
+}
+
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];
   for (int r = 0; r < 4; ++r) rows[r] = vld1q_f32(corners + 8 * r);

@@ -34,6 +34,18 @@ inline unsigned withinLimits(Keys keys, Keys limits) {
   return (even & odd & kBorrow) == kBorrow ? 1 : 0;
 }
 
+/// A box to test others against, one at a time: of each eight floats, as in an Aabb, of which the
+/// fourth and the last may be anything. meets() is 1 or 0.
+struct TestBox {
+  const float* box;
+};
+inline TestBox testBox(const float* box) { return {box}; }
+inline unsigned meets(const float* box, const TestBox& other) {
+  const float* const b = other.box;
+  return unsigned{box[0] <= b[4]} & unsigned{b[0] <= box[4]} & unsigned{box[1] <= b[5]} &
+         unsigned{b[1] <= box[5]} & unsigned{box[2] <= b[6]} & unsigned{b[2] <= box[6]};
+}
+
 /// The coordinates of kLanes corners, eight floats apart, by axis.
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   for (int axis = 0; axis < 3; ++axis) axes[axis] = corners[axis];

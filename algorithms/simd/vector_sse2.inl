@@ -26,6 +26,17 @@ inline unsigned withinLimits(Keys keys, Keys limits) {
   return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(above, _mm_setzero_si128())));
 }
 
+struct TestBox {
+  __m128 min;
+  __m128 max;
+};
+inline TestBox testBox(const float* box) { return {_mm_loadu_ps(box), _mm_loadu_ps(box + 4)}; }
+inline unsigned meets(const float* box, const TestBox& other) {
+  const __m128 on_axes = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(box), other.max),
+                                    _mm_cmple_ps(other.min, _mm_loadu_ps(box + 4)));
+  return (bits(on_axes) & 7) == 7 ? 1 : 0;
+}
+
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];
   for (int r = 0; r < 4; ++r) rows[r] = _mm_loadu_ps(corners + 8 * r);

@@ -27,7 +27,7 @@ std::vector<Algorithm> allOnDevice() {
 }
 
 /// Two threads: a device that is a processor is then divided, if it has more.
-constexpr Configuration kTwoThreads = {Isa::scalar, 2};
+const Configuration kTwoThreads = {Isa::scalar, 2};
 
 /// Whether the answers of all frames are right.
 testing::AssertionResult findsAll(TestRun& run, const std::vector<std::vector<Aabb>>& frames) {

@@ -37,6 +37,7 @@ struct Configuration {
   Isa isa = Isa::scalar;
   int threads = 1;
   AnswerKind answer = AnswerKind::pairs;
+  ParameterValues parameters = {};
 };
 
 /// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
@@ -64,16 +65,23 @@ inline std::vector<Configuration> eventConfigurations(const Algorithm& algorithm
   return ways;
 }
 
-/// All of both.
+/// All of both; with other values of parameters, too, where these decide what is run at all: `tide`
+/// would hardly ever use its grid.
 inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm) {
   std::vector<Configuration> all = configurations(algorithm);
   const std::vector<Configuration> of_events = eventConfigurations(algorithm);
   all.insert(all.end(), of_events.begin(), of_events.end());
+  if (algorithm.id != "tide") return all;
+  for (std::size_t i = all.size(); i-- > 0;) {
+    all.push_back(all[i]);
+    all.back().parameters = {{"from_scratch", "100"}};
+  }
   return all;
 }
 
 inline Case caseOf(const Algorithm& algorithm, const Configuration& way,
-                   const ParameterValues& parameters = {}) {
+                   ParameterValues parameters = {}) {
+  parameters.insert(way.parameters.begin(), way.parameters.end());
   return makeCase(algorithm, way.isa, way.threads, "", parameters, way.answer);
 }
 

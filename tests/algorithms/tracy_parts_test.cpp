@@ -6,14 +6,13 @@
 #include <set>
 
 #include "algorithms/runs.h"
-#include "tracy/pair_set.h"
+#include "pair_set.h"
 #include "tracy/segmented_list.h"
 
 namespace broadmark::tests {
 namespace {
 
 using tracy::Endpoint;
-using tracy::PairSet;
 using tracy::SegmentedList;
 
 TEST(Endpoint, StartsComeBeforeEndsAtTheSameValue) {

@@ -47,7 +47,7 @@ bool level(int rounds) {
   constexpr double kMost_us = 100;
   StaticLevel world(1'000'000, 100);
   int met = 0;
-  for (const std::string id : {"kd", "dbvt-d", "dbvt-f", "tracy"}) {
+  for (const std::string id : {"tide", "kd", "dbvt-d", "dbvt-f", "tracy"}) {
     for (const auto& [answer, name] : kAnswerKinds.entries) {
       WorldContest contest;  // alone: a frame of another would take the caches
       if (!contest.add(id, caseOf(id, answer), world)) continue;
@@ -69,7 +69,7 @@ bool traffic(int rounds) {
   bool met = true;
   SomeMove moving(kBodies, kBodies / 50);
   ComeAndGo changing(kBodies, kBodies / 100);
-  for (const std::string id : {"kd", "tracy", "dbvt-f", "dbvt-d"}) {
+  for (const std::string id : {"tide", "kd", "tracy", "dbvt-f", "dbvt-d"}) {
     WorldContest contest;
     contest.add("remove, add", caseOf(id), changing);
     contest.add("move", caseOf(id), moving);

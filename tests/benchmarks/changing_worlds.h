@@ -108,7 +108,7 @@ class StaticLevel final : public LivingWorld {
   std::uint32_t movers_;
 };
 
-/// In every frame other bodies move, and others stay where they are.
+/// In every frame other bodies move, and others stay where they are; or all move.
 class SomeMove final : public LivingWorld {
  public:
   SomeMove(std::uint32_t bodies, std::uint32_t movers) : movers_(movers) {
@@ -118,7 +118,7 @@ class SomeMove final : public LivingWorld {
  private:
   void change() override {
     for (std::uint32_t i = 0; i < movers_; ++i) {
-      const std::uint32_t body = anybody();
+      const std::uint32_t body = movers_ == size() ? i : anybody();
       put(body, stepped(box(body), 0.5F));
     }
   }

@@ -10,7 +10,7 @@
 
 #include "broadmark/pair.h"
 
-namespace broadmark::tracy {
+namespace broadmark {
 
 /// The pairs themselves lie in an array without gaps; a hash table with linear probing (of at
 /// most half its places taken) holds their positions. Keeps its memory when cleared.
@@ -94,4 +94,4 @@ class PairSet {
   int shift_ = 64;
 };
 
-}  // namespace broadmark::tracy
+}  // namespace broadmark

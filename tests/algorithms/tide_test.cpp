@@ -1,0 +1,251 @@
+// Tide: what it does when few bodies move, when many do, and in between. That it finds the right
+// pairs on all inputs, with its grid alone, too, is tested with all others.
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "algorithms/runs.h"
+#include "tide/loose_grid.h"
+
+namespace broadmark::tests {
+namespace {
+
+using tide::LooseGrid;
+
+/// A box of any size from a grain to half the world, somewhere; now and then nowhere.
+Aabb anything(inputs::Random& random) {
+  if (random.integer(0, 9) == 0) return kEmptyBox;
+  const float edge = std::exp2(random.uniform(-6, 5));
+  return inputs::boxAt(random.inCube(60), {edge, edge * random.uniform(0.1F, 1), edge});
+}
+
+/// A step that seldom leads into another cell, or anywhere.
+Aabb moved(const Aabb& box, inputs::Random& random) {
+  if (isEmpty(box) || random.integer(0, 7) == 0) return anything(random);
+  Aabb to = box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float step = random.uniform(-0.4F, 0.4F);
+    to.min[axis] += step;
+    to.max[axis] += step;
+  }
+  return to;
+}
+
+std::vector<Aabb> anyBoxes(std::size_t n, inputs::Random& random) {
+  std::vector<Aabb> boxes(n);
+  for (Aabb& box : boxes) box = anything(random);
+  return boxes;
+}
+
+/// The frame that comes after this one if `movers` bodies move.
+std::vector<Aabb> after(std::vector<Aabb> boxes, std::size_t movers, inputs::Random& random) {
+  for (std::size_t i = 0; i < movers; ++i) {
+    Aabb& box =
+        boxes[static_cast<std::size_t>(random.integer(0, static_cast<int>(boxes.size()) - 1))];
+    box = moved(box, random);
+  }
+  return boxes;
+}
+
+SceneInfo sceneFor(std::size_t bodies) {
+  SceneInfo scene;
+  scene.objects = static_cast<std::uint32_t>(bodies);
+  scene.all_present = false;
+  return scene;
+}
+
+/// Each kind of answer, with the parameters.
+std::vector<TestRun> runsOf(const ParameterValues& parameters) {
+  std::vector<TestRun> runs;
+  for (const AnswerKind answer : {AnswerKind::pairs, AnswerKind::events}) {
+    runs.emplace_back(algorithmOf("tide"), Configuration{bestIsa(), 1, answer}, parameters);
+  }
+  return runs;
+}
+
+TEST(Tide, FindsBodiesOfAllSizesThatMoveNearAndFarComeAndGo) {
+  constexpr std::size_t kBodies = 400;
+  for (TestRun& run : runsOf({{"from_scratch", "100"}})) {
+    inputs::Random random(1, 0);
+    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
+    run.start(sceneFor(kBodies), boxes);
+    for (int frame = 0; frame < 200; ++frame) {
+      boxes = after(boxes, static_cast<std::size_t>(random.integer(0, frame % 10 == 0 ? 400 : 20)),
+                    random);
+      ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(run.broadPhase().validate(), "") << "frame " << frame;
+    }
+  }
+}
+
+// Few, many for some frames, few again: the grid is built again after four of these.
+TEST(Tide, ChangesOverWhenManyMoveAndBack) {
+  constexpr std::size_t kBodies = 500;
+  constexpr std::array kMovers = {5, 400, 300, 3, 3, 3, 3, 5, 0, 499, 5, 5, 100, 5, 5, 5, 5, 7};
+  for (TestRun& run : runsOf({{"from_scratch", "10"}})) {
+    inputs::Random random(2, 0);
+    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
+    run.start(sceneFor(kBodies), boxes);
+    std::vector<std::size_t> in_the_grid;
+    std::vector<std::size_t> built;
+    for (std::size_t frame = 0; frame < kMovers.size(); ++frame) {
+      boxes = after(boxes, static_cast<std::size_t>(kMovers[frame]), random);
+      ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(run.broadPhase().validate(), "") << "frame " << frame;
+      const Counters counters = countersOf(run.broadPhase());
+      if (counters.contains("cells looked into")) in_the_grid.push_back(frame);
+      if (counters.at("grids built") > 0) built.push_back(frame);
+    }
+    EXPECT_EQ(in_the_grid, (std::vector<std::size_t>{0, 7, 8, 17}));
+    EXPECT_EQ(built, (std::vector<std::size_t>{6, 16}));
+  }
+}
+
+TEST(Tide, LooksAtNothingWhereNothingMoves) {
+  const std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
+  for (TestRun& run : runsOf({})) {
+    run.start(boxes);
+    ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+    const Counters counters = countersOf(run.broadPhase());
+    EXPECT_EQ(counters.at("tests"), 0U);
+    EXPECT_EQ(counters.at("cells looked into"), 0U);
+  }
+}
+
+// A grid for bodies far apart has too few cells once they crowd.
+TEST(Tide, BuildsAnotherGridWhereBodiesCrowd) {
+  constexpr std::size_t kBodies = 2000;
+  const std::vector<Aabb> apart = inputs::uniform(kBodies, 0, 1);
+  for (TestRun& run : runsOf({{"from_scratch", "100"}})) {
+    run.start(apart);
+    std::uint64_t built = 0;
+    std::vector<std::uint64_t> tests;
+    for (int frame = 1; frame <= 40; ++frame) {
+      std::vector<Aabb> boxes = apart;
+      const float share = std::max(0.04F, 1 - 0.05F * static_cast<float>(frame));
+      for (Aabb& box : boxes) {
+        const Vec3 corner = {box.min[0] * share, box.min[1] * share, box.min[2] * share};
+        box = inputs::boxAt(corner, {0.02F, 0.02F, 0.02F});
+        box.max[0] += 1e-5F * static_cast<float>(frame);  // all move, to the end
+      }
+      ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes)) << "frame " << frame;
+      const Counters counters = countersOf(run.broadPhase());
+      built += counters.at("grids built");
+      tests.push_back(counters.at("tests"));
+    }
+    EXPECT_GE(built, 1U);
+    EXPECT_LE(built, 5U);
+    EXPECT_LT(tests.back(), 100 * kBodies) << "of a move with twice as many others than expected";
+  }
+}
+
+/// Drives a grid through frames of its own.
+class LooseGridTest : public testing::TestWithParam<Isa> {
+ protected:
+  void SetUp() override {
+    if (!isaSupported(GetParam())) GTEST_SKIP() << "this processor has no " << isaName(GetParam());
+  }
+
+  /// Checks the events of a frame against both sets of pairs.
+  void step(LooseGrid& grid, const std::vector<Aabb>& before, const std::vector<Aabb>& now) {
+    std::vector<std::uint32_t> changed;
+    for (std::uint32_t body = 0; body < now.size(); ++body) {
+      if (!sameBits(before[body], now[body])) changed.push_back(body);
+    }
+    std::vector<Pair> began;
+    std::vector<Pair> ended;
+    grid.addMoves(changed, now, team_);
+    grid.update();
+    grid.search([&](auto a, auto b) { began.push_back(orderedPair(a, b)); },
+                [&](auto a, auto b) { ended.push_back(orderedPair(a, b)); });
+    grid.settle();
+    ASSERT_EQ(grid.validate(), "");
+    EXPECT_EQ(sortedList(began), without(bruteForcePairs(now), bruteForcePairs(before)));
+    EXPECT_EQ(sortedList(ended), without(bruteForcePairs(before), bruteForcePairs(now)));
+  }
+
+  static std::vector<Pair> sortedList(std::vector<Pair> pairs) {
+    std::ranges::sort(pairs);
+    return pairs;
+  }
+  static std::vector<Pair> without(const std::vector<Pair>& pairs,
+                                   const std::vector<Pair>& others) {
+    std::vector<Pair> rest;
+    std::ranges::set_difference(pairs, others, std::back_inserter(rest));
+    return rest;
+  }
+
+  ThreadTeam team_{1};
+};
+
+// The numbers of moves begin anew every few frames.
+TEST_P(LooseGridTest, TellsEachEventOnce) {
+  constexpr std::size_t kBodies = 300;
+  for (const std::uint32_t most_numbers : {1U, 100U, LooseGrid::kMostBodies}) {
+    inputs::Random random(3, most_numbers);
+    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
+    LooseGrid grid(GetParam(), most_numbers);
+    grid.build(boxes);
+    for (int frame = 0; frame < 60; ++frame) {
+      const std::vector<Aabb> before = boxes;
+      boxes = after(boxes, frame % 7 == 0 ? 2 * kBodies : 30, random);
+      step(grid, before, boxes);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+// Crowded cells have more entries than are tested at once.
+TEST_P(LooseGridTest, CopesWithCrowds) {
+  std::vector<Aabb> boxes = inputs::identical(700, 0, 1);
+  LooseGrid grid(GetParam());
+  grid.build(boxes);
+  for (int frame = 0; frame < 4; ++frame) {
+    const std::vector<Aabb> before = boxes;
+    for (std::size_t body = 0; body < boxes.size(); body += 50) {
+      boxes[body] = frame % 2 == 0 ? inputs::boxAt({1e6F, 0, 0}, {1, 1, 1}) : boxes[1];
+    }
+    step(grid, before, boxes);
+    if (HasFailure()) return;
+  }
+}
+
+// At the ends of what a float can hold, and where all bodies are one point.
+TEST_P(LooseGridTest, NeedsNoBounds) {
+  for (const inputs::Input& input : inputs::kAll) {
+    SCOPED_TRACE(input.name);
+    std::vector<Aabb> boxes = input.boxes(100, 0, 1);
+    LooseGrid grid(GetParam());
+    grid.build(boxes);
+    for (std::uint32_t frame = 1; frame < 6; ++frame) {
+      const std::vector<Aabb> before = boxes;
+      boxes = input.boxes(100, frame, 1);
+      if (frame % 2 == 0) boxes[7] = inputs::boxAt({-3e38F, 2e38F, 0}, {1e38F, 0, 3e38F});
+      step(grid, before, boxes);
+      if (HasFailure()) return;
+    }
+  }
+}
+
+TEST_P(LooseGridTest, MayBeEmpty) {
+  for (const std::size_t n : {0U, 1U, 2U}) {
+    const std::vector<Aabb> nobody(n, kEmptyBox);
+    const std::vector<Aabb> all(n, inputs::boxAt({5, 5, 5}, {1, 1, 1}));
+    LooseGrid grid(GetParam());
+    grid.build(nobody);
+    step(grid, nobody, all);
+    step(grid, all, nobody);
+    step(grid, nobody, nobody);
+    std::vector<Aabb> boxes;
+    grid.boxes(boxes);
+    EXPECT_EQ(boxes, nobody);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Isas, LooseGridTest,
+                         testing::Values(Isa::scalar, Isa::sse2, Isa::neon, Isa::avx2, Isa::avx512),
+                         [](const auto& isa) { return std::string(isaName(isa.param)); });
+
+}  // namespace
+}  // namespace broadmark::tests
