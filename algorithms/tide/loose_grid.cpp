@@ -368,7 +368,7 @@ void LooseGrid::lookAround(std::uint32_t index) {
   const Steps min_now = stepsOf(move.now.min);
   const Steps max_now = stepsOf(move.now.max);
   // Around both places at once, unless it has moved far.
-  bool near = was && is;
+  bool near = true;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int32_t both = 1 << kCellBits | (max_now[axis] - min_now[axis]);
     near = near && std::abs(min_now[axis] - min_before[axis]) <= both &&

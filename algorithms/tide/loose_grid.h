@@ -288,8 +288,7 @@ void LooseGrid::consider(const Move& move, std::uint32_t number, const Entry& en
   }
   if (was == is) return;
   // An entry that the other left tells of ends only, one where it came of beginnings only.
-  if (is && (wanted & kBeginnings) != 0 && (entry.move() & kLeft) == 0)
-    began(move.body, entry.body());
+  if (is && (wanted & kBeginnings) != 0 && (flags & kLeft) == 0) began(move.body, entry.body());
   if (was && (wanted & kEnds) != 0 && (flags & kCame) == 0) ended(move.body, entry.body());
 }
 
