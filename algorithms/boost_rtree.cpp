@@ -135,6 +135,7 @@ std::vector<Algorithm> variants() {
           family, incremental, "boost-rtree",
           "Boost.Geometry's R-tree, from which the bodies that moved are taken and put back")};
   all[0].description.optimisations = "packed at once";
+  all[1].traits.incremental = true;
   all[1].description.optimisations = "tree kept from frame to frame";
   return all;
 }

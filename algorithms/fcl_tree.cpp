@@ -151,7 +151,9 @@ class Fcl final : public MovedBoxes {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "FCL",
-      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
+      .traits = {.incremental = true,
+                 .library_allocates = true,
+                 .changing_worlds = ChangingWorlds::compacted},
       .description = {.principle = "tree",
                       .optimisations = "tree kept from frame to frame",
                       .time = "O(m log n + n + k), m bodies that move",

@@ -24,6 +24,8 @@ class MovedBoxes : public BoxBroadPhase {
     BoxBroadPhase::updateObjects(frame);
   }
 
+  void visitCounters(const CounterVisitor& visit) const override { visit("moves", moved_.size()); }
+
  protected:
   /// The bodies that moved, came or went, ascending; after initialize() all.
   [[nodiscard]] const std::vector<std::uint32_t>& moved() const { return moved_; }

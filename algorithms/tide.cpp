@@ -121,14 +121,15 @@ void Tide::findAnew(const Frame& frame) {
 void Tide::updateObjects(const Frame& frame) {
   moves_ = frame.changed->size();
   builds_ = 0;
-  if (is_anew_ && quiet_frames_ == kQuietFrames) is_anew_ = false;
-  if (!is_anew_ && isMany(moves_, from_scratch_)) {
-    beginAnew(frame);
+  const bool grid_is_ready = !is_anew_ || quiet_frames_ == kQuietFrames;
+  if (grid_is_ready && !isMany(moves_, from_scratch_)) {
+    is_anew_ = false;
+    grid_->resetWork();
+    grid_->addMoves(*frame.changed, frame.boxes, *team_);
     return;
   }
   if (!is_anew_) {
-    grid_->resetWork();
-    grid_->addMoves(*frame.changed, frame.boxes, *team_);
+    beginAnew(frame);
     return;
   }
   anew_->updateObjects(frame);

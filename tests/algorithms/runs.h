@@ -40,13 +40,12 @@ struct Configuration {
   ParameterValues parameters = {};
 };
 
-/// All instruction sets of this processor if the algorithm heeds them, and several team sizes if it
-/// is parallel: among them ones that divide hardly any number of bodies. A compute device divides
-/// the work by itself.
-inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
+/// All instruction sets of this processor if the algorithm heeds them, and these teams if it is
+/// parallel. A compute device divides the work by itself.
+inline std::vector<Configuration> configurations(const Algorithm& algorithm,
+                                                 std::vector<int> teams = {1, 2, 5}) {
   const AlgorithmTraits& traits = algorithm.traits;
-  std::vector<int> teams = {1};
-  if (traits.parallel) teams = {1, 2, 3, 5};
+  if (!traits.parallel) teams = {1};
   if (traits.on_device) teams = {2};
   std::vector<Configuration> all;
   for (const auto& [isa, name] : kIsas.entries) {
@@ -56,9 +55,10 @@ inline std::vector<Configuration> configurations(const Algorithm& algorithm) {
   return all;
 }
 
-/// Those for events: every team, with the widest instruction set.
+/// Those for events, with the widest instruction set. Other teams than for pairs: more threads than
+/// there are cores are slow, and five and three divide hardly any number of bodies.
 inline std::vector<Configuration> eventConfigurations(const Algorithm& algorithm) {
-  std::vector<Configuration> ways = configurations(algorithm);
+  std::vector<Configuration> ways = configurations(algorithm, {1, 3});
   const Isa widest = std::ranges::max_element(ways, {}, &Configuration::isa)->isa;
   std::erase_if(ways, [&](const Configuration& way) { return way.isa != widest; });
   for (Configuration& way : ways) way.answer = AnswerKind::events;

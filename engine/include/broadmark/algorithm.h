@@ -28,7 +28,7 @@ struct AlgorithmTraits {
   bool parallel = false;     ///< uses as many threads as it is given
   bool vectorised = false;   ///< heeds the instruction set
   bool on_device = false;    ///< runs on a compute device, whose driver starts threads itself
-  bool incremental = false;  ///< keeps pairs from frame to frame
+  bool incremental = false;  ///< keeps pairs or a structure from frame to frame
   bool events = false;       ///< knows by itself which pairs begin and end: BroadPhase::events()
   /// False for the self-checks, which report no pairs and are not checked for them.
   bool finds_pairs = true;
