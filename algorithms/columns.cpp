@@ -25,7 +25,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <memory>
 #include <string>
@@ -230,7 +229,7 @@ bool Columns::copyBoxes(const Frame& frame) {
           layout, block, count, [&](std::size_t i) { return static_cast<MarkedBody>(first + i); },
           [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
     }
-    if (past_caches) std::atomic_thread_fence(std::memory_order_seq_cst);
+    if (past_caches) kernels_->show_boxes();
   });
   std::size_t copies = 0;
   for (const Worker& worker : workers_) copies += worker.chains.count();

@@ -45,8 +45,9 @@ struct Kernels {
                      BoxBlock& block);
 
   /// Copies `count` boxes past the caches: to memory that is not looked at soon, from the beginning
-  /// of a cache line on. Other threads see them after a fence.
+  /// of a cache line on. Other threads see them after this one has called show_boxes().
   void (*keep_boxes)(const Aabb* from, std::size_t count, Aabb* to);
+  void (*show_boxes)();
 
   /// Tests all copies in `rows`, at most kSweptRows, the first of which is a multiple of that,
   /// against their windows.

@@ -155,7 +155,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
 }
 
 inline constexpr columns::Kernels kKernels = [] {
-  columns::Kernels kernels = {{}, {}, findSteps, keepBoxes, sweep};
+  columns::Kernels kernels = {{}, {}, findSteps, keepBoxes, endCopiesPast, sweep};
   for (std::size_t bit = 0; bit < 64; ++bit) {
     kernels.row_of[bit] = static_cast<std::uint8_t>(rowOf(bit));
     kernels.lane_of[bit] = static_cast<std::uint8_t>(laneOf(bit));

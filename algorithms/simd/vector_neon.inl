@@ -51,6 +51,7 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
 }
 inline void store(float* to, Vector value) { vst1q_f32(to, value); }
 inline void copyPast(const float* from, float* to) { vst1q_f32(to, vld1q_f32(from)); }
+inline void endCopiesPast() {}
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const Vector step = vmulq_f32(vsubq_f32(value, broadcast(low)), broadcast(factor));
   const Vector kept = vminq_f32(vmaxnmq_f32(step, broadcast(0)), broadcast(last));

@@ -55,6 +55,8 @@ inline void store(float* to, Vector value) { *to = value; }
 /// Copies kLanes numbers past the caches, if possible: from any address to one that is a multiple
 /// of the vector's size.
 inline void copyPast(const float* from, float* to) { *to = *from; }
+/// What was copied past the caches is there for other threads.
+inline void endCopiesPast() {}
 /// (value - low) * factor as whole numbers from 0 to `last`; NaN becomes 0.
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const float step = (value - low) * factor;

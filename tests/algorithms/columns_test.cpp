@@ -112,6 +112,22 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
 }
 
 // A lower coordinate never gets a higher step, and all instruction sets agree.
+TEST(ColumnKernels, KeepBoxes) {
+  constexpr std::size_t kMost = 40;
+  const std::vector<Aabb> boxes = inputs::uniform(kMost, 0, 1);
+  for (const Isa isa : everyIsa()) {
+    for (std::size_t count = 0; count <= kMost; ++count) {
+      LargeArray<Aabb> kept;
+      kept.resize(kMost + 1);
+      std::fill(kept.begin(), kept.end(), kEmptyBox);
+      columns::kernels(isa).keep_boxes(boxes.data(), count, kept.data());
+      columns::kernels(isa).show_boxes();
+      ASSERT_TRUE(std::equal(kept.begin(), kept.begin() + count, boxes.begin())) << count;
+      ASSERT_TRUE(isEmpty(kept[count])) << count;
+    }
+  }
+}
+
 TEST(ColumnKernels, FindTheSameSteps) {
   for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
     const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
@@ -318,6 +334,14 @@ TEST_P(ColumnsFamily, DoNotCopyWithoutLimit) {
   run.start(boxes);
   EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
   EXPECT_LT(countersOf(run.broadPhase()).at("copies"), 10 * boxes.size());
+}
+
+// So many that they are kept past the caches.
+TEST_P(ColumnsFamily, FindTheRightPairsOfVeryManyBoxes) {
+  const std::vector<Aabb> boxes = inputs::uniform((std::size_t{1} << 17) + 3, 0, 1);
+  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
+  run.start(inputs::uniform(boxes.size(), 1, 1));
+  ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
 }
 
 TEST_P(ColumnsFamily, SplitCrowdedColumns) {
