@@ -52,7 +52,7 @@ const Place& placeOf(dGeomID geom) { return *static_cast<Place*>(dGeomGetClassDa
 void giveBounds(dGeomID geom, dReal bounds[6]) {
   const Place& place = placeOf(geom);
   const Aabb& box = (*place.boxes)[place.body];
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     bounds[2 * axis] = box.min[axis];
     bounds[2 * axis + 1] = box.max[axis];
   }

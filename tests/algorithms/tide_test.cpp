@@ -125,7 +125,7 @@ TEST(Tide, BuildsAnotherGridWhereBodiesCrowd) {
       std::vector<Aabb> boxes = apart;
       const float share = std::max(0.04F, 1 - 0.05F * static_cast<float>(frame));
       for (Aabb& box : boxes) {
-        const Vec3 corner = {box.min[0] * share, box.min[1] * share, box.min[2] * share};
+        const inputs::Vec3 corner = {box.min[0] * share, box.min[1] * share, box.min[2] * share};
         box = inputs::boxAt(corner, {0.02F, 0.02F, 0.02F});
         box.max[0] += 1e-5F * static_cast<float>(frame);  // all move, to the end
       }
