@@ -189,10 +189,8 @@ void Columns::updateObjects(const Frame& frame) {
   boxes_.resize(frame.boxes.size());
 
   std::vector<Aabb>& sample = workers_.front().sample;
-  sample.resize(sampleSize(boxes_.size()));
-  for (std::size_t k = 0; k < sample.size(); ++k) {
-    sample[k] = frame.boxes[sampled(k, sample.size(), boxes_.size())];
-  }
+  takeSample(
+      boxes_.size(), [&](std::size_t i) { return frame.boxes[i]; }, sample);
   Layout layout(sample, boxes_.size(), costs());
   for (;; layout.widen()) {
     parts_.clear();
@@ -322,11 +320,10 @@ void Columns::considerSplit(std::size_t column, std::uint64_t tests, Worker& wor
   const Range range = contents(column);
   const int level = parts_[columns_[column].part].level + 1;
   if (level == kMostLevels) return;
-  worker.sample.resize(sampleSize(range.size()));
-  for (std::size_t k = 0; k < worker.sample.size(); ++k) {
-    const std::size_t at = range.begin + sampled(k, worker.sample.size(), range.size());
-    worker.sample[k] = boxes_[bodyNumber(sorted_.copies[at].body)];
-  }
+  takeSample(
+      range.size(),
+      [&](std::size_t i) { return boxes_[bodyNumber(sorted_.copies[range.begin + i].body)]; },
+      worker.sample);
   const Layout layout(worker.sample, range.size(), costs());
   const double now = static_cast<double>(tests);
   const double then = layout.costPerBox() * static_cast<double>(range.size());

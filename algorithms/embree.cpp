@@ -34,22 +34,15 @@
 #include <string>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/destroy.h"
 #include "variants.h"
 
 namespace broadmark::embree {
 namespace {
 
-/// Calls the library's function that releases an object.
-template <auto release>
-struct Release {
-  template <class Object>
-  void operator()(Object* object) const {
-    release(object);
-  }
-};
-using Device = std::unique_ptr<RTCDeviceTy, Release<rtcReleaseDevice>>;
-using Scene = std::unique_ptr<RTCSceneTy, Release<rtcReleaseScene>>;
-using Geometry = std::unique_ptr<RTCGeometryTy, Release<rtcReleaseGeometry>>;
+using Device = std::unique_ptr<RTCDeviceTy, Destroy<rtcReleaseDevice>>;
+using Scene = std::unique_ptr<RTCSceneTy, Destroy<rtcReleaseScene>>;
+using Geometry = std::unique_ptr<RTCGeometryTy, Destroy<rtcReleaseGeometry>>;
 
 /// Boxes are taken for no farther away than this: surfaces must not overflow, and Embree drops what
 /// is beyond its FLT_LARGE, 1.844e18.

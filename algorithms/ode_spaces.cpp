@@ -31,6 +31,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
+#include "broadmark/destroy.h"
 #include "moved_boxes.h"
 #include "variants.h"
 
@@ -72,10 +73,6 @@ int geomClass() {
   }();
   return number;
 }
-
-struct DestroySpace {
-  void operator()(dxSpace* space) const { dSpaceDestroy(space); }  // its geoms, too
-};
 
 class OdeSpace : public MovedBoxes {
  public:
@@ -120,8 +117,8 @@ class OdeSpace : public MovedBoxes {
     static_cast<OdeSpace*>(self)->pairs().add(placeOf(a).body, placeOf(b).body);
   }
 
-  std::unique_ptr<dxSpace, DestroySpace> space_;
-  std::vector<dxGeom*> geoms_;  ///< by body; the space owns them
+  std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>> space_;  ///< and its geoms
+  std::vector<dxGeom*> geoms_;                              ///< by body
 };
 
 class Hash final : public OdeSpace {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "broadmark/aabb.h"
 
@@ -22,6 +23,15 @@ constexpr std::size_t sampleSize(std::size_t count) {
 constexpr std::size_t sampled(std::size_t k, std::size_t of, std::size_t count) {
   if (of == count) return k;
   return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
+}
+
+/// Takes a sample of `count` boxes, of which box_of(i) is the i-th.
+template <class BoxOf>
+void takeSample(std::size_t count, BoxOf box_of, std::vector<Aabb>& sample) {
+  sample.resize(sampleSize(count));
+  for (std::size_t k = 0; k < sample.size(); ++k) {
+    sample[k] = box_of(sampled(k, sample.size(), count));
+  }
 }
 
 /// Where the bulk of the boxes lies on one axis. In double: there no float overflows.

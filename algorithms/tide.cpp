@@ -16,6 +16,7 @@
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,8 +65,9 @@ class Tide final : public BroadPhase {
   [[nodiscard]] bool isMany(std::size_t moves, std::int64_t percentage) const {
     return 100 * moves > static_cast<std::size_t>(percentage) * bodies_.size();
   }
-  void findAnew(const Frame& frame);
+  void findAnew(std::uint32_t frame, std::span<const Aabb> boxes);
   void beginAnew(const Frame& frame);
+  void buildGrid(std::span<const Aabb> boxes);
   void takePairs();
   void followCrowds();
 
@@ -102,17 +104,17 @@ void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& exe
   if (isChangingWorld(scene)) anew_ = compacted(std::move(anew_));
   if (reports_events_) anew_ = withEvents(std::move(anew_));
   anew_->initialize(scene, first, execution);
-  if (!reports_events_) findAnew(first);
+  if (!reports_events_) findAnew(first.index, first.boxes);
   grid_.emplace(execution.isa());
-  grid_->build(first.boxes);
+  buildGrid(first.boxes);
   is_anew_ = true;
   quiet_frames_ = kQuietFrames;
   if (!reports_events_) takePairs();
 }
 
 /// All pairs of a frame, of which all bodies may have moved.
-void Tide::findAnew(const Frame& frame) {
-  anew_->updateObjects({frame.index, frame.boxes, bodies_});
+void Tide::findAnew(std::uint32_t frame, std::span<const Aabb> boxes) {
+  anew_->updateObjects({frame, boxes, bodies_});
   anew_->cleanCache();
   anew_->updateStructures();
   anew_->searchOverlaps();
@@ -135,11 +137,13 @@ void Tide::updateObjects(const Frame& frame) {
   anew_->updateObjects(frame);
   // Well below the limit, or the next frame might be above it again.
   quiet_frames_ = isMany(moves_, from_scratch_ / 2) ? 0 : quiet_frames_ + 1;
-  if (quiet_frames_ == kQuietFrames) {
-    grid_->build(frame.boxes);
-    usual_work_ = excess_work_ = 0;
-    ++builds_;
-  }
+  if (quiet_frames_ == kQuietFrames) buildGrid(frame.boxes);
+}
+
+void Tide::buildGrid(std::span<const Aabb> boxes) {
+  grid_->build(boxes);
+  usual_work_ = excess_work_ = 0;
+  ++builds_;
 }
 
 /// From now on all pairs are found anew. Its last frame was some time ago.
@@ -148,11 +152,9 @@ void Tide::beginAnew(const Frame& frame) {
   quiet_frames_ = 0;
   if (reports_events_) {  // which are what differs from the frame before
     grid_->boxes(boxes_);
-    findAnew({frame.index - 1, boxes_, {}});
-    anew_->updateObjects(frame);
-  } else {
-    anew_->updateObjects({frame.index, frame.boxes, bodies_});
+    findAnew(frame.index - 1, boxes_);
   }
+  anew_->updateObjects({frame.index, frame.boxes, bodies_});
 }
 
 void Tide::cleanCache() {
@@ -209,9 +211,7 @@ void Tide::followCrowds() {
   excess_work_ += std::max(0.0, work - usual_work_ * moves);
   if (excess_work_ < kWorkOfBuilding * static_cast<double>(bodies_.size())) return;
   grid_->boxes(boxes_);
-  grid_->build(boxes_);
-  usual_work_ = excess_work_ = 0;
-  ++builds_;
+  buildGrid(boxes_);
 }
 
 void Tide::drawStructure(DebugDraw& draw) const {

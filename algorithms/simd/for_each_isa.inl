@@ -4,8 +4,14 @@
 //
 // Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
 // copies of shared inline functions behind, of which the linker might keep one for everybody. So
-// kernels may call nothing that is instantiated here from a standard header; all headers must have
-// been included before.
+// kernels may call nothing that is instantiated here from a standard header; all headers but those
+// of the intrinsics must have been included before.
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 
 #if defined(__GNUC__) && !defined(__clang__)
 // GCC 12 takes the undefined operand inside its own AVX-512 intrinsics for ours (GCC bug 105593).

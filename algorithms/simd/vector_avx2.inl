@@ -27,19 +27,7 @@ inline unsigned withinLimits(Keys keys, Keys limits) {
   return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(above, _mm256_setzero_si256())));
 }
 
-/// Of upper bounds the opposite, so that one comparison does for both.
-using TestBox = __m256;
-inline __m256 upperNegated(__m256 box) {
-  return _mm256_xor_ps(box, _mm256_setr_ps(0, 0, 0, 0, -0.0F, -0.0F, -0.0F, -0.0F));
-}
-inline TestBox testBox(const float* box) {
-  const __m256 bounds = _mm256_loadu_ps(box);
-  return upperNegated(_mm256_permute2f128_ps(bounds, bounds, 1));
-}
-inline unsigned meets(const float* box, const TestBox& other) {
-  const __m256 on_axes = _mm256_cmp_ps(upperNegated(_mm256_loadu_ps(box)), other, _CMP_LE_OQ);
-  return (static_cast<unsigned>(_mm256_movemask_ps(on_axes)) & 0x77) == 0x77 ? 1 : 0;
-}
+#include "simd/test_box_avx.inl"
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];  // corners r and r + 4

@@ -10,8 +10,6 @@
 #include <cmath>
 #include <utility>
 
-#include "sample.h"
-
 namespace broadmark::tide {
 namespace {
 
@@ -40,11 +38,9 @@ Edges edgesOf(std::span<const Aabb> sample, int axis) {
 
 std::vector<Aabb> sampleOf(std::span<const Aabb> boxes) {
   std::vector<Aabb> sample;
-  const std::size_t size = sampleSize(boxes.size());
-  for (std::size_t k = 0; k < size; ++k) {
-    const Aabb& box = boxes[sampled(k, size, boxes.size())];
-    if (!isEmpty(box)) sample.push_back(box);
-  }
+  takeSample(
+      boxes.size(), [&](std::size_t i) { return boxes[i]; }, sample);
+  std::erase_if(sample, isEmpty);
   return sample;
 }
 
@@ -74,13 +70,16 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
   moves_.clear();
   first_number_ = 1;
   const std::vector<Aabb> sample = sampleOf(boxes);
-  chooseSteps(boxes, sample);
-  layOut(boxes, sample);
+  std::array<Bulk, 3> bulk;
+  for (int axis = 0; axis < 3 && !sample.empty(); ++axis) bulk[axis] = bulkOf(sample, axis);
+  chooseSteps(boxes, sample, bulk);
+  layOut(boxes, bulk);
 }
 
 /// The size of the cells that promises to cost least. It begins with large ones, a few bodies in
 /// each were they spread evenly: where they are not, smaller ones are better.
-void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample) {
+void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
+                            const std::array<Bulk, 3>& bulk) {
   constexpr double kBodiesInLargest = 4;
   constexpr double kShortest = 1e-30;
   constexpr double kLongest = 1e30;
@@ -88,20 +87,19 @@ void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> s
   low_ = {};
   if (!sample.empty()) {
     std::array<Edges, 3> edges;
-    std::array<double, 3> extents{};
+    double longest = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const Bulk bulk = bulkOf(sample, axis);
-      low_[axis] = static_cast<float>(bulk.low);
-      extents[axis] = bulk.extent();
+      low_[axis] = static_cast<float>(bulk[axis].low);
+      longest = std::max(longest, bulk[axis].extent());
       edges[axis] = edgesOf(sample, axis);
     }
     const auto cells = [&](double of_edge) {
       double product = 1;
-      for (const double extent : extents) product *= std::max(1.0, extent / of_edge);
+      for (const Bulk& on_axis : bulk) product *= std::max(1.0, on_axis.extent() / of_edge);
       return product;
     };
     const double wanted = static_cast<double>(boxes.size()) / kBodiesInLargest;
-    edge = std::clamp(std::ranges::max(extents), kShortest, kLongest);
+    edge = std::clamp(longest, kShortest, kLongest);
     while (cells(edge) < wanted && edge > kShortest) edge *= kShorter;
 
     const auto cost = [&](double of_edge) {
@@ -121,7 +119,7 @@ void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> s
   factor_ = static_cast<float>((1 << kCellBits) / edge);
 }
 
-void LooseGrid::layOut(std::span<const Aabb> boxes, std::span<const Aabb> sample) {
+void LooseGrid::layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk) {
   levels_ = {};
   used_ = 0;
   for (std::vector<std::uint32_t>& blocks : free_blocks_) blocks.clear();
@@ -142,11 +140,10 @@ void LooseGrid::layOut(std::span<const Aabb> boxes, std::span<const Aabb> sample
   // As many cells as it takes to cover the bulk, but not many more than bodies.
   Steps low{};
   Steps high{};
-  for (int axis = 0; axis < 3 && !sample.empty(); ++axis) {
-    const Bulk bulk = bulkOf(sample, axis);
+  for (int axis = 0; axis < 3; ++axis) {
     std::array<float, 4> corner = low_;
     low[axis] = stepsOf(corner)[axis];
-    corner[axis] = static_cast<float>(bulk.high);
+    corner[axis] = static_cast<float>(bulk[axis].high);
     high[axis] = stepsOf(corner)[axis];
   }
   std::uint32_t cells = 0;
@@ -288,7 +285,6 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
     Move& move = moves_.emplace_back();
     move.now = boxes[body];
     move.body = body;
-    move.left = kNowhere;
     if (isEmpty(move.now)) return;
     const Steps min = stepsOf(move.now.min);
     const Steps max = stepsOf(move.now.max);

@@ -32,9 +32,12 @@
 #include "large_array.h"
 #include "prefetch.h"
 #include "radix_sort.h"
+#include "sample.h"
 #include "tide/kernels.h"
 
 namespace broadmark::tide {
+
+inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// Where a body lies.
 struct Place {
@@ -49,8 +52,8 @@ struct Move {
   Aabb before;
   Aabb now;
   std::uint32_t body = 0;
-  std::uint32_t left = 0;  ///< its entry in a cell that it left, until settle()
-  Place place;             ///< now
+  std::uint32_t left = kNowhere;  ///< its entry in a cell that it left, until settle()
+  Place place;                    ///< now
   Place place_before;
 };
 
@@ -100,7 +103,6 @@ class LooseGrid {
   [[nodiscard]] std::string validate() const;
 
  private:
-  static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
   static constexpr int kCellBits = 8;   ///< of the steps in a cell of level 0
   static constexpr int kLevelBits = 2;  ///< cells are 2^that times as long from level to level
   static constexpr int kLevels = 12;    ///< the last one takes the longest edges that there are
@@ -155,8 +157,9 @@ class LooseGrid {
   [[nodiscard]] Place placeOf(const Steps& min, std::uint32_t level) const;
   void reach(const Steps& min, const Steps& max, std::uint32_t level);
 
-  void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample);
-  void layOut(std::span<const Aabb> boxes, std::span<const Aabb> sample);
+  void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
+                   const std::array<Bulk, 3>& bulk);
+  void layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk);
 
   std::uint32_t newBlock(unsigned bits);
   void resizeBlock(std::uint32_t cell, unsigned bits);

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "broadmark/destroy.h"
 #include "broadmark/scenes/registry.h"
 #include "engines/body_pool.h"
 #include "entries.h"
@@ -37,14 +38,6 @@ constexpr double kBounceSpeed = 0.1;
 /// Time for which a body must be slow before it falls asleep, in seconds.
 constexpr double kTimeToSleep = 0.5;
 
-/// Calls the library's function that destroys an object.
-template <auto destroy>
-struct Destroy {
-  template <class Object>
-  void operator()(Object* object) const {
-    destroy(object);
-  }
-};
 using World = std::unique_ptr<dxWorld, Destroy<dWorldDestroy>>;
 using Space = std::unique_ptr<dxSpace, Destroy<dSpaceDestroy>>;
 using JointGroup = std::unique_ptr<dxJointGroup, Destroy<dJointGroupDestroy>>;

@@ -24,14 +24,6 @@ using columns::StepScale;
 
 constexpr columns::Costs kCosts = {.copy = 150};
 
-std::vector<Isa> everyIsa() {
-  std::vector<Isa> all;
-  for (const auto& [isa, name] : kIsas.entries) {
-    if (isaSupported(isa)) all.push_back(isa);
-  }
-  return all;
-}
-
 /// First and last steps on both axes.
 struct StepBox {
   std::uint32_t first[2];

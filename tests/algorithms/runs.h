@@ -32,6 +32,15 @@ inline void PrintTo(const Algorithm& algorithm, std::ostream* out) { *out << alg
 
 namespace broadmark::tests {
 
+/// The instruction sets of this processor.
+inline std::vector<Isa> everyIsa() {
+  std::vector<Isa> all;
+  for (const auto& [isa, name] : kIsas.entries) {
+    if (isaSupported(isa)) all.push_back(isa);
+  }
+  return all;
+}
+
 /// One way to run an algorithm.
 struct Configuration {
   Isa isa = Isa::scalar;
@@ -48,8 +57,8 @@ inline std::vector<Configuration> configurations(const Algorithm& algorithm,
   if (!traits.parallel) teams = {1};
   if (traits.on_device) teams = {2};
   std::vector<Configuration> all;
-  for (const auto& [isa, name] : kIsas.entries) {
-    if (!isaSupported(isa) || (isa != Isa::scalar && !traits.vectorised)) continue;
+  for (const Isa isa : everyIsa()) {
+    if (isa != Isa::scalar && !traits.vectorised) continue;
     for (const int threads : teams) all.push_back({isa, threads});
   }
   return all;

@@ -23,10 +23,6 @@ namespace {
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-Case caseOf(const std::string& id, AnswerKind answer = AnswerKind::pairs) {
-  return makeCase(findAlgorithm(id).value(), bestIsa(), 1, "", {}, answer);
-}
-
 /// Prints the times and the ratio of two entrants, and whether that is at most `target`; 0: any.
 bool compare(const std::string& what, const WorldContest::Entrant& a,
              const WorldContest::Entrant& b, double target = 0) {

@@ -31,6 +31,11 @@ inline std::optional<Algorithm> findAlgorithm(std::string_view id) {
   return found == all.end() ? std::nullopt : std::optional(*found);
 }
 
+/// The built-in algorithm of that id, which must be there, with the widest instruction set.
+inline Case caseOf(std::string_view id, AnswerKind answer = AnswerKind::pairs, int threads = 1) {
+  return makeCase(findAlgorithm(id).value(), bestIsa(), threads, "", {}, answer);
+}
+
 /// A case on the contest's scene, with the times of its frames so far.
 struct Contestant {
   std::string name;

@@ -40,13 +40,9 @@ std::unique_ptr<Simulation> simulationOf(const Setting& setting) {
   return simulation;
 }
 
-Case caseOf(const std::string& id) {
-  return makeCase(benchmarks::findAlgorithm(id).value(), bestIsa(), 1, "", {});
-}
-
 std::vector<double> headlessTimes(const Setting& setting) {
   const auto simulation = simulationOf(setting);
-  const CaseResult result = runCase(caseOf(setting.algorithm), *simulation);
+  const CaseResult result = runCase(benchmarks::caseOf(setting.algorithm), *simulation);
   std::vector<double> times;
   for (const FrameTimes& frame : result.repetitions.at(0).frames) {
     times.push_back(static_cast<double>(frame[Phase::total]));

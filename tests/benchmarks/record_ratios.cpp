@@ -24,8 +24,8 @@ namespace {
 
 using namespace broadmark;
 using namespace broadmark::inputs;
+using broadmark::benchmarks::caseOf;
 using broadmark::benchmarks::Contest;
-using broadmark::benchmarks::findAlgorithm;
 
 float sideFor(std::size_t n) { return cubeRoot(10.0 * static_cast<double>(n)); }
 
@@ -104,7 +104,7 @@ bool measure(const Kind& kind, std::size_t count, int rounds) {
   const std::vector<std::vector<Aabb>> frames = {kind.boxes(count, 0, 1), kind.boxes(count, 1, 1)};
   Contest contest(std::string(kind.name), frames);
   const auto add = [&](const std::string& id, int threads) {
-    contest.add(id, makeCase(findAlgorithm(id).value(), bestIsa(), threads, "", {}));
+    contest.add(id, caseOf(id, AnswerKind::pairs, threads));
   };
   const bool two_threads = std::thread::hardware_concurrency() >= 2;
   add("columns", 1);

@@ -27,9 +27,7 @@ void measure(std::uint32_t bodies, std::uint32_t movers, int rounds, std::vector
   SomeMove world(bodies, movers);
   WorldContest contest;
   for (const Curve& curve : curves) {
-    contest.add(curve.id,
-                makeCase(findAlgorithm(curve.id).value(), bestIsa(), 1, "", {}, AnswerKind::events),
-                world);
+    contest.add(curve.id, caseOf(curve.id, AnswerKind::events), world);
   }
   contest.run(3, rounds);
   fmt::print("{:>9} of {:>9}", movers, bodies);

@@ -1,0 +1,15 @@
+// Owning what a C library makes.
+#pragma once
+
+namespace broadmark {
+
+/// A deleter for std::unique_ptr: calls the library's function that destroys or releases an object.
+template <auto destroy>
+struct Destroy {
+  template <class Object>
+  void operator()(Object* object) const {
+    destroy(object);
+  }
+};
+
+}  // namespace broadmark
