@@ -298,8 +298,7 @@ std::string summaryText(const Comparison& comparison) {
   std::string text =
       fmt::format("{}: {}", counted(comparison.cases.size(), "case"), fmt::join(parts, ", "));
   if (const auto drift = comparison.drift()) {
-    fmt::format_to(std::back_inserter(text), "; the machine drifted by up to {:+.1f} %",
-                   100 * *drift);
+    text += fmt::format("; the machine drifted by up to {:+.1f} %", 100 * *drift);
   }
   return text;
 }

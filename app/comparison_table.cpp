@@ -37,11 +37,10 @@ std::string conditionsText(const Comparison& comparison) {
   }
   std::string text;
   for (const auto& [what, how] : found) {
-    fmt::format_to(std::back_inserter(text), "conditions differ: {} ({}){}\n", what,
-                   counted(how.first, "case"),
-                   how.second && !comparison.options.any_conditions
-                       ? ": not compared without --any-conditions"
-                       : "");
+    text += fmt::format("conditions differ: {} ({}){}\n", what, counted(how.first, "case"),
+                        how.second && !comparison.options.any_conditions
+                            ? ": not compared without --any-conditions"
+                            : "");
   }
   return text;
 }

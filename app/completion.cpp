@@ -44,8 +44,8 @@ std::string caseBranches(const std::vector<CommandUsage>& commands, Branch&& bra
   std::string text;
   for (std::size_t i = 1; i <= commands.size(); ++i) {
     const CommandUsage& command = commands[i % commands.size()];
-    fmt::format_to(std::back_inserter(text), "    {})\n{} ;;\n",
-                   command.name.empty() ? "*" : command.name, branch(command));
+    text +=
+        fmt::format("    {})\n{} ;;\n", command.name.empty() ? "*" : command.name, branch(command));
   }
   return text;
 }
@@ -87,7 +87,7 @@ std::string zshArguments(const CommandUsage& command) {
     for (const std::string& name : option.names) {
       const std::string spec =
           fmt::format("{}{}[{}]{}", repeatable, name, escaped(option.doc, "[]:\\"), value);
-      fmt::format_to(std::back_inserter(text), " \\\n        {}", zshQuoted(spec));
+      text += fmt::format(" \\\n        {}", zshQuoted(spec));
     }
   }
   return text + " \\\n        '*:file:_files'";
@@ -98,7 +98,7 @@ std::string zshScript(const std::vector<CommandUsage>& commands) {
   for (const CommandUsage& command : commands) {
     if (command.name.empty()) continue;
     const std::string spec = fmt::format("{}:{}", command.name, escaped(command.summary, ":\\"));
-    fmt::format_to(std::back_inserter(names), "    {}\n", zshQuoted(spec));
+    names += fmt::format("    {}\n", zshQuoted(spec));
   }
   return fmt::format(R"(#compdef broadmark
 _broadmark() {{
@@ -127,8 +127,8 @@ std::string fishScript(const std::vector<CommandUsage>& commands) {
   std::string text;
   const auto add = [&](const std::string& condition, const std::string& what,
                        const std::string& doc) {
-    fmt::format_to(std::back_inserter(text), "complete -c broadmark -n '{}' {} -d {}\n", condition,
-                   what, fishQuoted(doc));
+    text +=
+        fmt::format("complete -c broadmark -n '{}' {} -d {}\n", condition, what, fishQuoted(doc));
   };
   for (const CommandUsage& command : commands) {
     const bool is_main = command.name.empty();

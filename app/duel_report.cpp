@@ -6,15 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "broadmark/json_fields.h"
 #include "table.h"
 #include "words.h"
 
 namespace broadmark {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// "5.3 % slower", "1.8 times as fast".
 std::string changeText(double ratio) {
@@ -139,7 +137,7 @@ std::string duelJson(const DuelResult& result, const RecordingReference& recordi
                                {"ratio", place.ratio.value},
                                {"ci95", {place.ratio.ci95.low, place.ratio.ci95.high}}});
   }
-  return json.dump(1) + "\n";
+  return formatJson(json);
 }
 
 }  // namespace broadmark

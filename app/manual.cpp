@@ -47,8 +47,7 @@ std::string optionEntries(const CommandUsage& command) {
 std::string exitStatusEntries() {
   std::string text;
   for (const auto& [status, meaning] : kExitStatuses.entries) {
-    fmt::format_to(std::back_inserter(text), ".TP\n{}\n{}\n", static_cast<int>(status),
-                   plain(std::string(meaning)));
+    text += fmt::format(".TP\n{}\n{}\n", static_cast<int>(status), plain(std::string(meaning)));
   }
   return text;
 }
@@ -69,8 +68,8 @@ std::string manualPage(const std::vector<CommandUsage>& commands, const std::str
       plain(main.summary), optionEntries(main));
   for (const CommandUsage& command : commands) {
     if (command.name.empty()) continue;
-    fmt::format_to(std::back_inserter(text), ".SS broadmark {}\n{}\n{}", plain(command.name),
-                   plain(command.summary), optionEntries(command));
+    text += fmt::format(".SS broadmark {}\n{}\n{}", plain(command.name), plain(command.summary),
+                        optionEntries(command));
   }
   return text + ".SH EXIT STATUS\n" + exitStatusEntries();
 }

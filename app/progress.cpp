@@ -2,7 +2,6 @@
 
 #include "progress.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>

@@ -192,15 +192,14 @@ void FrameTable::begin(const CaseResult& result) {
 }
 
 void FrameTable::add(const FrameRow& row) {
-  auto out = std::back_inserter(text_);
-  fmt::format_to(out, "{},{},{}", case_, row.repetition, row.frame);
-  for (const auto& phase : kPhases.entries) fmt::format_to(out, ",{}", row.times[phase.value]);
+  text_ += fmt::format("{},{},{}", case_, row.repetition, row.frame);
+  for (const auto& phase : kPhases.entries) text_ += fmt::format(",{}", row.times[phase.value]);
   for (const auto& [which, name] : kFrameCounts.entries) {
     const bool known = which == FrameCount::pairs ||
                        (which == FrameCount::changed_bodies ? row.changes_known : row.checked);
-    fmt::format_to(out, ",{}", known ? fmt::format("{}", row.counts[which]) : "");
+    text_ += fmt::format(",{}", known ? fmt::format("{}", row.counts[which]) : "");
   }
-  fmt::format_to(out, ",{:d},{:d}\n", row.checked, row.disturbed);
+  text_ += fmt::format(",{:d},{:d}\n", row.checked, row.disturbed);
 }
 
 std::string formatCsvResults(const Results& results) {

@@ -17,7 +17,7 @@ namespace {
 /// A number as text; any value as a short text for messages.
 std::string textOf(const Json& value) {
   if (value.is_array()) return "[…]";
-  return value.is_object() ? "{…}" : value.dump();
+  return value.is_object() ? "{…}" : compactJson(value);
 }
 
 void setFromJson(const Parameter& parameter, const Json& value) {

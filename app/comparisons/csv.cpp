@@ -15,14 +15,13 @@ std::string format(const Comparison& comparison) {
       "id,baseline,verdict,status_before,status_after,seconds_before,seconds_after,ratio,ci95_low,"
       "ci95_high,drift\n";
   for (const CaseComparison& compared : comparison.cases) {
-    fmt::format_to(std::back_inserter(text), "{},{},{},{},{}", csvField(compared.id),
-                   csvField(compared.baseline), kVerdicts.nameOf(compared.verdict),
-                   statusName(compared.status_before), statusName(compared.status_after));
+    text += fmt::format("{},{},{},{},{}", csvField(compared.id), csvField(compared.baseline),
+                        kVerdicts.nameOf(compared.verdict), statusName(compared.status_before),
+                        statusName(compared.status_after));
     if (const auto& ratio = compared.ratio) {
-      fmt::format_to(std::back_inserter(text), ",{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{}\n",
-                     ratio->before, ratio->after, ratio->ratio.value, ratio->ratio.ci95.low,
-                     ratio->ratio.ci95.high,
-                     ratio->drift ? fmt::format("{:.6g}", *ratio->drift) : "");
+      text += fmt::format(",{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{}\n", ratio->before, ratio->after,
+                          ratio->ratio.value, ratio->ratio.ci95.low, ratio->ratio.ci95.high,
+                          ratio->drift ? fmt::format("{:.6g}", *ratio->drift) : "");
     } else {
       text += ",,,,,,\n";
     }

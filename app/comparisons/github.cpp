@@ -14,7 +14,7 @@ std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
     if (c == '%' || c == '\n' || c == '\r') {
-      fmt::format_to(std::back_inserter(result), "%{:02X}", static_cast<unsigned>(c));
+      result += fmt::format("%{:02X}", static_cast<unsigned>(c));
     } else {
       result += c;
     }
@@ -27,9 +27,8 @@ std::string format(const Comparison& comparison) {
   for (const CaseComparison& compared : comparison.cases) {
     const bool fails = comparison.fails(compared);
     if (!fails && compared.verdict != Verdict::undecided) continue;
-    fmt::format_to(std::back_inserter(text), "::{} title=broadmark compare::{}\n",
-                   fails ? "error" : "warning",
-                   escaped(fmt::format("{}: {}", compared.id, verdictText(compared))));
+    text += fmt::format("::{} title=broadmark compare::{}\n", fails ? "error" : "warning",
+                        escaped(fmt::format("{}: {}", compared.id, verdictText(compared))));
   }
   return text +
          fmt::format("::notice title=broadmark compare::{}\n", escaped(summaryText(comparison)));

@@ -14,16 +14,16 @@ std::string format(const Comparison& comparison) {
   std::string text =
       "| case | A | B | B/A | 95 % interval | verdict |\n|---|--:|--:|--:|--:|---|\n";
   for (const CaseComparison& compared : comparison.cases) {
-    fmt::format_to(std::back_inserter(text), "| `{}` |", compared.id);
+    text += fmt::format("| `{}` |", compared.id);
     if (const auto& ratio = compared.ratio) {
-      fmt::format_to(std::back_inserter(text), " {} | {} | {:.3f} | {:.3f}…{:.3f} |",
-                     durationText(ratio->before), durationText(ratio->after), ratio->ratio.value,
-                     ratio->ratio.ci95.low, ratio->ratio.ci95.high);
+      text += fmt::format(" {} | {} | {:.3f} | {:.3f}…{:.3f} |", durationText(ratio->before),
+                          durationText(ratio->after), ratio->ratio.value, ratio->ratio.ci95.low,
+                          ratio->ratio.ci95.high);
     } else {
       text += " | | | |";
     }
     const char* bold = comparison.fails(compared) ? "**" : "";
-    fmt::format_to(std::back_inserter(text), " {}{}{} |\n", bold, verdictText(compared), bold);
+    text += fmt::format(" {}{}{} |\n", bold, verdictText(compared), bold);
   }
   text += '\n' + summaryText(comparison) + '\n';
   for (const std::string& note : comparison.notes) text += "\n- " + note;

@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "broadmark/json_fields.h"
 
 namespace broadmark {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Takes a value over if it is there and of the right type.
 template <class Value>
@@ -48,7 +46,7 @@ std::filesystem::path preferencesPath() {
 
 Preferences parsePreferences(std::string_view text) {
   Preferences read;
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = jsonOrNull(text);
   if (!json.is_object()) return read;
   take(json, "dark", read.dark);
   take(json, "scale", read.scale);
@@ -79,7 +77,7 @@ std::string formatPreferences(const Preferences& preferences) {
                      {"bottom", preferences.bottom},
                      {"tabs", preferences.tabs},
                      {"recent", preferences.recent}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return formatJson(json, 2);
 }
 
 Preferences loadPreferences(const std::filesystem::path& path) {

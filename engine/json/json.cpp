@@ -80,6 +80,10 @@ class KeyFinder final : public TopLevelReader {
   bool found_ = false;
 };
 
+std::string dumped(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 Json parseJson(std::string_view text, std::string_view name) {
@@ -90,12 +94,17 @@ Json parseJson(std::string_view text, std::string_view name) {
   }
 }
 
-std::string formatJson(const Json& json, int indent) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + '\n';
+Json jsonOrNull(std::string_view text) {
+  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return json.is_discarded() ? nullptr : json;
 }
 
+std::string formatJson(const Json& json, int indent) { return dumped(json, indent) + '\n'; }
+
+std::string compactJson(const Json& json) { return dumped(json, -1); }
+
 std::string onOneLine(const std::string& text) {
-  const std::string quoted = Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string quoted = compactJson(text);
   return quoted.substr(1, quoted.size() - 2);
 }
 

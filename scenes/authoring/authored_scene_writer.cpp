@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,78 +19,76 @@
 namespace broadmark::scenes {
 namespace {
 
-using Text = fmt::memory_buffer;
-
 /// The shortest text that reads back as the same float, with the sign of zero.
-void append(Text& text, float value) {
+void append(std::string& text, float value) {
   if (value == 0 && std::signbit(value)) {
-    fmt::format_to(std::back_inserter(text), "-0.0");
+    text += "-0.0";
   } else {
-    fmt::format_to(std::back_inserter(text), "{}", value);
+    text += fmt::format("{}", value);
   }
 }
 
-void append(Text& text, std::string_view key, std::span<const float> values) {
-  fmt::format_to(std::back_inserter(text), "\"{}\": [", key);
+void append(std::string& text, std::string_view key, std::span<const float> values) {
+  text += fmt::format("\"{}\": [", key);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text.append(std::string_view(", "));
+    if (i > 0) text += ", ";
     append(text, values[i]);
   }
-  text.push_back(']');
+  text += ']';
 }
 
 /// The same, but nothing when the values are the default bit for bit.
 template <std::size_t count>
-void appendUnless(const std::array<float, count>& standard, Text& text, std::string_view key,
+void appendUnless(const std::array<float, count>& standard, std::string& text, std::string_view key,
                   const std::array<float, count>& values) {
   using Bits = std::array<std::uint32_t, count>;
   if (std::bit_cast<Bits>(values) == std::bit_cast<Bits>(standard)) return;
-  text.append(std::string_view(", "));
+  text += ", ";
   append(text, key, values);
 }
 
-void append(Text& text, const AuthoredBody& body) {
+void append(std::string& text, const AuthoredBody& body) {
   const AuthoredBody standard;
-  text.push_back('{');
+  text += '{';
   if (const auto* sphere = std::get_if<SphereShape>(&body.shape)) {
-    text.append(std::string_view("\"sphere\": "));
+    text += "\"sphere\": ";
     append(text, sphere->radius);
   } else {
     append(text, "box", edgesOf(body.shape));
   }
-  text.append(std::string_view(", "));
+  text += ", ";
   append(text, "position", body.pose.position);
   appendUnless(standard.pose.rotation, text, "rotation", body.pose.rotation);
   appendUnless(standard.linear_velocity, text, "velocity", body.linear_velocity);
   appendUnless(standard.angular_velocity, text, "angular_velocity", body.angular_velocity);
   if (body.mass != standard.mass) {
-    fmt::format_to(std::back_inserter(text), ", \"mass\": {}", body.mass);
+    text += fmt::format(", \"mass\": {}", body.mass);
   }
-  if (body.frozen) text.append(std::string_view(", \"frozen\": true"));
+  if (body.frozen) text += ", \"frozen\": true";
   const auto append_unless = [&](unsigned usual, std::string_view key, unsigned value) {
     if (value == usual) return;
-    fmt::format_to(std::back_inserter(text), ", \"{}\": {}", key, value);
+    text += fmt::format(", \"{}\": {}", key, value);
   };
   append_unless(standard.layer, "layer", body.layer);
   append_unless(standard.appears, "appears", body.appears);
   append_unless(standard.vanishes, "vanishes", body.vanishes);
-  text.push_back('}');
+  text += '}';
 }
 
 /// The stated parameters on one line, numbers as numbers.
-void appendParameters(Text& text, const ParameterValues& stated) {
+void appendParameters(std::string& text, const ParameterValues& stated) {
   AuthoredParameters typed(stated);
   const Json all = parametersJson(typed);
   std::string_view separator;
   for (const auto& [name, value] : all.items()) {
     if (!stated.contains(name)) continue;
-    fmt::format_to(std::back_inserter(text), "{}\"{}\": {}", separator, name, value.dump());
+    text += fmt::format("{}\"{}\": {}", separator, name, compactJson(value));
     separator = ", ";
   }
 }
 
 /// Which layers collide and which are triggers, unless all collide and none is.
-void appendLayers(Text& text, const AuthoredScene& scene) {
+void appendLayers(std::string& text, const AuthoredScene& scene) {
   std::vector<std::string> pairs;
   std::vector<std::size_t> triggers;
   for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
@@ -100,11 +97,10 @@ void appendLayers(Text& text, const AuthoredScene& scene) {
       if (scene.collide.collide(a, b)) pairs.push_back(fmt::format("[{}, {}]", a, b));
     }
   }
-  const auto out = std::back_inserter(text);
   if (scene.collide != LayerMatrix::all()) {
-    fmt::format_to(out, ",\n\"collide\": [{}]", fmt::join(pairs, ", "));
+    text += fmt::format(",\n\"collide\": [{}]", fmt::join(pairs, ", "));
   }
-  if (!triggers.empty()) fmt::format_to(out, ",\n\"triggers\": [{}]", fmt::join(triggers, ", "));
+  if (!triggers.empty()) text += fmt::format(",\n\"triggers\": [{}]", fmt::join(triggers, ", "));
 }
 
 }  // namespace
@@ -112,24 +108,24 @@ void appendLayers(Text& text, const AuthoredScene& scene) {
 std::string formatAuthoredScene(const AuthoredScene& scene) {
   requireSound(scene);
   constexpr std::size_t kUsualBody = 100;
-  Text text;
+  std::string text;
   text.reserve(kUsualBody * scene.bodies.size());
-  fmt::format_to(std::back_inserter(text), "{{\n\"schema\": \"{}\",\n\"name\": {},\n\"world\": {{",
-                 kAuthoredSceneSchema, Json(scene.name).dump());
+  text += fmt::format("{{\n\"schema\": \"{}\",\n\"name\": {},\n\"world\": {{", kAuthoredSceneSchema,
+                      compactJson(scene.name));
   append(text, "min", std::span(scene.world.min).first(3));
-  text.append(std::string_view(", "));
+  text += ", ";
   append(text, "max", std::span(scene.world.max).first(3));
-  text.append(std::string_view("},\n\"parameters\": {"));
+  text += "},\n\"parameters\": {";
   appendParameters(text, scene.parameters);
-  text.push_back('}');
+  text += '}';
   appendLayers(text, scene);
-  text.append(std::string_view(",\n\"bodies\": ["));
+  text += ",\n\"bodies\": [";
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    text.append(std::string_view(i == 0 ? "\n" : ",\n"));
+    text += i == 0 ? "\n" : ",\n";
     append(text, scene.bodies[i]);
   }
-  text.append(std::string_view("\n]\n}\n"));
-  return fmt::to_string(text);
+  text += "\n]\n}\n";
+  return text;
 }
 
 }  // namespace broadmark::scenes

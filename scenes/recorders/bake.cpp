@@ -45,8 +45,7 @@ Json sidecarJson(Simulation& simulation, const std::string& hash) {
 
 /// The JSON object in a file; empty if the file holds anything else. Throws InputError.
 Sidecar readSidecar(const fs::path& path) {
-  const std::string text = readTextFile(path, kSidecarLimitBytes);
-  Sidecar json = Sidecar::parse(text, nullptr, /*allow_exceptions=*/false);
+  const Sidecar json = jsonOrNull(readTextFile(path, kSidecarLimitBytes));
   return json.is_object() ? json : Sidecar::object();
 }
 

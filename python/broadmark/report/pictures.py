@@ -7,7 +7,9 @@ no file here is simulated again, as far as the frame that is drawn.
 from __future__ import annotations
 
 import base64
+import concurrent.futures
 import contextlib
+import os
 import pathlib
 import tempfile
 import textwrap
@@ -36,27 +38,39 @@ def draw_pictures(
         find_program()
     except InputError as error:
         return [], [f"No pictures of the scenes: {error}."]
-    pictures: list[dict[str, Any]] = []
-    notes = []
-    for scene, numbers in _by_scene(recordings):
-        if len(pictures) == MOST_PICTURES:
-            notes.append(f"{scene}: no picture: {MOST_PICTURES} are enough.")
-            continue
-        reason = "too large to be drawn quickly"
-        for number in numbers:
-            if not _is_quick(recordings[number], sources[number]):
-                continue
-            frame = min(LATEST_FRAME, recordings[number]["frames"])
-            try:
-                uri = _drawn(recordings[number], sources[number], frame)
-            except InputError as error:
-                reason = textwrap.shorten(str(error), 120, placeholder=" …")
-                continue
-            pictures.append({"recording": number, "frame": frame, "uri": uri})
-            break
-        else:
-            notes.append(f"{scene}: no picture: {reason}.")
+    scenes = list(_by_scene(recordings))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as side_by_side:
+        found = list(
+            side_by_side.map(
+                lambda scene: _first_drawn(scene[1], recordings, sources), scenes[:MOST_PICTURES]
+            )
+        )
+    found += [f"{MOST_PICTURES} are enough"] * (len(scenes) - len(found))
+    pictures = [one for one in found if isinstance(one, dict)]
+    notes = [
+        f"{scene}: no picture: {reason}."
+        for (scene, _), reason in zip(scenes, found)
+        if isinstance(reason, str)
+    ]
     return pictures, notes
+
+
+def _first_drawn(
+    numbers: list[int], recordings: list[dict[str, Any]], sources: list[list[str]]
+) -> dict[str, Any] | str:
+    """A picture of the first of these recordings that can be drawn, or why there is none."""
+    reason = "too large to be drawn quickly"
+    for number in numbers:
+        if not _is_quick(recordings[number], sources[number]):
+            continue
+        frame = min(LATEST_FRAME, recordings[number]["frames"])
+        try:
+            uri = _drawn(recordings[number], sources[number], frame)
+        except InputError as error:
+            reason = textwrap.shorten(str(error), 120, placeholder=" …")
+            continue
+        return {"recording": number, "frame": frame, "uri": uri}
+    return reason
 
 
 def _by_scene(recordings: list[dict[str, Any]]) -> Iterator[tuple[str, list[int]]]:

@@ -20,9 +20,15 @@ using Json = nlohmann::ordered_json;
 /// Parses a text; `name` stands for it in messages. Throws InputError with line and column.
 Json parseJson(std::string_view text, std::string_view name);
 
+/// The same; null where parseJson() would throw.
+Json jsonOrNull(std::string_view text);
+
 /// As a text that ends in a line feed; `indent` spaces a level. Texts that are not UTF-8 (names may
 /// come from file names) are made so.
 std::string formatJson(const Json& json, int indent = 1);
+
+/// The same on one line, without a line feed.
+std::string compactJson(const Json& json);
 
 /// The value, or null.
 template <class T>
