@@ -37,8 +37,8 @@ double quantileOf(std::span<double> values, double part) {
 }
 
 AxisSample sampleAxis(std::span<const Aabb> boxes, int axis) {
-  std::array<double, kSample> centre_memory;
-  std::array<double, kSample> edge_memory;
+  std::array<double, kSample> centre_memory{};
+  std::array<double, kSample> edge_memory{};
   const std::size_t count = std::min(boxes.size(), kSample);
   const std::span centres(centre_memory.data(), count);
   const std::span edges(edge_memory.data(), count);
