@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "axis_overlap.h"
+#include "prefetch.h"
 
 namespace broadmark::tracy {
 namespace {
@@ -176,6 +177,7 @@ void Cell::arrive(std::uint32_t slot, CellWork& work) {
 /// Reports all that the body overlaps at one moment and not at the other.
 template <class Report>
 void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const {
+  lists_[0].forEachMeeting(slot, [&](std::uint32_t other) { prefetch(&slots_[other]); });
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) {
     if (overlaps(box(slot, with), box(other, with)) && isOurs(slot, other, with) &&
         !overlaps(box(slot, without), box(other, without))) {
