@@ -31,6 +31,7 @@
 #include "broadmark/algorithm.h"
 #include "cell_buckets.h"
 #include "cell_grid.h"
+#include "prefetch.h"
 #include "row_shares.h"
 #include "simd/overlap_kernels.h"
 
@@ -207,6 +208,8 @@ class Grid final : public PairBroadPhase {
     std::vector<Aabb>& boxes = worker.boxes;
     boxes.resize(range.end - range.begin);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const std::size_t ahead = range.begin + i + kPrefetchAhead;
+      if (ahead < copies_.size()) prefetch(&boxes_[bodyNumber(copies_[ahead])]);
       boxes[i] = boxes_[bodyNumber(copies_[range.begin + i])];
     }
     const CellBuckets buckets = search_ == Search::sweep ? CellBuckets(boxes) : CellBuckets();

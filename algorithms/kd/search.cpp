@@ -15,6 +15,7 @@
 
 #include "boundary_near.h"
 #include "moments.h"
+#include "prefetch.h"
 
 namespace broadmark::kd {
 namespace {
@@ -91,6 +92,7 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
   std::size_t moving = 0;
   std::size_t still = 0;
   for (const std::uint32_t body : own) {
+    prefetch(&scene_->boxes[body]);
     const std::size_t moves = scene_->moving[body];
     arranged_[moving] = own_still_[still] = body;
     moving += moves;
