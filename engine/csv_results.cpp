@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <iterator>
 
 #include "broadmark/csv.h"
 #include "broadmark/frame_table.h"

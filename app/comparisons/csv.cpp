@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "broadmark/csv.h"
 #include "comparison.h"
 

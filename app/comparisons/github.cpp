@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "comparison.h"
 
 namespace broadmark::comparisons::github {
