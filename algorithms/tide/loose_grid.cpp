@@ -280,7 +280,6 @@ void LooseGrid::relocate(std::uint32_t from, std::uint32_t to) {
 void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes,
                          ThreadTeam& team) {
   constexpr std::size_t kFew = 256;  // these find everything in the caches anyway
-  constexpr std::size_t kAhead = 16;
   const auto add = [&](std::uint32_t body) {
     Move& move = moves_.emplace_back();
     move.now = boxes[body];
@@ -299,25 +298,25 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
   sorter_.resize(bodies.size(), team.size());
   const std::span<SortEntry> order = sorter_.entries();
   for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i + kAhead < order.size()) prefetch(&boxes[bodies[i + kAhead]]);
+    if (i + kPrefetchAhead < order.size()) prefetch(&boxes[bodies[i + kPrefetchAhead]]);
     const Aabb& box = boxes[bodies[i]];
     order[i] = {isEmpty(box) ? 0 : placeOf(box).cell, bodies[i]};
   }
   sorter_.sort(team);
   const std::span<const SortEntry> sorted = sorter_.entries();
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (i + kAhead < sorted.size()) prefetch(&boxes[sorted[i + kAhead].body]);
+    if (i + kPrefetchAhead < sorted.size()) prefetch(&boxes[sorted[i + kPrefetchAhead].body]);
     add(sorted[i].body);
   }
 }
 
 void LooseGrid::update() {
-  constexpr std::size_t kAhead = 16;
   const std::size_t count = moves_.size();
   for (std::size_t move = 0; move < count; ++move) {
-    if (move + 2 * kAhead < count) prefetch(&entry_of_[moves_[move + 2 * kAhead].body]);
-    if (move + kAhead < count) {
-      const std::uint32_t entry = entry_of_[moves_[move + kAhead].body];
+    if (move + 2 * kPrefetchAhead < count)
+      prefetch(&entry_of_[moves_[move + 2 * kPrefetchAhead].body]);
+    if (move + kPrefetchAhead < count) {
+      const std::uint32_t entry = entry_of_[moves_[move + kPrefetchAhead].body];
       if (entry != kNowhere) prefetch(&entries_[entry]);
     }
     updateOne(static_cast<std::uint32_t>(move));
