@@ -82,7 +82,7 @@ class Kd final : public BroadPhase {
     std::vector<std::uint32_t> bodies = first.presentBodies();
     rest_.build(stored_, bodies, filter_, team_->size());
     std::erase_if(bodies, [this](std::uint32_t body) { return rest_.holds(body); });
-    tree_.build(stored_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);
+    tree_.build(stored_, moving_, bodies, static_cast<std::size_t>(objects_per_leaf_), *team_);
     if (reports_events_) findFirstEvents();
   }
 

@@ -26,6 +26,7 @@ struct Node {
   std::uint32_t work = 0;   ///< own bodies of the touched nodes of the subtree
   bool own_touched = true;  ///< in this frame own bodies moved, came or went
   bool touched = true;      ///< here or anywhere below; else nothing of this node has changed
+  bool unsettled = false;   ///< own bodies that did not move may be on one side of the plane, too
   bool refitted = false;    ///< in parallel, before its parent
 
   [[nodiscard]] bool isLeaf() const { return children == nullptr; }

@@ -67,6 +67,8 @@ void Searcher::enter(const Node& node, std::size_t begin, std::uint64_t work_bef
 void Searcher::visit(const Node& node, std::size_t begin, std::uint64_t work_before, List list) {
   const std::size_t left_size = node.isLeaf() ? 0 : node.left().size;
   arrange(scene_->tree.bodies().subspan(begin + left_size, node.own), list);
+  if (node.isLeaf() && testsWanted() == 0) return;
+  gatherBoxes();
   if (isMine(work_before)) test();
   if (node.isLeaf()) return;
 
@@ -92,7 +94,6 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
   std::size_t moving = 0;
   std::size_t still = 0;
   for (const std::uint32_t body : own) {
-    prefetch(&scene_->boxes[body]);
     const std::size_t moves = scene_->moving[body];
     arranged_[moving] = own_still_[still] = body;
     moving += moves;
@@ -107,19 +108,29 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
   sections_.listed_moving = moving + (list.end - list.still);
   sections_.own_still = count - still;
   sections_.end = count;
+}
 
+void Searcher::gatherBoxes() {
+  const std::size_t count = sections_.end;
   boxes_tested_ += count;
   resize(boxes_, capacity_, count);
-  for (std::size_t i = 0; i < count; ++i) boxes_.set(i, scene_->boxes[arranged_[i]]);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i + kPrefetchAhead < count) prefetch(&scene_->boxes[arranged_[i + kPrefetchAhead]]);
+    boxes_.set(i, scene_->boxes[arranged_[i]]);
+  }
+}
+
+/// Tests of two boxes that are needed if all are.
+std::size_t Searcher::testsWanted() const {
+  const Sections& s = sections_;
+  return s.listed_still * s.end + (s.own_still - s.listed_moving) * (s.end - s.own_still);
 }
 
 void Searcher::test() {
-  const Sections& s = sections_;
-  const std::size_t tests =
-      s.listed_still * s.end + (s.own_still - s.listed_moving) * (s.end - s.own_still);
+  const std::size_t tests = testsWanted();
   if (tests == 0) return;
   hits_.clear();
-  if (tests <= tests_per_sorted_ * s.end) {
+  if (tests <= tests_per_sorted_ * sections_.end) {
     testTiles();
   } else {
     sweep();

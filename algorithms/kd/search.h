@@ -58,6 +58,8 @@ class Searcher {
   void visit(const Node& node, std::size_t begin, std::uint64_t work_before, List list);
   [[nodiscard]] bool isMine(std::uint64_t work_before) const;
   void arrange(std::span<const std::uint32_t> own, List list);
+  void gatherBoxes();
+  [[nodiscard]] std::size_t testsWanted() const;
   void test();
   void testTiles();
   void sweep();

@@ -9,6 +9,9 @@
 // not help, is replaced by its larger child (erase); a leaf that holds too much is split
 // (partition).
 //
+// Both look only at bodies that moved, came or go: the others are where they belong, but for nodes
+// that have got another plane or cell.
+//
 // For several workers the tree is cut into subtrees whose slices, being disjoint, can be worked on
 // at the same time; what lies above them is done by one, after the first pass and before the
 // second.
@@ -61,9 +64,11 @@ void forgetTouched(Node& node) {
 
 }  // namespace
 
-void Tree::build(std::span<const Aabb> boxes, std::span<const std::uint32_t> bodies,
-                 std::size_t objects_per_leaf, ThreadTeam& team) {
+void Tree::build(std::span<const Aabb> boxes, std::span<const std::uint8_t> moving,
+                 std::span<const std::uint32_t> bodies, std::size_t objects_per_leaf,
+                 ThreadTeam& team) {
   boxes_ = boxes;
+  moving_ = moving;
   objects_per_leaf_ = objects_per_leaf;
   team_ = &team;
   workers_.resize(static_cast<std::size_t>(team.size()));
@@ -208,7 +213,7 @@ void Tree::refit(Node& node, const Place& place, Scope scope, Worker& worker) {
     adoptEscaped(node, place, worker);
   }
   if (place.side != Side::root && (node.own_touched || scope == Scope::all)) {
-    letEscape(node, place, worker);
+    letEscape(node, place, scope, worker);
   }
 }
 
@@ -222,8 +227,10 @@ void Tree::adoptEscaped(Node& node, const Place& place, Worker& worker) {
   receive(node, begin + node.own, from_right, worker);
 }
 
-void Tree::letEscape(Node& node, const Place& place, Worker& worker) {
-  const auto holds = [&](std::uint32_t body) { return place.cell.holds(boxes_[body]); };
+void Tree::letEscape(Node& node, const Place& place, Scope scope, Worker& worker) {
+  const auto holds = [&](std::uint32_t body) {
+    return (scope == Scope::touched && moving_[body] == 0) || place.cell.holds(boxes_[body]);
+  };
   const std::size_t left_size = node.isLeaf() ? 0 : node.left().size;
   const std::size_t begin = place.begin + left_size;
   const std::size_t end = begin + node.own;
@@ -249,8 +256,9 @@ void Tree::expelGone() {
   if (!root_.own_touched) return;
   const std::size_t begin = root_.isLeaf() ? 0 : root_.left().size;
   const std::size_t end = begin + root_.own;
-  std::uint32_t* const gone = std::partition(
-      at(begin), at(end), [this](std::uint32_t body) { return boxes_[body] != kGone; });
+  std::uint32_t* const gone = std::partition(at(begin), at(end), [this](std::uint32_t body) {
+    return moving_[body] == 0 || boxes_[body] != kGone;
+  });
   const auto count = static_cast<std::uint32_t>(at(end) - gone);
   if (count == 0) return;
   for (const std::uint32_t* body = gone; body != at(end); ++body) homes_[*body] = nullptr;
@@ -296,11 +304,13 @@ void Tree::settle(Node& node, const Place& place, Worker& worker, bool defer_sma
 
 void Tree::waterfall(Node& node, const Place& place, Worker& worker) {
   if (!node.own_touched) return;
+  const bool all = std::exchange(node.unsettled, false);
+  const auto may_go = [&](std::uint32_t body) { return all || moving_[body] != 0; };
   const auto is_left = [&](std::uint32_t body) {
-    return isLeft(boxes_[body], node.axis, node.plane);
+    return may_go(body) && isLeft(boxes_[body], node.axis, node.plane);
   };
   const auto is_not_right = [&](std::uint32_t body) {
-    return !isRight(boxes_[body], node.axis, node.plane);
+    return !may_go(body) || !isRight(boxes_[body], node.axis, node.plane);
   };
   const std::size_t begin = place.begin + node.left().size;
   const std::size_t end = begin + node.own;
@@ -309,6 +319,8 @@ void Tree::waterfall(Node& node, const Place& place, Worker& worker) {
   node.own = static_cast<std::uint32_t>(go_right - stay);
   giveToLeft(node.left(), place.begin, static_cast<std::size_t>(stay - at(begin)), worker);
   giveToRight(node.right(), end, static_cast<std::size_t>(at(end) - go_right), worker);
+  node.left().unsettled |= all;
+  node.right().unsettled |= all;
 }
 
 void Tree::trim(Node& node, const Place& place, Worker& worker) {
@@ -329,7 +341,7 @@ bool Tree::translate(Node& node, const Place& place, Worker& worker) {
 
   ++worker.counts.translations;
   const float before = std::exchange(node.plane, mean);
-  node.own_touched = true;
+  node.own_touched = node.unsettled = true;
   // One child's cell has become smaller, and all its bodies have to be looked at.
   if (mean < before) {
     refit(node.left(), leftPlace(node, place), Scope::all, worker);
@@ -360,7 +372,7 @@ void Tree::erase(Node& node, const Place& place, Worker& worker) {
   node.plane = kept.plane;
   node.axis = kept.axis;
   node.own = kept.own;
-  node.own_touched = true;
+  node.own_touched = node.unsettled = true;
   nodes_.release(pair);
   makeHome(node, place);
 }
@@ -371,7 +383,7 @@ bool Tree::partition(Node& node, const Place& place, Worker& worker) {
   if (!findSplit(node, {at(place.begin), node.own}, worker)) return false;
   ++worker.counts.partitions;
   node.setChildren(nodes_.take());
-  node.own_touched = true;
+  node.own_touched = node.unsettled = true;
   return true;
 }
 

@@ -53,10 +53,11 @@ struct UpdateCounts {
 
 class Tree {
  public:
-  /// Puts these bodies into a new tree. `boxes`, one for every body that may ever be in it, and
-  /// `team` must outlive the tree; leaves are split when they hold more than `objects_per_leaf`.
-  void build(std::span<const Aabb> boxes, std::span<const std::uint32_t> bodies,
-             std::size_t objects_per_leaf, ThreadTeam& team);
+  /// Puts these bodies into a new tree. `boxes` and `moving`, one for every body that may ever be
+  /// in it, and `team` must outlive the tree; leaves are split when they hold more than
+  /// `objects_per_leaf`. `moving` is 1 for the bodies touched or admitted in an update.
+  void build(std::span<const Aabb> boxes, std::span<const std::uint8_t> moving,
+             std::span<const std::uint32_t> bodies, std::size_t objects_per_leaf, ThreadTeam& team);
 
   /// The box of a body that is not there.
   static constexpr Aabb kGone = {{Cell::kFar, Cell::kFar, Cell::kFar, 0},
@@ -107,7 +108,7 @@ class Tree {
     std::vector<std::uint32_t> aside;  ///< the smaller block of a rotation
     std::vector<float> centres;        ///< room for finding their median
   };
-  /// Whether refit looks at touched nodes only, or at all, because the cell has become smaller.
+  /// Whether refit looks at what moves only, or at all, because the cell has become smaller.
   enum class Scope { touched, all };
 
   static Place leftPlace(const Node& node, const Place& place);
@@ -123,7 +124,7 @@ class Tree {
   void findTasks(Node& node, const Place& place);
   void refit(Node& node, const Place& place, Scope scope, Worker& worker);
   void adoptEscaped(Node& node, const Place& place, Worker& worker);
-  void letEscape(Node& node, const Place& place, Worker& worker);
+  void letEscape(Node& node, const Place& place, Scope scope, Worker& worker);
 
   void expelGone();
 
@@ -150,6 +151,7 @@ class Tree {
   [[nodiscard]] std::string validateNode(const Node& node, const Place& place) const;
 
   std::span<const Aabb> boxes_;
+  std::span<const std::uint8_t> moving_;
   std::size_t objects_per_leaf_ = 0;
   ThreadTeam* team_ = nullptr;
   Node root_;
