@@ -198,6 +198,34 @@ TEST(Kd, FollowsAStreamThroughSpace) {
   follow(leaf(30), frames);
 }
 
+// A crowd jumps from place to place among more bodies that stand still: nodes get other planes and
+// other bodies, and with them those that did not move have to go where they now belong.
+TEST(Kd, RebuildsNodesAroundBodiesThatStandStill) {
+  std::uint64_t translations = 0;
+  std::uint64_t erasures = 0;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    std::vector<Aabb> boxes = inputs::assorted(400, 0, seed);
+    Frames frames = {boxes};
+    for (std::uint32_t frame = 1; frame < 20; ++frame) {
+      Random random(seed, frame);
+      const Vec3 place = random.inCube(inputs::cubeRoot(10.0 * 400));
+      for (std::size_t i = 0; i < 190; ++i) {
+        const Vec3 apart = randomWay(random, 4);
+        boxes[i] = inputs::boxAt({place[0] + apart[0], place[1] + apart[1], place[2] + apart[2]},
+                                 {1, 1, 1});
+      }
+      frames.push_back(boxes);
+    }
+    follow("kd", 1, leaf(5), frames, [&](const BroadPhase& broad_phase, std::size_t frame) {
+      auto counters = countersOf(broad_phase);
+      translations += frame > 1 ? counters.at("translations") : 0;
+      erasures += frame > 1 ? counters.at("erasures") : 0;
+    });
+  }
+  EXPECT_GT(translations, 0U);
+  EXPECT_GT(erasures, 0U);
+}
+
 // All bodies into one point, where no plane divides them, and back.
 TEST(Kd, CollapsesAndGrowsAgain) {
   const std::vector<Aabb> start = inputs::uniform(700, 0, 5);
