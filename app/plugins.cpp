@@ -1,10 +1,11 @@
-// Loading algorithms from shared libraries.
+// Loading algorithms and physics engines from shared libraries.
 
 #include "plugins.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <span>
@@ -15,6 +16,8 @@
 #include "broadmark/files.h"
 #include "broadmark/hasher.h"
 #include "broadmark/plugin.h"
+#include "broadmark/scenes/engine_plugin.h"
+#include "broadmark/scenes/simulation.h"
 #include "cases.h"
 
 namespace broadmark {
@@ -28,8 +31,8 @@ std::string reason(const std::string& path) {
   return std::string(message);
 }
 
-/// What the library in `file` exports.
-const Plugin& load(const std::string& file) {
+/// The library in `file`, which stays loaded.
+void* load(const std::string& file) {
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
   const std::string path = std::filesystem::absolute(file).string();
@@ -37,17 +40,25 @@ const Plugin& load(const std::string& file) {
   if (library == nullptr) {
     throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, reason(path)));
   }
-  const auto* plugin = static_cast<const Plugin*>(::dlsym(library, kPluginSymbol));
-  if (plugin == nullptr) {
-    throw InputError(
-        fmt::format("--plugin: {}: exports no '{}': a library with BROADMARK_PLUGIN is expected",
-                    file, kPluginSymbol));
+  if (::dlsym(library, kAlgorithmPluginSymbol) == nullptr &&
+      ::dlsym(library, scenes::kEnginePluginSymbol) == nullptr) {
+    throw InputError(fmt::format(
+        "--plugin: {}: exports neither '{}' nor '{}': a library with BROADMARK_PLUGIN or "
+        "BROADMARK_ENGINE_PLUGIN is expected",
+        file, kAlgorithmPluginSymbol, scenes::kEnginePluginSymbol));
   }
-  if (std::string_view(plugin->interface) != kPluginInterface) {
+  return library;
+}
+
+/// What the library in `file` exports under this name; null: nothing.
+template <class Entry>
+const Plugin<Entry>* exportOf(const std::string& file, const char* symbol) {
+  const auto* plugin = static_cast<const Plugin<Entry>*>(::dlsym(load(file), symbol));
+  if (plugin != nullptr && std::string_view(plugin->interface) != kPluginInterface) {
     throw InputError(fmt::format("--plugin: {}: built for Broadmark {}, this is {}: build it again",
                                  file, plugin->interface, kPluginInterface));
   }
-  return *plugin;
+  return plugin;
 }
 
 /// Whether an id can be typed in a list of ids without meaning something else.
@@ -56,23 +67,62 @@ bool isId(std::string_view id) {
   return !id.empty() && id != "all" && id.find_first_not_of(kAllowed) == std::string_view::npos;
 }
 
+/// Says what is wrong with an entry of a plug-in.
+[[noreturn]] void refuse(const std::string& file, std::string_view kind, std::string_view id,
+                         std::string_view what) {
+  throw InputError(fmt::format("--plugin: {}: {} '{}': {}", file, kind, id, what));
+}
+
+void requireId(const std::string& file, std::string_view kind, std::string_view id) {
+  if (isId(id)) return;
+  refuse(file, kind, id,
+         "its id must be made of lower-case letters, digits and -_., and must not be 'all'");
+}
+
+/// `plugin`: of the one that has the id already.
+[[noreturn]] void refuseTaken(const std::string& file, std::string_view kind, std::string_view id,
+                              const std::string& plugin) {
+  refuse(file, kind, id,
+         fmt::format("its id is already taken by one {}",
+                     plugin.empty() ? "built in" : "of " + plugin));
+}
+
 /// Throws InputError for an algorithm that cannot be chosen or made.
 void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& known,
                   const std::string& file) {
-  const auto refuse = [&](std::string_view what) {
-    throw InputError(fmt::format("--plugin: {}: algorithm '{}': {}", file, algorithm.id, what));
-  };
-  if (!isId(algorithm.id)) {
-    refuse("its id must be made of lower-case letters, digits and -_., and must not be 'all'");
+  constexpr std::string_view kKind = "algorithm";
+  requireId(file, kKind, algorithm.id);
+  if (!algorithm.create || !algorithm.create()) {
+    refuse(file, kKind, algorithm.id, "creates no instance");
   }
-  if (!algorithm.create || !algorithm.create()) refuse("creates no instance");
   if (const Algorithm* other = findAlgorithm(algorithm.id, known)) {
-    refuse(fmt::format("its id is already taken by one {}",
-                       other->plugin.empty() ? "built in" : "of " + other->plugin));
+    refuseTaken(file, kKind, algorithm.id, other->plugin);
   }
 }
 
-PluginBuild buildOf(const Plugin& plugin, const std::string& file) {
+/// Throws InputError for an engine that cannot be chosen or made, or whose parameters would hide
+/// those of a scene.
+void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
+  constexpr std::string_view kKind = "engine";
+  const std::string& id = engine.listing.id;
+  requireId(file, kKind, id);
+  for (const EngineListing& other : availableEngines()) {
+    if (other.id == id) refuseTaken(file, kKind, id, other.plugin);
+  }
+  const auto instance = engine.create == nullptr ? nullptr : engine.create({});
+  if (!instance) refuse(file, kKind, id, "creates no instance");
+  for (const SceneListing& scene : builtinScenes()) {
+    const std::vector<std::string> taken = parameterNames(*makeSimulation(scene.id));
+    for (const std::string& name : parameterNames(*instance)) {
+      if (std::ranges::find(taken, name) == taken.end()) continue;
+      refuse(
+          file, kKind, id,
+          fmt::format("its parameter '{}' needs another name: scene '{}' has one", name, scene.id));
+    }
+  }
+}
+
+PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
   Hasher hasher;
   const std::string bytes = readTextFile(file);
   hasher.add(std::as_bytes(std::span(bytes)));
@@ -81,16 +131,12 @@ PluginBuild buildOf(const Plugin& plugin, const std::string& file) {
           .unoptimised = !plugin.optimised};
 }
 
-void add(std::vector<Algorithm>& known, const std::string& file) {
-  const Plugin& plugin = load(file);
-  const PluginBuild build = buildOf(plugin, file);
+/// Calls add(entry) for what a library exports under this name.
+template <class Entry, class Add>
+void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add) {
   try {
-    for (Algorithm& algorithm : plugin.variants()) {
-      requireSound(algorithm, known, file);
-      algorithm.plugin = file;
-      algorithm.plugin_build = build;
-      known.push_back(std::move(algorithm));
-    }
+    std::vector<Entry> entries = plugin.entries();
+    for (Entry& entry : entries) add(entry);
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
@@ -102,8 +148,30 @@ void add(std::vector<Algorithm>& known, const std::string& file) {
 
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
   std::vector<Algorithm> algorithms = builtinAlgorithms();
-  for (const std::string& file : plugins) add(algorithms, file);
+  for (const std::string& file : plugins) {
+    const auto* plugin = exportOf<Algorithm>(file, kAlgorithmPluginSymbol);
+    if (plugin == nullptr) continue;
+    const PluginBuild build = buildOf(*plugin, file);
+    forEachEntry(*plugin, file, [&](Algorithm& algorithm) {
+      requireSound(algorithm, algorithms, file);
+      algorithm.plugin = file;
+      algorithm.plugin_build = build;
+      algorithms.push_back(std::move(algorithm));
+    });
+  }
   return algorithms;
+}
+
+void addEnginesOf(const std::vector<std::string>& plugins) {
+  for (const std::string& file : plugins) {
+    const auto* plugin = exportOf<scenes::EngineEntry>(file, scenes::kEnginePluginSymbol);
+    if (plugin == nullptr) continue;
+    forEachEntry(*plugin, file, [&](scenes::EngineEntry& engine) {
+      requireSound(engine, file);
+      engine.listing.plugin = file;
+      scenes::addEngine(std::move(engine));
+    });
+  }
 }
 
 }  // namespace broadmark

@@ -1,4 +1,5 @@
-// The available algorithms: the built-in ones, and those of shared libraries loaded with --plugin.
+// The available algorithms and physics engines: the built-in ones, and those of shared libraries
+// loaded with --plugin.
 #pragma once
 
 #include <string>
@@ -12,5 +13,10 @@ namespace broadmark {
 /// which stay loaded until the program ends. Throws InputError for a file that is not such a
 /// library, was built with other headers, or has an algorithm whose id is unfit or already taken.
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins);
+
+/// Adds the engines of these libraries to the available ones (see broadmark/scenes/engine_plugin.h)
+/// for the rest of the process. Throws InputError likewise, and for an engine with a parameter that
+/// a scene has, too.
+void addEnginesOf(const std::vector<std::string>& plugins);
 
 }  // namespace broadmark

@@ -19,7 +19,7 @@ namespace broadmark::scenes {
 
 #define LIST "engine_list.inc"
 #define ENTRY_TYPE EngineEntry
-#define ENTRIES engineEntries
+#define ENTRIES builtinEngineEntries
 #include "entries.inl"
 
 #define LIST "replay_list.inc"
@@ -42,6 +42,24 @@ namespace broadmark::scenes {
 #define ENTRIES brushEntries
 #include "entries.inl"
 
+namespace {
+
+/// The engines that were added to the built-in ones.
+std::vector<EngineEntry>& addedEngines() {
+  static std::vector<EngineEntry> added;
+  return added;
+}
+
+}  // namespace
+
+std::vector<EngineEntry> engineEntries() {
+  std::vector<EngineEntry> all = builtinEngineEntries();
+  std::ranges::copy(addedEngines(), std::back_inserter(all));
+  return all;
+}
+
+void addEngine(EngineEntry engine) { addedEngines().push_back(std::move(engine)); }
+
 }  // namespace broadmark::scenes
 
 namespace broadmark {
@@ -59,7 +77,7 @@ auto listingsOf(const std::vector<Entry>& entries) {
 
 std::vector<SceneListing> builtinScenes() { return listingsOf(scenes::sceneEntries()); }
 
-std::vector<EngineListing> builtinEngines() {
+std::vector<EngineListing> availableEngines() {
   auto listings = listingsOf(scenes::engineEntries());
   std::ranges::move(listingsOf(scenes::replayEntries()), std::back_inserter(listings));
   return listings;

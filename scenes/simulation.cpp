@@ -80,7 +80,7 @@ class BuiltinSimulation final : public PhysicsSimulation {
 /// Throws InputError unless there is an engine of this id, which may replay recordings.
 void requireEngine(const std::string& id) {
   std::vector<std::string> known;
-  for (const EngineListing& listing : builtinEngines()) known.push_back(listing.id);
+  for (const EngineListing& listing : availableEngines()) known.push_back(listing.id);
   if (std::ranges::find(known, id) == known.end()) {
     throw InputError(unknownName("engine", id, known));
   }

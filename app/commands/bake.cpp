@@ -194,6 +194,7 @@ std::function<int()> add(CLI::App& app) {
   BakeOptions& bake = options->bake;
   addScenes(app, *options);
   addSceneOptions(app, bake.scene);
+  addEnginePlugins(app);
   addRecorders(app, bake.scene.recorders);
   addParameters(app, bake.parameters);
   addPath(app, "--output", "DIR", bake.output,

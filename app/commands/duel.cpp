@@ -158,6 +158,7 @@ std::function<int()> add(CLI::App& app) {
   addDevice(app, options->device);
   addAnswer(app, options->answer);
   addSceneOptions(app, options->scene);
+  addEnginePlugins(app);
   addParameters(app, options->parameters);
   addReadingOptions(app, options->reading);
   addHosts(app, options->hosts);

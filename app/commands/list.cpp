@@ -132,8 +132,10 @@ void listScenes() {
 
 void listEngines() {
   fmt::print("Engines, with the parameters that come with them (default, range)\n");
-  for (const EngineListing& engine : builtinEngines()) {
-    printParagraph(fmt::format("{}: {}", engine.id, engine.summary));
+  for (const EngineListing& engine : availableEngines()) {
+    std::string text = fmt::format("{}: {}", engine.id, engine.summary);
+    if (!engine.plugin.empty()) text += fmt::format(". From {}", engine.plugin);
+    printParagraph(text);
     fmt::print("{}", parameterLines(*engineParameters(engine.id)));
   }
 }

@@ -48,7 +48,17 @@ def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, 
 @pytest.fixture(scope="session")
 def faulty_plugin() -> str:
     """A plug-in with an algorithm, `faulty`, that is wrong on purpose."""
-    plugin = pathlib.Path(find_program()).parent / "tests/libfaulty_algorithm.so"
+    return tests_plugin("libfaulty_algorithm.so")
+
+
+@pytest.fixture(scope="session")
+def engine_plugin() -> str:
+    """A plug-in with a physics engine, `drift`."""
+    return tests_plugin("libmy_engine.so")
+
+
+def tests_plugin(name: str) -> str:
+    plugin = pathlib.Path(find_program()).parent / "tests" / name
     if not plugin.exists():
-        pytest.skip("the tests' plug-in is built in the checkout only")
+        pytest.skip("the tests' plug-ins are built in the checkout only")
     return str(plugin)

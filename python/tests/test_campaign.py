@@ -225,6 +225,15 @@ def test_wrong_answers_do_not_stop_a_campaign(
     assert sorted(results(tmp_path).cases["status"]) == ["mismatch", "mismatch", "ok", "ok"]
 
 
+def test_engines_of_plugins_bake(
+    write: Any, run: Any, tmp_path: pathlib.Path, engine_plugin: str
+) -> None:
+    block = BLOCK | {"engine": "drift", "parameters": {"drift": 2}}
+    status, _, err = run(write(recordings=[block], plugin=engine_plugin))
+    assert status == 0, err
+    assert set(results(tmp_path).cases["status"]) == {"ok"}
+
+
 def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
     write: Any, run: Any, tmp_path: pathlib.Path
 ) -> None:

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "broadmark/scenes/registry.h"
-#include "engines/body_pool.h"
+#include "broadmark/scenes/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::boids_engine {

@@ -18,7 +18,7 @@
 
 #include "broadmark/exclusive_use.h"
 #include "broadmark/scenes/registry.h"
-#include "engines/body_pool.h"
+#include "broadmark/scenes/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::bullet_engine {

@@ -17,7 +17,7 @@
 
 #include "broadmark/destroy.h"
 #include "broadmark/scenes/registry.h"
-#include "engines/body_pool.h"
+#include "broadmark/scenes/body_pool.h"
 #include "entries.h"
 
 namespace broadmark::scenes::ode_engine {

@@ -295,7 +295,7 @@ TEST_P(Grids, DrawCellsThatHoldSomething) {
   // Two far corners: two cells hold something.
   std::vector<Aabb> corners(8, inputs::boxAt({0, 0, 0}, {1, 1, 1}));
   std::fill_n(corners.begin(), 4, inputs::boxAt({90, 90, 90}, {1, 1, 1}));
-  run.step(corners);
+  run.start(corners).step(corners);
   const RecordedDrawing two = drawingOf(run.broadPhase());
   ASSERT_EQ(two.boxes().size(), 2U);
   for (const RecordedDrawing::Box& drawn : two.boxes()) {

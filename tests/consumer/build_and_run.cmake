@@ -23,7 +23,8 @@ run(${CMAKE_COMMAND} --build "${WORK_DIR}/build")
 run("${WORK_DIR}/build/my_broad_phase")
 run("${WORK_DIR}/prefix/bin/broadmark" --version)
 run("${WORK_DIR}/prefix/bin/broadmark" --headless brownian --objects 50 --frames 5 --quiet
-  --plugin "${WORK_DIR}/build/libmy_plugin.so" --algorithm Mine --threads 3
+  --plugin "${WORK_DIR}/build/libmy_plugin.so" --plugin "${WORK_DIR}/build/libmy_engine.so"
+  --engine drift --algorithm Mine --threads 3
   --json "${WORK_DIR}/results.json")
 
 # Nobody has chosen a build type: a plug-in is optimised nevertheless, and says how it was built.

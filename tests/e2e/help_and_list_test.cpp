@@ -67,7 +67,7 @@ TEST_F(List, NamesEverything) {
     expectWords(all, {scene.id, scene.summary});
     expectWords(run({"list", "scenes"}), {scene.id, "density", "0.1", "1e-06…1"});
   }
-  for (const EngineListing& engine : builtinEngines()) {
+  for (const EngineListing& engine : availableEngines()) {
     expectWords(all, {engine.id, engine.summary});
     expectWords(run({"list", "engines"}), {engine.id});
   }

@@ -1,5 +1,6 @@
-// Algorithms loaded from shared libraries.
+// Algorithms and physics engines loaded from shared libraries.
 
+#include "broadmark/scenes/simulation.h"
 #include "e2e/end_to_end.h"
 #include "support/places.h"
 
@@ -52,6 +53,65 @@ TEST_F(Plugin, AllMeansAlsoThose) {
   const Ended ended = run(runWith({"--plugin", plugin_, "--list"}));
   EXPECT_THAT(ended.out, HasSubstr("/sap\n"));
   EXPECT_THAT(ended.out, HasSubstr("/faulty\n"));
+}
+
+/// A library with a physics engine.
+class EnginePlugin : public EndToEnd {
+ protected:
+  EnginePlugin() { fs::copy_file(places::enginePlugin(), file(plugin_)); }
+
+  std::string plugin_ = "my engine.so";
+};
+
+TEST_F(EnginePlugin, IsListedWithItsParameters) {
+  const Ended ended = run({"list", "engines", "--plugin", plugin_});
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  for (const std::string& word : {std::string("drift: "), std::string("factor on the speed"),
+                                  "From " + plugin_, std::string("bullet: ")}) {
+    EXPECT_THAT(ended.out, HasSubstr(word));
+  }
+  EXPECT_THAT(run({"list", "engines"}).out, Not(HasSubstr("drift")));
+  EXPECT_THAT(run({"list", "algorithms", "--plugin", plugin_}).out, Not(HasSubstr("drift")));
+}
+
+TEST_F(EnginePlugin, MovesTheBodiesOfEveryScene) {
+  std::set<std::string> hashes;
+  std::size_t recordings = 0;
+  for (const std::string drift : {"1", "3"}) {
+    const std::string folder = "drift " + drift;
+    runQuietly({"bake", "--plugin", plugin_, "--engine", "drift", "--param", "drift=" + drift,
+                "--objects", "60", "--frames", "20", "--output", folder});
+    for (const auto& entry : fs::recursive_directory_iterator(file(folder))) {
+      if (entry.path().extension() != ".json") continue;
+      const Json sidecar = readJson(entry.path());
+      EXPECT_EQ(sidecar.at("parameters").at("engine"), "drift");
+      hashes.insert(sidecar.at("hash"));
+      ++recordings;
+    }
+  }
+  EXPECT_EQ(recordings, 2 * builtinScenes().size());
+  EXPECT_GT(hashes.size(), recordings * 3 / 4) << "the engine's parameter does nothing";
+}
+
+TEST_F(EnginePlugin, RunsLiveAuthoredAndInADuel) {
+  const std::string authored = places::source("assets/scenes/dominoes.json").string();
+  for (const std::string& source : {std::string("shooter"), authored}) {
+    const Ended ended = run({"--headless", source, "--plugin", plugin_, "--engine", "drift",
+                             "--frames", "5", "--algorithm", "sap,kd", "--quiet"});
+    EXPECT_EQ(ended.status, 0) << source << ended.out << ended.err;
+  }
+  const Ended duel = run({"duel", "brownian", "sap", "sap-simd", "--plugin", plugin_, "--engine",
+                          "drift", "--objects", "50", "--frames", "5", "--seconds", "0.2"});
+  EXPECT_EQ(duel.status, 0) << duel.err;
+}
+
+TEST_F(EnginePlugin, RefusesWhatDoesNotFit) {
+  expectRefusal({"--headless", "brownian", "--engine", "drift"}, {"'drift'", "bullet"});
+  expectRefusal({"list", "--plugin", plugin_, "--plugin", plugin_}, {plugin_, "'drift'", "taken"});
+  expectRefusal({"bake", "--plugin", "no.so", "--output", "x"}, {"no.so", "No such file"});
+  expectRefusal(
+      {"--headless", "brownian", "--plugin", plugin_, "--engine", "drift", "--param", "drift=-1"},
+      {"drift", "-1", "100"});
 }
 
 TEST_F(Plugin, BadFilesAreRefused) {

@@ -14,7 +14,7 @@ namespace {
 /// Whether the scene is known without reading a recording.
 bool isSimulated(broadmark::Simulation& simulation) {
   const std::string engine = broadmark::parameterValues(simulation).at("engine");
-  return std::ranges::none_of(broadmark::builtinEngines(), [&](const auto& listing) {
+  return std::ranges::none_of(broadmark::availableEngines(), [&](const auto& listing) {
     return listing.id == engine && listing.dynamics == broadmark::Dynamics::replayed;
   });
 }

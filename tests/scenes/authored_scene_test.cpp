@@ -348,7 +348,7 @@ TEST(AuthoredSimulation, StaysInsideAWorldOfAnyForm) {
   body.pose.position = {2, 0, 0};
   body.linear_velocity = {9, 5, -20};
   scene.bodies = {body};
-  for (const EngineListing& engine : builtinEngines()) {
+  for (const EngineListing& engine : availableEngines()) {
     if (engine.dynamics != Dynamics::rigid && engine.dynamics != Dynamics::passing) continue;
     scene.parameters["engine"] = engine.id;
     const auto frames = allFrames(*makeAuthoredSimulation(scene));

@@ -259,7 +259,7 @@ TEST(EngineParameters, AreThoseOfTheChosenEngineWithNamesOfTheirOwn) {
   EXPECT_FALSE(parameterValues(*simulation).contains("alignment"));
 
   for (const SceneListing& scene : builtinScenes()) {
-    for (const EngineListing& engine : builtinEngines()) {
+    for (const EngineListing& engine : availableEngines()) {
       std::vector<std::string> names = parameterNames(*makeSimulation(scene.id, engine.id));
       std::ranges::sort(names);
       EXPECT_EQ(std::ranges::adjacent_find(names), names.end()) << scene.id << ' ' << engine.id;

@@ -41,7 +41,7 @@ std::vector<Combination> allCombinations() {
   std::vector<Combination> all;
   for (const SceneListing& scene : builtinScenes()) {
     for (const std::string& object_type : objectTypeIds()) {
-      for (const EngineListing& engine : builtinEngines()) {
+      for (const EngineListing& engine : availableEngines()) {
         if (engine.dynamics == Dynamics::replayed) continue;
         all.push_back({scene.id, object_type, engine.id});
       }

@@ -41,7 +41,7 @@ TEST(SceneParameters, SetWhatTheyStateAndLeaveTheDefaults) {
 
 TEST(SceneParameters, SurviveARoundTripForEverySceneAndEngine) {
   for (const SceneListing& scene : builtinScenes()) {
-    for (const EngineListing& engine : builtinEngines()) {
+    for (const EngineListing& engine : availableEngines()) {
       const bool replay = engine.dynamics == Dynamics::replayed;
       auto simulation = makeSimulation(scene.id, engine.id);
       setParameters(*simulation, replay ? ParameterValues{{"input", "a \"b\\c\" ü"}}

@@ -14,6 +14,8 @@ std::string program();
 std::string faultyPlugin();
 /// A plug-in with an algorithm that crashes, hangs or fails otherwise when asked to.
 std::string unrulyPlugin();
+/// A plug-in with a physics engine, `drift`.
+std::string enginePlugin();
 /// A plug-in that belongs to another version.
 std::string foreignPlugin();
 

@@ -3,7 +3,8 @@
 //
 //   BROADMARK_PLUGIN(broadmark::my_sweep::variants)
 //
-// and by CMake's
+// (For physics engines see broadmark/scenes/engine_plugin.h; a library may export both.) and by
+// CMake's
 //
 //   find_package(broadmark REQUIRED)
 //   broadmark_add_plugin(my_sweep my_sweep.cpp)
@@ -67,24 +68,30 @@ namespace broadmark {
 constexpr char kPluginInterface[] =
     BROADMARK_VERSION_TEXT ", headers " BROADMARK_HEADERS_HASH BROADMARK_LIBRARY_LAYOUT;
 
-/// What a library exports under kPluginSymbol.
+/// What a library exports: entries of one kind.
+template <class Entry>
 struct Plugin {
   /// kPluginInterface of its build. Read before compatibility is known; must stay the first member.
   const char* interface;
-  std::vector<Algorithm> (*variants)();
+  std::vector<Entry> (*entries)();
   const char* build = nullptr;  ///< how it was built, in words; null: it does not tell
   bool optimised = true;
 };
 
-inline constexpr char kPluginSymbol[] = "broadmark_plugin";
+/// Under this name it exports a Plugin<Algorithm>.
+inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
 
 }  // namespace broadmark
 
-/// Exports the algorithms that a function `std::vector<broadmark::Algorithm> variants()` returns.
-#define BROADMARK_PLUGIN(variants)                                                       \
-  extern "C" {                                                                           \
-  [[gnu::visibility("default")]] extern const ::broadmark::Plugin broadmark_plugin;      \
-  const ::broadmark::Plugin broadmark_plugin = {::broadmark::kPluginInterface, variants, \
-                                                BROADMARK_BUILD, BROADMARK_OPTIMISED};   \
-  }                                                                                      \
+/// Exports a Plugin<Entry> under a name; entries() returns a std::vector of them.
+#define BROADMARK_EXPORT_PLUGIN(symbol, Entry, entries)                              \
+  extern "C" {                                                                       \
+  [[gnu::visibility("default")]] extern const ::broadmark::Plugin<Entry> symbol;     \
+  const ::broadmark::Plugin<Entry> symbol = {::broadmark::kPluginInterface, entries, \
+                                             BROADMARK_BUILD, BROADMARK_OPTIMISED};  \
+  }                                                                                  \
   static_assert(true)
+
+/// Exports the algorithms that a function `std::vector<broadmark::Algorithm> variants()` returns.
+#define BROADMARK_PLUGIN(variants) \
+  BROADMARK_EXPORT_PLUGIN(broadmark_plugin, ::broadmark::Algorithm, variants)

@@ -23,12 +23,17 @@ def parameter_options(parameters: Values) -> list[str]:
     return as_options(param=several)
 
 
+def plugin_options(campaign: Campaign) -> list[str]:
+    """The program's options that load the campaign's libraries."""
+    return list(itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))))
+
+
 def selection_options(campaign: Campaign, selection: Selection) -> list[str]:
     """The program's options that make the cases of a selection."""
     return [
         *as_options(algorithm=selection.algorithms, threads=selection.threads, isa=selection.isas),
         *parameter_options(selection.parameters),
-        *itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))),
+        *plugin_options(campaign),
         *as_options(**{name: campaign.options.get(name) for name in ("device", "answer")}),
     ]
 
@@ -66,6 +71,7 @@ def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
                 *as_options(scenes=block.scenes, object_type=block.object_types),
                 *as_options(objects=block.objects, frames=block.frames, seed=block.seeds),
                 *as_options(engine=",".join(filter(None, block.engines)) or None),
+                *plugin_options(campaign),
                 *parameter_options(block.parameters),
             )
         except InputError as error:

@@ -18,7 +18,12 @@ from broadmark.campaign.description import Campaign, Selection, Value
 from broadmark.campaign.estimate import Estimate
 from broadmark.campaign.folder import Folder, recorders_of
 from broadmark.campaign.ledger import Ledger
-from broadmark.campaign.options import filter_for, measuring_options, selection_options
+from broadmark.campaign.options import (
+    filter_for,
+    measuring_options,
+    plugin_options,
+    selection_options,
+)
 from broadmark.campaign.plan import Recording, levels, with_sources
 from broadmark.campaign.progress import Progress
 from broadmark.errors import InputError
@@ -87,6 +92,7 @@ class Runner:
             follow(
                 "bake",
                 *itertools.chain(*(("--parameters", file) for file in files)),
+                *plugin_options(self.campaign),
                 *as_options(recorder=recorders_of(recordings[0]), quiet=True),
                 *("--output", str(self.folder.home(recordings[0]))),
                 tick=self.progress.tick,

@@ -1,5 +1,5 @@
 // The built-in scenes, physics engines and object types, in the order of the lists in
-// CMakeLists.txt.
+// CMakeLists.txt; and engines from elsewhere.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +36,12 @@ struct ObjectType {
 };
 
 std::vector<SceneEntry> sceneEntries();
+/// The built-in ones, then those added.
 std::vector<EngineEntry> engineEntries();
 std::vector<ObjectType> objectTypes();
+
+/// Adds an engine for the rest of the process. Its id must be new. Not while other threads make
+/// simulations: any of them may choose it from now on.
+void addEngine(EngineEntry);
 
 }  // namespace broadmark::scenes

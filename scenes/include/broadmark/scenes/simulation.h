@@ -39,13 +39,15 @@ enum class Dynamics {
   replayed,  ///< nothing: the frames come from a recording
 };
 
-/// A built-in physics engine, for lists and help.
+/// A physics engine, for lists and help.
 struct EngineListing {
   std::string id;  ///< "bullet"
   std::string summary;
   Dynamics dynamics = Dynamics::rigid;
+  std::string plugin;  ///< the library that it is from, as named on the command line; "": built in
 };
-std::vector<EngineListing> builtinEngines();
+/// The built-in ones, those that were added, then those that replay recordings.
+std::vector<EngineListing> availableEngines();
 
 /// A kind of recording that can be written, for lists and help.
 struct RecorderListing {
