@@ -19,6 +19,7 @@
 #include "broadmark/scenes/engine_plugin.h"
 #include "broadmark/scenes/simulation.h"
 #include "cases.h"
+#include "sdk_plugins.h"
 
 namespace broadmark {
 namespace {
@@ -31,8 +32,9 @@ std::string reason(const std::string& path) {
   return std::string(message);
 }
 
-/// The library in `file`, which stays loaded.
-void* load(const std::string& file) {
+/// The library that `named` means, which stays loaded.
+void* load(const std::string& named) {
+  const std::string file = pluginFile(named);
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
   const std::string path = std::filesystem::absolute(file).string();
@@ -124,7 +126,7 @@ void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
 
 PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
   Hasher hasher;
-  const std::string bytes = readTextFile(file);
+  const std::string bytes = readTextFile(pluginFile(file));
   hasher.add(std::as_bytes(std::span(bytes)));
   return {.hash = hasher.hex(),
           .flags = plugin.build == nullptr ? "" : plugin.build,

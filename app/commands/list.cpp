@@ -15,6 +15,7 @@
 #include "option_types.h"
 #include "original/ids.h"
 #include "plugins.h"
+#include "sdk_plugins.h"
 #include "table.h"
 
 namespace broadmark::commands::list {
@@ -147,6 +148,15 @@ void listRecorders() {
   }
 }
 
+void listPlugins() {
+  fmt::print("Plug-ins that come with the program: --plugin NAME\n");
+  for (const SdkPlugin& plugin : sdkPlugins()) {
+    printParagraph(plugin.built ? fmt::format("{}: {}", plugin.name, plugin.releases)
+                                : fmt::format("{}: not built: {} was not found (find_package({}))",
+                                              plugin.name, plugin.releases, plugin.package));
+  }
+}
+
 void listDevices() {
   fmt::print("Compute devices (OpenCL); the first is used unless --device names another\n");
   const std::vector<ComputeDevice> devices = computeDevices();
@@ -171,7 +181,8 @@ std::vector<Section> sections() {
        }},
       {"scenes", [](const Options&) { listScenes(); }},
       {"engines", [](const Options&) { listEngines(); }},
-      {"recorders", [](const Options&) { listRecorders(); }}};
+      {"recorders", [](const Options&) { listRecorders(); }},
+      {"plugins", [](const Options&) { listPlugins(); }}};
   if (parts::kOpenCl.included) {
     all.push_back({"devices", [](const Options&) { listDevices(); }});
   }

@@ -71,6 +71,7 @@ TEST_F(List, NamesEverything) {
     expectWords(all, {engine.id, engine.summary});
     expectWords(run({"list", "engines"}), {engine.id});
   }
+  expectWords(all, {"Plug-ins", "jolt: "});
   for (const RecorderListing& recorder : builtinRecorders()) {
     expectWords(all, {recorder.id, recorder.summary});
     expectWords(run({"list", "recorders"}), {recorder.id});

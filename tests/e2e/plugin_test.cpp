@@ -105,6 +105,27 @@ TEST_F(EnginePlugin, RunsLiveAuthoredAndInADuel) {
   EXPECT_EQ(duel.status, 0) << duel.err;
 }
 
+// Plug-ins that come with the program: what can be done with one depends on whether it was built.
+TEST_F(EnginePlugin, ThoseOfSdksAreLoadedByTheirNames) {
+  const std::vector<std::string> lines = linesOf(run({"list", "plugins"}).out);
+  ASSERT_GE(lines.size(), 2U);
+  for (const std::string& line : lines) {
+    if (!line.starts_with("  ") || line.starts_with("   ")) continue;
+    const std::string name = line.substr(2, line.find(':') - 2);
+    SCOPED_TRACE(name);
+    const Arguments call = {"--headless", "brownian",    "--plugin",   name,       "--engine",
+                            name,         "--objects",   "50",         "--frames", "5",
+                            "--quiet",    "--algorithm", name + "*,kd"};
+    if (line.find("not built") == std::string::npos) {
+      const Ended ended = run(call);
+      EXPECT_EQ(ended.status, 0) << ended.err;
+      EXPECT_THAT(ended.out, HasSubstr(name + "-"));
+    } else {
+      expectRefusal(call, {"--plugin: " + name + ": not built", "find_package"});
+    }
+  }
+}
+
 TEST_F(EnginePlugin, RefusesWhatDoesNotFit) {
   expectRefusal({"--headless", "brownian", "--engine", "drift"}, {"'drift'", "bullet"});
   expectRefusal({"list", "--plugin", plugin_, "--plugin", plugin_}, {plugin_, "'drift'", "taken"});

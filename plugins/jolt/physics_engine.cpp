@@ -1,0 +1,286 @@
+// Rigid bodies by Jolt Physics: quad trees, Gilbert-Johnson-Keerthi and expanding polytopes,
+// sequential impulses with warm start, islands that fall asleep together.
+//
+// One thread: the generator bakes a scene on each core. Jolt keeps its order of work by itself
+// (mDeterministicSimulation), so the same calls give the same bits.
+//
+// Jolt needs to know beforehand how many bodies and contacts there will be at most: parameters of
+// this engine. What does not fit is an error, not a contact that is left out.
+
+#include "broadmark/scenes/physics_engine.h"
+
+#include "broadmark/scenes/engine_plugin.h"
+#include "jolt/library.h"
+// Jolt's own headers after the one above.
+#include <Jolt/Core/JobSystemSingleThreaded.h>
+#include <Jolt/Core/TempAllocator.h>
+#include <Jolt/Physics/Body/BodyCreationSettings.h>
+#include <Jolt/Physics/Collision/Shape/BoxShape.h>
+#include <Jolt/Physics/Collision/Shape/PlaneShape.h>
+#include <Jolt/Physics/Collision/Shape/SphereShape.h>
+#include <Jolt/Physics/PhysicsSystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "broadmark/error.h"
+#include "broadmark/scenes/body_pool.h"
+
+namespace broadmark::scenes::jolt_engine {
+namespace {
+
+JPH::Vec3 toJolt(const Vec3& v) { return {v[0], v[1], v[2]}; }
+JPH::Quat toJolt(const std::array<float, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
+Vec3 fromJolt(JPH::Vec3Arg v) { return {v.GetX(), v.GetY(), v.GetZ()}; }
+
+/// Our layers, and one of the walls. For the trees there are the walls and the bodies.
+class Layers final : public JPH::BroadPhaseLayerInterface,
+                     public JPH::ObjectVsBroadPhaseLayerFilter,
+                     public JPH::ObjectLayerPairFilter {
+ public:
+  static constexpr JPH::ObjectLayer kWalls = LayerMatrix::kLayers;
+
+  void set(const LayerMatrix& matrix) { matrix_ = matrix; }
+
+  JPH::uint GetNumBroadPhaseLayers() const override { return 2; }
+  JPH::BroadPhaseLayer GetBroadPhaseLayer(JPH::ObjectLayer layer) const override {
+    return JPH::BroadPhaseLayer(layer == kWalls ? 0 : 1);
+  }
+#if defined(JPH_EXTERNAL_PROFILE) || defined(JPH_PROFILE_ENABLED)
+  const char* GetBroadPhaseLayerName(JPH::BroadPhaseLayer) const override { return "layer"; }
+#endif
+  bool ShouldCollide(JPH::ObjectLayer, JPH::BroadPhaseLayer) const override { return true; }
+  bool ShouldCollide(JPH::ObjectLayer a, JPH::ObjectLayer b) const override {
+    return a == kWalls || b == kWalls || matrix_.collide(a, b);
+  }
+
+ private:
+  LayerMatrix matrix_ = LayerMatrix::all();
+};
+
+JPH::Ref<JPH::Shape> shapeOf(const BoxShape& box) {
+  const Vec3& half = box.half_extents;
+  // Edges are rounded, as Jolt advises, but by no more than a thin box has.
+  const float radius =
+      std::min(JPH::cDefaultConvexRadius, std::min({half[0], half[1], half[2]}) / 4);
+  return new JPH::BoxShape(toJolt(half), radius);
+}
+JPH::Ref<JPH::Shape> shapeOf(const SphereShape& sphere) {
+  return new JPH::SphereShape(sphere.radius);
+}
+
+/// A share lost per second, as Jolt's factor of a differential equation.
+float dampingOf(double share_per_second) {
+  constexpr double kMost = 1e6;  // all of it at once
+  return share_per_second >= 1 ? static_cast<float>(kMost)
+                               : static_cast<float>(-std::log(1 - share_per_second));
+}
+
+class JoltBody : public PhysicsBody {
+ public:
+  /// `interface` is borrowed.
+  JoltBody(const BodyDescription& description, const PhysicsSettings& settings,
+           JPH::BodyInterface& interface)
+      : shape_(description.shape), interface_(interface) {
+    const auto shape = std::visit([](const auto& kind) { return shapeOf(kind); }, shape_);
+    JPH::BodyCreationSettings created(
+        shape, toJolt(description.pose.position), toJolt(description.pose.rotation).Normalized(),
+        JPH::EMotionType::Dynamic, static_cast<JPH::ObjectLayer>(description.layer));
+    created.mLinearVelocity = toJolt(description.linear_velocity);
+    created.mAngularVelocity = toJolt(description.angular_velocity);
+    created.mFriction = static_cast<float>(settings.friction);
+    created.mRestitution = static_cast<float>(settings.restitution);
+    created.mLinearDamping = dampingOf(settings.linear_damping);
+    created.mAngularDamping = dampingOf(settings.angular_damping);
+    created.mMotionQuality = JPH::EMotionQuality::LinearCast;
+    created.mMaxLinearVelocity = 1e6F;  // bodies of all sizes: no limit
+    created.mMaxAngularVelocity = static_cast<float>(settings.max_angular_speed);
+    created.mOverrideMassProperties = JPH::EOverrideMassProperties::CalculateInertia;
+    created.mMassPropertiesOverride.mMass = static_cast<float>(description.mass);
+    body_ = interface.CreateBody(created);
+    if (body_ == nullptr) {
+      throw InputError("engine 'jolt': more bodies than its parameter most_bodies allows");
+    }
+    interface.AddBody(id(), JPH::EActivation::Activate);
+  }
+  JoltBody(const JoltBody&) = delete;
+  JoltBody& operator=(const JoltBody&) = delete;
+  ~JoltBody() override {
+    interface_.RemoveBody(id());
+    interface_.DestroyBody(id());
+  }
+
+  [[nodiscard]] const Shape& shape() const override { return shape_; }
+
+  [[nodiscard]] Pose pose() const override {
+    const JPH::Quat q = body_->GetRotation();
+    return {fromJolt(JPH::Vec3(body_->GetPosition())), {q.GetX(), q.GetY(), q.GetZ(), q.GetW()}};
+  }
+  [[nodiscard]] Vec3 linearVelocity() const override {
+    return frozen() ? Vec3{} : fromJolt(body_->GetLinearVelocity());
+  }
+  [[nodiscard]] Vec3 angularVelocity() const override {
+    return frozen() ? Vec3{} : fromJolt(body_->GetAngularVelocity());
+  }
+
+  void setPose(const Pose& pose) override {
+    interface_.SetPositionAndRotation(id(), toJolt(pose.position),
+                                      toJolt(pose.rotation).Normalized(),
+                                      JPH::EActivation::Activate);
+  }
+  void setVelocity(const Vec3& linear, const Vec3& angular) override {
+    if (frozen()) return;
+    interface_.SetLinearAndAngularVelocity(id(), toJolt(linear), toJolt(angular));
+    wake();
+  }
+
+  [[nodiscard]] bool asleep() const override { return !body_->IsActive(); }
+  [[nodiscard]] bool frozen() const override { return body_->IsStatic(); }
+  void freeze() override {
+    interface_.SetMotionType(id(), JPH::EMotionType::Static, JPH::EActivation::DontActivate);
+  }
+
+  void wake() {
+    if (!frozen()) interface_.ActivateBody(id());
+  }
+  /// Wakes those around, as if something there had changed.
+  void wakeNeighbours() {
+    constexpr float kReach = 0.1F;
+    JPH::AABox around = body_->GetWorldSpaceBounds();
+    around.ExpandBy(JPH::Vec3::sReplicate(kReach));
+    interface_.ActivateBodiesInAABox(around, {}, {});
+  }
+
+ private:
+  [[nodiscard]] const JPH::BodyID& id() const { return body_->GetID(); }
+
+  Shape shape_;
+  JPH::BodyInterface& interface_;
+  JPH::Body* body_ = nullptr;  ///< of interface_
+};
+
+class JoltEngine final : public PhysicsEngine {
+ public:
+  explicit JoltEngine(const PhysicsSettings& settings) : settings_(settings) {}
+  JoltEngine(const JoltEngine&) = delete;
+  JoltEngine& operator=(const JoltEngine&) = delete;
+  ~JoltEngine() override {
+    bodies_.reset();
+    for (const JPH::BodyID& wall : walls_) {
+      system_->GetBodyInterfaceNoLock().RemoveBody(wall);
+      system_->GetBodyInterfaceNoLock().DestroyBody(wall);
+    }
+  }
+
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"most_bodies", "bodies that there may be at once, walls included", &most_bodies_, 16,
+           JPH::BodyID::cMaxBodyIndex});
+    visit({"most_contacts", "pairs of bodies that may be near each other at once", &most_contacts_,
+           16, 100'000'000});
+  }
+
+  void setLayers(const LayerMatrix& layers) override { layers_.set(layers); }
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    begin();
+    return bodies_->add(description, settings_, system_->GetBodyInterfaceNoLock());
+  }
+
+  void removeBody(PhysicsBody& body) override {
+    auto& jolt_body = static_cast<JoltBody&>(body);
+    jolt_body.wakeNeighbours();
+    bodies_->remove(jolt_body);
+  }
+
+  void addWall(const HalfSpace& wall) override {
+    begin();
+    // It is solid as far as this from the point of it that is nearest to the origin: a wall of a
+    // world around the origin.
+    const float extent = 1000 + 10 * std::abs(wall.offset);
+    JPH::BodyCreationSettings created(
+        new JPH::PlaneShape(JPH::Plane(toJolt(wall.normal), -wall.offset), nullptr, extent),
+        JPH::RVec3::sZero(), JPH::Quat::sIdentity(), JPH::EMotionType::Static, Layers::kWalls);
+    created.mFriction = static_cast<float>(settings_.friction);
+    created.mRestitution = static_cast<float>(settings_.restitution);
+    walls_.push_back(system_->GetBodyInterfaceNoLock().CreateAndAddBody(
+        created, JPH::EActivation::DontActivate));
+  }
+
+  void setGravity(const Vec3& gravity) override {
+    if (gravity == gravity_) return;
+    gravity_ = gravity;
+    begin();
+    system_->SetGravity(toJolt(gravity));
+    bodies_->each([](JoltBody& body) { body.wake(); });
+  }
+  [[nodiscard]] Vec3 gravity() const override { return gravity_; }
+
+  void step() override {
+    begin();
+    if (!std::exchange(stepped_, true)) system_->OptimizeBroadPhase();
+    const JPH::EPhysicsUpdateError error =
+        system_->Update(static_cast<float>(settings_.time_step),
+                        static_cast<int>(settings_.substeps), &memory_, &jobs_);
+    if (error != JPH::EPhysicsUpdateError::None) {
+      throw InputError("engine 'jolt': more contacts than its parameter most_contacts allows");
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    return !system_ || system_->GetNumActiveBodies(JPH::EBodyType::RigidBody) == 0;
+  }
+
+ private:
+  /// Makes Jolt's world, when the parameters are known.
+  void begin() {
+    if (system_) return;
+    system_.emplace();
+    const auto contacts = static_cast<JPH::uint>(most_contacts_);
+    system_->Init(static_cast<JPH::uint>(most_bodies_), 0, contacts, contacts, layers_, layers_,
+                  layers_);
+    JPH::PhysicsSettings settings = system_->GetPhysicsSettings();
+    // Friction takes at least two.
+    settings.mNumVelocitySteps =
+        static_cast<JPH::uint>(std::max<std::int64_t>(settings_.solver_iterations, 2));
+    // A body that would get deep into a wall within a step is stopped at it; slower ones are left
+    // to the solver, which pushes bodies that start inside each other apart.
+    settings.mLinearCastThreshold = 0.2F;
+    settings.mLinearCastMaxPenetration = 0.02F;
+    // Of a point of a body that moves without turning.
+    settings.mPointVelocitySleepThreshold =
+        static_cast<float>(std::max(std::sqrt(2 * settings_.sleep_threshold), 1e-6));
+    system_->SetPhysicsSettings(settings);
+    system_->SetGravity(JPH::Vec3::sZero());
+    bodies_.emplace();
+  }
+
+  JoltLibrary library_;
+  PhysicsSettings settings_;
+  std::int64_t most_bodies_ = 65'536;
+  std::int64_t most_contacts_ = 1'048'576;
+  Vec3 gravity_{};
+  Layers layers_;
+  JPH::TempAllocatorMalloc memory_;
+  JPH::JobSystemSingleThreaded jobs_{JPH::cMaxPhysicsJobs};
+  std::optional<JPH::PhysicsSystem> system_;
+  std::vector<JPH::BodyID> walls_;
+  std::optional<BodyPool<JoltBody>> bodies_;
+  bool stepped_ = false;
+};
+
+std::vector<EngineEntry> engines() {
+  return {{.listing = {.id = "jolt", .summary = "Jolt Physics' rigid bodies"},
+           .create = [](const PhysicsSettings& settings) -> std::unique_ptr<PhysicsEngine> {
+             return std::make_unique<JoltEngine>(settings);
+           }}};
+}
+
+}  // namespace
+}  // namespace broadmark::scenes::jolt_engine
+
+BROADMARK_ENGINE_PLUGIN(broadmark::scenes::jolt_engine::engines);

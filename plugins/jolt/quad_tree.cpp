@@ -1,0 +1,326 @@
+// Jolt Physics' broad phase alone (BroadPhaseQuadTree): for each broad-phase layer a tree with four
+// children to a node. Boxes of moving bodies only widen those above them; in each frame the widened
+// part of a tree is built anew. Each active body is then looked up in the trees. O(m + n log n), m
+// the bodies that moved; O(n) space.
+//
+// Used as PhysicsSystem::Update() does, which is the only user that its documentation foresees:
+// the same calls in the same order, lookups by workers in batches of sixteen bodies, and Optimize()
+// once all bodies are there ("Architecture of Jolt Physics", Broad Phase). Each of our layers is an
+// object layer and a broad-phase layer, so what never meets is kept apart beforehand, as advised
+// there. Speculative contacts are a matter of its solver: the distance is 0 here, and the answer is
+// exact, as a body's own box is tested last.
+//
+// A box is that of a body's shape, and may change without the body moving: the shape that stands
+// for it here just tells the box.
+//
+// Library: Jolt Physics 5, J. Rouwe.
+
+#include "broadmark/plugin.h"
+#include "jolt/library.h"
+// Jolt's own headers after the one above.
+#include <Jolt/Physics/Body/BodyCreationSettings.h>
+#include <Jolt/Physics/Body/BodyManager.h>
+#include <Jolt/Physics/Body/BodyPair.h>
+#include <Jolt/Physics/Collision/BroadPhase/BroadPhaseQuadTree.h>
+#include <Jolt/Physics/Collision/Shape/Shape.h>
+#include <Jolt/Physics/Collision/ShapeCast.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace broadmark::jolt_quad_tree {
+namespace {
+
+/// Bodies that a worker looks up at a time: PhysicsSystem's cActiveBodiesBatchSize.
+constexpr std::size_t kBatch = 16;
+
+JPH::Vec3 vectorOf(const std::array<float, 4>& corner) { return {corner[0], corner[1], corner[2]}; }
+
+/// A shape that is only a box, wherever its body is.
+class BoxOfBody final : public JPH::Shape {
+ public:
+  /// `box` is borrowed.
+  explicit BoxOfBody(const Aabb& box)
+      : Shape(JPH::EShapeType::User1, JPH::EShapeSubType::User1), box_(&box) {
+    SetEmbedded();
+  }
+
+  JPH::AABox GetWorldSpaceBounds(JPH::Mat44Arg, JPH::Vec3Arg) const override {
+    return {vectorOf(box_->min), vectorOf(box_->max)};
+  }
+  JPH::AABox GetLocalBounds() const override { return {JPH::Vec3::sZero(), JPH::Vec3::sZero()}; }
+
+  // Nothing below is asked for by a broad phase.
+  JPH::uint GetSubShapeIDBitsRecursive() const override { return 0; }
+  float GetInnerRadius() const override { return 0; }
+  JPH::MassProperties GetMassProperties() const override { return {}; }
+  const JPH::PhysicsMaterial* GetMaterial(const JPH::SubShapeID&) const override { return nullptr; }
+  JPH::Vec3 GetSurfaceNormal(const JPH::SubShapeID&, JPH::Vec3Arg) const override {
+    return JPH::Vec3::sAxisY();
+  }
+  void GetSubmergedVolume(JPH::Mat44Arg, JPH::Vec3Arg, const JPH::Plane&, float& total,
+                          float& submerged, JPH::Vec3& centre
+#ifdef JPH_DEBUG_RENDERER
+                          ,
+                          JPH::RVec3Arg
+#endif
+  ) const override {
+    total = submerged = 0;
+    centre = JPH::Vec3::sZero();
+  }
+#ifdef JPH_DEBUG_RENDERER
+  void Draw(JPH::DebugRenderer*, JPH::RMat44Arg, JPH::Vec3Arg, JPH::ColorArg, bool,
+            bool) const override {}
+#endif
+  bool CastRay(const JPH::RayCast&, const JPH::SubShapeIDCreator&,
+               JPH::RayCastResult&) const override {
+    return false;
+  }
+  void CastRay(const JPH::RayCast&, const JPH::RayCastSettings&, const JPH::SubShapeIDCreator&,
+               JPH::CastRayCollector&, const JPH::ShapeFilter&) const override {}
+  void CollidePoint(JPH::Vec3Arg, const JPH::SubShapeIDCreator&, JPH::CollidePointCollector&,
+                    const JPH::ShapeFilter&) const override {}
+  void CollideSoftBodyVertices(JPH::Mat44Arg, JPH::Vec3Arg,
+                               const JPH::CollideSoftBodyVertexIterator&, JPH::uint,
+                               int) const override {}
+  void GetTrianglesStart(GetTrianglesContext&, const JPH::AABox&, JPH::Vec3Arg, JPH::QuatArg,
+                         JPH::Vec3Arg) const override {}
+  int GetTrianglesNext(GetTrianglesContext&, int, JPH::Float3*,
+                       const JPH::PhysicsMaterial**) const override {
+    return 0;
+  }
+  Stats GetStats() const override { return {sizeof(*this), 0}; }
+  float GetVolume() const override { return 0; }
+
+ private:
+  const Aabb* box_;
+};
+
+/// Which layers meet, told to Jolt: an object layer is a layer of ours, and a broad-phase layer of
+/// its own.
+class Layers final : public JPH::BroadPhaseLayerInterface,
+                     public JPH::ObjectVsBroadPhaseLayerFilter,
+                     public JPH::ObjectLayerPairFilter {
+ public:
+  explicit Layers(const CollisionFilter& filter) : matrix_(filter.matrix()) {
+    for (const std::uint8_t layer : filter.layers()) count_ = std::max(count_, layer + 1U);
+  }
+
+  JPH::uint GetNumBroadPhaseLayers() const override { return count_; }
+  JPH::BroadPhaseLayer GetBroadPhaseLayer(JPH::ObjectLayer layer) const override {
+    return JPH::BroadPhaseLayer(static_cast<JPH::BroadPhaseLayer::Type>(layer));
+  }
+#if defined(JPH_EXTERNAL_PROFILE) || defined(JPH_PROFILE_ENABLED)
+  const char* GetBroadPhaseLayerName(JPH::BroadPhaseLayer) const override { return "layer"; }
+#endif
+  bool ShouldCollide(JPH::ObjectLayer a, JPH::BroadPhaseLayer b) const override {
+    return matrix_.collide(a, b.GetValue());
+  }
+  bool ShouldCollide(JPH::ObjectLayer a, JPH::ObjectLayer b) const override {
+    return matrix_.collide(a, b);
+  }
+
+ private:
+  LayerMatrix matrix_;
+  JPH::uint count_ = 1;
+};
+
+/// Where Jolt puts the pairs that it finds.
+class Pairs final : public JPH::BodyPairCollector {
+ public:
+  /// Both borrowed; `filter` is null where layers decide alone.
+  Pairs(PairBuffer& pairs, const CollisionFilter* filter) : pairs_(pairs), filter_(filter) {}
+
+  void AddHit(const JPH::BodyPair& pair) override {
+    const std::uint32_t a = pair.mBodyA.GetIndex();
+    const std::uint32_t b = pair.mBodyB.GetIndex();
+    if (filter_ == nullptr || filter_->wanted(a, b)) pairs_.add(a, b);
+  }
+
+ private:
+  PairBuffer& pairs_;
+  const CollisionFilter* filter_;
+};
+
+class QuadTree final : public BoxBroadPhase {
+ public:
+  QuadTree() = default;
+  QuadTree(const QuadTree&) = delete;
+  QuadTree& operator=(const QuadTree&) = delete;
+  ~QuadTree() override {
+    if (layers_ == nullptr) return;
+    std::vector<JPH::BodyID> there;
+    for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+      if (isThere(body)) there.push_back(bodies_[body]->GetID());
+    }
+    takeOut(there);
+    std::vector<JPH::BodyID> all;
+    for (const JPH::Body* body : bodies_) all.push_back(body->GetID());
+    if (!all.empty()) manager_.DestroyBodies(all.data(), static_cast<int>(all.size()));
+  }
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    filter_ = scene.filter;
+    layers_ = std::make_unique<Layers>(filter_);
+    manager_.Init(static_cast<JPH::uint>(std::max<std::size_t>(boxes().size(), 1)), 0, *layers_);
+    trees_.Init(&manager_, *layers_);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
+    arrived_.clear();
+    for (const std::uint32_t body : first.presentBodies()) {
+      bodies_[body]->CalculateWorldSpaceBoundsInternal();
+      arrived_.push_back(bodies_[body]->GetID());
+    }
+    putIn(arrived_);
+    trees_.Optimize();
+  }
+
+  void updateObjects(const Frame& frame) override {
+    BoxBroadPhase::updateObjects(frame);
+    moved_.clear();
+    arrived_.clear();
+    vanished_.clear();
+    for (const std::uint32_t body : *frame.changed) {
+      const bool is_present = !isEmpty(boxes()[body]);
+      if (!is_present && !isThere(body)) continue;
+      const JPH::BodyID id = bodies_[body]->GetID();
+      (!is_present ? vanished_ : !isThere(body) ? arrived_ : moved_).push_back(id);
+    }
+  }
+
+  void updateStructures() override {
+    takeOut(vanished_);
+    updateBounds(arrived_);
+    putIn(arrived_);
+    trees_.LockModifications();
+    updateBounds(moved_);
+    tellMoved();
+    trees_.UnlockModifications();
+    trees_.FrameSync();
+    trees_.LockModifications();
+    trees_.UpdateFinalize(trees_.UpdatePrepare());
+    trees_.UnlockModifications();
+  }
+
+  void visitCounters(const CounterVisitor& visit) const override {
+    visit("moves", moved_.size());
+    visit("arrivals", arrived_.size());
+    visit("removals", vanished_.size());
+  }
+
+  [[nodiscard]] std::string validate() const override {
+    for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+      if (isThere(body) == isEmpty(boxes()[body])) return "a body came or went unseen";
+    }
+    return {};
+  }
+
+ private:
+  using Ids = std::vector<JPH::BodyID>;
+
+  [[nodiscard]] bool isThere(std::uint32_t body) const { return bodies_[body]->IsInBroadPhase(); }
+
+  void create(std::uint32_t body) {
+    shapes_.emplace_back(boxes()[body]);
+    JPH::BodyCreationSettings settings(&shapes_.back(), JPH::RVec3::sZero(), JPH::Quat::sIdentity(),
+                                       JPH::EMotionType::Dynamic,
+                                       static_cast<JPH::ObjectLayer>(filter_.layerOf(body)));
+    settings.mOverrideMassProperties = JPH::EOverrideMassProperties::MassAndInertiaProvided;
+    settings.mMassPropertiesOverride = {1, JPH::Mat44::sIdentity()};
+    bodies_.push_back(manager_.AllocateBody(settings));
+    manager_.AddBodyWithCustomID(bodies_.back(), JPH::BodyID(body, 1));
+  }
+
+  /// May change the order of the ids.
+  void putIn(Ids& ids) {
+    if (ids.empty()) return;
+    const int count = static_cast<int>(ids.size());
+    trees_.AddBodiesFinalize(ids.data(), count, trees_.AddBodiesPrepare(ids.data(), count));
+    manager_.ActivateBodies(ids.data(), count);
+  }
+  void takeOut(Ids& ids) {
+    if (ids.empty()) return;
+    const int count = static_cast<int>(ids.size());
+    manager_.DeactivateBodies(ids.data(), count);
+    trees_.RemoveBodies(ids.data(), count);
+  }
+
+  void updateBounds(const Ids& ids) {
+    team().run([&](int worker) {
+      const auto [begin, end] = share(ids.size(), team().size(), worker);
+      for (std::size_t i = begin; i < end; ++i) {
+        bodies_[ids[i].GetIndex()]->CalculateWorldSpaceBoundsInternal();
+      }
+    });
+  }
+
+  void tellMoved() {
+    team().run([&](int worker) {
+      const auto [begin, end] = share(moved_.size(), team().size(), worker);
+      if (begin == end) return;
+      trees_.NotifyBodiesAABBChanged(moved_.data() + begin, static_cast<int>(end - begin), false);
+    });
+  }
+
+  void findPairs() override {
+    const JPH::BodyID* const active = manager_.GetActiveBodiesUnsafe(JPH::EBodyType::RigidBody);
+    const std::size_t count = manager_.GetNumActiveBodies(JPH::EBodyType::RigidBody);
+    const bool layers_decide = filter_.worlds().empty() && filter_.tags().empty();
+    std::atomic<std::size_t> next = 0;
+    team().run([&](int worker) {
+      Pairs found(pairs(worker), layers_decide ? nullptr : &filter_);
+      std::array<JPH::BodyID, kBatch> batch;
+      for (std::size_t begin; (begin = next.fetch_add(kBatch)) < count;) {
+        const std::size_t size = std::min(kBatch, count - begin);
+        std::copy_n(active + begin, size, batch.begin());
+        trees_.FindCollidingPairs(batch.data(), static_cast<int>(size), 0, *layers_, *layers_,
+                                  found);
+      }
+    });
+  }
+
+  JoltLibrary library_;
+  CollisionFilter filter_;
+  std::unique_ptr<Layers> layers_;
+  std::deque<BoxOfBody> shapes_;  ///< by body
+  JPH::BodyManager manager_;
+  JPH::BroadPhaseQuadTree trees_;
+  std::vector<JPH::Body*> bodies_;  ///< of manager_
+  // In this frame.
+  Ids moved_;
+  Ids arrived_;
+  Ids vanished_;
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  Algorithm algorithm = {.id = "jolt-quadtree",
+                         .family = "Jolt",
+                         .summary = "Jolt Physics' quad trees, each body looked up",
+                         .traits = {.incremental = true,
+                                    .library_allocates = true,
+                                    .changing_worlds = ChangingWorlds::native,
+                                    .instance_per_world = true,
+                                    .max_objects = JPH::BodyID::cMaxBodyIndex},
+                         .description = {.principle = "tree",
+                                         .optimisations = "incremental, a tree for each layer",
+                                         .time = "O(m + n log n), m bodies that move",
+                                         .space = "O(n)",
+                                         .source = "Jolt Physics 5, BroadPhaseQuadTree"},
+                         .create = [] { return std::make_unique<QuadTree>(); }};
+  Algorithm parallel = algorithm;
+  parallel.id += "-mt";
+  parallel.summary += ", on several threads";
+  parallel.traits.parallel = true;
+  return {algorithm, parallel};
+}
+
+}  // namespace broadmark::jolt_quad_tree
+
+BROADMARK_PLUGIN(broadmark::jolt_quad_tree::variants);
