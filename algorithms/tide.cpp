@@ -24,7 +24,7 @@
 #include "broadmark/adapters.h"
 #include "columns.h"
 #include "marked_body.h"
-#include "pair_set.h"
+#include "broadmark/pair_set.h"
 #include "tide/loose_grid.h"
 #include "variants.h"
 

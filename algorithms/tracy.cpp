@@ -31,7 +31,7 @@
 #include <utility>
 #include <vector>
 
-#include "pair_set.h"
+#include "broadmark/pair_set.h"
 #include "tracy/cell.h"
 #include "tracy/cell_shares.h"
 #include "tracy/grid.h"

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "broadmark/scenes/simulation.h"
-#include "plugins.h"
 #include "sweep.h"
 
 namespace broadmark {
@@ -163,21 +162,9 @@ void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {
   for (CLI::Option* option : options) option->description("");
 }
 
-CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins) {
-  return addEnginePlugins(app,
-                          "shared library with more algorithms or physics engines (repeatable)",
-                          [&plugins](const std::vector<std::string>& files) { plugins = files; });
-}
-
-CLI::Option* addEnginePlugins(CLI::App& app, const std::string& doc,
-                              std::function<void(const std::vector<std::string>&)> set) {
-  const auto add = [set = std::move(set)](const std::vector<std::string>& files) {
-    addEnginesOf(files);  // here, so that no command has to think of it before it makes a scene
-    if (set) set(files);
-  };
-  return app.add_option_function<std::vector<std::string>>("--plugin", add, doc)
-      ->type_name("FILE")
-      ->allow_extra_args(false);
+CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins, const std::string& more) {
+  return addRepeatable(app, "--plugin", "FILE", plugins,
+                       fmt::format("shared library with more {} (repeatable)", more));
 }
 
 CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {

@@ -90,12 +90,9 @@ void requirePart(const BuildPart&, std::string_view option);
 /// have no description.
 void showWith(const BuildPart&, const std::vector<CLI::Option*>& options);
 
-/// --plugin. The engines of the libraries can be chosen as soon as the command line is read.
-CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins);
-/// The same where only engines are wanted; `set`, if any, gets the files.
-CLI::Option* addEnginePlugins(
-    CLI::App&, const std::string& doc = "shared library with more physics engines (repeatable)",
-    std::function<void(const std::vector<std::string>&)> set = {});
+/// --plugin: for addEnginesOf() and availableAlgorithms(). `more`: what the command takes from it.
+CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
+                        const std::string& more = "algorithms or physics engines");
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
 /// Where results go: --json, --csv, … Paths that are not given stay "".

@@ -35,7 +35,7 @@ struct SessionOptions {
   CaseOptions cases;
   ParameterValues parameters;  ///< --param: of algorithms or scenes
   ReadingOptions reading;
-  std::vector<std::string> plugins;   ///< libraries with more algorithms
+  std::vector<std::string> plugins;   ///< libraries with more algorithms or engines
   std::string case_id;                ///< of the results file that is the source; "": none
   std::filesystem::path export_case;  ///< where its smallest failing recording goes; "": nowhere
   RepetitionOptions repetitions;

@@ -19,6 +19,7 @@
 #include "interrupt.h"
 #include "movie.h"
 #include "option_types.h"
+#include "plugins.h"
 #include "progress.h"
 #include "words.h"
 
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 struct Options {
   BakeOptions bake;
   MovieOptions movie;
+  std::vector<std::string> plugins;  ///< libraries with more engines
   bool list_only = false;
   bool quiet = false;
 };
@@ -147,6 +149,7 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
 
 int run(const Options& options) {
   if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
+  addEnginesOf(options.plugins);
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   BakePlan plan = makeBakePlan(options);
@@ -194,7 +197,7 @@ std::function<int()> add(CLI::App& app) {
   BakeOptions& bake = options->bake;
   addScenes(app, *options);
   addSceneOptions(app, bake.scene);
-  addEnginePlugins(app);
+  addPlugins(app, options->plugins, "physics engines");
   addRecorders(app, bake.scene.recorders);
   addParameters(app, bake.parameters);
   addPath(app, "--output", "DIR", bake.output,

@@ -17,6 +17,7 @@
 #include "interrupt.h"
 #include "option_types.h"
 #include "output.h"
+#include "plugins.h"
 #include "progress.h"
 #include "recordings.h"
 #include "sources/source.h"
@@ -32,6 +33,7 @@ struct Options {
   std::filesystem::path program;  ///< another build of this program; "": none
   std::string device;
   AnswerKind answer = AnswerKind::pairs;
+  std::vector<std::string> plugins;  ///< libraries with more engines
   SceneOptions scene;
   ParameterValues parameters;
   ReadingOptions reading;
@@ -94,6 +96,7 @@ void warnOf(const std::vector<DuelSide>& sides) {
 }
 
 int run(Options options) {
+  addEnginesOf(options.plugins);
   if (!options.json.empty()) requireOutput(options.json);
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
@@ -158,7 +161,7 @@ std::function<int()> add(CLI::App& app) {
   addDevice(app, options->device);
   addAnswer(app, options->answer);
   addSceneOptions(app, options->scene);
-  addEnginePlugins(app);
+  addPlugins(app, options->plugins, "physics engines");
   addParameters(app, options->parameters);
   addReadingOptions(app, options->reading);
   addHosts(app, options->hosts);

@@ -210,6 +210,7 @@ int run(const Options& options) {
     throw InputError(fmt::format("list: '{}': names are of algorithms: list algorithms {}",
                                  options.names.front(), options.names.front()));
   }
+  addEnginesOf(options.plugins);
   bool first = true;
   for (const Section& section : sections()) {
     if (options.what != section.name && options.what != "all") continue;

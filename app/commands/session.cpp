@@ -9,6 +9,7 @@
 #include "inspector/run_inspector.h"
 #include "option_types.h"
 #include "plan.h"
+#include "plugins.h"
 
 namespace broadmark {
 namespace {
@@ -27,6 +28,7 @@ void requireParts(const SessionOptions& options) {
 }  // namespace
 
 int runSession(const SessionOptions& options) {
+  addEnginesOf(options.plugins);
   Plan plan = makePlan(options);
   if (options.list_only) return listCases(plan);
   requireParts(options);

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "algorithms/runs.h"
-#include "pair_set.h"
+#include "broadmark/pair_set.h"
 #include "tracy/segmented_list.h"
 
 namespace broadmark::tests {

@@ -1,0 +1,267 @@
+// The four broad phases of PhysX for processors, alone:
+//  sap   sweep and prune on three axes, kept sorted from frame to frame
+//  mbp   "multi box pruning": regions of space, in each a sweep over boxes that stay sorted
+//  abp   "automatic box pruning": the same with regions of its own choice
+//  pabp  the same on several threads
+// O(m log n + k) and more where many move; O(n + k) space.
+//
+// Used by the stand-alone interface (PxBroadPhase.h): told what was created, updated and removed,
+// they tell which pairs came and went. Bodies of layers that never meet each other are put into the
+// group of static bodies, the others each into one of its own, as advised there. MBP gets the four
+// by four regions that its documentation begins with; the outermost ones have no end, as bodies
+// outside of all regions would not collide. A team of several gets a dispatcher of as many threads.
+//
+// Bounds become integers that lose the last bit or two, so PhysX's pairs are candidates: in each
+// frame the boxes decide which of them overlap, and the answer is exact.
+//
+// Library: PhysX 5, NVIDIA.
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadmark/pair_set.h"
+#include "broadmark/plugin.h"
+#include "broadmark/strangers.h"
+#include "physx/library.h"
+
+namespace broadmark::physx_broad_phases {
+namespace {
+
+using physx::PxBroadPhaseType;
+using physx::PxU32;
+
+/// MBP's regions on each of two axes.
+constexpr int kRegions = 4;
+/// The axis that they do not divide: upwards.
+constexpr int kUp = 1;
+
+physx::PxBounds3 boundsOf(const Aabb& box) {
+  return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
+}
+
+/// PhysX's own threads, and what tells that they are done with a frame.
+class Workers {
+ public:
+  explicit Workers(int threads)
+      : dispatcher_(physx::PxDefaultCpuDispatcherCreate(static_cast<PxU32>(threads))),
+        tasks_(physx::PxTaskManager::createTaskManager(PxGetFoundation().getErrorCallback(),
+                                                       dispatcher_.get())) {}
+
+  /// Calls work(the task to go on with), and waits for that.
+  template <class Work>
+  void run(Work work) {
+    Done done;
+    done.setContinuation(*tasks_, nullptr);
+    work(&done);
+    done.removeReference();
+    done.finished.wait();
+  }
+
+ private:
+  struct Done final : physx::PxLightCpuTask {
+    physx::PxSync finished;
+
+    void run() override {}
+    void release() override {
+      PxLightCpuTask::release();
+      finished.set();
+    }
+    const char* getName() const override { return "done"; }
+  };
+
+  std::unique_ptr<physx::PxDefaultCpuDispatcher, ReleasePhysX> dispatcher_;
+  std::unique_ptr<physx::PxTaskManager, ReleasePhysX> tasks_;
+};
+
+class PhysX final : public BoxBroadPhase {
+ public:
+  explicit PhysX(PxBroadPhaseType::Enum type) {
+    physXFoundation();
+    const physx::PxBroadPhaseDesc description(type);
+    broad_phase_.reset(PxCreateBroadPhase(description));
+    if (!broad_phase_) throw UnsupportedError("PhysX: creates no broad phase");
+  }
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    BoxBroadPhase::initialize(scene, first, execution);
+    filter_ = scene.filter;
+    if (execution.threads() > 1) workers_.emplace(execution.threads());
+    const std::vector<std::uint32_t> bodies = first.presentBodies();
+    const Strangers strangers(filter_, bodies);
+    const std::size_t room = boxes().size() + 1;  // PhysX reads a bit further
+    bounds_.assign(room, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
+    distances_.assign(room, 0);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      groups_.push_back(strangers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
+                                                 : physx::PxGetBroadPhaseDynamicFilterGroup(body));
+    }
+    groups_.push_back(0);
+    is_there_.assign(boxes().size(), 0);
+    if (physx::PxBroadPhaseRegions* regions = broad_phase_->getRegions()) {
+      addRegions(*regions, scene.world);
+    }
+    for (const std::uint32_t body : bodies) takeOver(body);
+    updateStructures();
+  }
+
+  void updateObjects(const Frame& frame) override {
+    BoxBroadPhase::updateObjects(frame);
+    created_.clear();
+    updated_.clear();
+    removed_.clear();
+    for (const std::uint32_t body : *frame.changed) takeOver(body);
+  }
+
+  void updateStructures() override {
+    if (created_.empty() && updated_.empty() && removed_.empty()) return;
+    const auto count = [](const std::vector<PxU32>& ids) { return static_cast<PxU32>(ids.size()); };
+    const physx::PxBroadPhaseUpdateData data(created_.data(), count(created_), updated_.data(),
+                                             count(updated_), removed_.data(), count(removed_),
+                                             bounds_.data(), groups_.data(), distances_.data(),
+                                             static_cast<PxU32>(boxes().size()));
+    if (workers_) {
+      workers_->run([&](physx::PxBaseTask* next) { broad_phase_->update(data, next); });
+    } else {
+      broad_phase_->update(data);
+    }
+    physx::PxBroadPhaseResults results;
+    broad_phase_->fetchResults(results);
+    if (!removed_.empty()) dropRemoved();
+    for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
+      const Pair pair = pairOf(results.mDeletedPairs[i]);
+      if (areThere(pair)) candidates_.erase(pair);
+    }
+    for (PxU32 i = 0; i < results.mNbCreatedPairs; ++i) {
+      candidates_.insert(pairOf(results.mCreatedPairs[i]));
+    }
+  }
+
+  void visitCounters(const CounterVisitor& visit) const override {
+    visit("moves", updated_.size());
+    visit("candidates", candidates_.run().size());
+  }
+
+  [[nodiscard]] std::string validate() const override {
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+      if ((is_there_[body] != 0) == isEmpty(boxes()[body])) return "a body came or went unseen";
+    }
+    return {};
+  }
+
+ private:
+  static Pair pairOf(const physx::PxBroadPhasePair& pair) {
+    return orderedPair(pair.mID0, pair.mID1);
+  }
+
+  [[nodiscard]] bool areThere(Pair pair) const {
+    return (is_there_[pair.a] & is_there_[pair.b]) != 0;
+  }
+
+  /// PhysX does not tell of all pairs of removed bodies that they are gone.
+  void dropRemoved() {
+    gone_.clear();
+    for (const Pair pair : candidates_.run()) {
+      if (!areThere(pair)) gone_.push_back(pair);
+    }
+    for (const Pair pair : gone_) candidates_.erase(pair);
+  }
+
+  void takeOver(std::uint32_t body) {
+    const bool is_present = !isEmpty(boxes()[body]);
+    const bool was_there = is_there_[body] != 0;
+    is_there_[body] = is_present ? 1 : 0;
+    if (is_present) bounds_[body] = boundsOf(boxes()[body]);
+    if (is_present) (was_there ? updated_ : created_).push_back(body);
+    if (!is_present && was_there) removed_.push_back(body);
+  }
+
+  void addRegions(physx::PxBroadPhaseRegions& regions, const Aabb& world) const {
+    const auto side = [&](int axis, int k) {
+      if (k == 0) return -PX_MAX_BOUNDS_EXTENTS;
+      if (k == kRegions) return PX_MAX_BOUNDS_EXTENTS;
+      return world.min[axis] +
+             (world.max[axis] - world.min[axis]) * static_cast<float>(k) / kRegions;
+    };
+    constexpr int kFirst = (kUp + 1) % 3;
+    constexpr int kSecond = (kUp + 2) % 3;
+    for (int i = 0; i < kRegions; ++i) {
+      for (int j = 0; j < kRegions; ++j) {
+        physx::PxBounds3 bounds;
+        const auto set = [&](int axis, float low, float high) {
+          bounds.minimum[static_cast<unsigned>(axis)] = low;
+          bounds.maximum[static_cast<unsigned>(axis)] = high;
+        };
+        set(kUp, -PX_MAX_BOUNDS_EXTENTS, PX_MAX_BOUNDS_EXTENTS);
+        set(kFirst, side(kFirst, i), side(kFirst, i + 1));
+        set(kSecond, side(kSecond, j), side(kSecond, j + 1));
+        regions.addRegion({bounds, nullptr}, false, bounds_.data(), distances_.data());
+      }
+    }
+  }
+
+  void findPairs() override {
+    const PairRun candidates = candidates_.run();
+    const bool layers_all = filter_.wantsAll();
+    team().run([&](int worker) {
+      const auto [begin, end] = share(candidates.size(), team().size(), worker);
+      for (const Pair pair : candidates.subspan(begin, end - begin)) {
+        if (!broadmark::overlaps(boxes()[pair.a], boxes()[pair.b])) continue;
+        if (layers_all || filter_.wanted(pair.a, pair.b)) pairs(worker).add(pair.a, pair.b);
+      }
+    });
+  }
+
+  CollisionFilter filter_;
+  std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
+  std::optional<Workers> workers_;
+  // By body, with room for one more.
+  std::vector<physx::PxBounds3> bounds_;
+  std::vector<physx::PxBpFilterGroup> groups_;
+  std::vector<float> distances_;
+  std::vector<std::uint8_t> is_there_;
+  // In this frame.
+  std::vector<PxU32> created_;
+  std::vector<PxU32> updated_;
+  std::vector<PxU32> removed_;
+  std::vector<Pair> gone_;
+  PairSet candidates_;  ///< PhysX's pairs
+};
+
+}  // namespace
+
+std::vector<Algorithm> variants() {
+  const auto variant = [](PxBroadPhaseType::Enum type, const char* id, const char* principle,
+                          const char* summary) {
+    return Algorithm{.id = id,
+                     .family = "PhysX",
+                     .summary = summary,
+                     .traits = {.parallel = type == PxBroadPhaseType::ePABP,
+                                .incremental = true,
+                                .library_allocates = true,
+                                .changing_worlds = ChangingWorlds::native,
+                                .instance_per_world = true,
+                                .max_objects = std::size_t{1} << 29},
+                     .description = {.principle = principle,
+                                     .optimisations = "incremental, integer bounds",
+                                     .time = "O(m log n + k), m bodies that move",
+                                     .space = "O(n + k)",
+                                     .source = "PhysX 5, PxBroadPhase"},
+                     .create = [type] { return std::make_unique<PhysX>(type); }};
+  };
+  return {variant(PxBroadPhaseType::eSAP, "physx-sap", "sorting", "PhysX's sweep and prune"),
+          variant(PxBroadPhaseType::eMBP, "physx-mbp", "grid, sorting",
+                  "PhysX's pruning in given regions"),
+          variant(PxBroadPhaseType::eABP, "physx-abp", "grid, sorting",
+                  "PhysX's pruning in regions of its own choice"),
+          variant(PxBroadPhaseType::ePABP, "physx-pabp", "grid, sorting",
+                  "PhysX's pruning in regions of its own choice, on several threads")};
+}
+
+}  // namespace broadmark::physx_broad_phases
+
+BROADMARK_PLUGIN(broadmark::physx_broad_phases::variants);
