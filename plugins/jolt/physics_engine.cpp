@@ -30,6 +30,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/body_pool.h"
+#include "damping.h"
 
 namespace broadmark::scenes::jolt_engine {
 namespace {
@@ -74,13 +75,6 @@ JPH::Ref<JPH::Shape> shapeOf(const SphereShape& sphere) {
   return new JPH::SphereShape(sphere.radius);
 }
 
-/// A share lost per second, as Jolt's factor of a differential equation.
-float dampingOf(double share_per_second) {
-  constexpr double kMost = 1e6;  // all of it at once
-  return share_per_second >= 1 ? static_cast<float>(kMost)
-                               : static_cast<float>(-std::log(1 - share_per_second));
-}
-
 class JoltBody : public PhysicsBody {
  public:
   /// `interface` is borrowed.
@@ -95,8 +89,8 @@ class JoltBody : public PhysicsBody {
     created.mAngularVelocity = toJolt(description.angular_velocity);
     created.mFriction = static_cast<float>(settings.friction);
     created.mRestitution = static_cast<float>(settings.restitution);
-    created.mLinearDamping = dampingOf(settings.linear_damping);
-    created.mAngularDamping = dampingOf(settings.angular_damping);
+    created.mLinearDamping = dampingFactor(settings.linear_damping);
+    created.mAngularDamping = dampingFactor(settings.angular_damping);
     created.mMotionQuality = JPH::EMotionQuality::LinearCast;
     created.mMaxLinearVelocity = 1e6F;  // bodies of all sizes: no limit
     created.mMaxAngularVelocity = static_cast<float>(settings.max_angular_speed);

@@ -18,6 +18,7 @@
 
 #include "broadmark/scenes/body_pool.h"
 #include "broadmark/scenes/engine_plugin.h"
+#include "damping.h"
 #include "physx/library.h"
 
 namespace broadmark::scenes::physx_engine {
@@ -61,12 +62,6 @@ physx::PxSphereGeometry geometryOf(const SphereShape& sphere) {
   return physx::PxSphereGeometry(sphere.radius);
 }
 
-/// A share lost per second, as PhysX's factor of a differential equation.
-float dampingOf(double share_per_second) {
-  constexpr double kMost = 1e6;  // all of it at once
-  return static_cast<float>(share_per_second >= 1 ? kMost : -std::log(1 - share_per_second));
-}
-
 /// Of a body: its layer, the layers that it pushes, and 0. Of a wall: 0, 0 and 1.
 using Layers = physx::PxFilterData;
 
@@ -94,8 +89,8 @@ class PhysXBody : public PhysicsBody {
     shape->setContactOffset(kContactOffset);
     shape->setSimulationFilterData(Layers(1U << description.layer, pushes, 0, 0));
     physx::PxRigidBodyExt::setMassAndUpdateInertia(*actor_, static_cast<float>(description.mass));
-    actor_->setLinearDamping(dampingOf(settings.linear_damping));
-    actor_->setAngularDamping(dampingOf(settings.angular_damping));
+    actor_->setLinearDamping(dampingFactor(settings.linear_damping));
+    actor_->setAngularDamping(dampingFactor(settings.angular_damping));
     actor_->setMaxAngularVelocity(static_cast<float>(settings.max_angular_speed));
     actor_->setMaxDepenetrationVelocity(kSeparationSpeed);
     actor_->setSleepThreshold(static_cast<float>(settings.sleep_threshold));
