@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "broadmark/adapters.h"
+#include "broadmark/pair_set.h"
 #include "columns.h"
 #include "marked_body.h"
-#include "broadmark/pair_set.h"
 #include "tide/loose_grid.h"
 #include "variants.h"
 

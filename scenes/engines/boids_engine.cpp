@@ -15,8 +15,8 @@
 #include <memory>
 #include <vector>
 
-#include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/body_pool.h"
+#include "broadmark/scenes/registry.h"
 #include "entries.h"
 
 namespace broadmark::scenes::boids_engine {

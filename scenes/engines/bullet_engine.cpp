@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
-#include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/body_pool.h"
+#include "broadmark/scenes/registry.h"
 #include "entries.h"
 
 namespace broadmark::scenes::bullet_engine {

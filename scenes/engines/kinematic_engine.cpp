@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/body_pool.h"
+#include "broadmark/scenes/registry.h"
 #include "entries.h"
 
 namespace broadmark::scenes::kinematic_engine {

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "broadmark/destroy.h"
-#include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/body_pool.h"
+#include "broadmark/scenes/registry.h"
 #include "entries.h"
 
 namespace broadmark::scenes::ode_engine {
