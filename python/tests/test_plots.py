@@ -126,6 +126,17 @@ def test_the_fastest_is_that_at_the_largest_size(tmp_path: pathlib.Path) -> None
     assert best is not None and best.algorithm == "sap"
 
 
+def test_memory_shows_cases_that_take_less_than_a_page(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
+    cases = [
+        case("Brownian", 1000, id_, 0.1) | {"peak_bytes": n} for id_, n in (("bf", 0), ("kd", 9999))
+    ]
+    file = tmp_path / "plot.svg"
+    assert command("plot", "memory", write(tmp_path / "a.json", cases), "-o", file)[0] == 0
+    assert "bf" in file.read_text() and "kd" in file.read_text()
+
+
 def test_the_same_input_makes_the_same_bytes(
     some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
