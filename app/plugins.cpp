@@ -113,9 +113,10 @@ void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
   }
   const auto instance = engine.create == nullptr ? nullptr : engine.create({});
   if (!instance) refuse(file, kKind, id, "creates no instance");
+  const std::vector<std::string> own = parameterNames(*instance);
   for (const SceneListing& scene : builtinScenes()) {
     const std::vector<std::string> taken = parameterNames(*makeSimulation(scene.id));
-    for (const std::string& name : parameterNames(*instance)) {
+    for (const std::string& name : own) {
       if (std::ranges::find(taken, name) == taken.end()) continue;
       refuse(
           file, kKind, id,

@@ -7,7 +7,7 @@
 
 namespace broadmark {
 
-/// Passes what PhysX releases to it.
+/// Deletes PhysX's objects, which release themselves.
 struct ReleasePhysX {
   template <class Object>
   void operator()(Object* object) const {

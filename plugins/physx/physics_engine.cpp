@@ -1,5 +1,5 @@
-// Rigid bodies by PhysX: persistent contact manifolds, a solver over islands, which
-// fall asleep by their energy.
+// Rigid bodies by PhysX: persistent contact manifolds, a solver over islands, which fall asleep by
+// their energy.
 //
 // Temporal Gauss-Seidel ("TGS"), which PhysX advises where masses and sizes differ, kept bodies of
 // all sizes that start inside each other from sinking into each other; speculative contacts did

@@ -130,11 +130,12 @@ def test_memory_shows_cases_that_take_less_than_a_page(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     cases = [
-        case("Brownian", 1000, id_, 0.1) | {"peak_bytes": n} for id_, n in (("bf", 0), ("kd", 9999))
+        case("Brownian", 1000, id_, 0.1) | {"peak_bytes": n}
+        for id_, n in (("grid2d-sap", 0), ("axis-sweep", 9999))
     ]
     file = tmp_path / "plot.svg"
     assert command("plot", "memory", write(tmp_path / "a.json", cases), "-o", file)[0] == 0
-    assert "bf" in file.read_text() and "kd" in file.read_text()
+    assert "grid2d-sap" in file.read_text() and "axis-sweep" in file.read_text()
 
 
 def test_the_same_input_makes_the_same_bytes(
