@@ -12,7 +12,8 @@
 // outside of all regions would not collide. A team of several gets a dispatcher of as many threads.
 //
 // Bounds become integers that lose the last bit or two, so PhysX's pairs are candidates: in each
-// frame the boxes decide which of them overlap, and the answer is exact.
+// frame the boxes decide which of those that moved overlap, and the answer is exact. A pair begins
+// when PhysX says so, or when a candidate meets within these bits; it ends likewise.
 //
 // Library: PhysX 5, NVIDIA.
 
@@ -78,7 +79,7 @@ class Workers {
   std::unique_ptr<physx::PxTaskManager, ReleasePhysX> tasks_;
 };
 
-class PhysX final : public BoxBroadPhase {
+class PhysX final : public BroadPhase {
  public:
   explicit PhysX(PxBroadPhaseType::Enum type) {
     physXFoundation();
@@ -88,42 +89,51 @@ class PhysX final : public BoxBroadPhase {
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    BoxBroadPhase::initialize(scene, first, execution);
     filter_ = scene.filter;
+    team_ = &execution.team();
     if (execution.threads() > 1) workers_.emplace(execution.threads());
     const std::vector<std::uint32_t> bodies = first.presentBodies();
     const Strangers strangers(filter_, bodies);
-    const std::size_t room = boxes().size() + 1;  // PhysX reads a bit further
+    const std::size_t room = first.boxes.size() + 1;  // PhysX reads a bit further
     bounds_.assign(room, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
     distances_.assign(room, 0);
-    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
+    for (std::uint32_t body = 0; body < first.boxes.size(); ++body) {
       groups_.push_back(strangers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
                                                  : physx::PxGetBroadPhaseDynamicFilterGroup(body));
     }
     groups_.push_back(0);
-    is_there_.assign(boxes().size(), 0);
+    is_there_.assign(room, 0);
+    has_moved_.assign(room, 0);
+    parted_ = std::vector<PairBuffer>(static_cast<std::size_t>(team_->size()));
     if (physx::PxBroadPhaseRegions* regions = broad_phase_->getRegions()) {
       addRegions(*regions, scene.world);
     }
-    for (const std::uint32_t body : bodies) takeOver(body);
+    for (const std::uint32_t body : bodies) takeOver(body, first.boxes[body]);
     updateStructures();
+    searchOverlaps();
   }
 
   void updateObjects(const Frame& frame) override {
-    BoxBroadPhase::updateObjects(frame);
+    for (const std::vector<PxU32>* bodies : {&created_, &updated_}) {
+      for (const PxU32 body : *bodies) has_moved_[body] = 0;
+    }
     created_.clear();
     updated_.clear();
     removed_.clear();
-    for (const std::uint32_t body : *frame.changed) takeOver(body);
+    for (const std::uint32_t body : *frame.changed) takeOver(body, frame.boxes[body]);
+  }
+
+  void cleanCache() override {
+    began_.clear();
+    ended_.clear();
   }
 
   void updateStructures() override {
     if (created_.empty() && updated_.empty() && removed_.empty()) return;
-    const auto count = [](const std::vector<PxU32>& ids) { return static_cast<PxU32>(ids.size()); };
-    const physx::PxBroadPhaseUpdateData data(created_.data(), count(created_), updated_.data(),
-                                             count(updated_), removed_.data(), count(removed_),
-                                             bounds_.data(), groups_.data(), distances_.data(),
-                                             static_cast<PxU32>(boxes().size()));
+    const auto count = [](const auto& bodies) { return static_cast<PxU32>(bodies.size()); };
+    const physx::PxBroadPhaseUpdateData data(
+        created_.data(), count(created_), updated_.data(), count(updated_), removed_.data(),
+        count(removed_), bounds_.data(), groups_.data(), distances_.data(), count(bounds_) - 1);
     if (workers_) {
       workers_->run([&](physx::PxBaseTask* next) { broad_phase_->update(data, next); });
     } else {
@@ -134,22 +144,39 @@ class PhysX final : public BoxBroadPhase {
     if (!removed_.empty()) dropRemoved();
     for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
       const Pair pair = pairOf(results.mDeletedPairs[i]);
-      if (areThere(pair)) candidates_.erase(pair);
+      if (areThere(pair) && isWanted(pair)) drop(pair);
     }
     for (PxU32 i = 0; i < results.mNbCreatedPairs; ++i) {
-      candidates_.insert(pairOf(results.mCreatedPairs[i]));
+      const Pair pair = pairOf(results.mCreatedPairs[i]);
+      if (isWanted(pair)) apart_.insert(pair);
     }
+  }
+
+  void searchOverlaps() override {
+    if (!created_.empty() || !updated_.empty()) {
+      findParted();
+      findMet();
+    }
+    runs_ = {overlapping_.run(), began_.run(), ended_.run()};
+  }
+
+  [[nodiscard]] PairRuns overlaps() const override { return {&runs_.overlapping, 1}; }
+  [[nodiscard]] PairEvents events() const override {
+    return {{&runs_.began, 1}, {&runs_.ended, 1}};
   }
 
   void visitCounters(const CounterVisitor& visit) const override {
     visit("moves", updated_.size());
-    visit("candidates", candidates_.run().size());
+    visit("pairs begun", began_.size());
+    visit("pairs ended", ended_.size());
+    visit("candidates", overlapping_.run().size() + apart_.run().size());
   }
 
   [[nodiscard]] std::string validate() const override {
-    for (std::uint32_t body = 0; body < boxes().size(); ++body) {
-      if ((is_there_[body] != 0) == isEmpty(boxes()[body])) return "a body came or went unseen";
-    }
+    const auto overlapping = [this](Pair pair) { return areThere(pair) && overlap(pair); };
+    const auto apart = [this](Pair pair) { return areThere(pair) && !overlap(pair); };
+    if (!std::ranges::all_of(overlapping_.run(), overlapping)) return "a pair is apart";
+    if (!std::ranges::all_of(apart_.run(), apart)) return "a candidate overlaps";
     return {};
   }
 
@@ -162,22 +189,74 @@ class PhysX final : public BoxBroadPhase {
     return (is_there_[pair.a] & is_there_[pair.b]) != 0;
   }
 
+  [[nodiscard]] bool isWanted(Pair pair) const { return filter_.wanted(pair.a, pair.b); }
+  [[nodiscard]] bool hasMoved(Pair pair) const {
+    return (has_moved_[pair.a] | has_moved_[pair.b]) != 0;
+  }
+  [[nodiscard]] bool overlap(Pair pair) const {
+    return bounds_[pair.a].intersects(bounds_[pair.b]);
+  }
+
+  void takeOver(std::uint32_t body, const Aabb& box) {
+    const bool is_present = !isEmpty(box);
+    const bool was_there = is_there_[body] != 0;
+    is_there_[body] = has_moved_[body] = is_present ? 1 : 0;
+    if (is_present) bounds_[body] = boundsOf(box);
+    if (is_present) (was_there ? updated_ : created_).push_back(body);
+    if (!is_present && was_there) removed_.push_back(body);
+  }
+
+  /// No longer a candidate.
+  void drop(Pair pair) {
+    if (overlapping_.contains(pair)) {
+      overlapping_.erase(pair);
+      ended_.add(pair.a, pair.b);
+    } else {
+      apart_.erase(pair);
+    }
+  }
+
   /// PhysX does not tell of all pairs of removed bodies that they are gone.
   void dropRemoved() {
     gone_.clear();
-    for (const Pair pair : candidates_.run()) {
-      if (!areThere(pair)) gone_.push_back(pair);
+    for (const PairRun candidates : {overlapping_.run(), apart_.run()}) {
+      for (const Pair pair : candidates) {
+        if (!areThere(pair)) gone_.push_back(pair);
+      }
     }
-    for (const Pair pair : gone_) candidates_.erase(pair);
+    for (const Pair pair : gone_) drop(pair);
   }
 
-  void takeOver(std::uint32_t body) {
-    const bool is_present = !isEmpty(boxes()[body]);
-    const bool was_there = is_there_[body] != 0;
-    is_there_[body] = is_present ? 1 : 0;
-    if (is_present) bounds_[body] = boundsOf(boxes()[body]);
-    if (is_present) (was_there ? updated_ : created_).push_back(body);
-    if (!is_present && was_there) removed_.push_back(body);
+  /// Pairs that no longer overlap, and are candidates yet.
+  void findParted() {
+    const PairRun pairs = overlapping_.run();
+    team_->run([&](int worker) {
+      PairBuffer& parted = parted_[static_cast<std::size_t>(worker)];
+      parted.clear();
+      const auto [begin, end] = share(pairs.size(), team_->size(), worker);
+      for (const Pair pair : pairs.subspan(begin, end - begin)) {
+        if (hasMoved(pair) && !overlap(pair)) parted.add(pair.a, pair.b);
+      }
+    });
+    for (const PairBuffer& parted : parted_) {
+      for (const Pair pair : parted.run()) {
+        drop(pair);
+        apart_.insert(pair);
+      }
+    }
+  }
+
+  /// Candidates that overlap now.
+  void findMet() {
+    met_.clear();
+    for (const Pair pair : apart_.run()) {
+      if (hasMoved(pair) && overlap(pair)) met_.push_back(pair);
+    }
+    for (const Pair pair : met_) {
+      apart_.erase(pair);
+      overlapping_.insert(pair);
+      began_.add(pair.a, pair.b);
+    }
   }
 
   void addRegions(physx::PxBroadPhaseRegions& regions, const Aabb& world) const {
@@ -204,19 +283,8 @@ class PhysX final : public BoxBroadPhase {
     }
   }
 
-  void findPairs() override {
-    const PairRun candidates = candidates_.run();
-    const bool layers_all = filter_.wantsAll();
-    team().run([&](int worker) {
-      const auto [begin, end] = share(candidates.size(), team().size(), worker);
-      for (const Pair pair : candidates.subspan(begin, end - begin)) {
-        if (!broadmark::overlaps(boxes()[pair.a], boxes()[pair.b])) continue;
-        if (layers_all || filter_.wanted(pair.a, pair.b)) pairs(worker).add(pair.a, pair.b);
-      }
-    });
-  }
-
   CollisionFilter filter_;
+  ThreadTeam* team_ = nullptr;
   std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
   std::optional<Workers> workers_;
   // By body, with room for one more.
@@ -224,12 +292,22 @@ class PhysX final : public BoxBroadPhase {
   std::vector<physx::PxBpFilterGroup> groups_;
   std::vector<float> distances_;
   std::vector<std::uint8_t> is_there_;
+  std::vector<std::uint8_t> has_moved_;  ///< or come, in this frame
+  // PhysX's pairs, as far as they are wanted.
+  PairSet overlapping_;
+  PairSet apart_;  ///< no more than the lost bits
   // In this frame.
   std::vector<PxU32> created_;
   std::vector<PxU32> updated_;
   std::vector<PxU32> removed_;
   std::vector<Pair> gone_;
-  PairSet candidates_;  ///< PhysX's pairs
+  std::vector<Pair> met_;
+  std::vector<PairBuffer> parted_;  ///< by worker
+  PairBuffer began_;
+  PairBuffer ended_;
+  struct {
+    PairRun overlapping, began, ended;
+  } runs_;
 };
 
 }  // namespace
@@ -242,6 +320,7 @@ std::vector<Algorithm> variants() {
                      .summary = summary,
                      .traits = {.parallel = type == PxBroadPhaseType::ePABP,
                                 .incremental = true,
+                                .events = true,
                                 .library_allocates = true,
                                 .changing_worlds = ChangingWorlds::native,
                                 .instance_per_world = true,
