@@ -15,6 +15,7 @@
 #include "option_types.h"
 #include "original/ids.h"
 #include "plugins.h"
+#include "sdk_plugins.h"
 #include "sweep.h"
 
 namespace broadmark {
@@ -210,10 +211,19 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   return cases.take();
 }
 
-Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
+/// How much of a case's name is that of a plug-in: "FILE.so:", or "NAME:" of one of ours.
+static std::size_t lengthOfPlugin(const std::string& name) {
   constexpr std::string_view kLibraryEnd = ".so:";
   const auto library = name.find(kLibraryEnd);
-  const std::size_t begin = library == std::string::npos ? 0 : library + kLibraryEnd.size();
+  if (library != std::string::npos) return library + kLibraryEnd.size();
+  for (const SdkPlugin& plugin : sdkPlugins()) {
+    if (name.starts_with(plugin.name + ":")) return plugin.name.size() + 1;
+  }
+  return 0;
+}
+
+Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
+  const std::size_t begin = lengthOfPlugin(name);
   std::vector<std::string> plugins;
   if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
   const std::size_t end = std::min(name.find('/', begin), name.size());

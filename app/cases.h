@@ -35,8 +35,9 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
                               const std::vector<Algorithm>& known);
 
 /// The case of this name, as caseName() writes it: "kd-mt/avx2/t4/events/margin=0.1"; an algorithm
-/// of a plug-in has the library's file in front: "libmine.so:my-sweep". What is left out is as wide
-/// as the processor, or `answer`. Throws InputError.
+/// of a plug-in has the library's file in front, or the name of one of ours: "libmine.so:my-sweep",
+/// "jolt:jolt-quadtree". What is left out is as wide as the processor, or `answer`. Throws
+/// InputError.
 Case caseNamed(const std::string& name, const std::string& device,
                AnswerKind answer = AnswerKind::pairs);
 

@@ -74,6 +74,13 @@ std::string reproducingCommand(const Case& run, const fs::path& recording) {
   return command;
 }
 
+std::string torturingCommand(const Case& run, const fs::path& recording) {
+  const std::string plugin = run.algorithm.plugin.empty() ? "" : run.algorithm.plugin + ":";
+  return fmt::format("broadmark torture {} --only-sources --case {} --rounds 1 --output {}",
+                     pathWord(recording), quoted(plugin + caseName(run)),
+                     pathWord(recording.parent_path() / "again"));
+}
+
 int runExportCase(Plan plan, const SessionOptions& options) {
   PlanEntry& entry = plan.entries.front();
   const auto difference = entry.knownDifference();

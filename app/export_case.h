@@ -19,6 +19,8 @@ void requireExportable(const std::filesystem::path& file, const std::filesystem:
 /// The command that runs a case on a recording and checks it, for a shell:
 /// "broadmark --headless 'FreeFall case.aabbs' --algorithm sap-mt --threads 2 --check full".
 std::string reproducingCommand(const Case&, const std::filesystem::path& recording);
+/// The same for what only a torture notices: a leak, a broken invariant.
+std::string torturingCommand(const Case&, const std::filesystem::path& recording);
 
 /// Shrinks the plan's only case, which is of a results file, instead of running it; writes the
 /// smallest recording on which it still fails, and prints the command that shows it. Returns the

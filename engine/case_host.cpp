@@ -187,6 +187,11 @@ RecordedDrawing LocalHost::structure() {
   return drawing;
 }
 
+std::string LocalHost::validate() {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  return instance_->validate();
+}
+
 std::unique_ptr<CaseHost> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
   return std::make_unique<LocalHost>(run);
 }

@@ -142,5 +142,6 @@ PairRuns CaseRun::answer() { return answersEvents() ? followed_.pairs() : ask(&C
 Counts CaseRun::counters() { return ask(&CaseHost::counters); }
 Counts CaseRun::setup() { return ask(&CaseHost::setup); }
 RecordedDrawing CaseRun::structure() { return ask(&CaseHost::structure); }
+std::string CaseRun::validate() { return ask(&CaseHost::validate); }
 
 }  // namespace broadmark

@@ -85,19 +85,6 @@ Part renumbered(const Part& part, const Part& origin) {
   return same;
 }
 
-/// Where to look first: the bodies of the first wrong pair whose bodies exist.
-std::vector<std::uint32_t> suspects(const FrameDifference& difference, std::uint32_t bodies) {
-  for (const auto* pairs :
-       {&difference.missed_pairs, &difference.false_pairs, &difference.invalid_pairs}) {
-    for (const Pair pair : *pairs) {
-      if (pair.a >= bodies || pair.b >= bodies) continue;
-      if (pair.a == pair.b) return {pair.a};
-      return {pair.a, pair.b};
-    }
-  }
-  return {};
-}
-
 /// Squared distance of two boxes, 0 when they overlap; infinite if one is empty.
 double squaredGap(const Aabb& a, const Aabb& b) {
   double sum = 0;
@@ -143,17 +130,13 @@ std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
 
 class Shrinker {
  public:
-  Shrinker(const Case& run, IndexedFrames& source, const FrameDifference& known,
-           const ShrinkOptions& options)
-      : run_(run, RunPolicy::unlimited(CheckMode::full), options.make_host, options.cancelled),
-        options_(options),
-        whole_(source),
-        known_(known) {
-    best_.part = wholePart(source.scene(), known.frame);
-    best_.difference = known;
+  Shrinker(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
+           const FailingTrial& trial, const ShrinkOptions& options)
+      : suspects_(suspects), trial_(trial), options_(options), whole_(source), last_(last) {
+    best_.part = wholePart(source.scene(), last);
   }
 
-  ShrunkCase shrink() {
+  ShrunkPart shrink() {
     try {
       if (!failsAmongNeighbours()) {
         requireFailure();
@@ -199,15 +182,12 @@ class Shrinker {
     return {held_->frames, renumbered(part, held_->origin), name};
   }
 
-  /// Runs the case on a part, which becomes the best when it fails there.
+  /// Tries a part, which becomes the best when it fails.
   bool fails(const Part& part) {
-    std::optional<FrameDifference> difference = lastDifference(part);
+    SubRecording source = framesOf(part);
+    const bool failed = trial_(source);
     ++best_.trials;
-    const bool failed = difference && difference->isMismatch();
-    if (failed) {
-      best_.part = part;
-      best_.difference = std::move(*difference);
-    }
+    if (failed) best_.part = part;
     if (options_.progress) {
       options_.progress({.trials = best_.trials,
                          .bodies = best_.part.bodies.size(),
@@ -215,22 +195,6 @@ class Shrinker {
     }
     throwIfCancelled();
     return failed;
-  }
-
-  /// How the answer for the last frame of a part differs from the right one; nothing when the case
-  /// does not get that far.
-  std::optional<FrameDifference> lastDifference(const Part& part) {
-    SubRecording source = framesOf(part);
-    const std::uint32_t last = source.scene().frames;
-    run_.start(source.scene(), source.rewind());
-    for (std::uint32_t index = 1; index <= last && run_.running(); ++index) {
-      throwIfCancelled();
-      const Frame frame = source.at(index);
-      if (!run_.step(frame) || index < last) continue;
-      Oracle oracle(0);
-      return run_.check(frame, oracle);
-    }
-    return std::nullopt;
   }
 
   void throwIfCancelled() const {
@@ -241,10 +205,10 @@ class Shrinker {
   /// any of that failed.
   bool failsAmongNeighbours() {
     const Part before = best_.part;
-    const std::vector<std::uint32_t> seeds = suspects(known_, whole_.scene().objects);
+    const std::vector<std::uint32_t> seeds = suspects_();
     const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
     if (seeds.empty() || limit < seeds.size()) return false;
-    const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(known_.frame).boxes, limit);
+    const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(last_).boxes, limit);
     const auto first = [&](std::size_t count) {
       std::vector bodies(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
       std::ranges::sort(bodies);
@@ -258,13 +222,10 @@ class Shrinker {
   }
 
   void requireFailure() {
-    if (fails(best_.part)) {
-      known_ = best_.difference;
-      known_.frame = best_.part.frames.back();
-      return;
-    }
-    throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
-                                 whole_.scene().name, caseName(run_.description()), known_.frame));
+    if (fails(best_.part)) return;
+    throw InputError(
+        fmt::format("{}: what is to be shrunk does not fail in frame {} when it is run again",
+                    whole_.scene().name, last_));
   }
 
   /// Tries longer and longer histories before the last frame.
@@ -376,15 +337,49 @@ class Shrinker {
                           });
   }
 
-  CaseRun run_;  ///< of all trials
+  const SuspectQuery& suspects_;
+  const FailingTrial& trial_;
   const ShrinkOptions& options_;
   IndexedFrames& whole_;
-  FrameDifference known_;
-  ShrunkCase best_;
+  std::uint32_t last_;  ///< frame
+  ShrunkPart best_;
   std::unique_ptr<Held> held_;
 };
 
+/// How a case's answer for the last frame differs from the right one; nothing when it does not get
+/// that far.
+std::optional<FrameDifference> lastDifference(CaseRun& run, IndexedFrames& source,
+                                              const CancelQuery& cancelled) {
+  const std::uint32_t last = source.scene().frames;
+  run.start(source.scene(), source.rewind());
+  for (std::uint32_t index = 1; index <= last && run.running(); ++index) {
+    if (cancelled && cancelled()) throw Cancelled();
+    const Frame frame = source.at(index);
+    if (!run.step(frame) || index < last) continue;
+    Oracle oracle(0);
+    return run.check(frame, oracle);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> suspectsOf(const FrameDifference& difference, std::size_t bodies) {
+  for (const auto* pairs :
+       {&difference.missed_pairs, &difference.false_pairs, &difference.invalid_pairs}) {
+    for (const Pair pair : *pairs) {
+      if (pair.a >= bodies || pair.b >= bodies) continue;
+      if (pair.a == pair.b) return {pair.a};
+      return {pair.a, pair.b};
+    }
+  }
+  return {};
+}
+
+ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
+                      const FailingTrial& fails, const ShrinkOptions& options) {
+  return Shrinker(source, last, suspects, fails, options).shrink();
+}
 
 ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
                       const ShrinkOptions& options) {
@@ -397,7 +392,17 @@ ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDiffere
     throw InputError(
         fmt::format("{} finds no pairs: there is nothing to shrink", run.algorithm.id));
   }
-  return Shrinker(run, source, known, options).shrink();
+  CaseRun trial(run, RunPolicy::unlimited(CheckMode::full), options.make_host, options.cancelled);
+  FrameDifference last = known;
+  const auto fails = [&](IndexedFrames& part) {
+    std::optional<FrameDifference> difference = lastDifference(trial, part, options.cancelled);
+    if (!difference || !difference->isMismatch()) return false;
+    last = std::move(*difference);
+    return true;
+  };
+  const auto look_first = [&] { return suspectsOf(last, scene.objects); };
+  const ShrunkPart shrunk = shrinkPart(source, known.frame, look_first, fails, options);
+  return {shrunk, std::move(last)};
 }
 
 }  // namespace broadmark

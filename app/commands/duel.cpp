@@ -139,7 +139,7 @@ std::function<int()> add(CLI::App& app) {
   app.add_option(
          "variants", options->variants,
          "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
-         "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID…")
+         "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID… or NAME:ID…")
       ->type_name("VARIANT")
       ->required();
   addPath(app, "--with", "PROGRAM", options->program,

@@ -22,7 +22,9 @@
 //   counters, setup                                               counts {}
 //   structure                                                     boxes, lines: so many are
 //                                                                 shared; left_out
+//   validate                                                      broken ("": nothing)
 //   stop                                                          peak_bytes (null: not known),
+//                                                                 heap_bytes,
 //                                                                 processor {} (what is known)
 //
 // A side passes over keys that it does not know. A change that an older side cannot pass over

@@ -1,5 +1,6 @@
 // The worker's side: a LocalHost whose calls come by messages.
 
+#include <malloc.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -30,6 +31,12 @@ std::optional<std::uint64_t> statusBytes(const std::string& key) {
 
 /// The peak of the memory that this process has had resident.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
+
+/// What is allocated and not freed.
+std::uint64_t heapBytes() {
+  const auto heap = ::mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
 
 /// Should memory run out nonetheless, this process is to go, not the one that waits for it.
 void beFirstToGo() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
@@ -63,12 +70,17 @@ class Server {
  private:
   using Call = Json (Server::*)(const Json&);
   static const std::map<std::string, Call>& calls() {
-    static const std::map<std::string, Call> all = {
-        {"case", &Server::takeCase},       {"start", &Server::start},
-        {"step", &Server::step},           {"digest", &Server::digest},
-        {"answer", &Server::pairs},        {"events", &Server::events},
-        {"counters", &Server::counters},   {"setup", &Server::setup},
-        {"structure", &Server::structure}, {"stop", &Server::stop}};
+    static const std::map<std::string, Call> all = {{"case", &Server::takeCase},
+                                                    {"start", &Server::start},
+                                                    {"step", &Server::step},
+                                                    {"digest", &Server::digest},
+                                                    {"answer", &Server::pairs},
+                                                    {"events", &Server::events},
+                                                    {"counters", &Server::counters},
+                                                    {"setup", &Server::setup},
+                                                    {"structure", &Server::structure},
+                                                    {"validate", &Server::validate},
+                                                    {"stop", &Server::stop}};
     return all;
   }
 
@@ -152,6 +164,8 @@ class Server {
             {"left_out", drawing.leftOut()}};
   }
 
+  Json validate(const Json& /*message*/) { return {{"broken", host().validate()}}; }
+
   Json stop(const Json& /*message*/) {
     if (!measured_) measure();
     host().stop();
@@ -160,6 +174,7 @@ class Server {
     std::vector<Aabb>().swap(changed_boxes_);
     std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
+            {"heap_bytes", heapBytes()},
             {"processor", worker::toJson(host().processorCounts())}};
   }
 

@@ -177,6 +177,8 @@ void WorkerProcess::stop() {
   if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
     peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
   }
+  heap_bytes_.reset();
+  if (stopped.contains("heap_bytes")) heap_bytes_ = stopped.at("heap_bytes").get<std::uint64_t>();
   processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
   link_->frames.clear();
   link_->answers.clear();
@@ -207,6 +209,10 @@ PairEvents WorkerProcess::events() {
 Counts WorkerProcess::counters() { return talk(calling("counters")).at("counts").get<Counts>(); }
 
 Counts WorkerProcess::setup() { return talk(calling("setup")).at("counts").get<Counts>(); }
+
+std::string WorkerProcess::validate() {
+  return talk(calling("validate")).at("broken").get<std::string>();
+}
 
 RecordedDrawing WorkerProcess::structure() {
   const Json drawn = talk(calling("structure"));

@@ -8,8 +8,9 @@
 // Used by the stand-alone interface (PxBroadPhase.h): told what was created, updated and removed,
 // they tell which pairs came and went. Bodies of layers that never meet each other are put into the
 // group of static bodies, the others each into one of its own, as advised there. MBP gets the four
-// by four regions that its documentation begins with; the outermost ones have no end, as bodies
-// outside of all regions would not collide. A team of several gets a dispatcher of as many threads.
+// by four regions that its documentation begins with, and up to sixteen by sixteen for many bodies,
+// as a region holds 65,535 of them; the outermost ones have no end, as bodies outside of all
+// regions would not collide. A team of several gets a dispatcher of as many threads.
 //
 // Bounds become integers that lose the last bit or two, so PhysX's pairs are candidates: in each
 // frame the boxes decide which of those that moved overlap, and the answer is exact. A pair begins
@@ -36,8 +37,15 @@ namespace {
 using physx::PxBroadPhaseType;
 using physx::PxU32;
 
-/// MBP's regions on each of two axes.
-constexpr int kRegions = 4;
+/// MBP's regions on each of two axes: PhysX allows 256 in all.
+int regionsFor(std::size_t bodies) {
+  constexpr std::size_t kUsual = 16'384;  // bodies in one, if they are spread evenly
+  int regions = 4;
+  while (regions < 16 && bodies > kUsual * static_cast<std::size_t>(regions * regions))
+    regions *= 2;
+  return regions;
+}
+
 /// The axis that they do not divide: upwards.
 constexpr int kUp = 1;
 
@@ -141,6 +149,7 @@ class PhysX final : public BroadPhase {
     }
     physx::PxBroadPhaseResults results;
     broad_phase_->fetchResults(results);
+    PhysXErrors::instance().check();
     if (!removed_.empty()) dropRemoved();
     for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
       const Pair pair = pairOf(results.mDeletedPairs[i]);
@@ -260,16 +269,17 @@ class PhysX final : public BroadPhase {
   }
 
   void addRegions(physx::PxBroadPhaseRegions& regions, const Aabb& world) const {
+    const int count = regionsFor(is_there_.size());
     const auto side = [&](int axis, int k) {
       if (k == 0) return -PX_MAX_BOUNDS_EXTENTS;
-      if (k == kRegions) return PX_MAX_BOUNDS_EXTENTS;
-      return world.min[axis] +
-             (world.max[axis] - world.min[axis]) * static_cast<float>(k) / kRegions;
+      if (k == count) return PX_MAX_BOUNDS_EXTENTS;
+      return world.min[axis] + (world.max[axis] - world.min[axis]) * static_cast<float>(k) /
+                                   static_cast<float>(count);
     };
     constexpr int kFirst = (kUp + 1) % 3;
     constexpr int kSecond = (kUp + 2) % 3;
-    for (int i = 0; i < kRegions; ++i) {
-      for (int j = 0; j < kRegions; ++j) {
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < count; ++j) {
         physx::PxBounds3 bounds;
         const auto set = [&](int axis, float low, float high) {
           bounds.minimum[static_cast<unsigned>(axis)] = low;

@@ -200,6 +200,7 @@ class PhysXEngine final : public PhysicsEngine {
     for (std::int64_t i = 0; i < settings_.substeps; ++i) {
       scene_->simulate(static_cast<float>(time));
       scene_->fetchResults(/*block=*/true);
+      PhysXErrors::instance().check();
     }
   }
 

@@ -13,18 +13,6 @@
 namespace broadmark::tests {
 namespace {
 
-struct NamedPresence {
-  std::string name;
-  Presence present;
-};
-
-std::vector<NamedPresence> everyPresence() {
-  return {{"always", presences::always},         {"never", presences::never},
-          {"random", presences::random},         {"seldom", presences::seldom},
-          {"all or none", presences::allOrNone}, {"growing", presences::growing},
-          {"shrinking", presences::shrinking}};
-}
-
 class EveryAlgorithmInChangingWorlds : public testing::TestWithParam<Algorithm> {
  protected:
   void SetUp() override {
@@ -71,13 +59,13 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
   const std::size_t kinds = filters(1).size();
   std::size_t turn = 0;
   for (std::size_t kind = 0; kind < kinds; ++kind) {
-    for (const auto& [presence_name, present] : everyPresence()) {
+    for (const auto& [presence_name, present] : inputs::kPresences) {
       // Seven numbers, seven presences: shifted, or each would always come with the same one.
       const std::size_t n = kCounts[(turn + kind) % std::size(kCounts)];
       const inputs::Input& input = kInputs[turn++ % std::size(kInputs)];
       const NamedFilter filter = filters(n)[kind];
-      check({std::string(input.name) + ", " + filter.name + ", " + presence_name, filter.filter,
-             framesWith(input, n, kFrames, present)});
+      check({std::string(input.name) + ", " + filter.name + ", " + std::string(presence_name),
+             filter.filter, framesWith(input, n, kFrames, present)});
       if (HasFatalFailure() || IsSkipped()) return;
     }
   }
@@ -86,11 +74,10 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsExactlyTheRightPairs) {
 // So many bodies that every structure divides them.
 TEST_P(EveryAlgorithmInChangingWorlds, FindsThemAmongManyBodies) {
   constexpr std::size_t kMany = 1500;
-  const std::vector<NamedPresence> presences = everyPresence();
   std::size_t turn = 0;
   for (const auto& [filter_name, filter] : filters(kMany)) {
-    const auto& [presence_name, present] = presences[turn++ % presences.size()];
-    check({filter_name + ", " + presence_name, filter,
+    const auto& [presence_name, present] = inputs::kPresences[turn++ % inputs::kPresences.size()];
+    check({filter_name + ", " + std::string(presence_name), filter,
            framesWith({"drifting", inputs::drifting}, kMany, 5, present)});
     if (HasFatalFailure() || IsSkipped()) return;
   }

@@ -21,7 +21,8 @@
 #include "broadmark/followed_pairs.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
-#include "support/inputs.h"
+#include "torture/given_frames.h"
+#include "torture/inputs.h"
 
 namespace broadmark {
 
@@ -127,20 +128,6 @@ inline std::vector<std::vector<Aabb>> framesOf(const inputs::Input& input, std::
     frames.push_back(input.boxes(n, frame, 1 + n));
   }
   return frames;
-}
-
-/// What the header of a recording of these frames would say.
-inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
-  SceneInfo scene;
-  scene.name = "Test";
-  scene.object_type = "Boxes";
-  scene.objects = static_cast<std::uint32_t>(frames.front().size());
-  scene.frames = static_cast<std::uint32_t>(frames.size() - 1);
-  scene.world = {{-1, -1, -1, 0}, {1, 1, 1, 0}};
-  for (const std::vector<Aabb>& boxes : frames) {
-    for (const Aabb& box : boxes) scene.world = merged(scene.world, box);  // or an empty one
-  }
-  return scene;
 }
 
 /// The answer as one ascending list.

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "benchmarks/contest.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace {
 

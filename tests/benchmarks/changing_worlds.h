@@ -13,7 +13,7 @@
 
 #include "benchmarks/contest.h"
 #include "broadmark/collision_filter.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::benchmarks {
 

@@ -20,7 +20,7 @@
 #include "benchmarks/contest.h"
 #include "broadmark/duel.h"
 #include "broadmark/worker_process.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace {
 

@@ -18,7 +18,7 @@
 
 #include "benchmarks/contest.h"
 #include "broadmark/error.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace {
 

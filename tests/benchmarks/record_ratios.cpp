@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "benchmarks/contest.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "broadmark/followed_pairs.h"
 #include "engine/spoilt_cases.h"
 #include "events_from_pairs.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {

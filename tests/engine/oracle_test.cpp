@@ -10,7 +10,7 @@
 
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {

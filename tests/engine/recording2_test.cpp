@@ -15,7 +15,7 @@
 #include "broadmark/sub_recording.h"
 #include "engine/recording_bytes.h"
 #include "support/changing_worlds.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "engine/recording_bytes.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {

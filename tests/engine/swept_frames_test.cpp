@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {

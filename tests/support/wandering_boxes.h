@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "broadmark/frame.h"
-#include "support/inputs.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 

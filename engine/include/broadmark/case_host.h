@@ -57,7 +57,12 @@ class CaseHost {
   virtual Counts counters() = 0;
   virtual Counts setup() = 0;
   virtual RecordedDrawing structure() = 0;
+  /// As BroadPhase::validate().
+  virtual std::string validate() = 0;
 
+  /// What the process had allocated and not freed after the last stop(); nothing where others share
+  /// its memory, and before that.
+  [[nodiscard]] virtual std::optional<std::uint64_t> heapBytes() const { return std::nullopt; }
   /// By how much the first pass made the peak of the process's memory grow; nothing where others
   /// share that memory, and before the first stop().
   [[nodiscard]] virtual std::optional<std::uint64_t> peakBytes() const { return std::nullopt; }
@@ -90,6 +95,7 @@ class LocalHost final : public CaseHost {
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
+  std::string validate() override;
   [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
   [[nodiscard]] bool pinned() const override { return pinned_; }
 

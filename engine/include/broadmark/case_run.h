@@ -95,6 +95,8 @@ class CaseRun {
   [[nodiscard]] std::uint64_t changedBodies() const { return changed_count_; }
   /// As CaseHost::peakBytes().
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
+  /// As CaseHost::heapBytes().
+  [[nodiscard]] std::optional<std::uint64_t> heapBytes() const { return host_->heapBytes(); }
   /// As CaseHost::processorCounts().
   [[nodiscard]] ProcessorCounts processorCounts() const { return host_->processorCounts(); }
   /// As CaseHost::pinned().
@@ -107,6 +109,7 @@ class CaseRun {
   Counts counters();
   Counts setup();
   RecordedDrawing structure();
+  std::string validate();
 
  private:
   /// Calls the host; what that throws becomes the status. Whether all went well.

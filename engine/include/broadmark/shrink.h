@@ -1,9 +1,11 @@
-// Finding the smallest part of a recording on which an algorithm still answers wrongly.
+// Finding the smallest part of a recording on which something still fails: an algorithm's answer,
+// for one.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "broadmark/case_host.h"
 #include "broadmark/oracle.h"
@@ -26,14 +28,34 @@ struct ShrinkOptions {
   HostMaker make_host = makeLocalHost;  ///< where the trials run
 };
 
-/// A part of a recording on which a case fails in the last frame.
-struct ShrunkCase {
-  Part part;                   ///< in the recording's own numbers
-  FrameDifference difference;  ///< of the last frame, numbered as in the part
+/// A part of a recording on which something fails.
+struct ShrunkPart {
+  Part part;  ///< in the recording's own numbers
   std::uint64_t trials = 0;
   /// Whether no single body, frame, absence, layer, world or tag can be left out; false when
   /// cancelled.
   bool minimal = false;
+};
+
+/// Whether a part of the recording fails, in its last frame.
+using FailingTrial = std::function<bool(IndexedFrames& part)>;
+/// Bodies to look at first, in the recording's numbers. Asked again after a trial of all bodies.
+using SuspectQuery = std::function<std::vector<std::uint32_t>()>;
+
+/// Where to look first: the bodies of the first wrong pair of these `bodies`; none if there is none.
+std::vector<std::uint32_t> suspectsOf(const FrameDifference&, std::size_t bodies);
+
+/// The smallest part of `source` for which fails(part) is true; frame `last` becomes its last one.
+/// Deterministic if the trials are. options.make_host is not used.
+///
+/// Cancelled: the best part so far. Throws InputError when frames 0…last as a whole do not fail, or
+/// for a bad recording.
+ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
+                      const FailingTrial& fails, const ShrinkOptions& options = {});
+
+/// A part of a recording on which a case fails.
+struct ShrunkCase : ShrunkPart {
+  FrameDifference difference;  ///< of the last frame, numbered as in the part
 };
 
 /// The smallest part of `source` on which `run` still fails as it does in frame `known.frame`,

@@ -54,6 +54,8 @@ class WorkerProcess final : public CaseHost {
   Counts counters() override;
   Counts setup() override;
   RecordedDrawing structure() override;
+  std::string validate() override;
+  [[nodiscard]] std::optional<std::uint64_t> heapBytes() const override { return heap_bytes_; }
   [[nodiscard]] std::optional<std::uint64_t> peakBytes() const override { return peak_bytes_; }
   [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
   [[nodiscard]] bool pinned() const override { return pinned_; }
@@ -72,6 +74,7 @@ class WorkerProcess final : public CaseHost {
   WorkerOptions options_;
   std::unique_ptr<Link> link_;  ///< null: no process runs
   std::optional<std::uint64_t> peak_bytes_;
+  std::optional<std::uint64_t> heap_bytes_;
   ProcessorCounts processor_counts_;
   bool pinned_ = false;
   std::vector<Aabb> changed_boxes_;

@@ -37,6 +37,12 @@ class Random {
   int integer(int low, int high) {  // both inclusive
     return low + static_cast<int>(bits_() % static_cast<std::uint64_t>(high - low + 1));
   }
+  /// Whether something happens that does so once in `times`.
+  bool onceIn(int times) { return integer(1, times) == 1; }
+  template <class List>
+  const auto& anyOf(const List& list) {
+    return list[static_cast<std::size_t>(integer(0, static_cast<int>(list.size()) - 1))];
+  }
   Vec3 inCube(float side) { return {uniform(0, side), uniform(0, side), uniform(0, side)}; }
 
  private:

@@ -1,0 +1,378 @@
+// broadmark torture: algorithms in random ways on random worlds, until one of them is wrong.
+
+#include "broadmark/torture.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "broadmark/error.h"
+#include "cases.h"
+#include "commands/command.h"
+#include "exit_status.h"
+#include "export_case.h"
+#include "hosts.h"
+#include "interrupt.h"
+#include "option_types.h"
+#include "plugins.h"
+#include "progress.h"
+#include "recordings.h"
+#include "sources/source.h"
+#include "torture_log.h"
+#include "words.h"
+
+namespace broadmark::commands::torture {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Of the same kind of fault in the same algorithm only so many are shrunk and written.
+constexpr std::uint64_t kMostAlike = 3;
+
+struct Options {
+  std::vector<std::string> sources;
+  bool only_sources = false;
+  std::vector<std::string> algorithms = {"all"};
+  std::string case_name;  ///< "": of all kinds
+  std::vector<std::string> plugins;
+  double minutes = 1;
+  std::optional<std::uint64_t> rounds;  ///< after which it ends instead
+  std::optional<std::uint64_t> seed;    ///< nothing: of the log, or 1
+  int jobs = allCores();
+  fs::path output = "torture";
+  HostOptions hosts{.hard_limit_seconds = 10};
+  bool quiet = false;
+};
+
+/// Rounds on several threads at a time.
+class Rounds {
+ public:
+  using Ended = std::pair<std::uint64_t, std::optional<TortureRound>>;  ///< nothing: cancelled
+
+  /// `next` gives the number of the next round, until it gives nothing; one thread asks at a time.
+  Rounds(const TortureOptions& options, int jobs,
+         std::function<std::optional<std::uint64_t>()> next)
+      : options_(options), next_(std::move(next)), working_(jobs) {
+    for (int i = 0; i < jobs; ++i) threads_.emplace_back([this] { work(); });
+  }
+  ~Rounds() {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  Rounds(const Rounds&) = delete;
+  Rounds& operator=(const Rounds&) = delete;
+
+  /// The next round that ends; nothing if none does within a moment. Throws what a round throws.
+  std::optional<Ended> wait() {
+    constexpr std::chrono::milliseconds kMoment{200};
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kMoment, [this] { return !ended_.empty() || working_ == 0; });
+    if (ended_.empty()) {
+      if (error_) std::rethrow_exception(error_);
+      return std::nullopt;
+    }
+    Ended first = std::move(ended_.front());
+    ended_.pop_front();
+    return first;
+  }
+
+  [[nodiscard]] bool allEnded() {
+    const std::lock_guard lock(mutex_);
+    return working_ == 0 && ended_.empty() && !error_;
+  }
+
+ private:
+  void work() {
+    try {
+      while (const std::optional<std::uint64_t> number = nextNumber()) end(*number, run(*number));
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      error_ = std::current_exception();
+      is_over_ = true;
+    }
+    const std::lock_guard lock(mutex_);
+    --working_;
+    changed_.notify_all();
+  }
+
+  std::optional<std::uint64_t> nextNumber() {
+    const std::lock_guard lock(mutex_);
+    return is_over_ ? std::nullopt : next_();
+  }
+
+  std::optional<TortureRound> run(std::uint64_t number) const {
+    try {
+      return runTortureRound(options_, number);
+    } catch (const Cancelled&) {
+      return std::nullopt;
+    }
+  }
+
+  void end(std::uint64_t number, std::optional<TortureRound> round) {
+    const std::lock_guard lock(mutex_);
+    ended_.emplace_back(number, std::move(round));
+    changed_.notify_all();
+  }
+
+  const TortureOptions& options_;
+  std::function<std::optional<std::uint64_t>()> next_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Ended> ended_;
+  std::exception_ptr error_;
+  bool is_over_ = false;
+  int working_;
+  std::vector<std::jthread> threads_;
+};
+
+class Torture {
+ public:
+  explicit Torture(Options options)
+      : options_(std::move(options)), log_file_(options_.output / "torture.json") {
+    algorithms_ = availableAlgorithms(options_.plugins);
+    makeDirectory(options_.output);
+    readSubjects();
+    readLog();
+    readSources();
+    torture_.seed = log_.seed;
+    torture_.make_host = hostMaker(options_.hosts);
+    torture_.cancelled = InterruptGuard::requested;
+    torture_.is_news = [this](const std::string& algorithm, FaultKind kind) {
+      const std::lock_guard lock(mutex_);
+      return found_[{algorithm, std::string(kFaultKinds.nameOf(kind))}]++ < kMostAlike;
+    };
+  }
+
+  int run() {
+    const Clock::time_point start = Clock::now();
+    Clock::time_point written = start;
+    const double before = log_.seconds;
+    Progress progress("torture", kTicks, options_.quiet);
+    {
+      Rounds rounds(torture_, options_.jobs, [&] { return nextRound(start); });
+      while (!rounds.allEnded()) {
+        if (auto ended = rounds.wait()) take(std::move(*ended), progress);
+        const Clock::time_point now = Clock::now();
+        log_.seconds = before + seconds(now - start);
+        showProgress(progress, seconds(now - start));
+        if (now - written < std::chrono::seconds(10)) continue;
+        writeLog();
+        written = now;
+      }
+    }
+    writeLog();
+    progress.print(formatTortureLog(log_));
+    if (InterruptGuard::requested()) {
+      throw Interrupted(fmt::format("the same command goes on from {}", log_file_.string()));
+    }
+    progress.update(kTicks);
+    return log_.times.empty() ? exit_status::fine : exit_status::wrong_answer;
+  }
+
+ private:
+  static constexpr std::uint64_t kTicks = 1000;
+
+  static double seconds(Clock::duration time) {
+    return std::chrono::duration<double>(time).count();
+  }
+
+  void readSubjects() {
+    if (!options_.case_name.empty()) {
+      torture_.only_case = caseNamed(options_.case_name, "");
+      log_.subjects = {options_.case_name};
+      return;
+    }
+    for (Algorithm& algorithm : selectAlgorithms(options_.algorithms, algorithms_, "--algorithm")) {
+      if (algorithm.traits.finds_pairs) torture_.algorithms.push_back(std::move(algorithm));
+    }
+    log_.subjects = algorithmIds(torture_.algorithms);
+    if (log_.subjects.empty()) throw InputError("torture: none of these finds pairs");
+  }
+
+  /// Goes on where an earlier call has ended.
+  void readLog() {
+    log_.seed = options_.seed.value_or(log_.seed);
+    if (!fs::exists(log_file_)) return;
+    TortureLog log = readTortureLog(log_file_);
+    const bool is_same =
+        log.subjects == log_.subjects && log.seed == options_.seed.value_or(log.seed);
+    if (!is_same) {
+      throw InputError(
+          fmt::format("{}: is of other algorithms or another seed ({}): give another --output",
+                      log_file_.string(), log.seed));
+    }
+    log_ = std::move(log);
+    waiting_.assign(log_.left.begin(), log_.left.end());
+    found_ = log_.times;
+  }
+
+  void writeLog() {
+    const std::lock_guard lock(mutex_);
+    writeTortureLog(log_file_, log_);
+  }
+
+  void readSources() {
+    torture_.only_given = options_.only_sources;
+    for (const std::string& name : options_.sources) {
+      for (PlanEntry& entry : openSource(name, {}).entries) {
+        const auto recording = openRecording(entry.source, {}, {}, options_.quiet);
+        if (!recording) throw Interrupted();
+        torture_.given.push_back(inMemory(*recording));
+      }
+    }
+  }
+
+  static TortureRecording inMemory(IndexedFrames& recording) {
+    TortureRecording held{recording.scene(), {}};
+    for (std::uint32_t index = 0; index <= held.scene.frames; ++index) {
+      const std::span<const Aabb> boxes = recording.at(index).boxes;
+      held.frames.emplace_back(boxes.begin(), boxes.end());
+    }
+    return held;
+  }
+
+  std::optional<std::uint64_t> nextRound(Clock::time_point start) {
+    const bool is_over = options_.rounds ? begun_ >= *options_.rounds
+                                         : seconds(Clock::now() - start) >= 60 * options_.minutes;
+    if (is_over || InterruptGuard::requested()) return std::nullopt;
+    ++begun_;
+    const std::lock_guard lock(mutex_);
+    if (waiting_.empty()) {
+      log_.left.push_back(log_.next);
+      return log_.next++;
+    }
+    const std::uint64_t number = waiting_.front();
+    waiting_.pop_front();
+    return number;
+  }
+
+  void take(Rounds::Ended ended, Progress& progress) {
+    auto& [number, round] = ended;
+    if (!round) return;
+    {
+      const std::lock_guard lock(mutex_);
+      std::erase(log_.left, number);
+    }
+    for (const auto& [key, count] : round->coverage) log_.coverage[key] += count;
+    if (!round->finding) return;
+    const TortureFinding& finding = *round->finding;
+    const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
+    if (log_.times[{finding.run.algorithm.id, kind}]++ >= kMostAlike) return;
+    log_.found.push_back(write(finding, kind, number));
+    progress.print(formatFoundFault(log_.found.back()));
+  }
+
+  FoundFault write(const TortureFinding& finding, const std::string& kind, std::uint64_t round) {
+    const fs::path file = unusedName(finding.run.algorithm.id, kind);
+    writePart(file, *finding.frames, finding.part);
+    FoundFault found{.algorithm = finding.run.algorithm.id,
+                     .kind = kind,
+                     .run = caseName(finding.run),
+                     .world = finding.world,
+                     .text = finding.fault.text,
+                     .round = round,
+                     .file = file.string(),
+                     .bodies = finding.part.bodies.size(),
+                     .frames = finding.part.frames.size() - 1,
+                     .minimal = finding.minimal};
+    found.command = finding.fault.kind == FaultKind::wrong_answer ||
+                            finding.fault.kind == FaultKind::failure ||
+                            finding.fault.kind == FaultKind::hang
+                        ? reproducingCommand(finding.run, file)
+                        : torturingCommand(finding.run, file);
+    return found;
+  }
+
+  [[nodiscard]] fs::path unusedName(const std::string& id, std::string kind) const {
+    std::ranges::replace(kind, ' ', '-');
+    for (int i = 1;; ++i) {
+      fs::path file = options_.output / fmt::format("{}-{}-{}.broadmark", id, kind, i);
+      if (!fs::exists(file)) return file;
+    }
+  }
+
+  void showProgress(Progress& progress, double passed) const {
+    progress.detail(counted(log_.frames(), "frame"));
+    const double share = options_.rounds
+                             ? static_cast<double>(begun_) / static_cast<double>(*options_.rounds)
+                             : passed / (60 * options_.minutes);
+    const auto ticks = static_cast<std::uint64_t>(kTicks * std::min(share, 1.0));
+    if (options_.rounds) {
+      progress.update(ticks);
+    } else {
+      progress.update(ticks, std::max(60 * options_.minutes - passed, 0.0));
+    }
+  }
+
+  Options options_;
+  fs::path log_file_;
+  std::vector<Algorithm> algorithms_;
+  TortureLog log_;
+  TortureOptions torture_;
+  std::atomic<std::uint64_t> begun_ = 0;
+  std::mutex mutex_;                   ///< of log_.next, log_.left and of what follows
+  std::deque<std::uint64_t> waiting_;  ///< of log_.left those that have not been begun again
+  std::map<std::pair<std::string, std::string>, std::uint64_t> found_;  ///< by rounds
+};
+
+std::function<int()> add(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  addRepeatable(app, "source", "SOURCE", options->sources,
+                "small parts of these are worlds, too: recordings, meshes, scenes");
+  app.add_flag("--only-sources", options->only_sources, "no worlds but those")->needs("source");
+  const auto set_algorithms = [options = options.get()](const std::vector<std::string>& parts) {
+    options->algorithms = parts;
+  };
+  CLI::Option* const algorithm =
+      addList(app, "--algorithm", "ID[,ID...]", set_algorithms,
+              "algorithms: ids, families, patterns such as 'sap*', or all (default)");
+  app.add_option("--case", options->case_name,
+                 "only this case, written as cases are printed: kd-mt/avx2/t2/margin=0.1")
+      ->type_name("CASE")
+      ->excludes(algorithm);
+  addPlugins(app, options->plugins, "algorithms");
+  const auto set_minutes = [options = options.get()](const std::string& text) {
+    options->minutes = parseNumber(text, "--minutes", 0, true);
+  };
+  addValue(app, "--minutes", "M", set_minutes, "how long; rounds that have begun are finished",
+           fmt::format("{}", options->minutes));
+  const auto set_rounds = [options = options.get()](const std::string& text) {
+    options->rounds = parseInteger(text, "--rounds", 1, 1'000'000'000);
+  };
+  addValue(app, "--rounds", "N", set_rounds,
+           "how many rounds instead: a case each, on up to forty worlds");
+  const auto set_seed = [options = options.get()](const std::string& text) {
+    options->seed = parseInteger(text, "--seed", 0, std::numeric_limits<std::uint32_t>::max());
+  };
+  addValue(app, "--seed", "S", set_seed, "same seed, same rounds", "1");
+  addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds at a time");
+  addPath(app, "--output", "DIR", options->output,
+          "where recordings of what goes wrong are written, and the log (torture.json) with which "
+          "the same command goes on (default: torture)");
+  addHosts(app, options->hosts);
+  addQuiet(app, options->quiet);
+  return [options] {
+    const InterruptGuard guard;
+    return Torture(std::move(*options)).run();
+  };
+}
+
+}  // namespace
+
+Command command() {
+  return {.name = "torture",
+          .summary = "Runs algorithms in random ways on random worlds, and shrinks what fails.",
+          .add = add};
+}
+
+}  // namespace broadmark::commands::torture

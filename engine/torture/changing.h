@@ -1,0 +1,119 @@
+// What changes about a world beside its boxes: which bodies are there, and which pairs are wanted.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/collision_filter.h"
+#include "torture/inputs.h"
+
+namespace broadmark::inputs {
+
+/// Which bodies are there in a frame.
+using Presence = std::function<bool(std::uint32_t body, std::uint32_t frame)>;
+
+namespace presences {
+
+inline bool always(std::uint32_t, std::uint32_t) { return true; }
+inline bool never(std::uint32_t, std::uint32_t) { return false; }
+/// Some bodies come and others go in every frame; a number is used again at once.
+inline bool random(std::uint32_t body, std::uint32_t frame) {
+  return Random(body, frame).integer(0, 2) > 0;
+}
+/// One in fifty comes or goes.
+inline bool seldom(std::uint32_t body, std::uint32_t frame) { return (body + frame) % 50 != 0; }
+/// All vanish at once, and come back.
+inline bool allOrNone(std::uint32_t, std::uint32_t frame) { return frame % 3 != 2; }
+/// More and more.
+inline bool growing(std::uint32_t body, std::uint32_t frame) { return body < 7 * frame; }
+/// Fewer and fewer.
+inline bool shrinking(std::uint32_t body, std::uint32_t frame) { return body % (frame + 1) == 0; }
+
+}  // namespace presences
+
+struct NamedPresence {
+  std::string_view name;
+  bool (*present)(std::uint32_t body, std::uint32_t frame);
+};
+inline constexpr std::array kPresences = {
+    NamedPresence{"always", presences::always},
+    NamedPresence{"never", presences::never},
+    NamedPresence{"random", presences::random},
+    NamedPresence{"seldom", presences::seldom},
+    NamedPresence{"all or none", presences::allOrNone},
+    NamedPresence{"growing", presences::growing},
+    NamedPresence{"shrinking", presences::shrinking},
+};
+
+/// Makes each body's groups.
+using Grouping = std::function<BodyGroups(Random& random, std::uint32_t body)>;
+
+struct NamedFilter {
+  std::string name;
+  CollisionFilter filter;
+};
+
+/// Filters of n bodies, each kind alone and all together.
+inline std::vector<NamedFilter> filters(std::size_t n, std::uint64_t seed) {
+  const auto filterOf = [=](const LayerMatrix& matrix, const Grouping& grouping) {
+    Random random(seed, 0);
+    std::vector<BodyGroups> bodies;
+    for (std::uint32_t body = 0; body < n; ++body) bodies.push_back(grouping(random, body));
+    return CollisionFilter(bodies, matrix);
+  };
+  const auto number = [](Random& random, int most) {
+    return static_cast<std::uint32_t>(random.integer(0, most));
+  };
+  const auto layer = [=](Random& random, int most) {
+    return static_cast<std::uint8_t>(number(random, most));
+  };
+  LayerMatrix some;
+  Random random(1, 1);
+  for (std::size_t a = 0; a < LayerMatrix::kLayers; ++a) {
+    for (std::size_t b = 0; b <= a; ++b) some.set(a, b, random.integer(0, 1) == 0);
+  }
+  // Layer 0: fixtures, layer 1: bodies that meet all, layer 2: triggers, which meet only these.
+  const LayerMatrix usual = LayerMatrix().set(0, 1).set(1, 1).set(2, 1);
+  const LayerMatrix one = LayerMatrix().set(0, 0);
+  // Layer 0: a level, layer 1: bodies in it.
+  const LayerMatrix level = LayerMatrix().set(0, 1).set(1, 1);
+  const auto any = [=](Random& r, std::uint32_t) {
+    return BodyGroups{.layer = layer(r, 31),
+                      .world = number(r, 2),
+                      .tags = {number(r, 20), BodyGroups::kNoTag, number(r, 20)}};
+  };
+  return {
+      {"all wanted", {}},
+      {"fixtures and triggers",
+       filterOf(usual, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
+      {"a level and a few bodies", filterOf(level,
+                                            [=](Random& r, std::uint32_t) {
+                                              const bool is_level = r.integer(0, 9) > 0;
+                                              return BodyGroups{.layer = std::uint8_t{!is_level}};
+                                            })},
+      {"32 layers",
+       filterOf(some, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+      {"full matrix",
+       filterOf(LayerMatrix::all(),
+                [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+      {"no pair wanted",
+       filterOf(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
+      {"worlds",
+       filterOf(one, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
+      {"a world each",
+       filterOf(one, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
+      {"tags", filterOf(one,
+                        [=](Random& r, std::uint32_t) {
+                          return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
+                        })},
+      {"all at once", filterOf(some, any)},
+  };
+}
+
+inline std::vector<NamedFilter> filters(std::size_t n) { return filters(n, n); }
+
+}  // namespace broadmark::inputs

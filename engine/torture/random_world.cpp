@@ -1,0 +1,128 @@
+#include "torture/random_world.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "torture/changing.h"
+#include "torture/given_frames.h"
+
+namespace broadmark {
+namespace {
+
+using inputs::Random;
+
+constexpr const char* kGiven = "given";
+/// Each frame of another kind.
+constexpr const char* kUnrelated = "unrelated frames";
+
+/// Mostly few: what goes wrong with many bodies mostly does so with few, too.
+std::size_t randomCount(Random& random, bool all_overlap) {
+  const int size = random.integer(1, 20);
+  int most = 64;
+  if (size == 1) most = 3;
+  if (size > 14) most = 300;
+  if (size == 20 && !all_overlap) most = 1000;
+  return static_cast<std::size_t>(random.integer(0, all_overlap ? std::min(most, 100) : most));
+}
+
+std::uint32_t randomFrameCount(Random& random) {
+  return static_cast<std::uint32_t>(random.integer(1, random.onceIn(10) ? 30 : 8));
+}
+
+/// Takes away those that are not there.
+void keepPresent(std::vector<std::vector<Aabb>>& frames, Random& random) {
+  const inputs::NamedPresence& presence = random.anyOf(inputs::kPresences);
+  // Each world begins somewhere else in what comes and goes.
+  const auto later = static_cast<std::uint32_t>(random.integer(0, 20));
+  for (std::uint32_t frame = 0; frame < frames.size(); ++frame) {
+    for (std::uint32_t body = 0; body < frames[frame].size(); ++body) {
+      if (!presence.present(body, frame + later)) frames[frame][body] = kEmptyBox;
+    }
+  }
+}
+
+RandomWorld madeUp(Random& random) {
+  const bool is_unrelated = random.onceIn(20);
+  const inputs::Input kind = random.anyOf(inputs::kAll);
+  const std::size_t n = randomCount(random, kind.all_overlap || is_unrelated);
+  const std::uint32_t count = randomFrameCount(random);
+  const auto seed = static_cast<std::uint64_t>(random.integer(0, 1'000'000'000));
+  std::vector<std::vector<Aabb>> frames;
+  for (std::uint32_t frame = 0; frame <= count; ++frame) {
+    const inputs::Input& now = is_unrelated ? random.anyOf(inputs::kAll) : kind;
+    frames.push_back(now.boxes(n, frame, seed));
+  }
+  SceneInfo scene = sceneOf(frames);
+  if (random.onceIn(8)) scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};  // bodies may poke out
+  if (random.onceIn(3)) {
+    scene.all_present = false;
+    keepPresent(frames, random);
+  }
+  if (random.onceIn(3)) scene.filter = random.anyOf(inputs::filters(n, seed)).filter;
+  return {is_unrelated ? kUnrelated : std::string(kind.name),
+          std::make_unique<GivenFrames>(std::move(scene), std::move(frames))};
+}
+
+/// Numbers in a row, of `count` so many at most from a random one on.
+std::vector<std::uint32_t> randomRow(Random& random, std::uint32_t count, std::uint32_t most) {
+  std::vector<std::uint32_t> row(std::min(count, most));
+  const auto first = random.integer(0, static_cast<int>(count - row.size()));
+  std::iota(row.begin(), row.end(), static_cast<std::uint32_t>(first));
+  return row;
+}
+
+/// These bodies, in this order, in these frames.
+template <class BoxesOf>
+std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
+                                      const std::vector<std::uint32_t>& bodies,
+                                      const std::vector<std::uint32_t>& frames) {
+  std::vector<std::vector<Aabb>> all;
+  for (const std::uint32_t frame : frames) {
+    const std::span<const Aabb> boxes = boxes_of(frame);
+    all.emplace_back();
+    for (const std::uint32_t body : bodies) all.back().push_back(boxes[body]);
+  }
+  scene.filter = scene.filter.of(bodies);
+  return std::make_unique<GivenFrames>(std::move(scene), std::move(all));
+}
+
+/// All of a recording, if it is small; else some bodies that follow each other, in some frames.
+RandomWorld partOf(const TortureRecording& given, Random& random) {
+  constexpr std::uint32_t kMostBodies = 1000;
+  constexpr std::uint32_t kMostFrames = 31;
+  const std::vector<std::uint32_t> bodies = randomRow(random, given.scene.objects, kMostBodies);
+  const std::vector<std::uint32_t> frames = randomRow(random, given.scene.frames + 1, kMostFrames);
+  const auto boxes_of = [&](std::uint32_t frame) { return std::span(given.frames[frame]); };
+  return {kGiven, picked(given.scene, boxes_of, bodies, frames)};
+}
+
+}  // namespace
+
+std::vector<std::string> tortureWorlds() {
+  std::vector<std::string> names;
+  for (const inputs::Input& kind : inputs::kAll) names.emplace_back(kind.name);
+  names.emplace_back(kUnrelated);
+  return names;
+}
+
+RandomWorld randomWorld(Random& random, const TortureOptions& options) {
+  const bool is_given = options.only_given || (!options.given.empty() && random.onceIn(10));
+  return is_given ? partOf(random.anyOf(options.given), random) : madeUp(random);
+}
+
+std::unique_ptr<IndexedFrames> shuffled(Random& random, IndexedFrames& frames) {
+  const SceneInfo& scene = frames.scene();
+  std::vector<std::uint32_t> order(scene.objects);
+  std::iota(order.begin(), order.end(), 0U);
+  for (int left = static_cast<int>(order.size()); left > 1; --left) {
+    const auto last = static_cast<std::size_t>(left - 1);
+    std::swap(order[last], order[static_cast<std::size_t>(random.integer(0, left - 1))]);
+  }
+  std::vector<std::uint32_t> all(scene.frames + 1);
+  std::iota(all.begin(), all.end(), 0U);
+  return picked(
+      scene, [&](std::uint32_t frame) { return frames.at(frame).boxes; }, order, all);
+}
+
+}  // namespace broadmark
