@@ -115,8 +115,10 @@ TortureLog readTortureLog(const std::filesystem::path& file) {
   log.seed = fields.integer<std::uint64_t>("seed");
   log.next = fields.integer<std::uint64_t>("next");
   log.seconds = fields.number("seconds");
-  for (const Json& subject : fields.array("subjects")) log.subjects.push_back(subject);
-  for (const Json& round : fields.array("left")) log.left.push_back(round);
+  log.subjects = fields.texts("subjects");
+  for (const Json& round : fields.array("left")) {
+    log.left.push_back(JsonFields::integerOf<std::uint64_t>(round, fields.path("left")));
+  }
   fields.eachObject("found",
                     [&](const JsonFields& found) { log.found.push_back(foundFrom(found)); });
   fields.eachObject("times", [&](const JsonFields& times) {
@@ -140,9 +142,9 @@ void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
 }
 
 std::string formatFoundFault(const FoundFault& fault) {
-  return fmt::format("{}: {}: {} ({}{})\n  {}\n", fault.run, fault.kind, fault.text,
+  return fmt::format("{}: {}: {} ({}{})", fault.run, fault.kind, fault.text,
                      extentText(fault.bodies, fault.frames),
-                     fault.minimal ? "" : ", perhaps not the smallest", fault.command);
+                     fault.minimal ? "" : ", perhaps not the smallest");
 }
 
 std::string formatTortureLog(const TortureLog& log) {
@@ -154,9 +156,11 @@ std::string formatTortureLog(const TortureLog& log) {
                   static_cast<double>(frames) / std::max(log.seconds, 1e-9));
   if (log.times.empty()) return text + "nothing went wrong\n";
   for (const auto& [fault, times] : log.times) {
-    text += fmt::format("{}: {}: found {}\n", fault.first, fault.second, counted(times, "time"));
+    text += fmt::format("{}: {}: {}\n", fault.first, fault.second, counted(times, "time"));
   }
-  for (const FoundFault& fault : log.found) text += formatFoundFault(fault);
+  for (const FoundFault& fault : log.found) {
+    text += fmt::format("{}\n  {}\n", formatFoundFault(fault), fault.command);
+  }
   return text;
 }
 

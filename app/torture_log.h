@@ -47,7 +47,7 @@ TortureLog readTortureLog(const std::filesystem::path&);
 /// Writes it, atomically. Throws InputError.
 void writeTortureLog(const std::filesystem::path&, const TortureLog&);
 
-/// A finding in a few lines: what went wrong, on what, and the command that shows it.
+/// A finding in one line: what went wrong, and on how much.
 std::string formatFoundFault(const FoundFault&);
 /// What has been covered, an algorithm a row; and what was found.
 std::string formatTortureLog(const TortureLog&);

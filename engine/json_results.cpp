@@ -41,20 +41,11 @@ auto named(const JsonFields& json, const char* key, const Table& table) {
   return *value;
 }
 
-std::vector<std::string> textsFrom(const Json& array, const std::string& name) {
-  std::vector<std::string> texts;
-  for (const Json& element : array) {
-    if (!element.is_string()) throw InputError(name + ": texts are expected");
-    texts.push_back(element.get<std::string>());
-  }
-  return texts;
-}
-
 Environment environmentFrom(const JsonFields& json) {
   Environment environment = {.cpu = json.text("cpu"),
                              .logical_cores = json.integer<int>("logical_cores", 0),
                              .physical_cores = json.integer<int>("physical_cores", 0),
-                             .caches = textsFrom(json.array("caches"), json.path("caches")),
+                             .caches = json.texts("caches"),
                              .isa = json.text("isa"),
                              .memory_bytes = json.integer<std::uint64_t>("memory_bytes"),
                              .governor = json.text("governor"),
@@ -67,8 +58,7 @@ Environment environmentFrom(const JsonFields& json) {
                              .started = json.text("started")};
   if (json.has("host")) environment.host = json.text("host");
   if (json.has("compute_devices")) {
-    environment.compute_devices =
-        textsFrom(json.array("compute_devices"), json.path("compute_devices"));
+    environment.compute_devices = json.texts("compute_devices");
   }
   return environment;
 }
@@ -102,7 +92,7 @@ Conditions conditionsFrom(const JsonFields& json) {
           .pinned = json.has("pinned") && json.boolean("pinned"),
           .load_average = json.number("load_average"),
           .plugin = {plugin.text("hash"), plugin.text("flags")},
-          .warnings = textsFrom(json.array("warnings"), json.path("warnings"))};
+          .warnings = json.texts("warnings")};
 }
 
 Json toJson(const ParameterValues& values) {
@@ -526,7 +516,7 @@ Results documentFrom(const JsonFields& file) {
     });
     results.complete = file.boolean("complete");
   }
-  results.options = textsFrom(file.array("options"), file.path("options"));
+  results.options = file.texts("options");
   file.eachObject("cases", [&](const JsonFields& one) { results.cases.push_back(caseFrom(one)); });
   return results;
 }
@@ -555,7 +545,7 @@ std::string_view takeFirstLine(std::string_view& text) {
 
 Results linesFrom(const JsonFields& first, std::string_view rest, std::string_view name) {
   Results results;
-  results.options = textsFrom(first.array("options"), first.path("options"));
+  results.options = first.texts("options");
   for (int number = 2; !rest.empty(); ++number) {
     const bool whole = rest.find('\n') != std::string_view::npos;
     const std::string_view line = takeFirstLine(rest);

@@ -223,9 +223,8 @@ class Shrinker {
 
   void requireFailure() {
     if (fails(best_.part)) return;
-    throw InputError(
-        fmt::format("{}: what is to be shrunk does not fail in frame {} when it is run again",
-                    whole_.scene().name, last_));
+    throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
+                                 whole_.scene().name, options_.subject, last_));
   }
 
   /// Tries longer and longer histories before the last frame.
@@ -401,7 +400,9 @@ ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDiffere
     return true;
   };
   const auto look_first = [&] { return suspectsOf(last, scene.objects); };
-  const ShrunkPart shrunk = shrinkPart(source, known.frame, look_first, fails, options);
+  ShrinkOptions of_case = options;
+  of_case.subject = caseName(run);
+  const ShrunkPart shrunk = shrinkPart(source, known.frame, look_first, fails, of_case);
   return {shrunk, std::move(last)};
 }
 

@@ -140,10 +140,10 @@ class Torture {
   explicit Torture(Options options)
       : options_(std::move(options)), log_file_(options_.output / "torture.json") {
     algorithms_ = availableAlgorithms(options_.plugins);
-    makeDirectory(options_.output);
     readSubjects();
     readLog();
     readSources();
+    makeDirectory(options_.output);
     torture_.seed = log_.seed;
     torture_.make_host = hostMaker(options_.hosts);
     torture_.cancelled = InterruptGuard::requested;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,18 +53,24 @@ inline constexpr std::array kPresences = {
 /// Makes each body's groups.
 using Grouping = std::function<BodyGroups(Random& random, std::uint32_t body)>;
 
+/// Without a seed: that of their number.
+inline CollisionFilter filterOf(std::size_t n, const LayerMatrix& matrix, const Grouping& grouping,
+                                std::optional<std::uint64_t> seed = {}) {
+  Random random(seed.value_or(n), 0);
+  std::vector<BodyGroups> bodies;
+  for (std::uint32_t body = 0; body < n; ++body) bodies.push_back(grouping(random, body));
+  return {bodies, matrix};
+}
+
 struct NamedFilter {
   std::string name;
   CollisionFilter filter;
 };
 
 /// Filters of n bodies, each kind alone and all together.
-inline std::vector<NamedFilter> filters(std::size_t n, std::uint64_t seed) {
-  const auto filterOf = [=](const LayerMatrix& matrix, const Grouping& grouping) {
-    Random random(seed, 0);
-    std::vector<BodyGroups> bodies;
-    for (std::uint32_t body = 0; body < n; ++body) bodies.push_back(grouping(random, body));
-    return CollisionFilter(bodies, matrix);
+inline std::vector<NamedFilter> filters(std::size_t n, std::optional<std::uint64_t> seed = {}) {
+  const auto of = [=](const LayerMatrix& matrix, const Grouping& grouping) {
+    return filterOf(n, matrix, grouping, seed);
   };
   const auto number = [](Random& random, int most) {
     return static_cast<std::uint32_t>(random.integer(0, most));
@@ -89,31 +96,28 @@ inline std::vector<NamedFilter> filters(std::size_t n, std::uint64_t seed) {
   return {
       {"all wanted", {}},
       {"fixtures and triggers",
-       filterOf(usual, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
-      {"a level and a few bodies", filterOf(level,
-                                            [=](Random& r, std::uint32_t) {
-                                              const bool is_level = r.integer(0, 9) > 0;
-                                              return BodyGroups{.layer = std::uint8_t{!is_level}};
-                                            })},
+       of(usual, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 2)}; })},
+      {"a level and a few bodies", of(level,
+                                      [=](Random& r, std::uint32_t) {
+                                        const bool is_level = r.integer(0, 9) > 0;
+                                        return BodyGroups{.layer = std::uint8_t{!is_level}};
+                                      })},
       {"32 layers",
-       filterOf(some, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+       of(some, [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
       {"full matrix",
-       filterOf(LayerMatrix::all(),
-                [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
-      {"no pair wanted",
-       filterOf(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
+       of(LayerMatrix::all(),
+          [=](Random& r, std::uint32_t) { return BodyGroups{.layer = layer(r, 31)}; })},
+      {"no pair wanted", of(LayerMatrix(), [](Random&, std::uint32_t) { return BodyGroups{}; })},
       {"worlds",
-       filterOf(one, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
+       of(one, [=](Random& r, std::uint32_t) { return BodyGroups{.world = number(r, 9)}; })},
       {"a world each",
-       filterOf(one, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
-      {"tags", filterOf(one,
-                        [=](Random& r, std::uint32_t) {
-                          return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
-                        })},
-      {"all at once", filterOf(some, any)},
+       of(one, [](Random&, std::uint32_t body) { return BodyGroups{.world = body}; })},
+      {"tags", of(one,
+                  [=](Random& r, std::uint32_t) {
+                    return BodyGroups{.tags = {number(r, 30), number(r, 30), number(r, 30)}};
+                  })},
+      {"all at once", of(some, any)},
   };
 }
-
-inline std::vector<NamedFilter> filters(std::size_t n) { return filters(n, n); }
 
 }  // namespace broadmark::inputs

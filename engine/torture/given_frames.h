@@ -6,7 +6,7 @@
 
 #include "broadmark/frame.h"
 
-namespace broadmark {
+namespace broadmark::inputs {
 
 /// What the header of a recording of these frames would say; its world holds all boxes.
 inline SceneInfo sceneOf(const std::vector<std::vector<Aabb>>& frames) {
@@ -40,4 +40,4 @@ class GivenFrames final : public IndexedFrames {
   std::vector<std::vector<Aabb>> frames_;
 };
 
-}  // namespace broadmark
+}  // namespace broadmark::inputs

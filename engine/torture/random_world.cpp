@@ -53,7 +53,7 @@ RandomWorld madeUp(Random& random) {
     const inputs::Input& now = is_unrelated ? random.anyOf(inputs::kAll) : kind;
     frames.push_back(now.boxes(n, frame, seed));
   }
-  SceneInfo scene = sceneOf(frames);
+  SceneInfo scene = inputs::sceneOf(frames);
   if (random.onceIn(8)) scene.world = {{0, 0, 0, 0}, {1, 1, 1, 0}};  // bodies may poke out
   if (random.onceIn(3)) {
     scene.all_present = false;
@@ -61,7 +61,7 @@ RandomWorld madeUp(Random& random) {
   }
   if (random.onceIn(3)) scene.filter = random.anyOf(inputs::filters(n, seed)).filter;
   return {is_unrelated ? kUnrelated : std::string(kind.name),
-          std::make_unique<GivenFrames>(std::move(scene), std::move(frames))};
+          std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(frames))};
 }
 
 /// Numbers in a row, of `count` so many at most from a random one on.
@@ -84,7 +84,7 @@ std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
     for (const std::uint32_t body : bodies) all.back().push_back(boxes[body]);
   }
   scene.filter = scene.filter.of(bodies);
-  return std::make_unique<GivenFrames>(std::move(scene), std::move(all));
+  return std::make_unique<inputs::GivenFrames>(std::move(scene), std::move(all));
 }
 
 /// All of a recording, if it is small; else some bodies that follow each other, in some frames.

@@ -9,8 +9,8 @@
 // they tell which pairs came and went. Bodies of layers that never meet each other are put into the
 // group of static bodies, the others each into one of its own, as advised there. MBP gets the four
 // by four regions that its documentation begins with, and up to sixteen by sixteen for many bodies,
-// as a region holds 65,535 of them; the outermost ones have no end, as bodies outside of all
-// regions would not collide. A team of several gets a dispatcher of as many threads.
+// as a region holds 65,534 of them (region_loads.h); the outermost ones have no end, as bodies
+// outside of all regions would not collide. A team of several gets a dispatcher of as many threads.
 //
 // Bounds become integers that lose the last bit or two, so PhysX's pairs are candidates: in each
 // frame the boxes decide which of those that moved overlap, and the answer is exact. A pair begins
@@ -30,6 +30,7 @@
 #include "broadmark/plugin.h"
 #include "broadmark/strangers.h"
 #include "physx/library.h"
+#include "physx/region_loads.h"
 
 namespace broadmark::physx_broad_phases {
 namespace {
@@ -46,8 +47,8 @@ int regionsFor(std::size_t bodies) {
   return regions;
 }
 
-/// The axis that they do not divide: upwards.
-constexpr int kUp = 1;
+/// Those axes: not the one that points upwards.
+constexpr std::array kDivided = {2, 0};
 
 physx::PxBounds3 boundsOf(const Aabb& box) {
   return {{box.min[0], box.min[1], box.min[2]}, {box.max[0], box.max[1], box.max[2]}};
@@ -114,7 +115,8 @@ class PhysX final : public BroadPhase {
     has_moved_.assign(room, 0);
     parted_ = std::vector<PairBuffer>(static_cast<std::size_t>(team_->size()));
     if (physx::PxBroadPhaseRegions* regions = broad_phase_->getRegions()) {
-      addRegions(*regions, scene.world);
+      loads_.emplace(scene.world, kDivided, regionsFor(first.boxes.size()), first.boxes.size());
+      addRegions(*regions);
     }
     for (const std::uint32_t body : bodies) takeOver(body, first.boxes[body]);
     updateStructures();
@@ -150,6 +152,7 @@ class PhysX final : public BroadPhase {
     physx::PxBroadPhaseResults results;
     broad_phase_->fetchResults(results);
     PhysXErrors::instance().check();
+    if (loads_) loads_->settle();
     if (!removed_.empty()) dropRemoved();
     for (PxU32 i = 0; i < results.mNbDeletedPairs; ++i) {
       const Pair pair = pairOf(results.mDeletedPairs[i]);
@@ -213,6 +216,9 @@ class PhysX final : public BroadPhase {
     if (is_present) bounds_[body] = boundsOf(box);
     if (is_present) (was_there ? updated_ : created_).push_back(body);
     if (!is_present && was_there) removed_.push_back(body);
+    if (!loads_) return;
+    if (is_present) loads_->move(body, bounds_[body]);
+    if (!is_present && was_there) loads_->remove(body);
   }
 
   /// No longer a candidate.
@@ -268,26 +274,16 @@ class PhysX final : public BroadPhase {
     }
   }
 
-  void addRegions(physx::PxBroadPhaseRegions& regions, const Aabb& world) const {
-    const int count = regionsFor(is_there_.size());
-    const auto side = [&](int axis, int k) {
-      if (k == 0) return -PX_MAX_BOUNDS_EXTENTS;
-      if (k == count) return PX_MAX_BOUNDS_EXTENTS;
-      return world.min[axis] + (world.max[axis] - world.min[axis]) * static_cast<float>(k) /
-                                   static_cast<float>(count);
-    };
-    constexpr int kFirst = (kUp + 1) % 3;
-    constexpr int kSecond = (kUp + 2) % 3;
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < count; ++j) {
-        physx::PxBounds3 bounds;
-        const auto set = [&](int axis, float low, float high) {
-          bounds.minimum[static_cast<unsigned>(axis)] = low;
-          bounds.maximum[static_cast<unsigned>(axis)] = high;
-        };
-        set(kUp, -PX_MAX_BOUNDS_EXTENTS, PX_MAX_BOUNDS_EXTENTS);
-        set(kFirst, side(kFirst, i), side(kFirst, i + 1));
-        set(kSecond, side(kSecond, j), side(kSecond, j + 1));
+  void addRegions(physx::PxBroadPhaseRegions& regions) const {
+    for (int i = 0; i < loads_->count(); ++i) {
+      for (int j = 0; j < loads_->count(); ++j) {
+        physx::PxBounds3 bounds(physx::PxVec3(-PX_MAX_BOUNDS_EXTENTS),
+                                physx::PxVec3(PX_MAX_BOUNDS_EXTENTS));
+        const std::array<int, 2> place = {i, j};
+        for (std::size_t side = 0; side < 2; ++side) {
+          bounds.minimum[static_cast<unsigned>(kDivided[side])] = loads_->low(side, place[side]);
+          bounds.maximum[static_cast<unsigned>(kDivided[side])] = loads_->high(side, place[side]);
+        }
         regions.addRegion({bounds, nullptr}, false, bounds_.data(), distances_.data());
       }
     }
@@ -297,6 +293,7 @@ class PhysX final : public BroadPhase {
   ThreadTeam* team_ = nullptr;
   std::unique_ptr<physx::PxBroadPhase, ReleasePhysX> broad_phase_;
   std::optional<Workers> workers_;
+  std::optional<RegionLoads> loads_;  ///< of MBP
   // By body, with room for one more.
   std::vector<physx::PxBounds3> bounds_;
   std::vector<physx::PxBpFilterGroup> groups_;

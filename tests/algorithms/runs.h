@@ -33,6 +33,8 @@ inline void PrintTo(const Algorithm& algorithm, std::ostream* out) { *out << alg
 
 namespace broadmark::tests {
 
+using inputs::sceneOf;
+
 /// The instruction sets of this processor.
 inline std::vector<Isa> everyIsa() {
   std::vector<Isa> all;

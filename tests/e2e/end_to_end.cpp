@@ -1,5 +1,7 @@
 #include "e2e/end_to_end.h"
 
+#include <sys/wait.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -78,6 +80,14 @@ EndToEnd::~EndToEnd() {
 
 Ended EndToEnd::run(const Arguments& arguments, const Surroundings& around) const {
   return Program(directory_, arguments, around).wait();
+}
+
+int EndToEnd::shell(const std::string& command) const {
+  writeFile(file("command.sh"), "cd '" + directory_.string() + "' && PATH='" +
+                                    fs::path(places::program()).parent_path().string() +
+                                    "':$PATH && " + command + " > shell.out 2>&1\n");
+  const int status = std::system(("sh '" + file("command.sh").string() + "'").c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 Ended EndToEnd::runQuietly(Arguments arguments) const {

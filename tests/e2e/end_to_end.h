@@ -60,6 +60,10 @@ class EndToEnd : public ::testing::Test {
 
   Ended run(const Arguments& arguments, const Surroundings& around = {}) const;
 
+  /// Runs a command line in a shell, with the program in the path; what it prints is in shell.out.
+  /// Returns its exit status.
+  [[nodiscard]] int shell(const std::string& command) const;
+
   /// Runs what must succeed, silently.
   Ended runQuietly(Arguments arguments) const;
 

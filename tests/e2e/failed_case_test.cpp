@@ -1,10 +1,7 @@
 // A case that failed: found by a run, opened again from its results, shrunk to the smallest
 // recording, and shown by the printed command in a process of its own.
 
-#include <sys/wait.h>
-
 #include <algorithm>
-#include <cstdlib>
 
 #include "broadmark/recording.h"
 #include "e2e/end_to_end.h"
@@ -50,15 +47,6 @@ class FailedCase : public EndToEnd {
                       "--plugin",   places::faultyPlugin(), "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
     return call;
-  }
-
-  /// Runs a command line in a shell, with the program in the path. Returns its exit status.
-  [[nodiscard]] int shell(const std::string& command) const {
-    writeFile(file("command.sh"), "cd '" + directory_.string() + "' && PATH='" +
-                                      fs::path(places::program()).parent_path().string() +
-                                      "':$PATH && " + command + " > shell.out 2>&1\n");
-    const int status = std::system(("sh '" + file("command.sh").string() + "'").c_str());
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 };
 

@@ -120,8 +120,11 @@ TEST_F(EnginePlugin, ThoseOfSdksAreLoadedByTheirNames) {
       const Ended ended = run(call);
       EXPECT_EQ(ended.status, 0) << ended.err;
       EXPECT_THAT(ended.out, HasSubstr(name + "-"));
+      expectRefusal({"duel", "brownian", name + ":any", "kd"},
+                    {"unknown algorithm 'any'", name + "-"});
     } else {
       expectRefusal(call, {"--plugin: " + name + ": not built", "find_package"});
+      expectRefusal({"duel", "brownian", name + ":any", "kd"}, {"--plugin: " + name});
     }
   }
 }

@@ -36,6 +36,7 @@ class TimedHost final : public CaseHost {
   Counts counters() override { return {}; }
   Counts setup() override { return {}; }
   RecordedDrawing structure() override { return {}; }
+  std::string validate() override { return {}; }
 
  private:
   std::shared_ptr<UnevenMachine> machine_;

@@ -50,7 +50,8 @@ Frames changingFrames(std::uint32_t bodies, std::uint32_t frames, int share_of_c
   return all;
 }
 
-SceneInfo sceneOf(const Frames& frames, bool all_present = false, CollisionFilter filter = {}) {
+SceneInfo changingSceneOf(const Frames& frames, bool all_present = false,
+                          CollisionFilter filter = {}) {
   return {.name = "Changing",
           .object_type = "Boxes",
           .objects = static_cast<std::uint32_t>(frames[0].size()),
@@ -88,7 +89,7 @@ TEST(Recording2, WhatIsWrittenIsReadBackInAnyOrder) {
   for (const bool all_present : {true, false}) {
     for (const int share : {0, 2, 30, 100}) {
       const Frames frames = changingFrames(kSlots, 40, share, all_present);
-      const SceneInfo scene = sceneOf(frames, all_present);
+      const SceneInfo scene = changingSceneOf(frames, all_present);
       const auto path = directory / "a.broadmark";
       const std::string hash = write(path, scene, frames);
 
@@ -115,14 +116,14 @@ TEST(Recording2, KeepsWhatPairsAreWanted) {
   const TemporaryDirectory directory;
   const Frames frames = changingFrames(kSlots, 3, 10, false);
   for (const auto& [name, filter] : filters(kSlots)) {
-    const SceneInfo scene = sceneOf(frames, true, filter);
+    const SceneInfo scene = changingSceneOf(frames, true, filter);
     const auto path = directory / "a.broadmark";
     if (!filter.wantsAll()) {
       EXPECT_EQ(recordingExtension(scene), ".broadmark");
       EXPECT_THAT(inputErrorOf([&] { write(directory / "a.aabbs", scene, frames); }),
                   AllOf(HasSubstr("a.aabbs"), HasSubstr(".broadmark")));
     }
-    const SceneInfo changing = sceneOf(frames, false, filter);
+    const SceneInfo changing = changingSceneOf(frames, false, filter);
     write(path, changing, frames);
     EXPECT_EQ(Recording2Reader(path).scene(), changing) << name;
   }
@@ -132,9 +133,9 @@ TEST(Recording2, SaysWhereItComesFrom) {
   const TemporaryDirectory directory;
   const Frames frames = changingFrames(3, 1, 10, true);
   const RecordingOrigin origin = {"city.csv", "{\n \"scene\": \"city\"\n}\n"};
-  write(directory / "a.broadmark", sceneOf(frames), frames, origin);
+  write(directory / "a.broadmark", changingSceneOf(frames), frames, origin);
   EXPECT_EQ(Recording2Reader(directory / "a.broadmark").origin(), origin);
-  write(directory / "b.broadmark", sceneOf(frames), frames);
+  write(directory / "b.broadmark", changingSceneOf(frames), frames);
   EXPECT_EQ(openRecordingFile(directory / "b.broadmark")->origin(), RecordingOrigin());
 }
 
@@ -142,10 +143,10 @@ TEST(Recording2, NoBodiesOrNoFrames) {
   for (const auto& [bodies, count] :
        std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 0}, {0, 7}, {3, 0}, {1, 600}}) {
     const Frames frames = changingFrames(bodies, count, 0, true);
-    RecordingWriter writer(sceneOf(frames));
+    RecordingWriter writer(changingSceneOf(frames));
     for (const auto& boxes : frames) writer.write(boxes);
     const auto reader = writer.finishTemporary();
-    EXPECT_EQ(reader->scene(), sceneOf(frames));
+    EXPECT_EQ(reader->scene(), changingSceneOf(frames));
     expectFrame(reader->at(count), frames, count);
     expectFrame(reader->rewind(), frames, 0);
   }
@@ -154,12 +155,12 @@ TEST(Recording2, NoBodiesOrNoFrames) {
 TEST(Recording2, AStillWorldIsSmall) {
   const TemporaryDirectory directory;
   const Frames still(101, changingFrames(1000, 0, 0, true)[0]);
-  write(directory / "a.broadmark", sceneOf(still, true), still);
-  write(directory / "a.aabbs", sceneOf(still, true), still);
+  write(directory / "a.broadmark", changingSceneOf(still, true), still);
+  write(directory / "a.aabbs", changingSceneOf(still, true), still);
   EXPECT_LT(std::filesystem::file_size(directory / "a.broadmark"),
             std::filesystem::file_size(directory / "a.aabbs") / 90);
   const Frames moving = changingFrames(1000, 100, 100, true);
-  write(directory / "b.broadmark", sceneOf(moving, true), moving);
+  write(directory / "b.broadmark", changingSceneOf(moving, true), moving);
   EXPECT_LT(std::filesystem::file_size(directory / "b.broadmark"),
             std::filesystem::file_size(directory / "a.aabbs") * 4 / 5);
 }
@@ -169,7 +170,7 @@ TEST(Recording2, TellsZeroesApart) {
   const TemporaryDirectory directory;
   Frames frames(3, {Aabb{{0, 0, 0, 0}, {1, 1, 1, 0}}});
   frames[1][0].min[1] = -0.0F;
-  write(directory / "a.broadmark", sceneOf(frames), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames), frames);
   Recording2Reader reader(directory / "a.broadmark");
   EXPECT_FALSE(std::signbit(reader.at(0).boxes[0].min[1]));
   EXPECT_TRUE(std::signbit(reader.at(1).boxes[0].min[1]));
@@ -180,7 +181,7 @@ TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
   const TemporaryDirectory directory;
   const Frames frames = changingFrames(kSlots, 9, 40, false);
   const CollisionFilter filter = filters(kSlots)[1].filter;
-  write(directory / "a.broadmark", sceneOf(frames, false, filter), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames, false, filter), frames);
   Recording2Reader whole(directory / "a.broadmark");
   const Part part = partOf(whole.scene(), {1, 5, 30, 31, 59}, {2, 3, 7});
   writePart(directory / "b.broadmark", whole, part);
@@ -196,10 +197,11 @@ TEST(Recording2, PartsKeepWhoIsThereAndWhatIsWanted) {
 
 TEST(Recording2, IsTakenOnlyWhereAabbsDoesNotDo) {
   const Frames frames = changingFrames(2, 1, 0, true);
-  EXPECT_EQ(recordingFileName(sceneOf(frames, true)), "Changing Boxes N2 F1frames.aabbs");
-  EXPECT_EQ(recordingFileName(sceneOf(frames, false)), "Changing Boxes N2 F1frames.broadmark");
+  EXPECT_EQ(recordingFileName(changingSceneOf(frames, true)), "Changing Boxes N2 F1frames.aabbs");
+  EXPECT_EQ(recordingFileName(changingSceneOf(frames, false)),
+            "Changing Boxes N2 F1frames.broadmark");
   EXPECT_THAT(recordingExtensions(), ElementsAre(".aabbs", ".broadmark", ".posrot"));
-  EXPECT_THAT(inputErrorOf([&] { RecordingWriter writer("a.posrot", sceneOf(frames)); }),
+  EXPECT_THAT(inputErrorOf([&] { RecordingWriter writer("a.posrot", changingSceneOf(frames)); }),
               AllOf(HasSubstr("a.posrot"), HasSubstr(".aabbs or .broadmark")));
 }
 
@@ -211,7 +213,7 @@ Bytes smallRecording() {
   frames[1][1] = unitBox(5);
   frames.push_back(frames[1]);
   frames[2][2] = kEmptyBox;
-  write(directory / "a.broadmark", sceneOf(frames, false, filters(3)[1].filter), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames, false, filters(3)[1].filter), frames);
   return bytesOf(directory / "a.broadmark");
 }
 
@@ -331,7 +333,7 @@ TEST(BadRecording2, AFrameThatWasReadHalfwayIsForgotten) {
   const TemporaryDirectory directory;
   Frames frames(3, chain(40));
   for (const int body : {3, 7}) frames[2][body] = unitBox(9);
-  write(directory / "a.broadmark", sceneOf(frames), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames), frames);
   Bytes bytes = bytesOf(directory / "a.broadmark");
   put(bytes, frameOf(bytes, 2) + 32 + 24, std::numeric_limits<float>::infinity());
   Recording2Reader reader = readerOf(sealed(bytes));
@@ -345,7 +347,7 @@ TEST(BadRecording2, IdsAscend) {
   Frames frames(2, chain(40));
   frames[1][3] = unitBox(9);
   frames[1][7] = unitBox(9);
-  write(directory / "a.broadmark", sceneOf(frames), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames), frames);
   Bytes bytes = bytesOf(directory / "a.broadmark");
   put(bytes, frameOf(bytes, 1) + 4, 3U);
   EXPECT_THAT(faultOf(sealed(bytes)), HasSubstr("body 3 among the changed ones"));
@@ -360,7 +362,7 @@ TEST(BadRecording2, AKeyFrameChangesOnlyWhatItNames) {
   for (int body = 0; body < 3; ++body) frames[2][body] = unitBox(9);
   for (int body = 1; body < 4; ++body) frames[1][body] = unitBox(7);
   frames[2][3] = frames[1][3];
-  write(directory / "a.broadmark", sceneOf(frames), frames);
+  write(directory / "a.broadmark", changingSceneOf(frames), frames);
   Bytes bytes = bytesOf(directory / "a.broadmark");
   const auto entry = get<RecordedFrame>(bytes, indexOf(bytes) + 2 * kEntryBytes);
   ASSERT_EQ(entry.key, 2U);
@@ -433,7 +435,7 @@ TEST(Recording2Writer, LeavesNothingUnlessFinished) {
   const TemporaryDirectory directory;
   const Frames frames = changingFrames(2, 1, 0, true);
   {
-    RecordingWriter writer(directory / "a.broadmark", sceneOf(frames));
+    RecordingWriter writer(directory / "a.broadmark", changingSceneOf(frames));
     writer.write(frames[0]);
     EXPECT_THROW(writer.write(chain(3)), std::logic_error);
     EXPECT_THROW(writer.finish(), std::logic_error);
@@ -446,7 +448,7 @@ TEST(Recording2Writer, TakesASourcesWordForWhatChanged) {
   const TemporaryDirectory directory;
   for (const int share : {0, 2, 100}) {
     const Frames frames = changingFrames(kSlots, 40, share, false);
-    const SceneInfo scene = sceneOf(frames);
+    const SceneInfo scene = changingSceneOf(frames);
     RecordingWriter writer(directory / "told.broadmark", scene);
     for (std::uint32_t f = 0; f <= 40; ++f) {
       const std::vector<std::uint32_t> changed = changesIn(frames, f);
@@ -469,7 +471,7 @@ TEST(Recording2Writer, RefusesBoxesThatNoReaderWouldTake) {
   EXPECT_EQ(writer.finishTemporary()->at(1).boxes[1], kEmptyBox);
 
   const TemporaryDirectory directory;
-  RecordingWriter full(directory / "a.broadmark", sceneOf(frames, true));
+  RecordingWriter full(directory / "a.broadmark", changingSceneOf(frames, true));
   EXPECT_THAT(inputErrorOf([&] { full.write(boxes); }), HasSubstr("all are present"));
 }
 

@@ -15,6 +15,7 @@
 
 namespace broadmark::tests {
 
+using inputs::filterOf;
 using inputs::filters;
 using inputs::NamedFilter;
 using inputs::Presence;
@@ -43,7 +44,7 @@ inline std::vector<std::vector<Aabb>> framesWith(const inputs::Input& input, std
 
 /// A scene of given frames.
 inline FrameList listed(SceneInfo scene, std::vector<std::vector<Aabb>> frames) {
-  GivenFrames given(std::move(scene), std::move(frames));
+  inputs::GivenFrames given(std::move(scene), std::move(frames));
   return FrameList(given);
 }
 

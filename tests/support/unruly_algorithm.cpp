@@ -37,6 +37,12 @@ constexpr std::size_t kMebibyte = std::size_t{1} << 20;
   }
 }
 
+/// As a leak does, but for those who look for leaks in our own code.
+void keepMemory() {
+  static std::vector<std::unique_ptr<char[]>> kept;
+  kept.push_back(std::make_unique<char[]>(1000));
+}
+
 class Unruly final : public BoxBroadPhase {
  public:
   ~Unruly() override {
@@ -71,6 +77,10 @@ class Unruly final : public BoxBroadPhase {
     if (now_ == frame_) misbehaveIn("update");
   }
 
+  [[nodiscard]] std::string validate() const override {
+    return deed_.value == "break" && now_ == frame_ ? "broken on purpose" : "";
+  }
+
   void visitCounters(const CounterVisitor& visit) const override {
     if (now_ == frame_) misbehaveIn("counters");
     visit("frames", static_cast<std::uint64_t>(now_));
@@ -100,6 +110,7 @@ class Unruly final : public BoxBroadPhase {
     if (deed == "throw-number") throw 42;
     if (deed == "exit") std::exit(3);
     if (deed == "allocate") allocateWithoutEnd();
+    if (deed == "keep") keepMemory();
     if (deed == "close") ::close_range(3, 100, 0);
     if (deed == "print") {
       std::puts("printed on purpose");
@@ -109,7 +120,7 @@ class Unruly final : public BoxBroadPhase {
 
   Choice deed_{"none",
                {"none", "crash", "hang", "throw", "throw-number", "exit", "allocate", "close",
-                "print", "count"}};
+                "print", "count", "break", "keep"}};
   Choice call_{"update", {"initialize", "update", "counters", "draw", "destroy"}};
   std::int64_t frame_ = 2;
   std::int64_t mebibytes_ = 0;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "broadmark/case_host.h"
@@ -25,7 +26,8 @@ struct ShrinkOptions {
   /// A part of the recording that takes no more than this is held in memory; a larger one is read
   /// again for each trial.
   std::size_t memory_bytes = std::size_t{256} << 20;
-  HostMaker make_host = makeLocalHost;  ///< where the trials run
+  HostMaker make_host = makeLocalHost;  ///< where the trials of a case run
+  std::string subject = "it";           ///< what fails, in messages; of a case its name
 };
 
 /// A part of a recording on which something fails.
@@ -42,11 +44,12 @@ using FailingTrial = std::function<bool(IndexedFrames& part)>;
 /// Bodies to look at first, in the recording's numbers. Asked again after a trial of all bodies.
 using SuspectQuery = std::function<std::vector<std::uint32_t>()>;
 
-/// Where to look first: the bodies of the first wrong pair of these `bodies`; none if there is none.
+/// Where to look first: the bodies of the first wrong pair of these `bodies`; none if there is
+/// none.
 std::vector<std::uint32_t> suspectsOf(const FrameDifference&, std::size_t bodies);
 
 /// The smallest part of `source` for which fails(part) is true; frame `last` becomes its last one.
-/// Deterministic if the trials are. options.make_host is not used.
+/// Deterministic if the trials are. options.make_host is not used here.
 ///
 /// Cancelled: the best part so far. Throws InputError when frames 0…last as a whole do not fail, or
 /// for a bad recording.

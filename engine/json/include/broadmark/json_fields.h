@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "broadmark/error.h"
 
@@ -107,6 +108,15 @@ class JsonFields {
 
   [[nodiscard]] std::string text(const char* key) const {
     return expect(key, at(key).is_string(), "a text").template get<std::string>();
+  }
+
+  [[nodiscard]] std::vector<std::string> texts(const char* key) const {
+    std::vector<std::string> all;
+    for (const Json& element : array(key)) {
+      if (!element.is_string()) throw InputError(path(key) + ": texts are expected");
+      all.push_back(element.get<std::string>());
+    }
+    return all;
   }
 
   [[nodiscard]] bool boolean(const char* key) const {

@@ -1,0 +1,136 @@
+// The command 'torture': what it finds, what it writes, and how it goes on.
+
+#include <algorithm>
+#include <thread>
+
+#include "broadmark/recording.h"
+#include "e2e/end_to_end.h"
+#include "support/places.h"
+
+namespace broadmark::tests {
+namespace {
+
+class Torture : public EndToEnd {
+ protected:
+  [[nodiscard]] Arguments call(const Arguments& more, const std::string& output = "torture") const {
+    Arguments all = {"torture", "--quiet", "--output", output};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+
+  [[nodiscard]] Json log(const std::string& output = "torture") const {
+    return readJson(file(output) / "torture.json");
+  }
+
+  /// Two boxes that overlap in two frames.
+  void writeTwoBoxes() const { writeFile(file("two.aabbs"), recordingOf(2, 1, unitBoxes(4))); }
+};
+
+TEST_F(Torture, ShrinksWrongAnswersAndShowsThemByACommand) {
+  const Ended ended = run(call({"--plugin", places::faultyPlugin(), "--algorithm",
+                                "faulty-extra,lossy*", "--rounds", "12"}));
+  EXPECT_EQ(ended.status, 1) << ended.err;
+  const Json found = log().at("found");
+  for (const std::string id : {"faulty-extra", "lossy-removal", "lossy-layers"}) {
+    SCOPED_TRACE(id);
+    const auto fault =
+        std::ranges::find_if(found, [&](const Json& one) { return one.at("algorithm") == id; });
+    ASSERT_NE(fault, found.end());
+    EXPECT_EQ(fault->at("kind"), "wrong answer");
+    EXPECT_TRUE(fault->at("minimal"));
+    EXPECT_LE(fault->at("bodies"), 3);
+    const std::string command = fault->at("command");
+    EXPECT_THAT(ended.out, HasSubstr(command));
+    EXPECT_EQ(shell(command), 1) << readFile(file("shell.out"));
+  }
+  // Of the same kind only the first few are written.
+  EXPECT_LE(std::ranges::count_if(
+                found, [](const Json& one) { return one.at("algorithm") == "lossy-removal"; }),
+            3);
+}
+
+TEST_F(Torture, TellsKindsOfFaultsApart) {
+  writeTwoBoxes();
+  for (const auto& [deed, kind] : std::map<std::string, std::string>{{"crash", "failure"},
+                                                                     {"throw", "failure"},
+                                                                     {"exit", "failure"},
+                                                                     {"hang", "hang"},
+                                                                     {"break", "broken invariant"},
+                                                                     {"keep", "leak"}}) {
+    SCOPED_TRACE(deed);
+    const std::string name = places::unrulyPlugin() + ":unruly/frame=1/deed=" + deed;
+    const Ended ended = run(call(
+        {"two.aabbs", "--only-sources", "--case", name, "--rounds", "1", "--hard-limit", "0.5"},
+        deed));
+    EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
+    const Json found = log(deed).at("found");
+    ASSERT_EQ(found.size(), 1U) << ended.out;
+    EXPECT_EQ(found[0].at("kind"), kind) << found[0];
+    EXPECT_EQ(found[0].at("world"), "given");
+    EXPECT_EQ(found[0].at("frames"), 1);
+    if (kind == "hang") continue;  // the command waits for a minute
+    EXPECT_EQ(shell(found[0].at("command")), 1) << readFile(file("shell.out"));
+  }
+}
+
+TEST_F(Torture, FindsNothingWrongWithAnAlgorithmThatIsRight) {
+  const Ended ended = run(call({"--algorithm", "sap,kd", "--rounds", "6"}));
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_THAT(ended.out, HasSubstr("nothing went wrong"));
+  EXPECT_THAT(ended.out, HasSubstr("6 rounds"));
+  EXPECT_EQ(files(), std::set<std::string>{"torture/torture.json"});
+}
+
+TEST_F(Torture, GoesOnWhereItEnded) {
+  const Arguments subject = {"--algorithm", "bf,grid-sap", "--seed", "7"};
+  const auto rounds = [&](const std::string& count, const std::string& output) {
+    Arguments all = call(subject, output);
+    all.insert(all.end(), {"--rounds", count});
+    EXPECT_EQ(run(all).status, 0);
+  };
+  rounds("2", "twice");
+  rounds("3", "twice");
+  rounds("5", "once");
+  EXPECT_EQ(log("twice").at("next"), 5);
+  EXPECT_EQ(log("twice").at("coverage"), log("once").at("coverage"));
+  expectRefusal(call({"--algorithm", "bf,grid-sap", "--seed", "8"}, "twice"),
+                {"twice/torture.json", "seed (7)", "--output"});
+  expectRefusal(call({"--algorithm", "bf"}, "twice"), {"other algorithms"});
+}
+
+TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
+  const Arguments subject = {"--algorithm", "bf", "--jobs", "2"};
+  Arguments endless = call(subject, "cut");
+  endless.insert(endless.end(), {"--minutes", "100"});
+  Program program(directory_, endless);
+  // It is written every ten seconds, and when it ends.
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  program.signal(SIGINT);
+  const Ended ended = program.wait();
+  EXPECT_EQ(ended.status, 130);
+  EXPECT_THAT(ended.err, HasSubstr("the same command goes on from cut/torture.json"));
+
+  const std::size_t left = log("cut").at("left").size();
+  Arguments more = call(subject, "cut");
+  more.insert(more.end(), {"--rounds", std::to_string(left + 1)});
+  EXPECT_EQ(run(more).status, 0);
+  EXPECT_THAT(log("cut").at("left"), IsEmpty());
+  Arguments whole = call(subject, "whole");
+  whole.insert(whole.end(), {"--rounds", std::to_string(log("cut").at("next").get<int>())});
+  EXPECT_EQ(run(whole).status, 0);
+  EXPECT_EQ(log("cut").at("coverage"), log("whole").at("coverage"));
+}
+
+TEST_F(Torture, RefusesWhatCannotBe) {
+  expectRefusal({"torture", "--algorithm", "nothing"}, {"--algorithm", "nothing"});
+  expectRefusal({"torture", "--algorithm", "none"}, {"finds pairs"});
+  expectRefusal({"torture", "--only-sources"}, {"--only-sources", "source"});
+  expectRefusal({"torture", "missing.aabbs"}, {"missing.aabbs"});
+  expectRefusal({"torture", "--case", "kd", "--algorithm", "kd"}, {"--case", "--algorithm"});
+  fs::create_directory(file("torture"));
+  writeFile(file("torture/torture.json"), R"({"schema": "broadmark-torture/1", "seed": -1})");
+  expectRefusal({"torture"}, {"torture.json", "seed"});
+}
+
+}  // namespace
+}  // namespace broadmark::tests
