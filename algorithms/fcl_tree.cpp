@@ -159,12 +159,14 @@ std::vector<Algorithm> variants() {
                       .time = "O(m log n + n + k), m bodies that move",
                       .space = "O(n + k)",
                       .source = "FCL, DynamicAABBTreeCollisionManager; Pan et al. 2012"}};
+  Algorithm array = variantOf(
+      family, [] { return std::make_unique<Fcl<Array>>(); }, "fcl-array",
+      "FCL's dynamic tree of boxes, its nodes in an array");
+  array.traits.library_leaks = true;
   return {variantOf(
               family, [] { return std::make_unique<Fcl<Nodes>>(); }, "fcl",
               "FCL's dynamic tree of boxes, of nodes that point to each other"),
-          variantOf(
-              family, [] { return std::make_unique<Fcl<Array>>(); }, "fcl-array",
-              "FCL's dynamic tree of boxes, its nodes in an array")};
+          array};
 }
 
 }  // namespace broadmark::fcl_tree

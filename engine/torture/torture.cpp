@@ -82,6 +82,7 @@ class Round {
       const std::optional<Fault> fault = runOnce(world, round.coverage);
       if (fault) return finished(std::move(round), std::move(world), *fault);
     }
+    if (case_.algorithm.traits.library_leaks) return round;
     const std::optional<Fault> fault = trial_.leak(*world.frames);
     if (fault) return finished(std::move(round), std::move(world), *fault);
     return round;

@@ -34,6 +34,8 @@ struct AlgorithmTraits {
   bool finds_pairs = true;
   /// A library that it calls allocates in a steady state; the algorithm cannot prevent that.
   bool library_allocates = false;
+  /// A library that it calls keeps memory for every instance: no leak of the algorithm's.
+  bool library_leaks = false;
   /// What it makes of bodies that are absent, and of pairs that are not wanted.
   ChangingWorlds changing_worlds = ChangingWorlds::unknown;
   /// Each of several worlds at one place has an instance of its own, however small they are: for
