@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "broadmark/error.h"
+#include "broadmark/memory_limit.h"
 #include "command_line.h"
 #include "exit_status.h"
 #include "interrupt.h"
@@ -24,6 +25,8 @@ void requirePrinted() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Whatever a file claims, it ends this program rather than the machine.
+  broadmark::limitMemory(broadmark::machineMemory(), /*for_good=*/false);
   try {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();
