@@ -138,7 +138,7 @@ void makeDirectory(const fs::path& directory) {
     throw InputError(
         fmt::format("{}: cannot create the directory: {}", directory.string(), error.message()));
   }
-  for (const fs::path& made : missing) syncFolder(made.parent_path());
+  for (const fs::path& made : missing) syncName(made);
 }
 
 }  // namespace broadmark

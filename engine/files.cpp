@@ -199,7 +199,7 @@ void AtomicFile::commit() {
   syncFile(file_, path_);
   if (::rename(partial_.c_str(), path_.c_str()) != 0) throw failure(path_, "cannot write");
   committed_ = true;
-  syncFolder(path_.parent_path());
+  syncName(path_);
 }
 
 FileDescriptor AtomicFile::commitAndKeep() {
@@ -233,13 +233,14 @@ void AppendedFile::append(std::string_view text) {
   if (stored_) syncFile(file_, path_);
 }
 
-void syncFolder(const std::filesystem::path& folder) {
+void syncName(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
   const FileDescriptor names =
       opened(folder.empty() ? std::filesystem::path(".") : folder, O_RDONLY | O_DIRECTORY);
   // One that may be written but not read cannot be synced, and some file systems cannot at all.
   if (names.get() < 0) return;
   if (uninterrupted([&] { return ::fsync(names.get()); }) != 0 && errno != EINVAL) {
-    throw failure(folder, "cannot write");
+    throw failure(path, "cannot write");
   }
 }
 

@@ -41,6 +41,17 @@ std::unique_ptr<Script> scriptOf(const fs::path& path) {
   return path.empty() ? nullptr : std::make_unique<Script>(path);
 }
 
+/// One step of a script. It may fail at what does not come as an error has come in its place.
+void play(Script& script, Inspector& inspector, InputQueue& input) {
+  try {
+    script.player.update(inspector, input);
+  } catch (const InputError& failure) {
+    const auto& errors = inspector.session().notices.errors;
+    if (errors.empty()) throw;
+    throw InputError(fmt::format("{} (after the error: {})", failure.what(), errors.front()));
+  }
+}
+
 /// The pictures of a movie, one for each frame that is shown.
 class Movie {
  public:
@@ -150,7 +161,7 @@ void inspectOffscreen(const InspectOptions& options) {
   auto target = std::make_unique<Framebuffer>(gl, width, height, 1);
   // The first pictures settle sizes.
   for (int calm = 0; calm < 4 && !inspector.closing();) {
-    if (script) script->player.update(inspector, input);
+    if (script) play(*script, inspector, input);
     if (const auto size = script ? script->player.takeResize() : std::nullopt) {
       std::tie(width, height) = *size;
       target = std::make_unique<Framebuffer>(gl, width, height, 1);

@@ -89,8 +89,8 @@ class AppendedFile {
   bool stored_ = false;  ///< lies on a disc
 };
 
-/// Makes sure that the names in a folder are on the disc. Throws InputError.
-void syncFolder(const std::filesystem::path& folder);
+/// Makes sure that a file's or a folder's name is on the disc. Throws InputError.
+void syncName(const std::filesystem::path& path);
 
 /// Writes a whole text file atomically; waits a moment for another writer of it.
 void writeTextFile(const std::filesystem::path& path, std::string_view text);
