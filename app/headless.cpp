@@ -333,6 +333,8 @@ fs::path oneName(const fs::path& path) {
 void requireWritable(const SessionOptions& options, const Plan& plan) {
   std::map<fs::path, std::string> taken;
   for (const PlanEntry& entry : plan.entries) {
+    // This is named by a file, not by who runs it.
+    if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
     const Source& source = entry.source;
     const fs::path file =
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);
@@ -345,10 +347,6 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
                                    path.string(), other->second));
     }
     requireOutput(path);
-  }
-  // This one is named by a file, not by who runs it.
-  for (const PlanEntry& entry : plan.entries) {
-    if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
   }
 }
 

@@ -2,8 +2,6 @@
 
 #include <unistd.h>
 
-#include <utility>
-
 #include "broadmark/error.h"
 #include "output.h"
 
@@ -45,7 +43,8 @@ ResultFiles::ResultFiles(const ResultPaths& paths, const Results& results) {
 
 void ResultFiles::add(const CaseResult& result) {
   for (Lines& lines : lines_) {
-    lines.file->append(std::exchange(lines.before, {}) + lines.writer->one(result));
+    lines.file->append(lines.before + lines.writer->one(result));
+    lines.before.clear();
   }
 }
 

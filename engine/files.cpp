@@ -82,10 +82,11 @@ FileDescriptor openLocked(const std::filesystem::path& path, const std::filesyst
   }
 }
 
-void emptyFile(const FileDescriptor& file, const std::filesystem::path& path) {
-  if (uninterrupted([&] { return ::ftruncate(file.get(), 0); }) != 0) {
-    throw failure(path, "cannot write");
-  }
+/// Returns whether it could be done. What is written next follows.
+bool cutFile(const FileDescriptor& file, std::uint64_t size) {
+  const auto end = static_cast<off_t>(size);
+  return uninterrupted([&] { return ::ftruncate(file.get(), end); }) == 0 &&
+         ::lseek(file.get(), end, SEEK_SET) == end;
 }
 
 /// Waits until all is on the disc.
@@ -176,7 +177,7 @@ AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds pat
   requireRegular(path_);
   // What a killed writer left is taken over; it is cut only now that the lock is held.
   file_ = openLocked(partial_, path_, patience);
-  emptyFile(file_, path_);
+  if (!cutFile(file_, 0)) throw failure(path_, "cannot write");
 }
 
 AtomicFile::~AtomicFile() {
@@ -227,10 +228,17 @@ void AppendedFile::append(std::string_view text) {
     first.write(text);
     file_ = first.commitAndKeep();
     begun_ = true;
+    size_ = text.size();
     return;
   }
-  writeAll(file_.get(), std::as_bytes(std::span(text)), path_);
-  if (stored_) syncFile(file_, path_);
+  try {
+    writeAll(file_.get(), std::as_bytes(std::span(text)), path_);
+    if (stored_) syncFile(file_, path_);
+  } catch (const InputError&) {
+    if (stored_) cutFile(file_, size_);
+    throw;
+  }
+  size_ += text.size();
 }
 
 void syncName(const std::filesystem::path& path) {

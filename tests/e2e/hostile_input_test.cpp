@@ -67,21 +67,9 @@ TEST_F(HostileInput, SettingsOfTheOriginalWriteTheirLogHereOnly) {
 TEST_F(HostileInput, ScriptsWriteHereOnly) {
   if (!parts::kInspector.included) GTEST_SKIP() << "the inspector is left out of this build";
   const auto play = [&](const std::string& script) {
-    writeFile(file("here/script.txt"), "wait settled\n" + script);
-    return Arguments{"--headless",
-                     "--ui",
-                     "freefall",
-                     "--objects",
-                     "5",
-                     "--frames",
-                     "2",
-                     "--script",
-                     "script.txt",
-                     "--gl",
-                     "auto",
-                     "--quiet",
-                     "--screenshot",
-                     file("elsewhere/last.png").string()};
+    writeFile(file("here/script.txt"), "patience 0.3\nwait settled\n" + script);
+    return Arguments{"--headless", "--ui",       "freefall", "--objects", "5",      "--frames", "2",
+                     "--script",   "script.txt", "--gl",     "auto",      "--size", "400x300"};
   };
   for (const std::string& place : placesElsewhere()) {
     expectRefusedHere(play(fmt::format("write frame \"{}\"\n", place)), place);
@@ -99,7 +87,9 @@ TEST_F(HostileInput, ScriptsWriteHereOnly) {
     expectRefusedHere(play(script), script);
   }
   // What the user names may lie anywhere.
-  const Ended ended = runHere(play("write frame frame.txt\n"));
+  Arguments call = play("write frame frame.txt\n");
+  call.insert(call.end(), {"--screenshot", file("elsewhere/last.png").string()});
+  const Ended ended = runHere(call);
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_TRUE(fs::exists(file("here/frame.txt")) && fs::exists(file("elsewhere/last.png")));
 }

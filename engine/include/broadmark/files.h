@@ -87,6 +87,7 @@ class AppendedFile {
   FileDescriptor file_;
   bool begun_ = false;   ///< something was appended
   bool stored_ = false;  ///< lies on a disc
+  std::uint64_t size_ = 0;
 };
 
 /// Makes sure that a file's or a folder's name is on the disc. Throws InputError.
