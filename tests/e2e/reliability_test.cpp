@@ -73,8 +73,9 @@ struct Step {
   std::string name;
   std::vector<Arguments> before;  ///< calls whose files are there when it begins
   Arguments call;
-  Contents texts;     ///< other files that are there
-  int stride = 1;     ///< of its calls on files every so manieth fails, each in another test
+  Contents texts;  ///< other files that are there
+  int stride = 1;  ///< of its calls on files every so manieth fails, each for another reason
+  int kill_stride = 1;
   bool shown = true;  ///< whether the parts that it needs are built
 
   friend void PrintTo(const Step& step, std::ostream* out) { *out << step.name; }
@@ -281,7 +282,7 @@ TEST_P(Reliability, KilledAnywhere) {
     const Ended ended = runWith(fmt::format("kill {}", call.number));
     EXPECT_EQ(ended.status, 128 + SIGKILL);
     expectNothingHalf();
-    if (number++ % 3 == 0) expectGoesOn();
+    if (number++ % 6 == 0) expectGoesOn();
   });
   expectGoesOn();
 }
@@ -376,7 +377,7 @@ class SharedFolder : public EndToEnd {
   [[nodiscard]] static Arguments longRun(const Arguments& more = {},
                                          const std::string& algorithms = "bf,time-validator") {
     Arguments call = {"--headless",     "some.aabbs",    "--algorithm", algorithms, "--param",
-                      "phase_us=30000", "--time-limit",  "100",         "--json",   "results.json",
+                      "phase_us=15000", "--time-limit",  "100",         "--json",   "results.json",
                       "--jsonl",        "results.jsonl", "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
     return call;
@@ -446,19 +447,21 @@ TEST_F(SharedFolder, ARecordingThatIsWrittenToEndsTheRun) {
 }
 
 TEST_F(SharedFolder, APluginThatVanishesEndsTheRun) {
-  for (const bool replaced : {false, true}) {
-    SCOPED_TRACE(replaced);
+  const std::string other_build = readFile(places::faultyPlugin()) + "x";
+  const std::string other_library = readFile(places::unrulyPlugin());
+  for (const std::string& replacement : {std::string(), other_build, other_library}) {
+    SCOPED_TRACE(replacement.size());
     fs::remove(file("results.jsonl"));
     fs::copy_file(places::faultyPlugin(), file("mine.so"));
     bakeRecording("some.aabbs", "20", "20");
     // The third case's process begins when the second one has ended.
     Program program(directory_, longRun({"--plugin", "mine.so"}, "bf,time-validator,faulty"));
     ASSERT_TRUE(waitForFirstCase(program));
-    if (replaced) {
-      fs::copy_file(places::unrulyPlugin(), file("other.so"));
-      fs::rename(file("other.so"), file("mine.so"));
-    } else {
+    if (replacement.empty()) {
       fs::remove(file("mine.so"));
+    } else {
+      writeFile(file("other.so"), replacement);
+      fs::rename(file("other.so"), file("mine.so"));
     }
     const Ended ended = program.wait();
     EXPECT_EQ(ended.status, 2);
