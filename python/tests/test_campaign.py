@@ -341,10 +341,10 @@ def test_after_an_interruption_no_finished_case_is_run_again(
 
 
 # The number of the call on a file at which it happens, in the command and in each program that it
-# starts; such small ones come in all of them, larger ones in the command alone.
+# starts.
 @pytest.mark.parametrize(
     "fault",
-    ["ENOSPC 1", "ENOSPC 12", "ENOSPC 60", "EIO 14", "EIO 33", "kill 9", "kill 25", "kill 90"],
+    ["ENOSPC 1", "ENOSPC 9", "ENOSPC 20", "kill 5", "kill 9", "kill 20"],
 )
 def test_after_a_failure_of_the_disc_the_same_command_goes_on(
     fault: str,
@@ -365,9 +365,8 @@ def test_after_a_failure_of_the_disc_the_same_command_goes_on(
     assert f"\n{fault.split()[1]} " in "\n" + (tmp_path / "calls.txt").read_text()
     killed = fault.startswith("kill")
     assert process.returncode in ((2, -signal.SIGKILL) if killed else (2,)), err
-    assert "Traceback" not in err and (
-        killed or "some campaign" in err or "the output" in err or "N" in err
-    )
+    assert "Traceback" not in err
+    assert killed or "No space left on device" in err
     before = kept_cases(tmp_path)
 
     status, _, err = run(file)
