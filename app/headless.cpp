@@ -254,9 +254,22 @@ class PlanRun {
     }
     Oracle oracle;
     EntryRun run(entry, options_, exhausted_, *warnings_, *files_);
-    interrupted_ = !run.run(*recording, oracle);
+    try {
+      interrupted_ = !run.run(*recording, oracle);
+    } catch (...) {
+      keepFinished(entry, run);
+      throw;
+    }
     report(entry, run.takeResults());
     if (!entry.screenshot.empty() && !interrupted_) draw(*recording, oracle, entry.screenshot);
+  }
+
+  /// What ends the run costs no case that was finished before.
+  void keepFinished(const PlanEntry& entry, EntryRun& run) {
+    try {
+      report(entry, run.takeResults());
+    } catch (const InputError&) {  // what went wrong first is what the user hears of
+    }
   }
 
   void report(const PlanEntry& entry, const std::vector<CaseResult>& done) {
@@ -320,6 +333,8 @@ fs::path oneName(const fs::path& path) {
 void requireWritable(const SessionOptions& options, const Plan& plan) {
   std::map<fs::path, std::string> taken;
   for (const PlanEntry& entry : plan.entries) {
+    // This is named by a file, not by who runs it.
+    if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
     const Source& source = entry.source;
     const fs::path file =
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);

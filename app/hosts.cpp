@@ -2,10 +2,9 @@
 
 #include "hosts.h"
 
-#include <unistd.h>
-
 #include <memory>
 
+#include "broadmark/memory_limit.h"
 #include "broadmark/worker_process.h"
 
 namespace broadmark {
@@ -18,8 +17,7 @@ std::uint64_t memoryLimit(const HostOptions& options) {
   if (options.memory_limit_gib) {
     return static_cast<std::uint64_t>(*options.memory_limit_gib * kGibibyte);
   }
-  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  return machineMemory();
 }
 
 }  // namespace

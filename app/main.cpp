@@ -2,12 +2,15 @@
 // How it ends: exit_status.h.
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <system_error>
 
 #include "broadmark/error.h"
+#include "broadmark/memory_limit.h"
 #include "command_line.h"
 #include "exit_status.h"
 #include "interrupt.h"
@@ -21,9 +24,27 @@ void requirePrinted() {
   }
 }
 
+std::terminate_handler usual_end = nullptr;
+
+/// Memory may also run out in a destructor (JSON's takes some), from where nothing is thrown to
+/// main().
+void endOfMemory() {
+  try {
+    if (const auto error = std::current_exception()) std::rethrow_exception(error);
+  } catch (const std::bad_alloc&) {
+    std::fputs("broadmark: out of memory\n", stderr);
+    std::_Exit(broadmark::exit_status::bad_input);
+  } catch (...) {
+  }
+  usual_end();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Whatever a file claims, it ends this program rather than the machine.
+  usual_end = std::set_terminate(endOfMemory);
+  broadmark::limitMemory(broadmark::machineMemory(), /*for_good=*/false);
   try {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();
     requirePrinted();

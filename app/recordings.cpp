@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/swept_frames.h"
 #include "interrupt.h"
 #include "progress.h"
@@ -55,11 +56,20 @@ std::unique_ptr<Recording> recordTemporary(const char* doing, FrameSource& frame
   return whole ? writer.finishTemporary() : nullptr;
 }
 
+/// The recording that a run was planned for. Throws InputError when another has taken its name.
+std::unique_ptr<Recording> openAgain(const RecordingReference& reference) {
+  auto recording = openRecordingFile(reference.path);
+  SceneInfo scene = recording->scene();
+  scene.name = reference.scene.name;  // that may tell of sweeping
+  if (scene == reference.scene) return recording;
+  throw InputError(fmt::format("{}: was replaced after the run had begun", reference.path));
+}
+
 /// The recording as it is, swept or not. Null when interrupted.
 std::unique_ptr<Recording> openPlain(Source& source, const fs::path& directory,
                                      const std::vector<std::string>& recorders, bool quiet) {
   if (source.imported) return recordTemporary("importing", *source.imported, quiet);
-  if (!source.simulation) return openRecordingFile(source.reference.path);
+  if (!source.simulation) return openAgain(source.reference);
   if (directory.empty()) return recordTemporary("baking", *source.simulation, quiet);
   const fs::path path = bakeInto(source, directory, recorders, quiet);
   return path.empty() ? nullptr : openRecordingFile(path);
@@ -116,12 +126,19 @@ std::string recordingKindsText() {
 }
 
 void makeDirectory(const fs::path& directory) {
+  std::vector<fs::path> missing;
+  for (fs::path at = fs::absolute(directory); !fs::exists(at); at = at.parent_path()) {
+    missing.push_back(at);
+  }
+  if (missing.empty() && fs::is_directory(directory)) return;
+  requireAllowed(directory);
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) {
     throw InputError(
         fmt::format("{}: cannot create the directory: {}", directory.string(), error.message()));
   }
+  for (const fs::path& made : missing) syncName(made);
 }
 
 }  // namespace broadmark

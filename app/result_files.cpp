@@ -1,13 +1,6 @@
 #include "result_files.h"
 
-#include <fcntl.h>
-#include <fmt/format.h>
 #include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-#include <span>
-#include <string_view>
 
 #include "broadmark/error.h"
 #include "output.h"
@@ -15,36 +8,44 @@
 namespace broadmark {
 namespace {
 
-FileDescriptor begin(const std::filesystem::path& path) {
-  if (isStandardOutput(path)) return FileDescriptor(::dup(STDOUT_FILENO));
-  constexpr int kEveryoneReads = 0666;
-  FileDescriptor file(
-      ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kEveryoneReads));
-  if (file.get() >= 0) return file;
-  throw InputError(fmt::format("{}: cannot write: {}", path.string(), std::strerror(errno)));
+std::unique_ptr<AppendedFile> begin(const std::filesystem::path& path) {
+  if (!isStandardOutput(path)) return std::make_unique<AppendedFile>(path);
+  return std::make_unique<AppendedFile>(FileDescriptor(::dup(STDOUT_FILENO)), "standard output");
+}
+
+/// Calls visit(writer, path) for each file that is wanted.
+template <class Visit>
+void eachFile(const ResultPaths& paths, Visit&& visit) {
+  for (const ResultWriter& writer : resultWriters()) {
+    const auto found = paths.find(std::string(writer.name));
+    if (found != paths.end()) visit(writer, found->second);
+  }
 }
 
 }  // namespace
 
-ResultFiles::ResultFiles(const ResultPaths& paths, const Results& results) {
-  for (const ResultWriter& writer : resultWriters()) {
-    const auto found = paths.find(std::string(writer.name));
-    if (found == paths.end()) continue;
-    if (writer.lines == nullptr) {
-      wholes_.emplace_back(writer, found->second);
-    } else {
-      lines_.push_back({writer.lines, found->second, begin(found->second)});
-      append(lines_.back(), writer.lines->before(results));
-    }
-  }
+void writeResults(const ResultPaths& paths, const Results& results) {
+  if (results.cases.empty()) return;
+  eachFile(paths, [&](const ResultWriter& writer, const std::filesystem::path& path) {
+    writeOutput(path, writer.format(results));
+  });
 }
 
-void ResultFiles::append(const Lines& lines, const std::string& text) {
-  writeAll(lines.file.get(), std::as_bytes(std::span(text)), lines.path);
+ResultFiles::ResultFiles(const ResultPaths& paths, const Results& results) {
+  eachFile(paths, [&](const ResultWriter& writer, const std::filesystem::path& path) {
+    if (writer.lines == nullptr) {
+      wholes_.emplace_back(writer, path);
+    } else {
+      lines_.push_back({writer.lines, begin(path), writer.lines->before(results)});
+    }
+  });
 }
 
 void ResultFiles::add(const CaseResult& result) {
-  for (const Lines& lines : lines_) append(lines, lines.writer->one(result));
+  for (Lines& lines : lines_) {
+    lines.file->append(lines.before + lines.writer->one(result));
+    lines.before.clear();
+  }
 }
 
 void ResultFiles::write(const Results& results, bool to_standard_output) {
@@ -56,8 +57,8 @@ void ResultFiles::write(const Results& results, bool to_standard_output) {
 void ResultFiles::rewrite(const Results& results) { write(results, false); }
 
 void ResultFiles::end(const Results& results) {
-  for (const Lines& lines : lines_) append(lines, lines.writer->after(results));
   if (results.cases.empty()) return;
+  for (const Lines& lines : lines_) lines.file->append(lines.writer->after(results));
   rewrite(results);
   write(results, true);
 }

@@ -8,9 +8,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <optional>
+#include <thread>
 
 #include "broadmark/error.h"
 
@@ -19,6 +23,21 @@ namespace {
 
 InputError failure(const std::filesystem::path& path, std::string_view what) {
   return InputError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
+}
+
+/// The result of a system call that is repeated when a signal came in between.
+template <class Call>
+auto uninterrupted(Call&& call) {
+  while (true) {
+    const auto result = call();
+    if (result >= 0 || errno != EINTR) return result;
+  }
+}
+
+FileDescriptor opened(const std::filesystem::path& path, int flags) {
+  constexpr mode_t kEveryoneReads = 0666;
+  return FileDescriptor(
+      uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, kEveryoneReads); }));
 }
 
 /// The target of a symbolic link: that is written, and the link stays.
@@ -35,6 +54,63 @@ bool hasName(const FileDescriptor& file, const std::filesystem::path& path) {
   struct stat named {};
   return ::fstat(file.get(), &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
+/// False if another process has the lock. A file system may know no locks.
+bool tryLock(const FileDescriptor& file) {
+  return uninterrupted([&] { return ::flock(file.get(), LOCK_EX | LOCK_NB); }) == 0 ||
+         errno != EWOULDBLOCK;
+}
+
+/// Opens `path`, which stands for the file `named`, and locks it.
+FileDescriptor openLocked(const std::filesystem::path& path, const std::filesystem::path& named,
+                          std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  while (true) {
+    FileDescriptor file = opened(path, O_WRONLY | O_CREAT);
+    if (file.get() < 0) throw failure(named, "cannot write");
+    if (!tryLock(file)) {
+      if (std::chrono::steady_clock::now() >= end) {
+        throw InputError(
+            fmt::format("{}: cannot write: another process is writing it", named.string()));
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    } else if (hasName(file, path)) {
+      return file;
+    }
+    // Between open and lock its writer has finished: it was the finished file, or is gone.
+  }
+}
+
+/// Returns whether it could be done. What is written next follows.
+bool cutFile(const FileDescriptor& file, std::uint64_t size) {
+  const auto end = static_cast<off_t>(size);
+  return uninterrupted([&] { return ::ftruncate(file.get(), end); }) == 0 &&
+         ::lseek(file.get(), end, SEEK_SET) == end;
+}
+
+/// Waits until all is on the disc.
+void syncFile(const FileDescriptor& file, const std::filesystem::path& path) {
+  if (uninterrupted([&] { return ::fsync(file.get()); }) != 0) throw failure(path, "cannot write");
+}
+
+/// Renaming over a device (/dev/null) would replace it.
+void requireRegular(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    throw InputError(fmt::format("{}: cannot write: not a regular file", path.string()));
+  }
+}
+
+/// Where this process may write; nothing: anywhere. Tasks in the background ask, too.
+struct WritingPlace {
+  std::mutex mutex;
+  std::optional<std::filesystem::path> folder;
+};
+WritingPlace& writingPlace() {
+  static WritingPlace place;
+  return place;
 }
 
 }  // namespace
@@ -59,7 +135,7 @@ FileDescriptor unnamedFile() {
 
 FileDescriptor openForReading(const std::filesystem::path& path) {
   // A FIFO without a writer would block; on regular files O_NONBLOCK means nothing.
-  FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  FileDescriptor file = opened(path, O_RDONLY | O_NONBLOCK | O_NOCTTY);
   struct stat status {};
   if (file.get() < 0 || ::fstat(file.get(), &status) != 0) throw failure(path, "cannot read");
   if (!S_ISREG(status.st_mode)) {
@@ -95,25 +171,13 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
   }
 }
 
-AtomicFile::AtomicFile(std::filesystem::path path)
+AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds patience)
     : path_(throughLinks(std::move(path))), partial_(path_.string() + ".part") {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(path_, ignored);
-  // Renaming over a device (/dev/null) would replace it.
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw InputError(fmt::format("{}: cannot write: not a regular file", path_.string()));
-  }
-  do {
-    // What a killed writer left is taken over; it is cut only after the lock is held.
-    file_ = FileDescriptor(::open(partial_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
-    if (file_.get() < 0) throw failure(path_, "cannot write");
-    if (::flock(file_.get(), LOCK_EX | LOCK_NB) != 0) {
-      throw InputError(
-          fmt::format("{}: cannot write: another process is writing it", path_.string()));
-    }
-    // Between open and lock its writer may have finished: then we hold the finished file.
-  } while (!hasName(file_, partial_));
-  if (::ftruncate(file_.get(), 0) != 0) throw failure(path_, "cannot write");
+  requireAllowed(path_);
+  requireRegular(path_);
+  // What a killed writer left is taken over; it is cut only now that the lock is held.
+  file_ = openLocked(partial_, path_, patience);
+  if (!cutFile(file_, 0)) throw failure(path_, "cannot write");
 }
 
 AtomicFile::~AtomicFile() {
@@ -132,16 +196,95 @@ void AtomicFile::write(std::span<const std::byte> bytes) {
 }
 
 void AtomicFile::commit() {
-  if (::fsync(file_.get()) != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) {
-    throw failure(path_, "cannot write");
-  }
+  // First the contents, then the name: a power failure must not leave the name without contents.
+  syncFile(file_, path_);
+  if (::rename(partial_.c_str(), path_.c_str()) != 0) throw failure(path_, "cannot write");
   committed_ = true;
+  syncName(path_);
+}
+
+FileDescriptor AtomicFile::commitAndKeep() {
+  commit();
+  return std::move(file_);
+}
+
+AppendedFile::AppendedFile(std::filesystem::path path)
+    : path_(throughLinks(std::move(path))), made_(!std::filesystem::exists(path_)), stored_(true) {
+  requireAllowed(path_);
+  requireRegular(path_);
+  file_ = openLocked(path_, path_, {});
+}
+
+AppendedFile::AppendedFile(FileDescriptor file, std::filesystem::path path)
+    : path_(std::move(path)), file_(std::move(file)), begun_(true) {}
+
+AppendedFile::~AppendedFile() {
+  if (made_ && !begun_) ::unlink(path_.c_str());
+}
+
+void AppendedFile::append(std::string_view text) {
+  if (!begun_) {
+    AtomicFile first(path_);
+    first.write(text);
+    file_ = first.commitAndKeep();
+    begun_ = true;
+    size_ = text.size();
+    return;
+  }
+  try {
+    writeAll(file_.get(), std::as_bytes(std::span(text)), path_);
+    if (stored_) syncFile(file_, path_);
+  } catch (const InputError&) {
+    if (stored_) cutFile(file_, size_);
+    throw;
+  }
+  size_ += text.size();
+}
+
+void syncName(const std::filesystem::path& path) {
+  const std::filesystem::path folder = path.parent_path();
+  const FileDescriptor names =
+      opened(folder.empty() ? std::filesystem::path(".") : folder, O_RDONLY | O_DIRECTORY);
+  // One that may be written but not read cannot be synced, and some file systems cannot at all.
+  if (names.get() < 0) return;
+  if (uninterrupted([&] { return ::fsync(names.get()); }) != 0 && errno != EINVAL) {
+    throw failure(path, "cannot write");
+  }
 }
 
 void writeTextFile(const std::filesystem::path& path, std::string_view text) {
-  AtomicFile file(path);
+  // Another one writes a text, too, which takes no longer than this.
+  constexpr std::chrono::seconds kPatience{5};
+  AtomicFile file(path, kPatience);
   file.write(text);
   file.commit();
+}
+
+void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path) {
+  const auto place = std::filesystem::weakly_canonical(std::filesystem::absolute(path))
+                         .lexically_relative(std::filesystem::weakly_canonical(folder));
+  const bool below = !place.empty() && std::ranges::none_of(place, [](const auto& part) {
+    return part.string().starts_with('.');  // "..": beyond it; ".": itself; others: hidden
+  });
+  if (below) return;
+  throw InputError(
+      fmt::format("{}: cannot write: only files below {} that are not hidden may be written here",
+                  path.string(), folder.string()));
+}
+
+WritingBelow::WritingBelow(const std::filesystem::path& folder) {
+  const std::lock_guard guard(writingPlace().mutex);
+  writingPlace().folder = folder;
+}
+
+WritingBelow::~WritingBelow() {
+  const std::lock_guard guard(writingPlace().mutex);
+  writingPlace().folder.reset();
+}
+
+void requireAllowed(const std::filesystem::path& path) {
+  const std::lock_guard guard(writingPlace().mutex);
+  if (writingPlace().folder) requireBelow(*writingPlace().folder, path);
 }
 
 }  // namespace broadmark

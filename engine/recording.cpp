@@ -65,6 +65,12 @@ const Kind& kindOf(const std::filesystem::path& extension) {
   return kind == std::end(kKinds) ? kKinds[0] : *kind;
 }
 
+struct stat statusOf(const FileDescriptor& file, const std::string& name) {
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0) return status;
+  throw InputError(fmt::format("{}: cannot read: {}", name, std::strerror(errno)));
+}
+
 }  // namespace
 
 std::uint64_t recordingBytes(const SceneInfo& scene) {
@@ -114,11 +120,9 @@ std::string recordingFileName(const SceneInfo& scene, std::string_view extension
 
 Recording::Recording(FileDescriptor file, std::string name)
     : name_(std::move(name)), file_(std::move(file)) {
-  struct stat status {};
-  if (::fstat(file_.get(), &status) != 0) {
-    throw InputError(fmt::format("{}: cannot read: {}", name_, std::strerror(errno)));
-  }
+  const struct stat status = statusOf(file_, name_);
   size_ = static_cast<std::uint64_t>(status.st_size);
+  written_ = status.st_mtim;
 }
 
 void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
@@ -134,6 +138,16 @@ void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
     bytes = bytes.subspan(static_cast<std::size_t>(got));
     offset += static_cast<std::uint64_t>(got);
   }
+  requireUnchanged();
+}
+
+void Recording::requireUnchanged() const {
+  const struct stat status = statusOf(file_, name_);
+  if (static_cast<std::uint64_t>(status.st_size) == size_ &&
+      status.st_mtim.tv_sec == written_.tv_sec && status.st_mtim.tv_nsec == written_.tv_nsec) {
+    return;
+  }
+  throw InputError(fmt::format("{}: was written to while it was read", name_));
 }
 
 const RecordingOrigin& Recording::origin() const {

@@ -35,9 +35,8 @@ int run(const Options& options) {
   }
   MergedResults merged = mergeResults(runs);
   merged.results.options = names;
-  ResultFiles files(options.outputs, merged.results);
-  for (const CaseResult& result : merged.results.cases) files.add(result);
-  files.end(merged.results);
+  // Not line by line: an output may be one of the sources.
+  writeResults(options.outputs, merged.results);
   const auto partial = std::ranges::count_if(
       merged.results.cases, [](const CaseResult& result) { return !result.isComplete(); });
   fmt::print(stderr, "merged: {} of {}; {} were in several of them; {} are partial\n",

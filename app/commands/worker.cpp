@@ -2,6 +2,9 @@
 
 #include "broadmark/worker_process.h"
 
+#include <fmt/format.h>
+
+#include "broadmark/error.h"
 #include "cases.h"
 #include "commands/command.h"
 #include "plugins.h"
@@ -12,6 +15,9 @@ namespace {
 Algorithm find(const std::string& id, const std::string& plugin) {
   const std::vector<Algorithm> known =
       availableAlgorithms(plugin.empty() ? std::vector<std::string>() : std::vector{plugin});
+  const bool gone = !plugin.empty() && findAlgorithm(id, known) == nullptr;
+  if (gone)
+    throw InputError(fmt::format("--plugin: {}: has no algorithm '{}' any more", plugin, id));
   return requireAlgorithm(id, known);
 }
 

@@ -57,6 +57,16 @@ void FileDialog::enter(const fs::path& directory) {
   });
 }
 
+fs::path FileDialog::replacedBy(const fs::path& path) const {
+  std::error_code none;
+  if (fs::exists(path, none)) return path;
+  for (const std::string& extension : request_.extensions) {
+    const fs::path whole = path.string() + extension;
+    if (!path.has_extension() && fs::exists(whole, none)) return whole;
+  }
+  return {};
+}
+
 void FileDialog::accept() {
   const fs::path path =
       request_.purpose == Purpose::directory ? directory_ / name_ : directory_ / fs::path(name_);
@@ -75,9 +85,10 @@ void FileDialog::accept() {
       failure_ = fmt::format("{}: no such file", path.string());
       return;
     }
-    if (request_.purpose == Purpose::save && fs::exists(path, none) && !confirm_overwrite_) {
+    if (const fs::path there = replacedBy(path);
+        request_.purpose == Purpose::save && !there.empty() && !confirm_overwrite_) {
       confirm_overwrite_ = true;
-      failure_ = fmt::format("{} exists: press again to replace it", name_);
+      failure_ = fmt::format("{} exists: press again to replace it", there.filename().string());
       return;
     }
   }

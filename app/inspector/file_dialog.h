@@ -37,6 +37,8 @@ class FileDialog {
   void enter(const std::filesystem::path& directory);
   void drawEntries(Ui& ui);
   void accept();
+  /// What saving under this name, to which an extension may be added, would replace; "": nothing.
+  [[nodiscard]] std::filesystem::path replacedBy(const std::filesystem::path& path) const;
 
   Request request_;
   bool open_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -32,6 +33,7 @@ class KeptFrames final : public IndexedFrames {
     for (std::size_t done = 0; done < bytes.size();) {
       const ssize_t got = ::pread(file_->get(), bytes.data() + done, bytes.size() - done,
                                   static_cast<off_t>(start + done));
+      if (got < 0 && errno == EINTR) continue;
       if (got <= 0) throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
       done += static_cast<std::size_t>(got);
     }

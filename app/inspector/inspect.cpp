@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <iostream>
+#include <memory>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
@@ -12,6 +13,7 @@
 #include "broadmark/render/window.h"
 #include "inspector/inspector.h"
 #include "inspector/script.h"
+#include "recordings.h"
 
 namespace broadmark {
 namespace {
@@ -25,9 +27,29 @@ constexpr double kIdleSeconds = 0.25;
 /// At least this much time between two pictures.
 constexpr double kPictureSeconds = 1.0 / 60;
 
-std::optional<ScriptPlayer> scriptOf(const fs::path& path) {
-  if (path.empty()) return {};
-  return ScriptPlayer(parseScript(readTextFile(path), path.string()), path.string());
+/// A script that is played, perhaps somebody else's: while it is, only files below the current
+/// folder are written.
+struct Script {
+  explicit Script(const fs::path& path)
+      : player(parseScript(readTextFile(path), path.string()), path.string()) {}
+
+  WritingBelow limit{fs::current_path()};
+  ScriptPlayer player;
+};
+
+std::unique_ptr<Script> scriptOf(const fs::path& path) {
+  return path.empty() ? nullptr : std::make_unique<Script>(path);
+}
+
+/// One step of a script. It may fail at what does not come as an error has come in its place.
+void play(Script& script, Inspector& inspector, InputQueue& input) {
+  try {
+    script.player.update(inspector, input);
+  } catch (const InputError& failure) {
+    const auto& errors = inspector.session().notices.errors;
+    if (errors.empty()) throw;
+    throw InputError(fmt::format("{} (after the error: {})", failure.what(), errors.front()));
+  }
 }
 
 /// The pictures of a movie, one for each frame that is shown.
@@ -42,10 +64,10 @@ class Movie {
     std::optional<std::string> frame = inspector.value("shown_frame");
     if (count_ > 0 && frame == last_) return;
     last_ = frame;
-    std::error_code none;
-    fs::create_directories(directory, none);
-    inspector.session().notices.attempt(
-        [&] { writePng(directory / fmt::format("frame_{:05}.png", count_++), picture()); });
+    inspector.session().notices.attempt([&] {
+      makeDirectory(directory);
+      writePng(directory / fmt::format("frame_{:05}.png", count_++), picture());
+    });
   }
 
  private:
@@ -81,7 +103,7 @@ void inspectInWindow(const InspectOptions& options) {
   Preferences preferences = loadPreferences(remembered);
   Window window("Broadmark", preferences.window_width, preferences.window_height);
   const Gl gl{[](const char* name) { return Window::function(name); }};
-  std::optional<ScriptPlayer> script = scriptOf(options.script);
+  std::unique_ptr<Script> script = scriptOf(options.script);
   {
     Inspector inspector(gl, options.algorithms, preferences, window.scale(), options.make_host);
     linkClipboard(window);
@@ -100,8 +122,8 @@ void inspectInWindow(const InspectOptions& options) {
         inspector.close();
       }
       if (script) {
-        script->update(inspector, window.input());
-        if (script->done()) script.reset();
+        script->player.update(inspector, window.input());
+        if (script->player.done()) script.reset();
       }
       if (window.width() < 1 || window.height() < 1) continue;  // minimised
       before = std::chrono::steady_clock::now();
@@ -114,6 +136,7 @@ void inspectInWindow(const InspectOptions& options) {
     }
     preferences = inspector.preferences();
   }
+  script.reset();  // the preferences lie elsewhere
   preferences.window_width = static_cast<int>(static_cast<float>(window.width()) / window.scale());
   preferences.window_height =
       static_cast<int>(static_cast<float>(window.height()) / window.scale());
@@ -127,7 +150,7 @@ void inspectInWindow(const InspectOptions& options) {
 void inspectOffscreen(const InspectOptions& options) {
   const auto context = makeOffscreenContext(options.gl);
   const Gl gl(*context);
-  std::optional<ScriptPlayer> script = scriptOf(options.script);
+  std::unique_ptr<Script> script = scriptOf(options.script);
   Inspector inspector(gl, options.algorithms, {}, static_cast<float>(options.scale),
                       options.make_host);
   if (options.begin) options.begin(inspector.session());
@@ -138,21 +161,22 @@ void inspectOffscreen(const InspectOptions& options) {
   auto target = std::make_unique<Framebuffer>(gl, width, height, 1);
   // The first pictures settle sizes.
   for (int calm = 0; calm < 4 && !inspector.closing();) {
-    if (script) script->update(inspector, input);
-    if (const auto size = script ? script->takeResize() : std::nullopt) {
+    if (script) play(*script, inspector, input);
+    if (const auto size = script ? script->player.takeResize() : std::nullopt) {
       std::tie(width, height) = *size;
       target = std::make_unique<Framebuffer>(gl, width, height, 1);
     }
     inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
     const auto picture = [&] { return target->read(); };
     takePictures(inspector, movie, picture);
-    if (const auto path = script ? script->takeScreenshot() : std::nullopt) {
+    if (const auto path = script ? script->player.takeScreenshot() : std::nullopt) {
       writePng(*path, picture());
     }
-    const bool busy = (script && !script->done()) || inspector.lively();
+    const bool busy = (script && !script->player.done()) || inspector.lively();
     calm = busy ? 0 : calm + 1;
     if (busy && input.empty()) inspector.session().runs.settle(std::chrono::milliseconds(2));
   }
+  script.reset();  // the last picture goes where the user wants it
   if (!options.screenshot.empty()) writePng(options.screenshot, target->read());
   if (!inspector.session().notices.errors.empty()) {
     throw InputError(inspector.session().notices.errors.front());

@@ -114,6 +114,7 @@ void SharedMemory::requireHeld(std::uint64_t offset, std::uint64_t count,
 Json toJson(const Case& run) {
   return {{"algorithm", run.algorithm.id},
           {"plugin", run.algorithm.plugin},
+          {"plugin_hash", run.algorithm.plugin_build.hash},
           {"isa", isaName(run.isa)},
           {"threads", run.threads},
           {"device", run.device},
@@ -129,6 +130,11 @@ Case caseFrom(const Json& json,
            .threads = json.at("threads").get<int>(),
            .device = json.at("device").get<std::string>(),
            .parameters = json.at("parameters").get<ParameterValues>()};
+  if (json.value("plugin_hash", run.algorithm.plugin_build.hash) !=
+      run.algorithm.plugin_build.hash) {
+    throw InputError(
+        fmt::format("--plugin: {}: was replaced after the run had begun", run.algorithm.plugin));
+  }
   const auto known = kIsas.find(isa);
   if (!known) throw UnsupportedError("there is no instruction set " + isa);
   run.isa = *known;

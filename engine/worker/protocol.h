@@ -6,8 +6,9 @@
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
 //   call        says                                              answer
-//   case        algorithm, plugin, isa, threads, device,
-//               parameters {}, answer ("pairs" | "events"),
+//   case        algorithm, plugin, plugin_hash (of that file),
+//               isa, threads, device, parameters {},
+//               answer ("pairs" | "events"),
 //               memory_limit_bytes (0: none), pin                 {}
 //   start       scene {name, object_type, objects, frames, world, initialize_ns, pinned
 //               all_present}, filter (null: all pairs are wanted);

@@ -12,6 +12,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/headers_hash.h"
+#include "broadmark/memory_limit.h"
 #include "broadmark/worker_process.h"
 #include "worker/protocol.h"
 
@@ -19,15 +20,6 @@ namespace broadmark {
 namespace {
 
 using worker::SharedMemory;
-
-/// A line of /proc/self/status in bytes; nothing if there is no such line.
-std::optional<std::uint64_t> statusBytes(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.starts_with(key + ":")) return std::stoull(line.substr(key.size() + 1)) * 1024;
-  }
-  return std::nullopt;
-}
 
 /// The peak of the memory that this process has had resident.
 std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
@@ -41,11 +33,13 @@ std::uint64_t heapBytes() {
 /// Should memory run out nonetheless, this process is to go, not the one that waits for it.
 void beFirstToGo() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
-void limitMemory(std::uint64_t bytes) {
-  // Sanitizers hold terabytes from the start, of which they use little.
-  if (bytes == 0 || statusBytes("VmData").value_or(0) > bytes) return;
-  const rlimit limit{bytes, bytes};
-  ::setrlimit(RLIMIT_DATA, &limit);
+/// What an algorithm has no use for. A crash is told of by its signal, and a dump of all that
+/// memory would fill the disc; nobody runs programs with more rights than the user's (sudo) from
+/// here.
+void dropRights() {
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
 }
 
 class Server {
@@ -92,7 +86,7 @@ class Server {
 
   Json takeCase(const Json& message) {
     host_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
-    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>());
+    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*for_good=*/true);
     return Json::object();
   }
 
@@ -204,6 +198,7 @@ void serveCase(const AlgorithmFinder& find) {
   std::signal(SIGINT, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   beFirstToGo();
+  dropRights();
   worker::Channel channel{FileDescriptor(worker::kChannelDescriptor)};
   if (!channel.send(
           {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {

@@ -57,8 +57,14 @@ def engine_plugin() -> str:
     return tests_plugin("libmy_engine.so")
 
 
+@pytest.fixture(scope="session")
+def fault_injection() -> str:
+    """A library that makes system calls fail (tests/support/fault_injection.cpp)."""
+    return tests_plugin("libfault_injection.so")
+
+
 def tests_plugin(name: str) -> str:
     plugin = pathlib.Path(find_program()).parent / "tests" / name
     if not plugin.exists():
-        pytest.skip("the tests' plug-ins are built in the checkout only")
+        pytest.skip("the tests' libraries are built in the checkout, without sanitizers")
     return str(plugin)

@@ -251,15 +251,15 @@ def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
 
 
 @pytest.fixture
-def start(tmp_path: pathlib.Path) -> Iterator[Callable[[pathlib.Path], subprocess.Popen[str]]]:
+def start(tmp_path: pathlib.Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
     """Starts the command as the leader of a group of processes."""
     started = []
 
-    def start(file: pathlib.Path) -> subprocess.Popen[str]:
+    def start(file: pathlib.Path, **environment: str) -> subprocess.Popen[str]:
         command = [sys.executable, "-m", "broadmark", "campaign", str(file)]
         process = subprocess.Popen(
             [*command, "--output", str(tmp_path / "the output")],
-            env=os.environ | {"PYTHONPATH": str(SOURCE_FOLDER / "python")},
+            env=os.environ | {"PYTHONPATH": str(SOURCE_FOLDER / "python")} | environment,
             stderr=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             text=True,
@@ -338,6 +338,42 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     cases = results(tmp_path).cases
     assert len(cases) == 6 and cases["id"].is_unique
     assert results(tmp_path).partial == []
+
+
+# The number of the call on a file at which it happens, in the command and in each program that it
+# starts.
+@pytest.mark.parametrize(
+    "fault",
+    ["ENOSPC 1", "ENOSPC 9", "ENOSPC 20", "kill 5", "kill 9", "kill 20"],
+)
+def test_after_a_failure_of_the_disc_the_same_command_goes_on(
+    fault: str,
+    write: Any,
+    start: Any,
+    run: Any,
+    fault_injection: str,
+    tmp_path: pathlib.Path,
+) -> None:
+    file = write()
+    environment = {
+        "LD_PRELOAD": fault_injection,
+        "BROADMARK_FAULT_FOLDER": str(tmp_path / "the output"),
+        "BROADMARK_FAULT_LOG": str(tmp_path / "calls.txt"),
+    }
+    process = start(file, **environment, BROADMARK_FAULT=fault)
+    _, err = process.communicate(timeout=PATIENCE)
+    assert f"\n{fault.split()[1]} " in "\n" + (tmp_path / "calls.txt").read_text()
+    killed = fault.startswith("kill")
+    assert process.returncode in ((2, -signal.SIGKILL) if killed else (2,)), err
+    assert "Traceback" not in err
+    assert killed or "No space left on device" in err
+    before = kept_cases(tmp_path)
+
+    status, _, err = run(file)
+    assert status == 0, err
+    assert before.items() <= kept_cases(tmp_path).items()
+    cases = results(tmp_path).cases
+    assert len(cases) == 4 and cases["id"].is_unique and set(cases["status"]) == {"ok"}
 
 
 @pytest.mark.parametrize(

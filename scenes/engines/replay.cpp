@@ -73,7 +73,10 @@ class ReplaySimulation final : public Simulation {
   }
 
   [[nodiscard]] fs::path input() const override { return find().path; }
-  [[nodiscard]] std::string inputHash() override { return openRecordingFile(input())->hash(); }
+  /// Of what is replayed, even if another recording has taken its name meanwhile.
+  [[nodiscard]] std::string inputHash() override {
+    return replay_ ? replay_->inputHash() : openRecordingFile(input())->hash();
+  }
 
   Frame rewind() override {
     replay_ = open();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,7 +13,11 @@
 namespace broadmark::scenes {
 
 /// The frames made from one recording.
-class Replay : public FrameSource, public PoseSource {};
+class Replay : public FrameSource, public PoseSource {
+ public:
+  /// The recording's.
+  virtual std::string inputHash() = 0;
+};
 
 struct ReplayEntry {
   EngineListing listing;

@@ -61,6 +61,7 @@ class Splitter final : public Replay {
         info_(grown(recording_->scene())) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return info_; }
+  std::string inputHash() override { return recording_->hash(); }
 
   Frame rewind() override {
     const Frame whole = recording_->rewind();

@@ -15,6 +15,7 @@ class Viewer final : public Replay {
   [[nodiscard]] const SceneInfo& scene() const override { return recording_->scene(); }
   Frame rewind() override { return recording_->rewind(); }
   std::optional<Frame> next() override { return recording_->next(); }
+  std::string inputHash() override { return recording_->hash(); }
   std::span<const Aabb> unturnedBoxes() override { return posed().unturnedBoxes(); }
   std::span<const Pose> poses() override { return posed().poses(); }
 

@@ -76,8 +76,9 @@ scenes::RecorderEntry recorderOf(const fs::path& path) {
 }  // namespace
 
 bool isBaked(const fs::path& path, Simulation& simulation) {
+  if (!fs::exists(sidecarPath(path))) return false;
+  const Sidecar sidecar = readSidecar(sidecarPath(path));
   try {
-    const Sidecar sidecar = readSidecar(sidecarPath(path));
     const std::optional<std::string> hash = statedHash(sidecar);
     if (!hash || sidecar != Sidecar(sidecarJson(simulation, *hash))) return false;
     const auto recording = openRecordingFile(path);

@@ -10,5 +10,6 @@ std::string faultyPlugin() { return FAULTY_PLUGIN; }
 std::string unrulyPlugin() { return UNRULY_PLUGIN; }
 std::string enginePlugin() { return ENGINE_PLUGIN; }
 std::string foreignPlugin() { return FOREIGN_PLUGIN; }
+std::string faultInjection() { return FAULT_INJECTION; }
 
 }  // namespace broadmark::places

@@ -18,5 +18,7 @@ std::string unrulyPlugin();
 std::string enginePlugin();
 /// A plug-in that belongs to another version.
 std::string foreignPlugin();
+/// A library that makes system calls under the program fail; "" in builds with sanitizers.
+std::string faultInjection();
 
 }  // namespace broadmark::places

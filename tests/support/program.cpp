@@ -91,11 +91,15 @@ Ended Program::wait() {
 void Program::enter(const std::filesystem::path& directory, const Surroundings& around,
                     char** argv) const {
   for (const auto& [name, value] : around.environment) ::setenv(name.c_str(), value.c_str(), 1);
+  const auto limit = [](auto resource, rlim_t most) {
+    const rlimit both{most, most};
+    ::setrlimit(resource, &both);
+  };
   if (around.largest_file) {
-    const rlimit limit{*around.largest_file, *around.largest_file};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+    limit(RLIMIT_FSIZE, *around.largest_file);
     std::signal(SIGXFSZ, SIG_IGN);
   }
+  if (around.most_memory) limit(RLIMIT_DATA, *around.most_memory);
   int out = ::fileno(out_.get());
   if (!around.standard_output.empty()) out = ::open(around.standard_output.c_str(), O_WRONLY);
   ::dup2(out, 1);

@@ -29,6 +29,7 @@ struct Ended {
 struct Surroundings {
   std::map<std::string, std::string> environment;  ///< added to ours
   std::optional<rlim_t> largest_file;              ///< bytes; beyond it writing fails (EFBIG)
+  std::optional<rlim_t> most_memory;               ///< bytes; beyond it there is none
   std::string standard_output;                     ///< a file to print to instead of Ended::out
   std::chrono::seconds patience{120};              ///< then it is killed: status 137
 };
@@ -44,6 +45,7 @@ class Program {
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
 
+  [[nodiscard]] pid_t id() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
   /// The processes that its main thread has started.
   [[nodiscard]] std::vector<pid_t> children() const;

@@ -1,6 +1,8 @@
-// Files: owned descriptors, whole reads, and writes that never leave a half-written file behind.
+// Files: owned descriptors, whole reads, writes that never leave a half-written file behind, and
+// where they may go.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -36,12 +38,14 @@ FileDescriptor unnamedFile();
 std::string readTextFile(const std::filesystem::path& path,
                          std::uint64_t limit_bytes = std::uint64_t{1} << 30);
 
-/// A file that appears under its name only when it is whole: written to `NAME.part` beside it, then
-/// renamed. Two writers of the same name exclude each other by a lock. Throws InputError naming the
-/// path on every failure (no such directory, no permission, disc full).
+/// A file that appears under its name only when it is whole: written to `NAME.part` beside it, on
+/// the disc, then renamed; after commit() it is there even if the power fails. Two writers of the
+/// same name exclude each other by a lock. Throws InputError naming the path on every failure (no
+/// such directory, no permission, disc full).
 class AtomicFile {
  public:
-  explicit AtomicFile(std::filesystem::path path);
+  /// `patience`: how long to wait for another writer of the same name.
+  explicit AtomicFile(std::filesystem::path path, std::chrono::milliseconds patience = {});
   /// Removes the partial file unless committed.
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -50,6 +54,8 @@ class AtomicFile {
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text) { write(std::as_bytes(std::span(text))); }
   void commit();
+  /// The same, and hands over the file: what is written to it is appended, and its lock holds on.
+  FileDescriptor commitAndKeep();
 
  private:
   std::filesystem::path path_;
@@ -60,10 +66,56 @@ class AtomicFile {
   bool committed_ = false;
 };
 
-/// Writes a whole text file atomically.
+/// A file that grows part by part: each is on the disc when append() returns. The first one takes
+/// the place of what the file held before, at once. Writers of one file exclude each other by a
+/// lock. Throws InputError naming the path.
+class AppendedFile {
+ public:
+  explicit AppendedFile(std::filesystem::path path);
+  /// Goes on with an open descriptor, a pipe perhaps, which is neither locked nor emptied.
+  AppendedFile(FileDescriptor file, std::filesystem::path path);
+  /// Removes a file that it has made and nobody has appended to.
+  ~AppendedFile();
+  AppendedFile(const AppendedFile&) = delete;
+  AppendedFile& operator=(const AppendedFile&) = delete;
+
+  void append(std::string_view text);
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false;  ///< there was none before
+  FileDescriptor file_;
+  bool begun_ = false;   ///< something was appended
+  bool stored_ = false;  ///< lies on a disc
+  std::uint64_t size_ = 0;
+};
+
+/// Makes sure that a file's or a folder's name is on the disc. Throws InputError.
+void syncName(const std::filesystem::path& path);
+
+/// Writes a whole text file atomically; waits a moment for another writer of it.
 void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
 /// Writes all bytes to a descriptor; `path` is named in errors.
 void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path);
+
+/// What a file from somebody else may name to be written: throws InputError unless `path` lies
+/// below `folder`, also when its links are followed, and no part of it there is hidden, as
+/// `.bashrc` is.
+void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path);
+
+/// While it lives, whatever this process is about to write must fulfil requireBelow(). There is at
+/// most one.
+class WritingBelow {
+ public:
+  explicit WritingBelow(const std::filesystem::path& folder);
+  ~WritingBelow();
+  WritingBelow(const WritingBelow&) = delete;
+  WritingBelow& operator=(const WritingBelow&) = delete;
+};
+
+/// Throws InputError for a path that must not be written. AtomicFile and AppendedFile ask by
+/// themselves.
+void requireAllowed(const std::filesystem::path& path);
 
 }  // namespace broadmark

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -81,13 +82,18 @@ class Recording : public IndexedFrames {
 
   /// To be called once: what the header says.
   void setScene(SceneInfo scene) { scene_ = std::move(scene); }
-  /// Reads exactly `bytes.size()` bytes.
+  /// Reads exactly `bytes.size()` bytes, all of them from the file as it was opened.
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
  private:
+  /// Throws InputError when somebody has written into the open file: what was read before and after
+  /// would not go together. (A file that has taken its name is another one, and disturbs nobody.)
+  void requireUnchanged() const;
+
   std::string name_;
   FileDescriptor file_;
   std::uint64_t size_ = 0;
+  timespec written_{};  ///< when it was written to last
   SceneInfo scene_;
   std::string hash_;
 };

@@ -18,16 +18,20 @@ from broadmark.campaign.attempts import Line, read_attempt, variant_of
 from broadmark.campaign.folder import Folder
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording, as_text
+from broadmark.errors import InputError
 from broadmark.program import call
 from broadmark.results import SCHEMAS
 
 
 def merge(folder: Folder, ledger: Ledger) -> bool:
     """Writes the results of the campaign. False if there are none."""
-    with tempfile.TemporaryDirectory(dir=folder.path, prefix=".merge-") as parts:
-        paths = list(_write_parts(pathlib.Path(parts), folder, ledger))
-        if paths:
-            call("merge", *map(str, paths), "--json", str(folder.results))
+    try:
+        with tempfile.TemporaryDirectory(dir=folder.path, prefix=".merge-") as parts:
+            paths = list(_write_parts(pathlib.Path(parts), folder, ledger))
+            if paths:
+                call("merge", *map(str, paths), "--json", str(folder.results))
+    except OSError as error:
+        raise InputError(f"{folder.results}: cannot be written: {error.strerror}") from None
     return bool(paths)
 
 

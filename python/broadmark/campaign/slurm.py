@@ -25,6 +25,7 @@ from broadmark.campaign.folder import Folder
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording, levels
 from broadmark.errors import InputError
+from broadmark.files import write_text
 from broadmark.program import VARIABLE, find_program
 
 SUBMIT = """\
@@ -107,10 +108,10 @@ def write(folder: Folder, jobs: list[Job], sbatch: str) -> pathlib.Path:
     place = folder.path / "slurm"
     place.mkdir(exist_ok=True)
     for job in jobs:
-        (place / f"{job.name}.sh").write_text(_script(folder, job), "utf-8")
+        write_text(os.fspath(place / f"{job.name}.sh"), _script(folder, job))
     submit = place / "submit"
     lines = [SUBMIT, *(_submission(job, sbatch) for job in jobs), 'echo "${submitted[*]}"\n']
-    submit.write_text("".join(lines), "utf-8")
+    write_text(os.fspath(submit), "".join(lines))
     submit.chmod(0o755)
     return submit
 
