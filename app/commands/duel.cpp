@@ -136,10 +136,10 @@ std::function<int()> add(CLI::App& app) {
                  fmt::format("what to run on, one recording: {}", sourceKindsText()))
       ->type_name("SOURCE")
       ->required();
-  app.add_option(
-         "variants", options->variants,
-         "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
-         "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in PLUGIN.so:ID… or NAME:ID…")
+  app.add_option("variants", options->variants,
+                 "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
+                 "[/events][/KEY=VALUE...], e.g. kd-mt/avx2/t2/margin=0.1; of a plug-in "
+                 "PLUGIN.so:ID… or NAME:ID…")
       ->type_name("VARIANT")
       ->required();
   addPath(app, "--with", "PROGRAM", options->program,
