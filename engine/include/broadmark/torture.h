@@ -80,7 +80,7 @@ struct TortureRecording {
 };
 
 struct TortureOptions {
-  std::vector<Algorithm> algorithms;  ///< one at least, unless there is a case
+  std::vector<Algorithm> algorithms;   ///< one at least, unless there is a case
   std::optional<Case> only_case = {};  ///< which is run in all rounds
   std::uint64_t seed = 1;
   HostMaker make_host = makeLocalHost;
