@@ -356,7 +356,8 @@ def test_after_a_failure_of_the_disc_the_same_command_goes_on(
 ) -> None:
     file = write()
     environment = {
-        "LD_PRELOAD": fault_injection,
+        "LD_PRELOAD": os.path.basename(fault_injection),  # no path, which a space would end
+        "LD_LIBRARY_PATH": os.path.dirname(fault_injection),
         "BROADMARK_FAULT_FOLDER": str(tmp_path / "the output"),
         "BROADMARK_FAULT_LOG": str(tmp_path / "calls.txt"),
     }

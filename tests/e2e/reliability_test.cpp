@@ -170,8 +170,11 @@ class Reliability : public EndToEnd, public ::testing::WithParamInterface<Step> 
   Ended runWith(const std::string& fault) {
     restore(folder_, before_);
     fs::remove(log_);
+    const fs::path library = places::faultInjection();
     return Program(folder_, GetParam().call,
-                   {.environment = {{"LD_PRELOAD", places::faultInjection()},
+                   {.environment = {{"LD_PRELOAD",
+                                     library.filename()},  // no path, which a space would end
+                                    {"LD_LIBRARY_PATH", library.parent_path()},
                                     {"BROADMARK_FAULT_FOLDER", folder_.string()},
                                     {"BROADMARK_FAULT_LOG", log_.string()},
                                     {"BROADMARK_FAULT", fault}}})
