@@ -82,13 +82,19 @@ class Round {
       const std::optional<Fault> fault = runOnce(world, round.coverage);
       if (fault) return finished(std::move(round), std::move(world), *fault);
     }
-    if (case_.algorithm.traits.library_leaks) return round;
-    const std::optional<Fault> fault = trial_.leak(*world.frames);
+    const std::optional<Fault> fault = leak(*world.frames);
     if (fault) return finished(std::move(round), std::move(world), *fault);
     return round;
   }
 
  private:
+  /// One that shows in a new process, too: malloc and libraries keep memory as they like.
+  std::optional<Fault> leak(IndexedFrames& world) {
+    const AlgorithmTraits& traits = case_.algorithm.traits;
+    if (traits.library_leaks || traits.on_device || !trial_.leak(world)) return std::nullopt;
+    return Trial(case_, options_.make_host, options_.cancelled).leak(world);
+  }
+
   /// And sometimes once more.
   std::optional<Fault> runOnce(RandomWorld& world, TortureCoverage& coverage) {
     constexpr int kSeldom = 8;
