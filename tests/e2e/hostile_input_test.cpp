@@ -67,7 +67,7 @@ TEST_F(HostileInput, SettingsOfTheOriginalWriteTheirLogHereOnly) {
 TEST_F(HostileInput, ScriptsWriteHereOnly) {
   if (!parts::kInspector.included) GTEST_SKIP() << "the inspector is left out of this build";
   const auto play = [&](const std::string& script) {
-    writeFile(file("here/script.txt"), "patience 0.3\nwait settled\n" + script);
+    writeFile(file("here/script.txt"), "wait settled\n" + script);
     return Arguments{"--headless", "--ui",       "freefall", "--objects", "5",      "--frames", "2",
                      "--script",   "script.txt", "--gl",     "auto",      "--size", "400x300"};
   };

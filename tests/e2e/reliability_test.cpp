@@ -121,7 +121,7 @@ std::vector<Step> steps() {
        .texts = {{"saved.aabbs", "old"},
                  {"scene.json", "old"},
                  {"script.txt",
-                  "patience 0.3\nwait settled\n"
+                  "wait settled\n"
                   "key Ctrl+S\nenter File/name saved.aabbs\nclick File/Save\nclick File/Save\n"
                   "expect dialog = no\nwait settled\n"
                   "click \"Author/From this frame\"\n"
