@@ -71,13 +71,15 @@ bool isaSupported(Isa isa) {
   }
 }
 
-Isa bestIsa() {
-  Isa best = Isa::scalar;
-  for (const auto& isa : kIsas.entries) {
-    if (isaSupported(isa.value)) best = isa.value;
+std::vector<Isa> supportedIsas() {
+  std::vector<Isa> all;
+  for (const auto& [isa, name] : kIsas.entries) {
+    if (isaSupported(isa)) all.push_back(isa);
   }
-  return best;
+  return all;
 }
+
+Isa bestIsa() { return supportedIsas().back(); }
 
 ThreadTeam::ThreadTeam(int size) : spins_(spinsFor(size)) {
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));

@@ -162,6 +162,21 @@ std::string readTextFile(const std::filesystem::path& path, std::uint64_t limit_
   }
 }
 
+std::size_t readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset) {
+  std::size_t done = 0;
+  errno = 0;
+  while (done < bytes.size()) {
+    const std::span<std::byte> rest = bytes.subspan(done);
+    const ssize_t got = uninterrupted(
+        [&] { return ::pread(fd, rest.data(), rest.size(), static_cast<off_t>(offset + done)); });
+    if (got < 0) return done;
+    if (got == 0) break;
+    done += static_cast<std::size_t>(got);
+  }
+  errno = 0;  // an interruption is none
+  return done;
+}
+
 void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd, bytes.data(), bytes.size());

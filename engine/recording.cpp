@@ -126,17 +126,11 @@ Recording::Recording(FileDescriptor file, std::string name)
 }
 
 void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t got =
-        ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) {
-      throw InputError(
-          fmt::format("{}: cannot read at byte {}: {}", name_, offset, std::strerror(errno)));
-    }
-    if (got == 0) throw InputError(fmt::format("{}: ends at byte {}", name_, offset));
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    offset += static_cast<std::uint64_t>(got);
+  const std::uint64_t end = offset + readAll(file_.get(), bytes, offset);
+  if (end < offset + bytes.size()) {
+    if (errno == 0) throw InputError(fmt::format("{}: ends at byte {}", name_, end));
+    throw InputError(
+        fmt::format("{}: cannot read at byte {}: {}", name_, end, std::strerror(errno)));
   }
   requireUnchanged();
 }

@@ -290,13 +290,10 @@ class ChildOutput {
 
   /// The next bytes. Throws InputError.
   void read(std::span<std::byte> bytes) {
-    while (!bytes.empty()) {
-      const ssize_t got =
-          ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(read_));
-      if (got <= 0) throw InputError("what assimp has read cannot be read back");
-      bytes = bytes.subspan(static_cast<std::size_t>(got));
-      read_ += static_cast<std::uint64_t>(got);
+    if (readAll(file_.get(), bytes, read_) < bytes.size()) {
+      throw InputError("what assimp has read cannot be read back");
     }
+    read_ += bytes.size();
   }
 
  private:

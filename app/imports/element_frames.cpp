@@ -1,7 +1,6 @@
 #include "imports/element_frames.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <limits>
@@ -155,12 +154,8 @@ std::span<const Aabb> ElementFrames::readBoxes(std::uint32_t index) {
 void ElementFrames::readPoints(std::uint32_t index) {
   points_.resize(mesh_.vertices);
   const auto bytes = std::as_writable_bytes(std::span(points_));
-  const std::uint64_t start = std::uint64_t{index} * bytes.size();
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got = ::pread(kept_.get(), bytes.data() + done, bytes.size() - done,
-                                static_cast<off_t>(start + done));
-    if (got <= 0) throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
-    done += static_cast<std::size_t>(got);
+  if (readAll(kept_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
+    throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
   }
 }
 

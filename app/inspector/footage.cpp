@@ -1,9 +1,7 @@
 #include "inspector/footage.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -29,13 +27,8 @@ class KeptFrames final : public IndexedFrames {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override {
     const auto bytes = std::as_writable_bytes(std::span(boxes_));
-    const std::uint64_t start = std::uint64_t{index} * bytes.size();
-    for (std::size_t done = 0; done < bytes.size();) {
-      const ssize_t got = ::pread(file_->get(), bytes.data() + done, bytes.size() - done,
-                                  static_cast<off_t>(start + done));
-      if (got < 0 && errno == EINTR) continue;
-      if (got <= 0) throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
-      done += static_cast<std::size_t>(got);
+    if (readAll(file_->get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
+      throw InputError(fmt::format("{}: cannot read frame {}", kKeptName, index));
     }
     return boxes_;
   }

@@ -55,11 +55,7 @@ ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
 Case randomCase(Random& random, const std::vector<Algorithm>& algorithms) {
   constexpr std::array kThreads = {1, 2, 3, 5};
   const Algorithm& algorithm = random.anyOf(algorithms);
-  std::vector<Isa> isas;
-  for (const auto& [isa, name] : kIsas.entries) {
-    if (isaSupported(isa)) isas.push_back(isa);
-  }
-  const Isa isa = random.anyOf(isas);
+  const Isa isa = random.anyOf(supportedIsas());
   const int threads = random.anyOf(kThreads);
   const AnswerKind answer = random.anyOf(kAnswerKinds.entries).value;
   return makeCase(algorithm, isa, threads, "", randomParameters(random, algorithm), answer);

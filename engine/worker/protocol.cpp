@@ -91,13 +91,8 @@ void SharedMemory::writeBytes(std::span<const std::byte> bytes, std::uint64_t of
 }
 
 void SharedMemory::readBytes(std::span<std::byte> bytes, std::uint64_t offset) const {
-  while (!bytes.empty()) {
-    const ssize_t got =
-        ::pread(file_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) throw systemError("cannot read shared memory");
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    offset += static_cast<std::uint64_t>(got);
+  if (readAll(file_.get(), bytes, offset) < bytes.size()) {
+    throw systemError("cannot read shared memory");
   }
 }
 

@@ -89,7 +89,7 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
       if (overlapInSteps(steps[i], steps[j])) right.push_back({i, j});
     }
   }
-  for (const Isa isa : everyIsa()) {
+  for (const Isa isa : supportedIsas()) {
     PairBuffer pairs;
     columns::HitSink sink(columns::kernels(isa), sorted, boxes.data(), pairs);
     constexpr std::size_t kRows = columns::Kernels::kSweptRows;
@@ -107,7 +107,7 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
 TEST(ColumnKernels, KeepBoxes) {
   constexpr std::size_t kMost = 40;
   const std::vector<Aabb> boxes = inputs::uniform(kMost, 0, 1);
-  for (const Isa isa : everyIsa()) {
+  for (const Isa isa : supportedIsas()) {
     for (std::size_t count = 0; count <= kMost; ++count) {
       LargeArray<Aabb> kept;
       kept.resize(kMost + 1);
@@ -124,7 +124,7 @@ TEST(ColumnKernels, FindTheSameSteps) {
   for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
     const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
     const Layout layout(boxes, 1'000'000, kCosts);
-    for (const Isa isa : everyIsa()) {
+    for (const Isa isa : supportedIsas()) {
       for (const std::size_t count : {1U, 7U, 16U, 33U, 128U}) {
         BoxBlock block;
         columns::kernels(isa).find_steps(boxes.data(), count, layout.scales(), block);

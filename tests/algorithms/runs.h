@@ -35,15 +35,6 @@ namespace broadmark::tests {
 
 using inputs::sceneOf;
 
-/// The instruction sets of this processor.
-inline std::vector<Isa> everyIsa() {
-  std::vector<Isa> all;
-  for (const auto& [isa, name] : kIsas.entries) {
-    if (isaSupported(isa)) all.push_back(isa);
-  }
-  return all;
-}
-
 /// One way to run an algorithm.
 struct Configuration {
   Isa isa = Isa::scalar;
@@ -60,7 +51,7 @@ inline std::vector<Configuration> configurations(const Algorithm& algorithm,
   if (!traits.parallel) teams = {1};
   if (traits.on_device) teams = {2};
   std::vector<Configuration> all;
-  for (const Isa isa : everyIsa()) {
+  for (const Isa isa : supportedIsas()) {
     if (isa != Isa::scalar && !traits.vectorised) continue;
     for (const int threads : teams) all.push_back({isa, threads});
   }

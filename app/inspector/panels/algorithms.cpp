@@ -103,12 +103,10 @@ class AlgorithmsPanel final : public Panel {
     if (lane.algorithm.traits.vectorised) {
       std::vector<std::string> names;
       std::size_t chosen = 0;
-      std::vector<Isa> isas;
-      for (const auto& [isa, name] : kIsas.entries) {
-        if (!isaSupported(isa)) continue;
-        if (isa == lane.isa) chosen = isas.size();
-        isas.push_back(isa);
-        names.emplace_back(name);
+      const std::vector<Isa> isas = supportedIsas();
+      for (const Isa isa : isas) {
+        if (isa == lane.isa) chosen = names.size();
+        names.emplace_back(isaName(isa));
       }
       if (ui.combo("instruction set", chosen, names)) {
         lane.isa = isas[chosen];

@@ -29,6 +29,8 @@ constexpr std::string_view isaName(Isa isa) { return kIsas.nameOf(isa); }
 
 /// Whether this processor (and system) can run it.
 bool isaSupported(Isa);
+/// Those that it can, the narrowest first.
+std::vector<Isa> supportedIsas();
 /// The widest instruction set that this processor can run.
 Isa bestIsa();
 

@@ -96,6 +96,10 @@ void syncName(const std::filesystem::path& path);
 /// Writes a whole text file atomically; waits a moment for another writer of it.
 void writeTextFile(const std::filesystem::path& path, std::string_view text);
 
+/// Reads `bytes` from a byte offset on. Returns how many there were: fewer at the end of the file,
+/// or, with errno set, if no more could be read.
+std::size_t readAll(int fd, std::span<std::byte> bytes, std::uint64_t offset);
+
 /// Writes all bytes to a descriptor; `path` is named in errors.
 void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
