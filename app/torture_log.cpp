@@ -116,6 +116,7 @@ TortureLog readTortureLog(const std::filesystem::path& file) {
   log.next = fields.integer<std::uint64_t>("next");
   log.seconds = fields.number("seconds");
   log.subjects = fields.texts("subjects");
+  log.builds = fields.texts("builds");
   for (const Json& round : fields.array("left")) {
     log.left.push_back(JsonFields::integerOf<std::uint64_t>(round, fields.path("left")));
   }
@@ -130,9 +131,10 @@ TortureLog readTortureLog(const std::filesystem::path& file) {
 }
 
 void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
-  Json json = {{"schema", kSchema},      {"seed", log.seed},       {"subjects", log.subjects},
-               {"next", log.next},       {"left", log.left},       {"seconds", log.seconds},
-               {"found", Json::array()}, {"times", Json::array()}, {"coverage", Json::array()}};
+  Json json = {{"schema", kSchema},        {"seed", log.seed},       {"subjects", log.subjects},
+               {"builds", log.builds},     {"next", log.next},       {"left", log.left},
+               {"seconds", log.seconds},   {"found", Json::array()}, {"times", Json::array()},
+               {"coverage", Json::array()}};
   for (const FoundFault& fault : log.found) json["found"].push_back(toJson(fault));
   for (const auto& [fault, times] : log.times) {
     json["times"].push_back({{"algorithm", fault.first}, {"kind", fault.second}, {"times", times}});

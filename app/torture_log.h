@@ -31,6 +31,7 @@ struct FoundFault {
 struct TortureLog {
   std::uint64_t seed = 1;
   std::vector<std::string> subjects;  ///< ids of algorithms, or the one case
+  std::vector<std::string> builds;    ///< hashes of their plug-ins
   std::uint64_t next = 0;             ///< the first round that has not been begun
   std::vector<std::uint64_t> left;    ///< rounds before that which are not finished
   double seconds = 0;

@@ -139,7 +139,6 @@ class Torture {
  public:
   explicit Torture(Options options)
       : options_(std::move(options)), log_file_(options_.output / "torture.json") {
-    algorithms_ = availableAlgorithms(options_.plugins);
     readSubjects();
     readLog();
     readSources();
@@ -149,7 +148,8 @@ class Torture {
     torture_.cancelled = InterruptGuard::requested;
     torture_.is_news = [this](const std::string& algorithm, FaultKind kind) {
       const std::lock_guard lock(mutex_);
-      return found_[{algorithm, std::string(kFaultKinds.nameOf(kind))}]++ < kMostAlike;
+      const auto times = log_.times.find({algorithm, std::string(kFaultKinds.nameOf(kind))});
+      return times == log_.times.end() || times->second < kMostAlike;
     };
   }
 
@@ -190,16 +190,28 @@ class Torture {
     if (!options_.case_name.empty()) {
       torture_.only_case = caseNamed(options_.case_name, "");
       log_.subjects = {options_.case_name};
+      addBuild(torture_.only_case->algorithm);
       return;
     }
-    for (Algorithm& algorithm : selectAlgorithms(options_.algorithms, algorithms_, "--algorithm")) {
-      if (algorithm.traits.finds_pairs) torture_.algorithms.push_back(std::move(algorithm));
+    const std::vector<Algorithm> known = availableAlgorithms(options_.plugins);
+    for (Algorithm& algorithm : selectAlgorithms(options_.algorithms, known, "--algorithm")) {
+      if (!algorithm.traits.finds_pairs) continue;
+      addBuild(algorithm);
+      torture_.algorithms.push_back(std::move(algorithm));
     }
     log_.subjects = algorithmIds(torture_.algorithms);
     if (log_.subjects.empty()) throw InputError("torture: none of these finds pairs");
   }
 
-  /// Goes on where an earlier call has ended.
+  void addBuild(const Algorithm& algorithm) {
+    const std::string& hash = algorithm.plugin_build.hash;
+    if (!hash.empty() && std::ranges::find(log_.builds, hash) == log_.builds.end()) {
+      log_.builds.push_back(hash);
+    }
+  }
+
+  /// Goes on where an earlier call has ended; not if a plug-in has been built again since, as what
+  /// was found then may be mended.
   void readLog() {
     log_.seed = options_.seed.value_or(log_.seed);
     if (!fs::exists(log_file_)) return;
@@ -211,9 +223,13 @@ class Torture {
           fmt::format("{}: is of other algorithms or another seed ({}): give another --output",
                       log_file_.string(), log.seed));
     }
+    if (log.builds != log_.builds) {
+      if (!options_.quiet) fmt::print(stderr, "torture: another build of a plug-in: begins anew\n");
+      log_.seed = log.seed;
+      return;
+    }
     log_ = std::move(log);
     waiting_.assign(log_.left.begin(), log_.left.end());
-    found_ = log_.times;
   }
 
   void writeLog() {
@@ -259,10 +275,8 @@ class Torture {
   void take(Rounds::Ended ended, Progress& progress) {
     auto& [number, round] = ended;
     if (!round) return;
-    {
-      const std::lock_guard lock(mutex_);
-      std::erase(log_.left, number);
-    }
+    const std::lock_guard lock(mutex_);
+    std::erase(log_.left, number);
     for (const auto& [key, count] : round->coverage) log_.coverage[key] += count;
     if (!round->finding) return;
     const TortureFinding& finding = *round->finding;
@@ -316,13 +330,11 @@ class Torture {
 
   Options options_;
   fs::path log_file_;
-  std::vector<Algorithm> algorithms_;
   TortureLog log_;
   TortureOptions torture_;
   std::atomic<std::uint64_t> begun_ = 0;
-  std::mutex mutex_;                   ///< of log_.next, log_.left and of what follows
+  std::mutex mutex_;                   ///< of log_.next, log_.left, log_.times and of what follows
   std::deque<std::uint64_t> waiting_;  ///< of log_.left those that have not been begun again
-  std::map<std::pair<std::string, std::string>, std::uint64_t> found_;  ///< by rounds
 };
 
 std::function<int()> add(CLI::App& app) {

@@ -98,6 +98,21 @@ TEST_F(Torture, GoesOnWhereItEnded) {
   expectRefusal(call({"--algorithm", "bf"}, "twice"), {"other algorithms"});
 }
 
+// Who has mended a plug-in wants to know whether it is right now.
+TEST_F(Torture, BeginsAnewWithAnotherBuildOfAPlugin) {
+  fs::copy_file(places::faultyPlugin(), file("mine.so"));
+  const Arguments faulty =
+      call({"--plugin", "./mine.so", "--algorithm", "lossy-layers", "--rounds", "4"});
+  EXPECT_EQ(run(faulty).status, 1);
+  EXPECT_EQ(run(faulty).status, 1);
+  EXPECT_EQ(log().at("next"), 8);
+  const std::size_t kept = files().size();
+  writeFile(file("mine.so"), readFile(file("mine.so")) + "another build");
+  EXPECT_EQ(run(faulty).status, 1);
+  EXPECT_EQ(log().at("next"), 4);
+  EXPECT_GT(files().size(), kept) << "what was found before is still there";
+}
+
 TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
   const Arguments subject = {"--algorithm", "bf", "--jobs", "2"};
   Arguments endless = call(subject, "cut");
