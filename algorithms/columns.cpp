@@ -27,6 +27,7 @@
 #include <array>
 #include <bit>
 #include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,7 @@
 #include "columns/hits.h"
 #include "columns/kernels.h"
 #include "columns/layout.h"
+#include "past_caches.h"
 #include "row_shares.h"
 #include "sample.h"
 #include "variants.h"
@@ -51,7 +53,9 @@ constexpr int kMostLevels = 8;
 constexpr std::size_t kBlock = BoxBlock::kBoxes;
 /// The boxes themselves are looked at rarely: so many of them should not take up the caches.
 constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
-/// A column has as many buckets as copies, but no more than this.
+/// Of boxes past the caches, those of many rows are looked at together.
+constexpr std::size_t kRowsPerLook = 16 * RowShares::kSmallChunk;
+/// A column has as many buckets as copies, or up to twice as many, but no more than this.
 constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
 
 /// A column, and whose it is.
@@ -105,6 +109,10 @@ class Columns final : public PairBroadPhase {
 
   Worker& workerData(int worker) { return workers_[static_cast<std::size_t>(worker)]; }
   [[nodiscard]] Costs costs() const { return {static_cast<double>(copy_cost_)}; }
+  [[nodiscard]] bool boxesPastCaches() const { return boxes_.size() >= kBoxesPastCaches; }
+  [[nodiscard]] std::size_t rowsPerFlush() const {
+    return boxesPastCaches() ? kRowsPerLook : RowShares::kSmallChunk;
+  }
   /// The copies in a column.
   [[nodiscard]] Range contents(std::size_t column) const {
     return {starts_[column], starts_[column + 1]};
@@ -137,24 +145,25 @@ class Columns final : public PairBroadPhase {
   RowShares shares_;
 };
 
-/// Calls visit(column, copy) for every column that boxes of a block touch. `body(k)` is whose box k
-/// is, with the marks that all its copies get.
+/// Calls visit(column, copy) for every column that boxes of a block touch.
 ///
 /// First come all boxes' first columns, without a branch; few boxes touch others.
-template <class Body, class Visit>
-inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t count, Body body,
+template <class Visit>
+inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t count,
                         Visit visit) {
   constexpr int kBits = Layout::kStepBits;
   constexpr std::uint32_t kLast = Layout::kLastStep;
   std::array<std::uint32_t, BoxBlock::kBoxes> crossing;
   std::size_t crossings = 0;
   for (std::size_t k = 0; k < count; ++k) {
-    visit(block.columns[k], Copy{block.min[k], block.max[k], block.keys[k], body(k)});
+    visit(block.columns[k], block.copies[k]);
     crossing[crossings] = static_cast<std::uint32_t>(k);
     crossings += block.crossing[k] != 0 ? 1 : 0;
   }
   for (std::size_t c = 0; c < crossings; ++c) {
     const std::uint32_t k = crossing[c];
+    Copy copy = block.copies[k];
+    const MarkedBody body = copy.body;
     const std::uint32_t low_a = block.low[0][k];
     const std::uint32_t low_b = block.low[1][k];
     const std::uint32_t high_a = block.high[0][k];
@@ -168,9 +177,9 @@ inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t
         const bool later_a = a != first_column;
         const std::uint32_t first_a = later_a ? 0 : low_a & kLast;
         const std::uint32_t last_a = a != high_a >> kBits ? kLast : high_a & kLast;
-        visit(layout.indexOf(a, b),
-              Copy{block.min[k], block.max[k], keyOf(first_a, first_b, last_a, last_b),
-                   body(k) | cellMarks(later_a, later_b, false)});
+        copy.key = keyOf(first_a, first_b, last_a, last_b);
+        copy.body = body | cellMarks(later_a, later_b, false);
+        visit(layout.indexOf(a, b), copy);
       }
     }
   }
@@ -206,28 +215,29 @@ void Columns::updateObjects(const Frame& frame) {
 bool Columns::copyBoxes(const Frame& frame) {
   const Layout layout = parts_.front().layout;
   const std::size_t limit = kMostCopies * boxes_.size() + 4 * columns_.size();
-  const bool past_caches = boxes_.size() >= kBoxesPastCaches;
+  const bool past_caches = boxesPastCaches();
   team().run([&](int worker) {
     Chains& chains = workerData(worker).chains;
     chains.clear(columns_.size());
     const std::size_t blocks = (boxes_.size() + kBlock - 1) / kBlock;
     const auto [begin, end] = share(blocks, team().size(), worker);
     BoxBlock block;
+    std::array<MarkedBody, kBlock> bodies;
     for (std::size_t k = begin; k < end && chains.leastCount() <= limit; ++k) {
       const std::size_t first = k * kBlock;
       const std::size_t count = std::min(kBlock, boxes_.size() - first);
       const Aabb* const boxes = frame.boxes.data() + first;
-      kernels_->find_steps(boxes, count, layout.scales(), block);
+      std::iota(bodies.begin(), bodies.end(), static_cast<MarkedBody>(first));
+      kernels_->find_steps(boxes, bodies.data(), count, layout.scales(), block);
       if (past_caches) {
-        kernels_->keep_boxes(boxes, count, boxes_.data() + first);
+        copyPastCaches(boxes, count * sizeof(Aabb), boxes_.data() + first);
       } else {
         std::copy_n(boxes, count, boxes_.data() + first);
       }
-      forEachCopy(
-          layout, block, count, [&](std::size_t i) { return static_cast<MarkedBody>(first + i); },
-          [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
+      forEachCopy(layout, block, count,
+                  [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
     }
-    if (past_caches) kernels_->show_boxes();
+    if (past_caches) showCopiesPastCaches();
   });
   std::size_t copies = 0;
   for (const Worker& worker : workers_) copies += worker.chains.count();
@@ -243,7 +253,7 @@ void Columns::updateStructures() {
     if (placed_ == columns_.size()) break;
     split();
   }
-  shares_.measure({sorted_.ends.data(), sorted_.size}, team());
+  shares_.measure({sorted_.ends.data(), sorted_.size}, team(), rowsPerFlush());
 }
 
 /// Turns the lengths of the new columns' chains into places, behind the others.
@@ -294,18 +304,21 @@ void Columns::orderColumn(std::size_t column, Worker& worker) {
   const auto for_each_copy = [&](auto visit) {
     for (const Worker& each : workers_) each.chains.forEach(column - placed_, visit);
   };
-  const std::size_t buckets = std::min(range.size(), kMostBuckets);
-  const StepScale scale = parts_[columns_[column].part].layout.buckets(buckets);
+  const auto bucket_bits =
+      static_cast<int>(std::bit_width(std::min(range.size(), kMostBuckets) - 1));
+  const auto bucket_of = [&](std::uint32_t step) {
+    return step >> (Layout::kSweepBits - bucket_bits);
+  };
   std::vector<std::uint32_t>& places = worker.places;
-  places.assign(buckets, 0);
-  for_each_copy([&](const Copy& copy) { ++places[scale.of(copy.min)]; });
+  places.assign(std::size_t{1} << bucket_bits, 0);
+  for_each_copy([&](const Copy& copy) { ++places[bucket_of(copy.first)]; });
   std::uint32_t place = static_cast<std::uint32_t>(range.begin);
   for (std::uint32_t& count : places) place += std::exchange(count, place);
-  for_each_copy([&](const Copy& copy) { sorted_.copies[places[scale.of(copy.min)]++] = copy; });
+  for_each_copy([&](const Copy& copy) { sorted_.copies[places[bucket_of(copy.first)]++] = copy; });
   std::uint64_t tests = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Copy& copy = sorted_.copies[i];
-    const std::uint32_t end = places[scale.of(copy.max)];
+    const std::uint32_t end = places[bucket_of(copy.last)];
     sorted_.keys[i] = copy.key;
     sorted_.ends[i] = end;
     tests += end - i;
@@ -359,17 +372,19 @@ void Columns::splitColumn(const Part& part, Worker& worker) {
   std::size_t copies = 0;
   BoxBlock block;
   std::array<Aabb, kBlock> boxes;
+  std::array<MarkedBody, kBlock> bodies;
   for (std::size_t row = range.begin; row < range.end && copies <= limit; row += kBlock) {
     const std::size_t count = std::min(kBlock, range.end - row);
     const Copy* const parents = sorted_.copies.data() + row;
-    for (std::size_t i = 0; i < count; ++i) boxes[i] = boxes_[bodyNumber(parents[i].body)];
-    kernels_->find_steps(boxes.data(), count, part.layout.scales(), block);
-    forEachCopy(
-        part.layout, block, count, [&](std::size_t i) { return parents[i].body; },
-        [&](std::size_t column, const Copy& copy) {
-          worker.chains.append(first + column, copy);
-          ++copies;
-        });
+    for (std::size_t i = 0; i < count; ++i) {
+      bodies[i] = parents[i].body;
+      boxes[i] = boxes_[bodyNumber(bodies[i])];
+    }
+    kernels_->find_steps(boxes.data(), bodies.data(), count, part.layout.scales(), block);
+    forEachCopy(part.layout, block, count, [&](std::size_t column, const Copy& copy) {
+      worker.chains.append(first + column, copy);
+      ++copies;
+    });
   }
   if (copies > limit) {  // the sample has misled: the column stays as it is
     for (std::size_t i = 0; i < part.layout.size(); ++i) worker.chains.drop(first + i);
@@ -386,12 +401,13 @@ void Columns::findPairs() {
     constexpr std::size_t kChunk = Kernels::kSweptRows;
     HitSink sink(*kernels_, sorted_, boxes_.data(), pairs(worker));
     const Range rows = shares_.rowsOf(worker);
-    // So the order of the pairs follows from the rows alone.
     for (std::size_t row = rows.begin; row < rows.end; row += kChunk) {
       const Range chunk = {row, std::min(row + kChunk, rows.end)};
       kernels_->sweep(sorted_.keys.data(), sorted_.ends.data(), chunk, sink);
-      sink.flush();
+      // At certain rows, so that the order of the pairs follows from the rows alone.
+      if (chunk.end % rowsPerFlush() == 0) sink.flush();
     }
+    sink.flush();
     workerData(worker).compared_boxes = sink.comparedBoxes();
   });
 }
@@ -427,12 +443,10 @@ std::string Columns::validate() const {
   std::vector<std::vector<MarkedBody>> expected(columns_.size());
   BoxBlock block;
   const auto expect = [&](const Part& part, MarkedBody body) {
-    kernels_->find_steps(&boxes_[bodyNumber(body)], 1, part.layout.scales(), block);
-    forEachCopy(
-        part.layout, block, 1, [&](std::size_t) { return body; },
-        [&](std::size_t column, const Copy& copy) {
-          expected[part.first_column + column].push_back(copy.body);
-        });
+    kernels_->find_steps(&boxes_[bodyNumber(body)], &body, 1, part.layout.scales(), block);
+    forEachCopy(part.layout, block, 1, [&](std::size_t column, const Copy& copy) {
+      expected[part.first_column + column].push_back(copy.body);
+    });
   };
   for (std::size_t i = 0; i < boxes_.size(); ++i) expect(parts_[0], static_cast<MarkedBody>(i));
   for (std::size_t column = 0; column < columns_.size(); ++column) {

@@ -17,16 +17,20 @@ namespace broadmark {
 /// the size of the team alone. Workers get whole chunks of rows, also in crowded parts.
 class RowShares {
  public:
-  void measure(std::span<const std::uint32_t> ends, ThreadTeam& team) {
+  static constexpr std::size_t kSmallChunk = 64;
+
+  void measure(std::span<const std::uint32_t> ends, ThreadTeam& team,
+               std::size_t chunk_rows = kSmallChunk) {
     rows_ = ends.size();
+    chunk_rows_ = chunk_rows;
     workers_ = team.size();
-    work_.resize((rows_ + kChunk - 1) / kChunk);
+    work_.resize((rows_ + chunk_rows - 1) / chunk_rows);
     team.run([&](int worker) {
       const auto [begin, end] = share(work_.size(), workers_, worker);
       for (std::size_t chunk = begin; chunk < end; ++chunk) {
-        const std::size_t rows_end = std::min(rows_, (chunk + 1) * kChunk);
+        const std::size_t rows_end = std::min(rows_, (chunk + 1) * chunk_rows);
         std::uint64_t work = 0;
-        for (std::size_t i = chunk * kChunk; i < rows_end; ++i) work += ends[i] - i;
+        for (std::size_t i = chunk * chunk_rows; i < rows_end; ++i) work += ends[i] - i;
         work_[chunk] = work;
       }
     });
@@ -39,18 +43,16 @@ class RowShares {
   }
 
  private:
-  /// Rows whose work is summed up together.
-  static constexpr std::size_t kChunk = 64;
-
   [[nodiscard]] std::size_t firstRow(int worker) const {
     const std::uint64_t total = work_.empty() ? 0 : work_.back();
     const std::uint64_t before =
         total / static_cast<std::uint64_t>(workers_) * static_cast<std::uint64_t>(worker);
     const auto chunk = std::ranges::upper_bound(work_, before) - work_.begin();
-    return std::min(static_cast<std::size_t>(chunk) * kChunk, rows_);
+    return std::min(static_cast<std::size_t>(chunk) * chunk_rows_, rows_);
   }
 
   std::size_t rows_ = 0;
+  std::size_t chunk_rows_ = kSmallChunk;  ///< whose work is summed up together
   int workers_ = 1;
   std::vector<std::uint64_t> work_;  ///< tests up to and with each chunk
 };

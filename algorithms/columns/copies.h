@@ -1,5 +1,5 @@
-// What is kept of a box in a column: on the sweep axis its bounds, on the axes that are cut its
-// key, 32 bits, and whose it is.
+// What is kept of a box in a column, in steps: on the sweep axis its bounds, on the axes that are
+// cut its key, 32 bits; and whose it is.
 //
 // The key is four bytes: the first step on both axes, and the last step on both, counted down from
 // 255. A copy's limits are the bytes that another copy's key may have at most: its own last steps,
@@ -35,8 +35,8 @@ constexpr bool sharesStep(std::uint32_t key, std::uint32_t limits) {
 
 /// A box in one of the columns that it touches.
 struct alignas(16) Copy {
-  float min;  ///< on the sweep axis
-  float max;  ///< likewise
+  std::uint32_t first;  ///< step on the sweep axis
+  std::uint32_t last;   ///< likewise
   std::uint32_t key;
   MarkedBody body;
 };

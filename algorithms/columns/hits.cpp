@@ -26,9 +26,13 @@ Pair withoutBranch(std::uint32_t i, std::uint32_t j) {
 }  // namespace
 
 void HitSink::flush() {
+  takeAll();
+  decide();
+}
+
+void HitSink::takeAll() {
   // One bit of all hits after the other, so that nothing depends on how many each of them has.
   while (size_ > 0) takeOneEach();
-  decide();
 }
 
 /// Takes the lowest bit of all hits, and keeps those that have more. Conditions are numbers here,
@@ -55,9 +59,10 @@ void HitSink::takeOneEach() {
     const std::size_t j = column + kernels_.lane_of[bit];
     const Copy& a = copies[i];
     const Copy& b = copies[j];
-    const unsigned hit = unsigned{j > i} & unsigned{a.min <= b.max} & unsigned{b.min <= a.max} &
-                         unsigned{reportedHere(a.body, b.body)};
-    const unsigned shared = unsigned{sharesStep(b.key, limitsOf(a.key))};
+    const unsigned hit = unsigned{j > i} & unsigned{a.first <= b.last} &
+                         unsigned{b.first <= a.last} & unsigned{reportedHere(a.body, b.body)};
+    const unsigned shared = unsigned{a.first == b.last} | unsigned{b.first == a.last} |
+                            unsigned{sharesStep(b.key, limitsOf(a.key))};
     const Pair pair = withoutBranch(bodyNumber(a.body), bodyNumber(b.body));
     *room = pair;
     room += hit & ~shared;

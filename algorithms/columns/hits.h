@@ -21,11 +21,12 @@ class HitSink {
   /// Where the next hits go: room for kRoom of them, which count after advance().
   static constexpr std::size_t kRoom = 64;
   Hits* room() {
-    if (size_ + kRoom > kSize) flush();
+    if (size_ + kRoom > kSize) takeAll();
     return hits_ + size_;
   }
   void advance(const Hits* end) { size_ = static_cast<std::size_t>(end - hits_); }
-  /// Adds the pairs of all hits.
+  /// Adds the pairs of all hits. The order of the pairs follows from the hits since the flush
+  /// before.
   void flush();
 
   /// Pairs of which the boxes decided.
@@ -35,6 +36,7 @@ class HitSink {
   static constexpr std::size_t kSize = 4 * kRoom;
   static constexpr std::size_t kMostDoubts = 2 * kSize;
 
+  void takeAll();
   void takeOneEach();
   void decide();
 

@@ -7,6 +7,7 @@
 #include "broadmark/aabb.h"
 #include "broadmark/execution.h"
 #include "broadmark/range.h"
+#include "columns/copies.h"
 #include "columns/layout.h"
 
 namespace broadmark::columns {
@@ -15,14 +16,16 @@ namespace broadmark::columns {
 struct BoxBlock {
   static constexpr std::size_t kBoxes = 128;
 
-  float min[kBoxes];  ///< on the sweep axis
-  float max[kBoxes];  ///< likewise
+  /// Steps on the sweep axis.
+  std::uint32_t first[kBoxes];
+  std::uint32_t last[kBoxes];
   /// Steps on the axes that are cut.
   std::uint32_t low[2][kBoxes];
   std::uint32_t high[2][kBoxes];
-  /// Of the copies in the first columns that the boxes touch.
-  std::uint32_t keys[kBoxes];
+  /// The first columns that the boxes touch, and their copies there.
   std::uint32_t columns[kBoxes];
+  std::uint32_t keys[kBoxes];
+  Copy copies[kBoxes];
   std::uint32_t crossing[kBoxes];  ///< not 0: the box touches other columns, too
 };
 
@@ -40,14 +43,9 @@ struct Kernels {
   std::uint8_t row_of[64];
   std::uint8_t lane_of[64];
 
-  /// Finds out about `count` boxes, at most BoxBlock::kBoxes.
-  void (*find_steps)(const Aabb* boxes, std::size_t count, const StepScales& scales,
-                     BoxBlock& block);
-
-  /// Copies `count` boxes past the caches: to memory that is not looked at soon, from the beginning
-  /// of a cache line on. Other threads see them after this one has called show_boxes().
-  void (*keep_boxes)(const Aabb* from, std::size_t count, Aabb* to);
-  void (*show_boxes)();
+  /// Finds out about `count` boxes, at most BoxBlock::kBoxes, of these bodies.
+  void (*find_steps)(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
+                     const StepScales& scales, BoxBlock& block);
 
   /// Tests all copies in `rows`, at most kSweptRows, the first of which is a multiple of that,
   /// against their windows.

@@ -15,8 +15,9 @@ inline void findStepsOf(const float* bounds, std::size_t k, const columns::StepS
   Vector max[3];
   loadCorners(bounds, min);
   loadCorners(bounds + 4, max);
-  store(block.min + k, min[scales.sweep_axis]);
-  store(block.max + k, max[scales.sweep_axis]);
+  const columns::StepScale& sweep = scales.sweep;
+  storeSteps(min[sweep.axis], sweep.low, sweep.factor, sweep.last, block.first + k);
+  storeSteps(max[sweep.axis], sweep.low, sweep.factor, sweep.last, block.last + k);
   for (int which = 0; which < 2; ++which) {
     const columns::StepScale& scale = scales.of[which];
     storeSteps(min[scale.axis], scale.low, scale.factor, scale.last, block.low[which] + k);
@@ -24,8 +25,8 @@ inline void findStepsOf(const float* bounds, std::size_t k, const columns::StepS
   }
 }
 
-void findSteps(const Aabb* boxes, std::size_t count, const columns::StepScales& scales,
-               columns::BoxBlock& block) {
+void findSteps(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
+               const columns::StepScales& scales, columns::BoxBlock& block) {
   constexpr std::uint32_t kLast = columns::Layout::kLastStep;
   constexpr int kBits = columns::Layout::kStepBits;
   const auto* const bounds = reinterpret_cast<const float*>(boxes);
@@ -55,15 +56,9 @@ void findSteps(const Aabb* boxes, std::size_t count, const columns::StepScales& 
     block.columns[k] = (low_b >> kBits) * columns_in_row + (low_a >> kBits);
     block.crossing[k] = goes_on_a | goes_on_b;
   }
-}
-
-void keepBoxes(const Aabb* from, std::size_t count, Aabb* to) {
-  const std::size_t floats = count * sizeof(Aabb) / sizeof(float);
-  const auto* const source = reinterpret_cast<const float*>(from);
-  auto* const target = reinterpret_cast<float*>(to);
-  std::size_t i = 0;
-  for (; i + kLanes <= floats; i += kLanes) copyPast(source + i, target + i);
-  for (; i < floats; ++i) target[i] = source[i];
+  for (std::size_t k = 0; k < count; ++k) {
+    block.copies[k] = {block.first[k], block.last[k], block.keys[k], bodies[k]};
+  }
 }
 
 /// Which row and which lane a bit of hits is of.
@@ -155,7 +150,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
 }
 
 inline constexpr columns::Kernels kKernels = [] {
-  columns::Kernels kernels = {{}, {}, findSteps, keepBoxes, endCopiesPast, sweep};
+  columns::Kernels kernels = {{}, {}, findSteps, sweep};
   for (std::size_t bit = 0; bit < 64; ++bit) {
     kernels.row_of[bit] = static_cast<std::uint8_t>(rowOf(bit));
     kernels.lane_of[bit] = static_cast<std::uint8_t>(laneOf(bit));

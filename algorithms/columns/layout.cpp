@@ -103,9 +103,12 @@ Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& cos
     return axis.extent() > 0 ? static_cast<float>(std::min(steps / axis.extent(), kMost)) : 0;
   };
   const Bulk& swept = measured[axes[0]];
-  scales_.sweep_axis = axes[0];
-  sweep_low_ = static_cast<float>(swept.low);
-  sweep_factor_ = factor(1, swept);
+  // The last float below 2^kSweepBits.
+  constexpr auto kLastSweepStep = static_cast<float>((1U << Layout::kSweepBits) - 128);
+  scales_.sweep = {.axis = axes[0],
+                   .low = static_cast<float>(swept.low),
+                   .factor = factor(kLastSweepStep, swept),
+                   .last = kLastSweepStep};
   for (int which = 0; which < 2; ++which) {
     const Bulk& cut = measured[axes[which + 1]];
     const int steps = counts_[which] << kStepBits;

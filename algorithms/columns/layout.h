@@ -27,7 +27,7 @@ struct StepScale {
 };
 struct StepScales {
   std::array<StepScale, 2> of;  ///< the axes that are cut
-  int sweep_axis = 0;
+  StepScale sweep;
   std::uint32_t columns_in_row = 1;  ///< on the first of these
 };
 
@@ -36,8 +36,9 @@ struct Costs {
   double copy = 0;  ///< to copy a box into a column, and to put it in order there
 };
 
-/// Columns over two axes; along the third, the sweep axis, they are not cut. Coordinates on the two
-/// axes are turned into steps, whole numbers, 256 of them across each column.
+/// Columns over two axes; along the third, the sweep axis, they are not cut. Coordinates are turned
+/// into steps, whole numbers: on the two axes 256 of them across each column, on the sweep axis as
+/// many as floats can tell apart.
 ///
 /// A higher coordinate never gets a lower step: what lies outside gets the first or the last one.
 /// Correctness rests on that alone: boxes that overlap do so in steps, too, and boxes that overlap
@@ -46,6 +47,7 @@ class Layout {
  public:
   static constexpr int kStepBits = 8;
   static constexpr std::uint32_t kLastStep = (1 << kStepBits) - 1;
+  static constexpr int kSweepBits = 31;
   static constexpr std::size_t kMostColumns = std::size_t{1} << 12;
 
   /// One column.
@@ -63,12 +65,6 @@ class Layout {
   /// What finding the pairs of a box is expected to cost, copying included.
   [[nodiscard]] double costPerBox() const { return cost_; }
 
-  /// The sweep axis, cut into steps: buckets.
-  [[nodiscard]] StepScale buckets(std::size_t count) const {
-    const auto last = static_cast<float>(count - 1);
-    return {scales_.sweep_axis, sweep_low_, sweep_factor_ * last, last};
-  }
-
   /// The column at a place on the first axis that is cut, and one on the second.
   [[nodiscard]] std::size_t indexOf(std::uint32_t first, std::uint32_t second) const {
     return std::size_t{second} * scales_.columns_in_row + first;
@@ -81,8 +77,6 @@ class Layout {
 
  private:
   StepScales scales_;
-  float sweep_low_ = 0;
-  float sweep_factor_ = 0;
   std::array<std::int32_t, 2> counts_ = {1, 1};  ///< on the first axis that is cut, and the second
   double cost_ = 0;
 };

@@ -43,8 +43,6 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
                               _mm256_unpackhi_ps(rows[2], rows[3]), 0x44);
 }
 inline void store(float* to, Vector value) { _mm256_storeu_ps(to, value); }
-inline void copyPast(const float* from, float* to) { _mm256_stream_ps(to, _mm256_loadu_ps(from)); }
-inline void endCopiesPast() { _mm_sfence(); }
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const Vector step = _mm256_mul_ps(_mm256_sub_ps(value, broadcast(low)), broadcast(factor));
   const Vector kept = _mm256_min_ps(_mm256_max_ps(step, _mm256_setzero_ps()), broadcast(last));

@@ -50,8 +50,6 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   axes[2] = vzipq_f32(low.val[1], high.val[1]).val[0];
 }
 inline void store(float* to, Vector value) { vst1q_f32(to, value); }
-inline void copyPast(const float* from, float* to) { vst1q_f32(to, vld1q_f32(from)); }
-inline void endCopiesPast() {}
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const Vector step = vmulq_f32(vsubq_f32(value, broadcast(low)), broadcast(factor));
   const Vector kept = vminq_f32(vmaxnmq_f32(step, broadcast(0)), broadcast(last));

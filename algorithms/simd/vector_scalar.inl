@@ -52,11 +52,6 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
 }
 /// To any address.
 inline void store(float* to, Vector value) { *to = value; }
-/// Copies kLanes numbers past the caches, if possible: from any address to one that is a multiple
-/// of the vector's size.
-inline void copyPast(const float* from, float* to) { *to = *from; }
-/// What was copied past the caches is there for other threads.
-inline void endCopiesPast() {}
 /// (value - low) * factor as whole numbers from 0 to `last`; NaN becomes 0.
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const float step = (value - low) * factor;

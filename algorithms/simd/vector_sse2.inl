@@ -44,8 +44,6 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   for (int axis = 0; axis < 3; ++axis) axes[axis] = rows[axis];
 }
 inline void store(float* to, Vector value) { _mm_storeu_ps(to, value); }
-inline void copyPast(const float* from, float* to) { _mm_stream_ps(to, _mm_loadu_ps(from)); }
-inline void endCopiesPast() { _mm_sfence(); }
 inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
   const Vector step = _mm_mul_ps(_mm_sub_ps(value, broadcast(low)), broadcast(factor));
   const Vector kept = _mm_min_ps(_mm_max_ps(step, _mm_setzero_ps()), broadcast(last));

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "algorithms/runs.h"
@@ -12,6 +14,7 @@
 #include "columns/hits.h"
 #include "columns/kernels.h"
 #include "columns/layout.h"
+#include "past_caches.h"
 
 namespace broadmark::tests {
 namespace {
@@ -76,7 +79,7 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
   for (std::size_t i = 0; i < kCount; ++i) {
     steps.push_back(randomSteps(random));
     // Bounds never decide, nor do boxes: what is tested are the keys.
-    sorted.copies[i] = {0, 0, steps[i].key(), static_cast<MarkedBody>(i)};
+    sorted.copies[i] = {0, 1, steps[i].key(), static_cast<MarkedBody>(i)};
     sorted.keys[i] = steps[i].key();
     const int length = i % 7 == 0 ? 200 : 12;  // some far longer than their neighbours'
     sorted.ends[i] = static_cast<std::uint32_t>(
@@ -104,37 +107,44 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
 }
 
 // A lower coordinate never gets a higher step, and all instruction sets agree.
-TEST(ColumnKernels, KeepBoxes) {
+TEST(CopyPastCaches, CopiesNoMoreAndNoLess) {
   constexpr std::size_t kMost = 40;
   const std::vector<Aabb> boxes = inputs::uniform(kMost, 0, 1);
-  for (const Isa isa : supportedIsas()) {
-    for (std::size_t count = 0; count <= kMost; ++count) {
-      LargeArray<Aabb> kept;
-      kept.resize(kMost + 1);
-      std::fill(kept.begin(), kept.end(), kEmptyBox);
-      columns::kernels(isa).keep_boxes(boxes.data(), count, kept.data());
-      columns::kernels(isa).show_boxes();
-      ASSERT_TRUE(std::equal(kept.begin(), kept.begin() + count, boxes.begin())) << count;
-      ASSERT_TRUE(isEmpty(kept[count])) << count;
-    }
+  for (std::size_t count = 0; count <= kMost; ++count) {
+    LargeArray<Aabb> kept;
+    kept.resize(kMost + 1);
+    std::fill(kept.begin(), kept.end(), kEmptyBox);
+    copyPastCaches(boxes.data(), count * sizeof(Aabb), kept.data());
+    showCopiesPastCaches();
+    ASSERT_TRUE(std::equal(kept.begin(), kept.begin() + count, boxes.begin())) << count;
+    ASSERT_TRUE(isEmpty(kept[count])) << count;
   }
 }
 
 TEST(ColumnKernels, FindTheSameSteps) {
+  std::array<MarkedBody, BoxBlock::kBoxes> bodies;
+  std::iota(bodies.begin(), bodies.end(), 1000);
   for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
     const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
     const Layout layout(boxes, 1'000'000, kCosts);
     for (const Isa isa : supportedIsas()) {
       for (const std::size_t count : {1U, 7U, 16U, 33U, 128U}) {
         BoxBlock block;
-        columns::kernels(isa).find_steps(boxes.data(), count, layout.scales(), block);
+        columns::kernels(isa).find_steps(boxes.data(), bodies.data(), count, layout.scales(),
+                                         block);
+        const auto expect_steps = [&](const StepScale& scale, std::size_t k, std::uint32_t first,
+                                      std::uint32_t last) {
+          ASSERT_EQ(first, scale.of(boxes[k].min[scale.axis])) << isaName(isa);
+          ASSERT_EQ(last, scale.of(boxes[k].max[scale.axis])) << isaName(isa);
+        };
         for (std::size_t k = 0; k < count; ++k) {
           for (int which = 0; which < 2; ++which) {
-            const StepScale& scale = layout.scales().of[which];
-            ASSERT_EQ(block.low[which][k], scale.of(boxes[k].min[scale.axis])) << isaName(isa);
-            ASSERT_EQ(block.high[which][k], scale.of(boxes[k].max[scale.axis])) << isaName(isa);
+            expect_steps(layout.scales().of[which], k, block.low[which][k], block.high[which][k]);
           }
-          ASSERT_EQ(block.min[k], boxes[k].min[layout.scales().sweep_axis]);
+          const Copy& copy = block.copies[k];
+          expect_steps(layout.scales().sweep, k, copy.first, copy.last);
+          ASSERT_EQ(copy.key, block.keys[k]);
+          ASSERT_EQ(copy.body, bodies[k]);
           ASSERT_LT(block.columns[k], layout.size());
         }
       }
@@ -147,7 +157,8 @@ TEST(ColumnLayout, StepsKeepTheOrderOfCoordinates) {
   for (const inputs::Generator boxes : {inputs::uniform, inputs::limits, inputs::tiny, inputs::huge,
                                         inputs::identical, inputs::zeroSize}) {
     const Layout layout(boxes(200, 0, 1), 100'000, kCosts);
-    for (const StepScale& scale : layout.scales().of) {
+    const auto& [cut, sweep, columns] = layout.scales();
+    for (const StepScale& scale : {cut[0], cut[1], sweep}) {
       std::uint32_t before = 0;
       for (const float x : {-kMost, -1e30F, -100.0F, -1.0F, -1e-40F, 0.0F, 1e-45F, 0.3F, 1.0F, 2.0F,
                             20.0F, 1e30F, kMost}) {
@@ -175,12 +186,12 @@ TEST(ColumnLayout, HasMoreColumnsForMoreBoxes) {
 // A line is swept along, and a plane is not cut through.
 TEST(ColumnLayout, CutsWhereBoxesExtend) {
   const Layout plane(inputs::onePlane(2000, 0, 1), 100'000, kCosts);
-  EXPECT_NE(plane.scales().sweep_axis, 2);
+  EXPECT_NE(plane.scales().sweep.axis, 2);
   EXPECT_GT(plane.size(), 4U);
   const std::vector<Aabb> line = inputs::generate(2000, 0, 1, [](inputs::Random& random, auto) {
     return inputs::boxAt({0, random.uniform(0, 4000), 0}, {1, 1, 1});
   });
-  EXPECT_EQ(Layout(line, 2000, kCosts).scales().sweep_axis, 1);
+  EXPECT_EQ(Layout(line, 2000, kCosts).scales().sweep.axis, 1);
 }
 
 TEST(ColumnLayout, WidensDownToOneColumn) {
@@ -288,6 +299,14 @@ TEST_P(ColumnsFamily, CopeWithEveryNumberOfBodies) {
   }
 }
 
+// As many as are kept past the caches, and more.
+TEST_P(ColumnsFamily, FindTheRightPairsOfAMillionBodies) {
+  const std::vector<Aabb> boxes = inputs::uniform(1'000'000, 0, 1);
+  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
+  run.start(boxes);
+  ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+}
+
 // One giant over all, and a plate on every axis, are copied into every column, and nothing else is.
 TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
   std::vector<Aabb> boxes = inputs::uniform(3000, 0, 1);
@@ -359,8 +378,9 @@ TEST_P(ColumnsFamily, SplitCrowdedColumns) {
 
 TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
   if (!GetParam().traits.parallel) GTEST_SKIP() << "uses one thread";
-  for (const inputs::Generator boxes_of : {inputs::uniform, clusters, inputs::assorted}) {
-    const std::vector<Aabb> boxes = boxes_of(3000, 1, 1);
+  for (const std::vector<Aabb>& boxes :
+       {inputs::uniform(3000, 1, 1), clusters(3000, 1, 1), inputs::assorted(3000, 1, 1),
+        inputs::uniform(150'000, 1, 1)}) {  // so many are kept past the caches
     std::vector<Pair> first;
     for (const int threads : {1, 2, 3, 5, 8}) {
       TestRun run(GetParam(), {bestIsa(), threads}, {{"copy_cost", "5"}, {"crowded", "5"}});
