@@ -159,7 +159,7 @@ class WallContact final : public btCollisionAlgorithm {
 /// A supported body that has been still for this long, in seconds, is held where it is.
 constexpr btScalar kHoldAfter = 0.5F;
 /// A body is still while it stays nearer to one place than this share of a free fall of that time.
-constexpr btScalar kStillShare = 0.2F;
+constexpr btScalar kStillShare = 0.25F;
 /// A body is supported when contacts carry at least this share of its weight. Those of a large pile
 /// carry it now more, now less.
 constexpr btScalar kCarriedShare = 0.25F;
