@@ -13,7 +13,11 @@
 // The flavour with an array has faults in its update(): it puts a leaf back near where it was,
 // however far it went, forgets an only leaf, and when it balances the tree from the top it numbers
 // the leaves anew, after which it updates wrong ones. There a body that moved is unregistered and
-// registered again; all are registered at once only in the beginning, as that leaks memory.
+// registered again; all are registered at once only in the beginning, as that leaks memory. When
+// the array is full and grows, it reads two boxes from the old array, which it has just freed: so
+// it is never let grow. Spare bodies are registered with the others and taken out again, which
+// leaves room for those to come; if that is not enough, all are registered anew with twice the
+// room.
 //
 // The library works in double precision. It takes boxes for the same that differ by less than 100
 // epsilon of a corner's distance from the origin, so each box is given a rim wider than that; and a
@@ -87,11 +91,16 @@ void update(Array& manager, const Bodies& moved) {
   }
 }
 
+/// Whether more bodies than were registered at once must never be there.
+template <class Manager>
+constexpr bool kHasFixedRoom = std::is_same_v<Manager, Array>;
+
 template <class Manager>
 class Fcl final : public MovedBoxes {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     MovedBoxes::initialize(scene, first, execution);
+    most_ = scene.objects;
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
     registerAll();
   }
@@ -111,7 +120,9 @@ class Fcl final : public MovedBoxes {
         create(number);
       }
     }
-    if (std::is_same_v<Manager, Nodes> && jumps > bodies_.size() / 2) return registerAll();
+    if (kHasFixedRoom<Manager> ? bodies_.size() > room_ : jumps > bodies_.size() / 2) {
+      return registerAll();
+    }
     update(manager_, updated_);
     for (std::size_t body = known; body < bodies_.size(); ++body) {
       manager_.registerObject(&bodies_[body]);
@@ -124,9 +135,24 @@ class Fcl final : public MovedBoxes {
   void registerAll() {
     updated_.clear();
     for (Body& body : bodies_) updated_.push_back(&body);
+    std::deque<Body> spare = spareBodies();
+    for (Body& body : spare) updated_.push_back(&body);
     manager_.clear();
     manager_.registerObjects(updated_);
     manager_.setup();
+    for (Body& body : spare) manager_.unregisterObject(&body);
+    room_ = updated_.size();
+  }
+
+  /// So many that as many bodies may come as are there, or as there will ever be.
+  [[nodiscard]] std::deque<Body> spareBodies() const {
+    std::deque<Body> spare;
+    if (!kHasFixedRoom<Manager> || bodies_.empty()) return spare;
+    const std::size_t room = std::min(2 * bodies_.size(), most_);
+    for (std::size_t body = bodies_.size(); body < room; ++body) {
+      spare.emplace_back(shape_, 0).place(boxes()[0]);
+    }
+    return spare;
   }
 
   void findPairs() override { manager_.collide(this, report); }
@@ -144,6 +170,8 @@ class Fcl final : public MovedBoxes {
   std::deque<Body> bodies_;  ///< the manager holds their addresses
   Bodies updated_;
   Manager manager_;
+  std::size_t most_ = 0;  ///< bodies of the scene
+  std::size_t room_ = 0;  ///< bodies that were registered at once
 };
 
 }  // namespace

@@ -113,6 +113,8 @@ class ChangingRecording:
             ids = np.arange(count, dtype=np.uint32)
         else:
             ids = self._content[start : start + 4 * count].view("<u4")
+            if (ids >= self.bodies).any():
+                raise InputError(f"{self.name}: frame {frame}: changes a body that does not exist")
             start += _aligned(4 * count)
         rows = self.bodies if whole else count
         packed = self._content[start : start + BOX_BYTES * rows].view("<f4")

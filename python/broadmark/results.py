@@ -81,6 +81,10 @@ class Results:
         )
 
 
+#: What it raises to take values for others than they are.
+_MISSHAPEN = (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError)
+
+
 def read_results(*paths: str | os.PathLike[str]) -> Results:
     """Reads results files of any version, JSON or JSON Lines.
 
@@ -103,7 +107,7 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
                 _check_lengths(case)
                 row = _row(case)
                 row["environment"] = known[case.get("environment", 0)]
-            except (KeyError, TypeError, IndexError, AttributeError, ValueError) as error:
+            except _MISSHAPEN as error:
                 raise InputError(
                     f"{path}: case {case.get('id', len(rows))!r}: not as docs/results.md has it: "
                     f"{type(error).__name__} {error}"
@@ -111,10 +115,13 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
             rows.append({"case": len(rows), **row, "file": os.fspath(path)})
             details.append(case)
     machines = _machine_names(environments)
-    cases = pd.DataFrame(rows, columns=None if rows else ["case", *CASE_KEYS[1:], "status"])
+    try:
+        cases = pd.DataFrame(rows, columns=None if rows else ["case", *CASE_KEYS[1:], "status"])
+        table = pd.DataFrame(environments)
+    except OverflowError as error:
+        raise InputError(f"{', '.join(map(os.fspath, paths))}: {error}") from None
     if rows:
         cases["machine"] = [machines[number] for number in cases["environment"]]
-    table = pd.DataFrame(environments)
     table["machine"] = machines
     return Results(cases, details, table, pd.DataFrame(files))
 
@@ -155,10 +162,13 @@ def _document(path: pathlib.Path) -> _Document:
                 raise InputError(f"{path}: is no results file: its schema is not {SCHEMAS[0]}")
             if "cases" not in head:
                 return _from_lines(path, file, head.get("options", []))
-    except (OSError, EOFError, zlib.error, ValueError, RecursionError) as error:
+    except (OSError, EOFError, zlib.error, RecursionError, *_MISSHAPEN) as error:
         raise InputError(f"{path}: cannot be read: {error}") from None
     environments = head.get("environments", [head.get("environment")])
-    if not all(isinstance(one, dict) for one in environments + head["cases"]):
+    if not all(
+        isinstance(some, list) and all(isinstance(one, dict) for one in some)
+        for some in (environments, head["cases"])
+    ):
         raise InputError(f"{path}: an environment or a case is not an object")
     complete = head.get("complete", True)
     return _Document(environments, head["cases"], complete, head.get("options", []))

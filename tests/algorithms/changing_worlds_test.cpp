@@ -3,12 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <list>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "algorithms/runs.h"
+#include "broadmark/recording.h"
 #include "support/changing_worlds.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -179,6 +184,20 @@ TEST_P(EveryAlgorithmInChangingWorlds, FindsThemInAThousandWorlds) {
     }
   }
   check({"a thousand worlds", filter, frames, Aabb{{0, 0, 0, 0}, {5, 5, 5, 0}}});
+}
+
+// What a torture has found and is mended: a recording in tests/found is all that it takes.
+TEST_P(EveryAlgorithmInChangingWorlds, IsRightOnWhatATortureFound) {
+  for (const auto& entry : std::filesystem::directory_iterator(places::source("tests/found"))) {
+    const std::unique_ptr<Recording> recording = openRecordingFile(entry.path());
+    ChangingWorld world{
+        entry.path().stem(), recording->scene().filter, {}, recording->scene().world};
+    for (auto frame = std::optional(recording->rewind()); frame; frame = recording->next()) {
+      world.frames.emplace_back(frame->boxes.begin(), frame->boxes.end());
+    }
+    check(world);
+    if (HasFatalFailure() || IsSkipped()) return;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, EveryAlgorithmInChangingWorlds,

@@ -1,0 +1,252 @@
+"""What the inspector is made to do: rounds of a script, drawn from a seed.
+
+A round is a few deeds in random order and with random values, then the same small piece of work in
+the same state, between two marks: what is sampled there can be compared from round to round. A deed
+leaves no algorithm behind and nothing unsaved, so any other may follow it. What a deed expects is
+written down in it: a wrong state ends the script with the number of its line.
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator
+
+#: In every build.
+ALGORITHMS = ["sap", "kd", "kd-mt", "columns", "columns-mt", "tide", "dbvt-d", "grid-bf", "tracy"]
+SCENES = ["brownian", "freefall", "gravity", "explosion", "conveyor", "swarm", "fountain"]
+PANELS = ["Scene", "Algorithms", "Author", "Batch", "Bodies", "Look", "Mismatches", "Results"]
+#: Files that must be there before, and the arguments that bake them.
+RECORDINGS = {
+    "yardstick.broadmark": ["--scenes", "brownian", "--objects", "400", "--frames", "20", "--engine", "kinematic"],
+    "many.broadmark": ["--scenes", "swarm", "--objects", "2000", "--frames", "10"],
+    "changing.broadmark": ["--scenes", "fountain", "--objects", "300", "--frames", "30"],
+}
+#: Written before and after the piece of work.
+BEGIN, END = "begun", "ended"
+
+YARDSTICK = f"""
+resize 1280x720
+open yardstick.broadmark
+wait settled
+key Home
+click Algorithms/Add…
+click Algorithms/add/sap
+wait settled
+write frame {BEGIN}
+key End
+wait settled
+wait 40
+write frame {END}
+expect lane.sap.status = ok
+click Algorithms/sap/Remove
+expect lanes = 0
+expect error = ""
+"""
+
+
+class Rounds:
+    """An endless script: the same seed, the same lines."""
+
+    def __init__(self, seed: int) -> None:
+        self._random = random.Random(seed)
+        self._saved: set[str] = set()
+        self._deeds: list[Callable[[], str]] = []
+
+    def __iter__(self) -> Iterator[str]:
+        yield "patience 20\nclick Playback/Loop\nexpect loop = yes\n"
+        yield "click Batch/scenes/freefall\nclick Batch/scenes/brownian\n"  # of the two only this
+        while True:
+            yield "".join(self._next()() for _ in range(2)) + YARDSTICK
+
+    def _next(self) -> Callable[[], str]:
+        """Each deed once, in random order, before any comes again."""
+        if not self._deeds:
+            self._deeds = [
+                self._open,
+                self._simulate,
+                self._save,
+                self._compare,
+                self._crash,
+                self._look,
+                self._author,
+                self._export,
+                self._batch,
+            ]
+            self._random.shuffle(self._deeds)
+        return self._deeds.pop()
+
+    def _number(self, least: int, most: int) -> int:
+        return self._random.randint(least, most)
+
+    def _open(self) -> str:
+        name = self._random.choice(list(RECORDINGS))
+        return f"open {name}\nwait settled\nexpect title = {name}\n" + self._seek() + self._play()
+
+    def _seek(self) -> str:
+        keys = self._random.choices(["Home", "End", "Left", "Right"], k=self._number(2, 6))
+        jumps = "".join(f"key {key}\n" for key in keys)
+        return jumps + "wait settled\nclick Playback/frame\nwait settled\n"
+
+    def _play(self) -> str:
+        return f"""
+choose Playback/speed fastest
+click Playback/Play
+expect playing = yes
+wait {self._number(10, 60)}
+click Playback/Play
+expect playing = no
+wait settled
+"""
+
+    def _simulate(self) -> str:
+        return f"""
+choose Scene/scene {self._random.choice(SCENES)}
+enter Scene/objects {self._number(20, 300)}
+enter Scene/frames {self._number(5, 40)}
+click Scene/Simulate
+wait settled
+expect error = ""
+{self._seek()}
+"""
+
+    def _save(self) -> str:
+        name = f"saved-{self._number(1, 5)}.{self._random.choice(['aabbs', 'broadmark'])}"
+        replace = "expect dialog = yes\nclick File/Save\n" if name in self._saved else ""
+        self._saved.add(name)
+        return f"""
+{self._simulate()}
+key Ctrl+S
+expect dialog = yes
+enter File/name {name}
+click File/Save
+{replace}expect dialog = no
+wait settled
+open {name}
+wait settled
+expect title = {name}
+"""
+
+    def _compare(self) -> str:
+        ids = self._random.sample(ALGORITHMS, self._number(2, 4))
+        add = "".join(f"click Algorithms/Add…\nclick Algorithms/add/{one}\n" for one in ids)
+        remove = "".join(f"click Algorithms/{one}/Remove\n" for one in ids)
+        right = "".join(f"expect lane.{one}.status = ok\n" for one in ids)
+        return f"""
+open changing.broadmark
+wait settled
+{add}wait settled
+{self._seek()}
+{right}panel Results
+wait 3
+panel Timings
+click Timings/logarithmic
+wait 5
+{remove}expect lanes = 0
+"""
+
+    def _crash(self) -> str:
+        """An algorithm that crashes costs a worker process."""
+        return f"""
+open yardstick.broadmark
+wait settled
+key Home
+click Algorithms/Add…
+click Algorithms/add/unruly
+choose Algorithms/unruly/deed crash
+enter Algorithms/unruly/frame {self._number(1, 19)}
+key End
+wait settled
+expect lane.unruly.status = error
+click Algorithms/unruly/Remove
+expect error = ""
+"""
+
+    def _look(self) -> str:
+        share = self._random.random
+        return f"""
+resize {self._number(300, 1900)}x{self._number(200, 1000)}
+wait 2
+resize 1280x720
+wait 2
+drag View/scene 0.5 0.5 {share():.2f} {share():.2f}
+drag View/scene {share():.2f} {share():.2f} 0.5 0.5 1
+wheel View/scene {self._number(-4, 4)}
+drag View/scene 0.1 0.1 0.9 0.9 0 Shift
+wait 2
+key Escape
+key C
+key H
+key H
+click "Look/{self._random.choice(['top', 'front', 'left', 'figure', 'all of it'])}"
+wait 20
+panel {self._random.choice(PANELS)}
+wait 2
+panel {self._random.choice(PANELS)}
+screenshot picture.png
+"""
+
+    def _author(self) -> str:
+        undo = "key Ctrl+Z\n" + "key Ctrl+Z\nkey Ctrl+Shift+Z\n" * self._number(1, 3)
+        return f"""
+click Author/New
+wait settled
+expect author.bodies = 0
+choose Author/Brush/brush lattice
+enter Author/Brush/count_x {self._number(1, 5)}
+enter Author/Brush/count_y {self._number(1, 5)}
+enter Author/Brush/count_z 2
+click Author/Brush/Add
+expect author.bodies > 1
+enter "Author/Selection/by x" {self._number(1, 9)}
+click Author/Selection/Move
+enter Author/Selection/factor 0.5
+click Author/Selection/Scale
+enter "Author/Selection/velocity y" {self._number(-3, 3)}
+enter "Author/Selection/by x" 20
+click Author/Selection/Duplicate
+{undo}wait settled
+click Author/Simulate
+wait settled
+click "Author/From this frame"
+click Unsaved/Discard
+wait settled
+expect author.modified = yes
+click Author/New
+click Unsaved/Discard
+expect author.bodies = 0
+expect author.modified = no
+"""
+
+    def _export(self) -> str:
+        """A wrong answer, shrunk and written."""
+        name = f"case-{self._number(1, 3)}.aabbs"
+        replace = "expect dialog = yes\nclick File/Save\n" if name in self._saved else ""
+        self._saved.add(name)
+        return f"""
+open many.broadmark
+wait settled
+key Home
+click Algorithms/Add…
+click Algorithms/add/faulty
+enter Algorithms/faulty/fat_margin 0.5
+wait settled
+click "Mismatches/Next mismatch"
+wait settled
+expect mismatch_pairs > 0
+click "Mismatches/Export case…"
+enter File/name {name}
+click File/Save
+{replace}expect export.state = done
+key Escape
+click Algorithms/faulty/Remove
+"""
+
+    def _batch(self) -> str:
+        return f"""
+enter Batch/objects "{self._number(10, 40)}, {self._number(41, 90)}"
+enter Batch/frames {self._number(2, 9)}
+enter Batch/directory batch
+click Batch/Start
+expect batch.state = done
+expect batch.failed = 0
+"""
