@@ -33,9 +33,9 @@ click Algorithms/Add…
 click Algorithms/add/sap
 wait settled
 write frame {BEGIN}
+wait 40
 key End
 wait settled
-wait 40
 write frame {END}
 expect lane.sap.status = ok
 click Algorithms/sap/Remove
@@ -110,7 +110,7 @@ expect error = ""
 """
 
     def _save(self) -> str:
-        name = f"saved-{self._number(1, 5)}.{self._random.choice(['aabbs', 'broadmark'])}"
+        name = f"saved-{self._number(1, 5)}.broadmark"
         replace = "expect dialog = yes\nclick File/Save\n" if name in self._saved else ""
         self._saved.add(name)
         return f"""
