@@ -12,14 +12,57 @@ import random
 from collections.abc import Callable, Iterator
 
 #: In every build.
-ALGORITHMS = ["sap", "kd", "kd-mt", "columns", "columns-mt", "tide", "dbvt-d", "grid-bf", "tracy"]
-SCENES = ["brownian", "freefall", "gravity", "explosion", "conveyor", "swarm", "fountain"]
-PANELS = ["Scene", "Algorithms", "Author", "Batch", "Bodies", "Look", "Mismatches", "Results"]
+ALGORITHMS = [
+    "sap",
+    "kd",
+    "kd-mt",
+    "columns",
+    "columns-mt",
+    "tide",
+    "dbvt-d",
+    "grid-bf",
+    "tracy",
+]
+SCENES = [
+    "brownian",
+    "freefall",
+    "gravity",
+    "explosion",
+    "conveyor",
+    "swarm",
+    "fountain",
+]
+PANELS = [
+    "Scene",
+    "Algorithms",
+    "Author",
+    "Batch",
+    "Bodies",
+    "Look",
+    "Mismatches",
+    "Results",
+]
 #: Files that must be there before, and the arguments that bake them.
 RECORDINGS = {
-    "yardstick.broadmark": ["--scenes", "brownian", "--objects", "400", "--frames", "20", "--engine", "kinematic"],
+    "yardstick.broadmark": [
+        "--scenes",
+        "brownian",
+        "--objects",
+        "400",
+        "--frames",
+        "20",
+        "--engine",
+        "kinematic",
+    ],
     "many.broadmark": ["--scenes", "swarm", "--objects", "2000", "--frames", "10"],
-    "changing.broadmark": ["--scenes", "fountain", "--objects", "300", "--frames", "30"],
+    "changing.broadmark": [
+        "--scenes",
+        "fountain",
+        "--objects",
+        "300",
+        "--frames",
+        "30",
+    ],
 }
 #: Written before and after the piece of work.
 BEGIN, END = "begun", "ended"
