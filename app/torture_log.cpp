@@ -105,11 +105,11 @@ std::uint64_t TortureLog::frames() const {
   return sum;
 }
 
-TortureLog readTortureLog(const std::filesystem::path& file) {
-  const Json json = parseJson(readTextFile(file), file.string());
-  const JsonFields fields(json, file.string());
+TortureLog parseTortureLog(std::string_view text, const std::string& name) {
+  const Json json = parseJson(text, name);
+  const JsonFields fields(json, name);
   if (fields.text("schema") != kSchema) {
-    throw InputError(fmt::format("{}: no log of a torture (\"{}\")", file.string(), kSchema));
+    throw InputError(fmt::format("{}: no log of a torture (\"{}\")", name, kSchema));
   }
   TortureLog log;
   log.seed = fields.integer<std::uint64_t>("seed");
@@ -130,7 +130,7 @@ TortureLog readTortureLog(const std::filesystem::path& file) {
   return log;
 }
 
-void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
+std::string tortureLogText(const TortureLog& log) {
   Json json = {{"schema", kSchema},        {"seed", log.seed},       {"subjects", log.subjects},
                {"builds", log.builds},     {"next", log.next},       {"left", log.left},
                {"seconds", log.seconds},   {"found", Json::array()}, {"times", Json::array()},
@@ -140,7 +140,15 @@ void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
     json["times"].push_back({{"algorithm", fault.first}, {"kind", fault.second}, {"times", times}});
   }
   for (const auto& [key, count] : log.coverage) json["coverage"].push_back(toJson(key, count));
-  writeTextFile(file, formatJson(json));
+  return formatJson(json);
+}
+
+TortureLog readTortureLog(const std::filesystem::path& file) {
+  return parseTortureLog(readTextFile(file), file.string());
+}
+
+void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
+  writeTextFile(file, tortureLogText(log));
 }
 
 std::string formatFoundFault(const FoundFault& fault) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,10 @@ struct TortureLog {
 
   [[nodiscard]] std::uint64_t frames() const;
 };
+
+/// From the text of such a file, and back. Throws InputError, which calls it `name`.
+TortureLog parseTortureLog(std::string_view text, const std::string& name);
+std::string tortureLogText(const TortureLog&);
 
 /// Reads one. Throws InputError.
 TortureLog readTortureLog(const std::filesystem::path&);

@@ -242,14 +242,18 @@ void writeScene(const fs::path& file, double frame_rate, int out) {
 void limitResources(std::uint64_t file_bytes) {
   constexpr std::uint64_t kGib = 1ULL << 30;
   constexpr std::uint64_t kMemoryPerByte = 200;
-  constexpr rlim_t kSeconds = 600;
+  // Reading takes a second for tens of millions of bytes; a damaged file may keep it at it for
+  // ever.
+  constexpr rlim_t kLeastSeconds = 10;
+  constexpr std::uint64_t kBytesASecond = 100'000;
   std::uint64_t pages = 0;  // of data: the sixth number
   std::ifstream statm("/proc/self/statm");
   for (int i = 0; i < 6; ++i) statm >> pages;
   const rlim_t bytes = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + 4 * kGib +
                        kMemoryPerByte * file_bytes;
   const rlimit memory{bytes, bytes};
-  const rlimit time{kSeconds, kSeconds};
+  const rlim_t seconds = kLeastSeconds + file_bytes / kBytesASecond;
+  const rlimit time{seconds, seconds};
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_DATA, &memory);
   ::setrlimit(RLIMIT_CPU, &time);
@@ -308,6 +312,8 @@ std::optional<std::string> complaintOf(pid_t child, int out) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFSIGNALED(status)) {
+    const bool in_time = WTERMSIG(status) != SIGKILL && WTERMSIG(status) != SIGXCPU;
+    if (!in_time) return "assimp takes too long to read it: a damaged file?";
     const char* name = ::sigabbrev_np(WTERMSIG(status));
     return fmt::format("assimp crashed on it (SIG{}): a damaged file?",
                        name == nullptr ? "?" : name);

@@ -9,12 +9,14 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "broadmark/error.h"
 #include "broadmark/headers_hash.h"
 #include "broadmark/memory_limit.h"
 #include "broadmark/worker_process.h"
 #include "worker/protocol.h"
+#include "worker/server.h"
 
 namespace broadmark {
 namespace {
@@ -44,7 +46,8 @@ void dropRights() {
 
 class Server {
  public:
-  explicit Server(const AlgorithmFinder& find) : find_(find) {}
+  Server(SharedMemory frames, SharedMemory answers, const AlgorithmFinder& find)
+      : find_(find), frames_(std::move(frames)), answers_(std::move(answers)) {}
 
   /// The answer to a call.
   Json answer(const Json& message) {
@@ -180,8 +183,8 @@ class Server {
   }
 
   const AlgorithmFinder& find_;
-  SharedMemory frames_{FileDescriptor(worker::kFramesDescriptor)};
-  SharedMemory answers_{FileDescriptor(worker::kAnswersDescriptor)};
+  SharedMemory frames_;
+  SharedMemory answers_;
   std::vector<Aabb> boxes_;  ///< of the last frame
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
@@ -204,7 +207,13 @@ void serveCase(const AlgorithmFinder& find) {
           {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {
     throw InputError("nobody to work for: only Broadmark itself starts a worker process");
   }
-  Server server(find);
+  worker::answerCalls(channel, SharedMemory(FileDescriptor(worker::kFramesDescriptor)),
+                      SharedMemory(FileDescriptor(worker::kAnswersDescriptor)), find);
+}
+
+void worker::answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
+                         const AlgorithmFinder& find) {
+  Server server(std::move(frames), std::move(answers), find);
   while (const std::optional<Json> message = channel.receive()) {
     if (!channel.send(server.answer(*message))) return;
   }

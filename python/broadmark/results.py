@@ -119,7 +119,7 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
         cases = pd.DataFrame(rows, columns=None if rows else ["case", *CASE_KEYS[1:], "status"])
         table = pd.DataFrame(environments)
     except OverflowError as error:
-        raise InputError(f"{', '.join(map(os.fspath, paths))}: {error}") from None
+        raise InputError(f"{', '.join(map(str, paths))}: {error}") from None
     if rows:
         cases["machine"] = [machines[number] for number in cases["environment"]]
     table["machine"] = machines

@@ -30,24 +30,29 @@ void withFile(const std::uint8_t* data, std::size_t size, Act&& act) {
 
 inline bool isWithin(const Aabb& box, const Aabb& world) { return merged(box, world) == world; }
 
+/// Imports a file of this kind, all of its frames. Throws InputError.
+inline void readAllFrames(const SourceKind& kind, const std::filesystem::path& path,
+                          const ReadingOptions& options) {
+  const auto frames = kind.import->open({path}, options);
+  const SceneInfo& scene = frames->scene();
+  // Frames without bodies take no bytes: a short file may have any number of them.
+  for (std::uint32_t index = 0; index <= std::min(scene.frames, 1000U); ++index) {
+    const Frame frame = frames->at(index);
+    if (frame.boxes.size() != scene.objects) std::abort();
+    for (const Aabb& box : frame.boxes) {
+      if (isEmpty(box) ? scene.all_present : !isWithin(box, scene.world)) std::abort();
+      if (isEmpty(box) ? box != kEmptyBox : !overlaps(box, box)) std::abort();
+    }
+  }
+}
+
 /// Imports the bytes as a file of this kind.
 inline void importThrough(const SourceKind& kind, const std::uint8_t* data, std::size_t size,
                           double radius = 0) {
   ReadingOptions options;
   options.radius = radius;
-  withFile(data, size, [&](const std::filesystem::path& path) {
-    const auto frames = kind.import->open({path}, options);
-    const SceneInfo& scene = frames->scene();
-    // Frames without bodies take no bytes: a short file may have any number of them.
-    for (std::uint32_t index = 0; index <= std::min(scene.frames, 1000U); ++index) {
-      const Frame frame = frames->at(index);
-      if (frame.boxes.size() != scene.objects) std::abort();
-      for (const Aabb& box : frame.boxes) {
-        if (isEmpty(box) ? scene.all_present : !isWithin(box, scene.world)) std::abort();
-        if (isEmpty(box) ? box != kEmptyBox : !overlaps(box, box)) std::abort();
-      }
-    }
-  });
+  withFile(data, size,
+           [&](const std::filesystem::path& path) { readAllFrames(kind, path, options); });
 }
 
 }  // namespace broadmark::fuzz

@@ -12,14 +12,57 @@ import random
 from collections.abc import Callable, Iterator
 
 #: In every build.
-ALGORITHMS = ["sap", "kd", "kd-mt", "columns", "columns-mt", "tide", "dbvt-d", "grid-bf", "tracy"]
-SCENES = ["brownian", "freefall", "gravity", "explosion", "conveyor", "swarm", "fountain"]
-PANELS = ["Scene", "Algorithms", "Author", "Batch", "Bodies", "Look", "Mismatches", "Results"]
+ALGORITHMS = [
+    "sap",
+    "kd",
+    "kd-mt",
+    "columns",
+    "columns-mt",
+    "tide",
+    "dbvt-d",
+    "grid-bf",
+    "tracy",
+]
+SCENES = [
+    "brownian",
+    "freefall",
+    "gravity",
+    "explosion",
+    "conveyor",
+    "swarm",
+    "fountain",
+]
+PANELS = [
+    "Scene",
+    "Algorithms",
+    "Author",
+    "Batch",
+    "Bodies",
+    "Look",
+    "Mismatches",
+    "Results",
+]
 #: Files that must be there before, and the arguments that bake them.
 RECORDINGS = {
-    "yardstick.broadmark": ["--scenes", "brownian", "--objects", "400", "--frames", "20", "--engine", "kinematic"],
+    "yardstick.broadmark": [
+        "--scenes",
+        "brownian",
+        "--objects",
+        "400",
+        "--frames",
+        "20",
+        "--engine",
+        "kinematic",
+    ],
     "many.broadmark": ["--scenes", "swarm", "--objects", "2000", "--frames", "10"],
-    "changing.broadmark": ["--scenes", "fountain", "--objects", "300", "--frames", "30"],
+    "changing.broadmark": [
+        "--scenes",
+        "fountain",
+        "--objects",
+        "300",
+        "--frames",
+        "30",
+    ],
 }
 #: Written before and after the piece of work.
 BEGIN, END = "begun", "ended"
@@ -33,9 +76,9 @@ click Algorithms/Add…
 click Algorithms/add/sap
 wait settled
 write frame {BEGIN}
+wait 40
 key End
 wait settled
-wait 40
 write frame {END}
 expect lane.sap.status = ok
 click Algorithms/sap/Remove
@@ -110,7 +153,7 @@ expect error = ""
 """
 
     def _save(self) -> str:
-        name = f"saved-{self._number(1, 5)}.{self._random.choice(['aabbs', 'broadmark'])}"
+        name = f"saved-{self._number(1, 5)}.broadmark"
         replace = "expect dialog = yes\nclick File/Save\n" if name in self._saved else ""
         self._saved.add(name)
         return f"""
