@@ -88,6 +88,7 @@ class Server {
   }
 
   Json takeCase(const Json& message) {
+    started_ = false;
     host_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
     limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*for_good=*/true);
     return Json::object();
@@ -96,6 +97,12 @@ class Server {
   LocalHost& host() {
     if (!host_) throw std::runtime_error("no case has been named");
     return *host_;
+  }
+
+  /// In a pass: with an instance.
+  LocalHost& startedHost() {
+    if (!started_) throw std::runtime_error("no pass has been started");
+    return host();
   }
 
   Json start(const Json& message) {
@@ -107,7 +114,9 @@ class Server {
     changed_boxes_.resize(boxes_.size());
     if (!measured_) peak_before_ = peakBytes();
     const Frame first{0, boxes_, std::span<const std::uint32_t>()};
+    started_ = false;
     const std::int64_t initialize_ns = host().start(scene, first);
+    started_ = true;
     return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
   }
 
@@ -122,23 +131,23 @@ class Server {
   }
 
   Json step(const Json& message) {
-    const FrameRun run = host().step(takeFrame(message));
+    const FrameRun run = startedHost().step(takeFrame(message));
     return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
-    const PairDigest digest = host().digest();
+    const PairDigest digest = startedHost().digest();
     return {{"count", digest.count}, {"hash", digest.hash}};
   }
 
   Json pairs(const Json& /*message*/) {
-    const PairRuns runs = host().answer();
+    const PairRuns runs = startedHost().answer();
     sharePairs(runs, 0);
     return {{"pairs", pairCount(runs)}};
   }
 
   Json events(const Json& /*message*/) {
-    const PairEvents events = host().events();
+    const PairEvents events = startedHost().events();
     sharePairs(events.ended, sharePairs(events.began, 0));
     return {{"began", pairCount(events.began)}, {"ended", pairCount(events.ended)}};
   }
@@ -149,11 +158,11 @@ class Server {
     return offset;
   }
 
-  Json counters(const Json& /*message*/) { return {{"counts", host().counters()}}; }
-  Json setup(const Json& /*message*/) { return {{"counts", host().setup()}}; }
+  Json counters(const Json& /*message*/) { return {{"counts", startedHost().counters()}}; }
+  Json setup(const Json& /*message*/) { return {{"counts", startedHost().setup()}}; }
 
   Json structure(const Json& /*message*/) {
-    const RecordedDrawing drawing = host().structure();
+    const RecordedDrawing drawing = startedHost().structure();
     const std::uint64_t end = answers_.write(std::span(drawing.boxes()));
     answers_.write(std::span(drawing.lines()), end);
     return {{"boxes", drawing.boxes().size()},
@@ -161,10 +170,11 @@ class Server {
             {"left_out", drawing.leftOut()}};
   }
 
-  Json validate(const Json& /*message*/) { return {{"broken", host().validate()}}; }
+  Json validate(const Json& /*message*/) { return {{"broken", startedHost().validate()}}; }
 
   Json stop(const Json& /*message*/) {
     if (!measured_) measure();
+    started_ = false;
     host().stop();
     // Others run while this waits for its next pass.
     std::vector<Aabb>().swap(boxes_);
@@ -189,6 +199,7 @@ class Server {
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
   std::optional<LocalHost> host_;
+  bool started_ = false;
   bool measured_ = false;
   std::optional<std::uint64_t> peak_before_;
   std::optional<std::uint64_t> growth_;

@@ -172,6 +172,7 @@ void WorkerProcess::shareChanged(const SharedMemory& memory, const Frame& frame)
 
 void WorkerProcess::stop() {
   answer_ = {};
+  ended_ = {};
   if (!link_) return;
   const Json stopped = talk(calling("stop"));
   if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
@@ -199,10 +200,10 @@ PairRuns WorkerProcess::answer() {
 
 PairEvents WorkerProcess::events() {
   const Json counts = talk(calling("events"));
-  const auto began = counts.at("began").get<std::size_t>();
-  link_->answers.read(answer_, began + counts.at("ended").get<std::size_t>());
-  answer_run_ = PairRun(answer_).first(began);
-  ended_run_ = PairRun(answer_).subspan(began);
+  link_->answers.read(answer_, counts.at("began").get<std::size_t>());
+  link_->answers.read(ended_, counts.at("ended").get<std::size_t>(), answer_.size() * sizeof(Pair));
+  answer_run_ = answer_;
+  ended_run_ = ended_;
   return {{&answer_run_, 1}, {&ended_run_, 1}};
 }
 

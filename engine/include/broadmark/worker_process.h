@@ -78,8 +78,9 @@ class WorkerProcess final : public CaseHost {
   ProcessorCounts processor_counts_;
   bool pinned_ = false;
   std::vector<Aabb> changed_boxes_;
-  std::vector<Pair> answer_;
-  PairRun answer_run_;  ///< of events: those that began
+  std::vector<Pair> answer_;  ///< of events: those that began
+  std::vector<Pair> ended_;
+  PairRun answer_run_;
   PairRun ended_run_;
 };
 
