@@ -55,6 +55,28 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 
 }  // namespace
 
+std::string_view parameterUnit(const Parameter& parameter) {
+  constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
+      {"seconds", "s"},
+      {"milliseconds", "ms"},
+      {"microseconds", "µs"},
+      {"world units", "units"},
+      {"world units per second", "units/s"},
+      {"world units per second squared", "units/s²"},
+      {"sides of the world per second", "sides/s"},
+      {"sides of the world per second squared", "sides/s²"},
+      {"radians per second", "rad/s"},
+  };
+  constexpr std::string_view kLeadIn = ", in ";
+  const std::size_t at = parameter.doc.rfind(kLeadIn);
+  if (at == parameter.doc.npos) return "";
+  const std::string_view stated = parameter.doc.substr(at + kLeadIn.size());
+  for (const auto& [unit, short_form] : kUnits) {
+    if (stated == unit) return short_form;
+  }
+  return "";
+}
+
 std::string parameterText(const Parameter& parameter) {
   return std::visit(
       Overloaded{[](const bool* v) -> std::string { return *v ? "on" : "off"; },

@@ -1,6 +1,7 @@
 // Every mode sorts the bodies into a few classes, each with a colour and an entry of the legend.
 // Scales grow darker on a light background and brighter on a dark one, so that lightness alone
-// tells their steps apart. Single colours follow Okabe and Ito.
+// tells their steps apart. Single colours begin with Okabe and Ito's; a test sees to it that they
+// stay apart for colour-blind eyes.
 #include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
@@ -36,15 +37,15 @@ Palette paletteOf(const ColouringInput& input) {
   return {
       .quiet = choose(kFreeBox, Rgb{0x707C89}),
       .overlapping = choose(kOverlappingBox, Rgb{0xFF8A3D}),
-      .right = choose(Rgb{0x8CBFB4}, Rgb{0x4E8F84}),
-      .missed = choose(Rgb{0xD1003F}, Rgb{0xFF4F79}),
+      .right = choose(Rgb{0x8CBFB4}, Rgb{0x2F5D57}),
+      .missed = choose(Rgb{0xD1003F}, Rgb{0xFF5C5C}),
       .false_pair = choose(Rgb{0x2563C9}, Rgb{0x62A5FF}),
       .moving = choose(Rgb{0x0072B2}, Rgb{0x56B4E9}),
       .layers = choose(
-          Hues{0x8A99A8, 0x0072B2, 0xD55E00, 0x009E73, 0xB3548A, 0xB87A00, 0x4B5FD0, 0x3E4650},
-          Hues{0x707C89, 0x56B4E9, 0xE8703A, 0x2FC08F, 0xF28AC0, 0xF0E442, 0x8AA4FF, 0xE4E7EB}),
+          Hues{0x8C9BA4, 0x2354C9, 0xE6690D, 0x4FAC6E, 0xBA78D1, 0x614800, 0x34305D, 0x5F1626},
+          Hues{0x5C5F5F, 0x9399FF, 0xE4672E, 0x62D593, 0xDE83B8, 0xE6D727, 0x7D398B, 0xEDFAFF}),
       .heat = choose(Scale{0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
-                     Scale{0x6A3B78, 0x973A72, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B}),
+                     Scale{0x6A3B78, 0xA03468, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B}),
       .size = choose(Scale{0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75},
                      Scale{0x2F5288, 0x2F7393, 0x2E938B, 0x4CB37B, 0x8CCF5C, 0xE6E34E}),
   };
@@ -208,8 +209,8 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
 }
 
 constexpr ColourMode kModes[] = {
-    {"overlapping", "Overlapping", "bodies that overlap another", colourOverlapping},
-    {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount},
+    {"overlapping", "Overlapping", "bodies that overlap another", colourOverlapping, true},
+    {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount, true},
     {"correctness", "Missed and false", "bodies of missed pairs and of false pairs",
      colourByCorrectness},
     {"motion", "Moving and static", "bodies whose box has changed since the previous frame",

@@ -160,6 +160,16 @@ Key keyNamed(const std::string& name) {
   return 0;
 }
 
+std::string keyName(Key key) {
+  for (const NamedKey& known : kNamedKeys) {
+    if (key == known.key) return known.name;
+  }
+  if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12)
+    return std::string("F").append(std::to_string(key - GLFW_KEY_F1 + 1));
+  if (key < 128 && std::isalnum(key) != 0) return std::string(1, static_cast<char>(key));
+  return "";
+}
+
 void InputQueue::applyTo(ImGuiIO& io) {
   Touched touched;
   while (!events_.empty()) {

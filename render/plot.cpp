@@ -39,11 +39,6 @@ struct Axes {
   [[nodiscard]] double frameAt(float pixel) const {
     return first + static_cast<double>((pixel - min.x) / (max.x - min.x)) * (last - first);
   }
-  [[nodiscard]] double valueAt(float pixel) const {
-    const double at = static_cast<double>((max.y - pixel) / (max.y - min.y));
-    const double value = scaled(low) + at * (scaled(high) - scaled(low));
-    return logarithmic ? std::pow(10, value) : value;
-  }
 };
 
 double valueAt(const PlotCurve& curve, double frame) {
@@ -127,9 +122,9 @@ struct PlotColours {
 };
 
 PlotColours plotColours(bool dark) {
-  return dark ? PlotColours{packed(0x17191D), packed(0xFFFFFF, 22), packed(0x8D96A3),
+  return dark ? PlotColours{packed(0x17191D), packed(0xFFFFFF, 22), packed(0xA3ACB8),
                             packed(0x3D8BFD)}
-              : PlotColours{packed(0xFFFFFF), packed(0x000000, 22), packed(0x66707C),
+              : PlotColours{packed(0xFFFFFF), packed(0x000000, 22), packed(0x565F6A),
                             packed(0x1F6FEB)};
 }
 
@@ -154,25 +149,27 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotColours& colours, co
   }
 }
 
-/// Draws the legend in the upper right corner. Returns the entry under the mouse.
-std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
-                                      const Axes& axes, const PlotColours& colours) {
-  const float line = ImGui::GetTextLineHeightWithSpacing();
+/// Width of the legend beside the curves; at most a third of the plot.
+float legendWidth(const std::vector<PlotCurve>& curves, float plot_width) {
+  if (curves.empty()) return 0;
   float width = 0;
   for (const PlotCurve& curve : curves) {
     width = std::max(width, ImGui::CalcTextSize(curve.label.c_str()).x);
   }
-  width += 1.8F * line;
+  return std::min(width + 1.8F * ImGui::GetTextLineHeightWithSpacing(), plot_width / 3);
+}
+
+/// Draws the legend at the right of the axes. Returns the entry under the mouse.
+std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
+                                      const Axes& axes, float width, const PlotColours& colours) {
+  const float line = ImGui::GetTextLineHeightWithSpacing();
   const std::size_t fitting =
-      static_cast<std::size_t>(std::max(0.0F, (axes.max.y - axes.min.y - line / 2) / line));
+      static_cast<std::size_t>(std::max(0.0F, (axes.max.y - axes.min.y) / line));
   std::optional<std::size_t> hovered;
-  ImVec2 at{axes.max.x - width, axes.min.y + line / 4};
-  const auto rows = static_cast<float>(std::min(curves.size(), fitting));
-  draw.AddRectFilled({at.x, at.y - line / 8}, {axes.max.x, at.y + rows * line},
-                     (colours.background & ~IM_COL32_A_MASK) | (ImU32{215} << IM_COL32_A_SHIFT), 3);
+  ImVec2 at{axes.max.x + line / 4, axes.min.y};
   for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
     const PlotCurve& curve = curves[i];
-    if (ImGui::IsMouseHoveringRect(at, {axes.max.x, at.y + line})) hovered = i;
+    if (ImGui::IsMouseHoveringRect(at, {axes.max.x + width, at.y + line})) hovered = i;
     const unsigned alpha = curve.hidden ? 70 : 255;
     draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
                        {at.x + line * 0.8F, at.y + line * 0.75F}, packed(curve.colour, alpha), 3);
@@ -204,12 +201,13 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
   const double frame = std::round(axes.frameAt(mouse.x));
   const float x = axes.x(frame);
   draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.text);
-  draw.AddLine({axes.min.x, mouse.y}, {axes.max.x, mouse.y}, colours.grid);
   ImGui::BeginTooltip();
-  ImGui::Text("frame %.0f, %s", frame, withPrefix(axes.valueAt(mouse.y), options.unit).c_str());
+  ImGui::Text("frame %.0f", frame);
+  bool known = false;
   for (const PlotCurve& curve : curves) {
     const double value = valueAt(curve, frame);
     if (curve.hidden || std::isnan(value)) continue;
+    known = true;
     const bool disturbed = std::ranges::find(curve.disturbed, static_cast<std::uint32_t>(frame)) !=
                            curve.disturbed.end();
     ImGui::PushStyleColor(ImGuiCol_Text, packed(curve.colour));
@@ -219,6 +217,7 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
     ImGui::Text("%s%s", withPrefix(value, options.unit).c_str(), disturbed ? "  (disturbed)" : "");
     draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
   }
+  if (!known) ImGui::TextUnformatted("not run yet");
   if (options.backdrop != nullptr) {
     const double value = valueAt(*options.backdrop, frame);
     if (!std::isnan(value)) {
@@ -286,8 +285,9 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   const float line = ImGui::GetTextLineHeight();
   std::array<double, 2> range = valueRange(curves, options);
   widen(range, options.logarithmic);
+  const float legend = legendWidth(curves, width);
   const Axes axes{.min = {corner.x + 4.8F * line, corner.y + line / 2},
-                  .max = {corner.x + width - 1.4F * line, corner.y + height - 1.4F * line},
+                  .max = {corner.x + width - 1.4F * line - legend, corner.y + height - 1.4F * line},
                   .first = options.first,
                   .last = std::max(options.last, options.first + 1),
                   .low = range[0],
@@ -308,17 +308,21 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
     const float x = axes.x(options.marked_frame);
     draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.marker, line / 10);
   }
-  result.hovered = drawLegend(draw, curves, axes, colours);
+  draw.PopClipRect();
+  draw.PushClipRect(axes.min, {axes.max.x + legend, axes.max.y}, true);
+  result.hovered = drawLegend(draw, curves, axes, legend, colours);
   draw.PopClipRect();
 
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const bool inside = mouse.x >= axes.min.x && mouse.x <= axes.max.x && mouse.y >= axes.min.y &&
-                      mouse.y <= axes.max.y;
+  const auto within = [&](ImVec2 at) {
+    return at.x >= axes.min.x && at.x <= axes.max.x && at.y >= axes.min.y && at.y <= axes.max.y;
+  };
+  const bool inside = within(mouse);
   if (!hovered && !held) result.hovered.reset();
   if (result.hovered && ImGui::IsMouseClicked(0)) {
     result.toggled = result.hovered;
-  } else if (held && !result.hovered && ImGui::IsMouseDown(0)) {
-    result.clicked_frame = axes.frameAt(mouse.x);
+  } else if (held && ImGui::IsMouseDown(0) && within(ImGui::GetIO().MouseClickedPos[0])) {
+    result.clicked_frame = axes.frameAt(std::clamp(mouse.x, axes.min.x, axes.max.x));
   }
   if (hovered && inside && !result.hovered) drawCrosshair(draw, curves, axes, options, colours);
   if (hovered && ImGui::GetIO().MouseWheel != 0) {

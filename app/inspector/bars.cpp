@@ -5,17 +5,36 @@
 
 #include <algorithm>
 
+#include "inspector/answer_text.h"
 #include "inspector/inspector.h"
 
 namespace broadmark {
 namespace {
 
+constexpr float kOneRowWidth = 560;  // units: narrower, the playback has two rows
 constexpr double kSpeeds[] = {1, 5, 10, 15, 24, 30, 60, 120, 1000};
 
 }  // namespace
 
+float Inspector::transportHeight(float width) const {
+  const float row = ImGui::GetFrameHeight();
+  const bool narrow = width < kOneRowWidth * ui_.scale;
+  return 12 * ui_.scale + (narrow ? 2 * row + ImGui::GetStyle().ItemSpacing.y : row);
+}
+
 void Inspector::drawTransport(const RunProgress& progress) {
   const auto scope = ui_.scope("Playback");
+  const bool narrow = ImGui::GetWindowWidth() < kOneRowWidth * ui_.scale;
+  ImGui::BeginDisabled(session_.playback.footage() == nullptr);
+  drawButtons();
+  ImGui::SameLine();
+  drawSpeed();
+  if (!narrow) ImGui::SameLine();
+  drawPosition(progress);
+  ImGui::EndDisabled();
+}
+
+void Inspector::drawButtons() {
   Playback& playback = session_.playback;
   if (ui_.button("|<", "First frame (Home)")) playback.goTo(0);
   ImGui::SameLine();
@@ -30,28 +49,48 @@ void Inspector::drawTransport(const RunProgress& progress) {
   if (ui_.button(">", "One frame on (Right)")) playback.step(1);
   ImGui::SameLine();
   ui_.toggle("Loop", playback.loop, "Begin again after the last frame");
-  ImGui::SameLine();
+}
+
+void Inspector::drawSpeed() {
+  Playback& playback = session_.playback;
   std::vector<std::string> speeds;
   std::size_t chosen = 0;
   for (std::size_t i = 0; i < std::size(kSpeeds); ++i) {
     speeds.push_back(kSpeeds[i] >= 1000 ? "fastest" : fmt::format("{:g} frames/s", kSpeeds[i]));
     if (kSpeeds[i] <= playback.frames_per_second) chosen = i;
   }
-  const float width = 108 * ui_.scale;
-  const bool roomy = ImGui::GetContentRegionAvail().x > 330 * ui_.scale;
-  if (roomy) {
-    if (ui_.combo("##speed", chosen, speeds, "Frames shown per second, if all keep pace", width)) {
-      playback.frames_per_second = kSpeeds[chosen];
-    }
-    ImGui::SameLine();
+  if (ui_.combo("##speed", chosen, speeds, "Frames shown per second, if all keep pace",
+                108 * ui_.scale)) {
+    playback.frames_per_second = kSpeeds[chosen];
   }
-  const std::string count = fmt::format("{} / {}", playback.frame(), playback.lastFrame());
-  const float text = ImGui::CalcTextSize(count.c_str()).x + ImGui::GetStyle().ItemSpacing.x;
-  ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - text, 20.0F));
+  // The place is kept while nothing is played, so that nothing beside it moves.
+  ImGui::SameLine();
+  const float left = ImGui::GetCursorPosX();
+  ImGui::AlignTextToFramePadding();
+  const auto achieved = playback.achieved();
+  ui_.faint(achieved ? fmt::format("{:.0f}/s", *achieved) : "");
+  ui_.note("achieved");
+  ui_.tooltip("Frames that were shown in the last second");
+  ImGui::SameLine(left + 40 * ui_.scale);
+  ImGui::Dummy({0, 0});
+}
+
+void Inspector::drawPosition(const RunProgress& progress) {
+  Playback& playback = session_.playback;
+  const auto text = [](std::uint32_t frame, std::uint32_t last) {
+    return fmt::format("{} / {}", frame, last);
+  };
+  const std::uint32_t last = playback.lastFrame();
+  // As wide as the widest number to come.
+  const float width =
+      ImGui::CalcTextSize(text(last, last).c_str()).x + ImGui::GetStyle().ItemSpacing.x;
+  ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - width, 20.0F));
   int frame = static_cast<int>(playback.frame());
-  if (ui_.slider("##frame", frame, 0, std::max(1, static_cast<int>(playback.lastFrame())), "")) {
+  ImGui::BeginDisabled(last == 0);
+  if (ui_.slider("##frame", frame, 0, std::max(1, static_cast<int>(last)), "")) {
     playback.goTo(frame);
   }
+  ImGui::EndDisabled();
   // What has been simulated so far.
   if (progress.live && progress.scene.frames > 0) {
     const ImVec2 min = ImGui::GetItemRectMin();
@@ -62,14 +101,15 @@ void Inspector::drawTransport(const RunProgress& progress) {
                                               colour(ui_.theme.accent, 0.7F));
   }
   ImGui::SameLine();
-  ImGui::TextUnformatted(count.c_str());
+  ImGui::TextUnformatted(text(playback.frame(), last).c_str());
 }
 
 void Inspector::drawStatus(const RunProgress& progress) {
   const auto scope = ui_.scope("Status");
   ImGui::SetCursorPosY(4 * ui_.scale);
   if (progress.footage) {
-    ImGui::TextUnformatted(progress.footage->title.c_str());
+    ui_.plain(sourceText(progress.footage.get()));
+    ui_.note("source");
     ImGui::SameLine(0, 14 * ui_.scale);
     const std::string capacity = fmt::format("{}", progress.scene.objects);
     const bool partly = !progress.scene.all_present && progress.snapshot;
@@ -78,7 +118,7 @@ void Inspector::drawStatus(const RunProgress& progress) {
         partly ? fmt::format("{} of {}", progress.snapshot->present, capacity) : capacity));
     if (progress.snapshot) {
       ImGui::SameLine(0, 14 * ui_.scale);
-      ui_.faint(fmt::format("{} pairs", progress.snapshot->pairs.size()));
+      ui_.faint(view_.answer().answer);
     }
   } else {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a recording");

@@ -16,21 +16,22 @@ std::string drawCases(Ui& ui, const CaseChoice& choice) {
     if (choice.all || item.wrong) shown.push_back(&item);
   }
   std::string clicked;
-  ImGui::BeginChild("cases", {0, -ImGui::GetFrameHeightWithSpacing() * 1.2F}, true);
+  ImGui::BeginChild("cases", {0, -ImGui::GetFrameHeightWithSpacing() * 1.2F}, true,
+                    ImGuiWindowFlags_NavFlattened);
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(shown.size()));
   while (clipper.Step()) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const CaseChoice::Item& item = *shown[static_cast<std::size_t>(row)];
       const std::string status(statusName(item.status));
-      const float width = ImGui::CalcTextSize(status.c_str()).x;
       ImGui::PushID(row);
-      if (ui.selectable(item.id.c_str(), false)) clicked = item.id;
+      const Rgb rgb = item.status == Status::ok ? ui.theme.good : ui.theme.bad;
+      if (ui.selectable(item.id.c_str(), false, status, rgb,
+                        item.reason.empty() ? nullptr : item.reason.c_str())) {
+        clicked = item.id;
+      }
       if (row == 0) ui.note("first");
-      ui.tooltip(item.reason.c_str());
       ImGui::PopID();
-      ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
-      ui.coloured(item.status == Status::ok ? ui.theme.good : ui.theme.bad, status);
     }
   }
   ImGui::EndChild();

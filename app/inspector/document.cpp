@@ -29,6 +29,7 @@ void Document::startFromFrame() {
                         *scene = sceneFromFootage(*former, frame);
                         return stillOf(*scene);
                       },
+                  .source = FootageSource::authored,
                   .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
   wanted.shown = playback_.footage();
   to_take_ = std::move(wanted);
@@ -60,8 +61,10 @@ void Document::showAs(FootageOpener open, bool moves) {
   if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
   world_ = world;
   playback_.pause();
-  playback_.show(
-      {.open = std::move(open), .title = desk.title() + (moves ? " (live)" : ""), .scene = scene_});
+  playback_.show({.open = std::move(open),
+                  .source = FootageSource::authored,
+                  .title = desk.title() + (moves ? ", simulated" : ", at its start"),
+                  .scene = scene_});
   footage_ = playback_.footage();
   moves_ = moves;
   selection_.follow(desk.editor.selection());

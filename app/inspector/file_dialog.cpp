@@ -98,19 +98,14 @@ void FileDialog::accept() {
 
 void FileDialog::drawEntries(Ui& ui) {
   const float below = ImGui::GetFrameHeightWithSpacing() * 3.2F;
-  ImGui::BeginChild("entries", {0, -below}, true);
+  ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NavFlattened);
   if (directory_.has_relative_path() && ui.selectable("..", false)) enter(directory_.parent_path());
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry entry = entries_[i];  // entering a directory replaces them
     const std::string label = entry.is_directory ? entry.name + "/" : entry.name;
-    const bool pressed = ImGui::Selectable(label.c_str(), entry.name == name_,
-                                           ImGuiSelectableFlags_AllowDoubleClick);
-    ui.note(label);
-    if (!entry.is_directory) {
-      const std::string size = bytesText(entry.bytes);
-      ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
-      ui.faint(size);
-    }
+    const bool pressed = entry.is_directory ? ui.selectable(label.c_str(), false)
+                                            : ui.selectable(label.c_str(), entry.name == name_,
+                                                            bytesText(entry.bytes), ui.theme.faint);
     if (!pressed) continue;
     if (entry.is_directory) {
       enter(directory_ / entry.name);
@@ -135,6 +130,7 @@ void FileDialog::draw(Ui& ui) {
   ImGui::SetNextItemWidth(-1);
   ImGui::PushID("directory");
   const bool typed = ui.text("##directory", path_text_, "directory");
+  const bool in_directory = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
   ImGui::PopID();
   if (typed) enter(path_text_);
   drawEntries(ui);
@@ -146,7 +142,10 @@ void FileDialog::draw(Ui& ui) {
   } else {
     ImGui::Dummy({0, ImGui::GetTextLineHeight()});
   }
-  if (ui.button(std::string(kVerbs.nameOf(request_.purpose)).c_str())) accept();
+  // The key that opened the dialog does not answer it.
+  const bool returned = Ui::entered() && !in_directory && !ImGui::IsWindowAppearing();
+  const bool pressed = ui.button(std::string(kVerbs.nameOf(request_.purpose)).c_str());
+  if (pressed || returned) accept();
   ImGui::SameLine();
   if (ui.cancel()) keep = false;
   if (!keep) open_ = false;

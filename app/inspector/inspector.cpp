@@ -12,7 +12,6 @@
 #include <cmath>
 #include <utility>
 
-#include "broadmark/render/fonts.h"
 #include "inspector/author_dialogs.h"
 #include "inspector/case_chooser.h"
 
@@ -21,9 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kFontSize = 15;     // units
-constexpr float kSplitterSize = 5;  // units
-constexpr float kNarrowest = 110;   // units: of a place that is shown
+constexpr float kFontSize = 15;       // units
+constexpr float kLargeFontSize = 20;  // units
+constexpr float kSplitterSize = 5;    // units
+constexpr float kNarrowest = 110;     // units: of a place that is shown
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
@@ -47,34 +47,38 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
       gl_(&gl),
       session_(std::move(algorithms), std::move(make_host)),
       view_(gl),
-      panels_(makePanels()) {
+      panels_(makePanels()),
+      screen_scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
   io.MousePos = {-FLT_MAX, -FLT_MAX};
   setKeyMap(io);
-  ui_.scale = preferences_.scale > 0 ? static_cast<float>(preferences_.scale) : scale;
-  loadFonts();
+  restyle();
   for (const auto& [place, panel] : preferences_.tabs)
     session_.notices.wanted_panels.push_back(panel);
   session_.on_file = [this](const fs::path& file) { preferences_.remember(file); };
+  ui_.on_correction = [this](const std::string& text) {
+    session_.notices.say(text, Message::Kind::warning);
+  };
   makeShortcuts();
 }
 
 Inspector::~Inspector() { ImGui::DestroyContext(context_); }
 
+void Inspector::restyle() {
+  const float scale =
+      preferences_.scale > 0 ? static_cast<float>(preferences_.scale) : screen_scale_;
+  const bool same_letters = scale == ui_.scale && ui_.large != nullptr;
+  applyTheme(ui_, preferences_.dark, scale);
+  if (!same_letters) loadFonts();
+}
+
 void Inspector::loadFonts() {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-  atlas.Clear();
-  // Latin, and the dashes, arrows, dots and signs that our texts use.
-  static constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x2010, 0x2026, 0x2190, 0x2193, 0x2212,
-                                        0x2212, 0x2248, 0x2248, 0x2264, 0x2265, 0};
-  ImFontConfig config;
-  config.FontDataOwnedByAtlas = false;
-  const std::string_view font = interfaceFont();
-  atlas.AddFontFromMemoryTTF(const_cast<char*>(font.data()), static_cast<int>(font.size()),
-                             std::floor(kFontSize * ui_.scale), &config, kRanges);
+  ui_.large = ui_.letters.load(atlas, std::floor(kFontSize * ui_.scale),
+                               std::floor(kLargeFontSize * ui_.scale));
   renderer_.uploadFonts(atlas);
 }
 
@@ -85,8 +89,11 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(std::clamp(seconds, 1e-4, 1.0));
   input.applyTo(io);
-  if (std::exchange(restyle_, false)) applyTheme(ui_, preferences_.dark, ui_.scale);
+  if (std::exchange(restyle_, false)) restyle();
+  if (ui_.letters.stale()) loadFonts();
   session_.runs.gate().beginDrawing();
+  ui_.beforePicture();
+  prepareNavigation();
   ImGui::NewFrame();
   ui_.begin();
   session_.runs.look([&](const RunProgress& progress) {
@@ -164,9 +171,10 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   const float left = extent(preferences_.left, 0.30F * w);
   const float right = extent(preferences_.right, 0.30F * w);
   const float bottom = extent(preferences_.bottom, 0.40F * (status_top - top));
-  const float transport_height = ImGui::GetFrameHeight() + 12 * unit;
   const float view_left = left > 0 ? left + gap : 0;
   const float view_right = right > 0 ? w - right - gap : w;
+  const float middle = std::max(view_right - view_left, 1.0F);
+  const float transport_height = transportHeight(middle);
   const float view_bottom =
       std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
@@ -180,7 +188,6 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
     splitter("right splitter", {w - right - gap, top}, {gap, status_top - top}, preferences_.right,
              -1);
   }
-  const float middle = std::max(view_right - view_left, 1.0F);
   if (bottom > 0) {
     drawPlace(Place::bottom, context, {view_left, status_top - bottom}, {middle, bottom});
     splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
@@ -193,6 +200,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   ImGui::PopStyleVar();
   beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
           ImGuiWindowFlags_NoScrollbar);
+  takeFocus(kPlaces.entries.size());
   drawTransport(progress);
   ImGui::End();
   beginAt("Status", {0, status_top}, {w, line}, ImGuiWindowFlags_NoScrollbar);
@@ -211,6 +219,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
 void Inspector::drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size) {
   const std::string name(kPlaces.nameOf(place));
   beginAt(name.c_str(), position, size);
+  takeFocus(static_cast<std::size_t>(place));
   if (ImGui::BeginTabBar(name.c_str(), ImGuiTabBarFlags_FittingPolicyScroll)) {
     for (const auto& panel : panels_) {
       if (panel->place() != place) continue;
@@ -223,7 +232,7 @@ void Inspector::drawPlace(Place place, PanelContext& context, ImVec2 position, I
       if (!open) continue;
       preferences_.tabs[name] = panel->name();
       const auto scope = ui_.scope(panel->name());
-      ImGui::BeginChild(panel->name());
+      ImGui::BeginChild(panel->name(), {0, 0}, false, ImGuiWindowFlags_NavFlattened);
       panel->draw(context);
       ImGui::EndChild();
       ImGui::EndTabItem();
@@ -240,10 +249,8 @@ void Inspector::drawErrors() {
   if (!session_.notices.errors.empty()) ui_.paragraph(session_.notices.errors.front());
   ImGui::Spacing();
   // The key that led to the error does not acknowledge it.
-  const bool escaped = !ImGui::IsWindowAppearing() &&
-                       (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false) ||
-                        ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false));
-  if (ui_.button("OK", nullptr, 80 * ui_.scale) || escaped) {
+  const bool seen = !ImGui::IsWindowAppearing() && (ui_.escaped() || Ui::entered());
+  if (ui_.button("OK", nullptr, 80 * ui_.scale) || seen) {
     if (!session_.notices.errors.empty()) session_.notices.errors.pop_front();
     if (session_.notices.errors.empty()) ImGui::CloseCurrentPopup();
   }

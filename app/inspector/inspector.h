@@ -27,10 +27,21 @@ struct Shortcut {
   Key key = 0;
   bool ctrl = false;
   bool shift = false;
-  const char* keys = "";  ///< as people read it: "Ctrl+O"
-  const char* doc = "";
+  std::string doc = {};
   std::function<void()> act;
+
+  /// As people read it: "Ctrl+O".
+  [[nodiscard]] std::string keys() const;
 };
+
+/// What some shortcuts do, for the menus that say so, too.
+inline constexpr const char* kOpenFile = "open a file";
+inline constexpr const char* kSave =
+    "save the authored scene, or the frames known so far as a recording";
+inline constexpr const char* kQuit = "quit";
+inline constexpr const char* kTakePicture = "save a picture of the window";
+inline constexpr const char* kShowKeys = "this page";
+inline constexpr const char* kNextPlace = "to the next place; then arrows move among its widgets";
 
 class Inspector {
  public:
@@ -72,17 +83,33 @@ class Inspector {
   [[nodiscard]] Panel* panel(const std::string& name);
 
  private:
+  void restyle();
   void loadFonts();
   void build(const RunProgress& progress, int width, int height);
   void drawMenus(const RunProgress& progress);
+  void drawScaleMenu();
+  void resetLayout();
   void drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size);
+  [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
+  void drawButtons();
+  void drawSpeed();
+  void drawPosition(const RunProgress& progress);
   void drawStatus(const RunProgress& progress);
   void drawHelp();
   void drawErrors();
   void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
   void makeShortcuts();
   void handleShortcuts();
+  /// The keys that do what is explained so, for menus.
+  [[nodiscard]] std::string keysFor(std::string_view doc) const;
+  /// Before a picture: lets keys move among widgets, or not.
+  void prepareNavigation();
+  void focusPlace(int step);
+  void enterPanel(const Panel& panel);
+  /// To be called inside the window of a place: gives it the keys if they are to go there.
+  void takeFocus(std::size_t place);
+  void escape();
   void editAuthored(void (scenes::SceneEditor::*change)());
   void askOpen();
   void askSaveRecording();
@@ -100,8 +127,12 @@ class Inspector {
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<Shortcut> shortcuts_;
   bool help_ = false;
+  bool navigates_ = false;               ///< keys move among the widgets
+  std::optional<std::size_t> to_focus_;  ///< which of the places, in the next picture
+  std::size_t focused_ = 0;
   bool closing_ = false;
-  bool restyle_ = true;
+  float screen_scale_;    ///< that the screen suggests
+  bool restyle_ = false;  ///< theme or scale are others than in the last picture
   bool screenshot_asked_ = false;
   int screenshots_ = 0;
   std::filesystem::path movie_directory_;

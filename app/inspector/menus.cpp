@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "broadmark/environment.h"
 #include "broadmark/files.h"
 #include "broadmark/recording.h"
@@ -17,7 +19,8 @@ void Inspector::drawMenus(const RunProgress& progress) {
   if (!ImGui::BeginMainMenuBar()) return;
   if (ui_.beginMenu("File")) {
     const auto scope = ui_.scope("File");
-    if (ui_.menuItem("Open…", "Ctrl+O")) askOpen();
+    const std::string save = keysFor(kSave);
+    if (ui_.menuItem("Open…", keysFor(kOpenFile).c_str())) askOpen();
     if (ImGui::BeginMenu("Open recent", !preferences_.recent.empty())) {
       const auto inside = ui_.scope("Open recent");
       for (const std::string& file : std::vector(preferences_.recent)) {
@@ -28,10 +31,10 @@ void Inspector::drawMenus(const RunProgress& progress) {
       ui_.note("Open recent");
     }
     ImGui::Separator();
-    if (ui_.menuItem("Save scene…", session_.document.shown() ? "Ctrl+S" : nullptr)) {
+    if (ui_.menuItem("Save scene…", session_.document.shown() ? save.c_str() : nullptr)) {
       askSaveScene(files_, session_);
     }
-    if (ui_.menuItem("Save recording…", session_.document.shown() ? nullptr : "Ctrl+S", false,
+    if (ui_.menuItem("Save recording…", session_.document.shown() ? nullptr : save.c_str(), false,
                      progress.snapshot != nullptr)) {
       askSaveRecording();
     }
@@ -40,7 +43,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       askExportTimings();
     }
     ImGui::Separator();
-    if (ui_.menuItem("Screenshot", "F12")) screenshot_asked_ = true;
+    if (ui_.menuItem("Screenshot", keysFor(kTakePicture).c_str())) screenshot_asked_ = true;
     if (movie_directory_.empty()) {
       if (ui_.menuItem("Record movie…")) askMovie();
     } else if (ui_.menuItem("End movie")) {
@@ -48,7 +51,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       movie_directory_.clear();
     }
     ImGui::Separator();
-    if (ui_.menuItem("Quit", "Ctrl+Q")) close();
+    if (ui_.menuItem("Quit", keysFor(kQuit).c_str())) close();
     ImGui::EndMenu();
   }
   if (ui_.beginMenu("View")) {
@@ -62,19 +65,52 @@ void Inspector::drawMenus(const RunProgress& progress) {
       restyle_ = true;
     }
     ImGui::Separator();
+    drawScaleMenu();
+    if (ui_.menuItem("Reset layout")) resetLayout();
+    ImGui::Separator();
     for (const auto& panel : panels_) {
-      if (ui_.menuItem(panel->name())) session_.notices.wanted_panels.push_back(panel->name());
+      const std::string keys = keysFor(fmt::format("the panel {}", panel->name()));
+      if (ui_.menuItem(panel->name(), keys.c_str()))
+        session_.notices.wanted_panels.push_back(panel->name());
     }
     ImGui::EndMenu();
   }
   if (ui_.beginMenu("Help")) {
     const auto scope = ui_.scope("Help");
-    if (ui_.menuItem("Keys and mouse", "F1")) help_ = true;
+    if (ui_.menuItem("Keys and mouse", keysFor(kShowKeys).c_str())) help_ = true;
     ImGui::Separator();
     ui_.faint(fmt::format("Broadmark {}", thisEnvironment().version));
     ImGui::EndMenu();
   }
   ImGui::EndMainMenuBar();
+}
+
+void Inspector::resetLayout() {
+  preferences_.resetLayout();
+  for (const auto& [place, name] : kPlaces.entries) {
+    const auto first = std::ranges::find_if(
+        panels_, [&, wanted = place](const auto& panel) { return panel->place() == wanted; });
+    if (first != panels_.end()) session_.notices.bringUp((*first)->name());
+  }
+}
+
+void Inspector::drawScaleMenu() {
+  const bool open = ImGui::BeginMenu("Scale");
+  if (!open) {
+    ui_.note("Scale");
+    return;
+  }
+  const auto scope = ui_.scope("Scale");
+  constexpr double kScales[] = {0, 0.75, 1, 1.25, 1.5, 2, 3};
+  for (const double scale : kScales) {
+    const std::string name =
+        scale == 0 ? "as the screen suggests" : fmt::format("{:.0f} %", 100 * scale);
+    if (ui_.menuItem(name.c_str(), nullptr, preferences_.scale == scale)) {
+      preferences_.scale = scale;
+      restyle_ = true;
+    }
+  }
+  ImGui::EndMenu();
 }
 
 void Inspector::askOpen() {

@@ -8,9 +8,6 @@
 namespace broadmark {
 namespace {
 
-constexpr Rgb kFirst = 0x4C9BE8;   // of the two bodies
-constexpr Rgb kSecond = 0xB583E0;  // likewise
-
 Rgb relationColour(const Theme& theme, AxisRelation::Kind kind) {
   switch (kind) {
     case AxisRelation::Kind::overlap:
@@ -58,9 +55,9 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TableNextColumn();
-    ui.coloured(kFirst, fmt::format("body {}", pair.bodies.a));
+    ui.coloured(ui.theme.first, fmt::format("body {}", pair.bodies.a));
     ImGui::TableNextColumn();
-    ui.coloured(kSecond, fmt::format("body {}", pair.bodies.b));
+    ui.coloured(ui.theme.second, fmt::format("body {}", pair.bodies.b));
     for (std::size_t axis = 0; axis < kAxes.size(); ++axis) {
       const AxisRelation relation = relationOn(axis, pair.a, pair.b);
       const Rgb rgb = relationColour(ui.theme, relation.kind);
@@ -121,8 +118,8 @@ void drawIntervals(Ui& ui, const BoxPair& pair) {
                 {std::max(x(box.max[axis]), x(box.min[axis]) + unit), y + bar}, shade, 0.85F,
                 2 * unit);
     };
-    draw_bar(pair.a, top, kFirst);
-    draw_bar(pair.b, top + bar + 2 * unit, kSecond);
+    draw_bar(pair.a, top, ui.theme.first);
+    draw_bar(pair.b, top + bar + 2 * unit, ui.theme.second);
     plainRect(band_min, band_max, rgb, 0.35F);
     ImGui::GetWindowDrawList()->AddRect(band_min, band_max, colour(rgb));
   }
@@ -183,8 +180,8 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
                 movedAt(body, i) ? 0.9F : 0.15F);
     }
   };
-  draw_moves(track.a, origin.y + moved_top, kFirst);
-  draw_moves(track.b, origin.y + moved_top + strip, kSecond);
+  draw_moves(track.a, origin.y + moved_top, ui.theme.first);
+  draw_moves(track.b, origin.y + moved_top + strip, ui.theme.second);
 
   if (!ImGui::IsItemHovered()) return {};
   const float offset = (ImGui::GetIO().MousePos.x - origin.x - label) / step;

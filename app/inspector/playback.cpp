@@ -8,6 +8,8 @@
 namespace broadmark {
 namespace {
 
+/// Over so many seconds the frames that are shown are counted.
+constexpr double kCountedSeconds = 1;
 /// What cannot keep pace leaves out no more than this.
 constexpr double kMostFramesAtOnce = 4;
 
@@ -61,12 +63,27 @@ bool Playback::hasReached(const RunProgress& progress) const {
          progress.snapshot->frame == frame_;
 }
 
+void Playback::passTime(double seconds) {
+  if (!playing_) {
+    achieved_.reset();
+    counted_seconds_ = 0;
+    counted_frames_ = 0;
+    return;
+  }
+  counted_seconds_ += seconds;
+  if (counted_seconds_ < kCountedSeconds) return;
+  achieved_ = counted_frames_ / counted_seconds_;
+  counted_seconds_ = 0;
+  counted_frames_ = 0;
+}
+
 void Playback::advance(double seconds) {
   if (!playing_) return;
   due_ += seconds * frames_per_second;
   if (due_ < 1) return;
   const double frames = std::floor(due_);
   due_ = std::min(due_ - frames, 1.0);
+  ++counted_frames_;
   if (frame_ < scene_.frames) {
     seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMostFramesAtOnce)));
   } else if (loop) {

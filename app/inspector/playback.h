@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "broadmark/frame.h"
@@ -35,6 +36,11 @@ class Playback {
   /// While it plays: moves on by `seconds`. Call it only when the wished frame is reached.
   void advance(double seconds);
 
+  /// Takes note that `seconds` have passed.
+  void passTime(double seconds);
+  /// How many frames were shown per second of late; nothing while it does not play.
+  [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
+
   /// The wished footage; null: none.
   [[nodiscard]] const std::shared_ptr<const FootageRequest>& footage() const { return footage_; }
   /// The wished frame.
@@ -59,6 +65,9 @@ class Playback {
   bool scene_known_ = false;  ///< the footage has been opened
   bool playing_ = false;
   double due_ = 0;  ///< of the next frame, as a share of its time
+  std::optional<double> achieved_;
+  double counted_seconds_ = 0;
+  int counted_frames_ = 0;
 };
 
 }  // namespace broadmark

@@ -27,6 +27,14 @@ double within(double value, double low, double high) {
 
 }  // namespace
 
+void Preferences::resetLayout() {
+  const Preferences first;
+  left = first.left;
+  right = first.right;
+  bottom = first.bottom;
+  tabs = first.tabs;
+}
+
 void Preferences::remember(const std::filesystem::path& file) {
   std::error_code failed;
   const std::string name = std::filesystem::absolute(file, failed).lexically_normal().string();

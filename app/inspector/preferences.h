@@ -22,6 +22,8 @@ struct Preferences {
   std::map<std::string, std::string> tabs;  ///< the panel in front, by place
   std::vector<std::string> recent;          ///< files, the latest first
 
+  /// Gives the panels the sizes and places that they have at first.
+  void resetLayout();
   /// Puts a file in front of the recent ones.
   void remember(const std::filesystem::path& file);
 

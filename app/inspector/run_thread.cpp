@@ -357,6 +357,9 @@ void RunThread::show() {
       if (std::optional<FrameDifference> difference = lane->check(frame, oracle_)) {
         snapshot->checked = true;
         snapshot->difference = std::move(*difference);
+        const PairRun right = oracle_.pairs(frame.boxes, snapshot->scene.filter);
+        snapshot->right_pairs = right.size();
+        snapshot->right_overlaps = overlapCounts(snapshot->boxes->size(), {&right, 1});
       }
     }
     if (current_.structure && lane->standsAt(index)) {

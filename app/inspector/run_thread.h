@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "broadmark/names.h"
 #include "broadmark/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "inspector/draw_gate.h"
@@ -26,14 +27,25 @@
 
 namespace broadmark {
 
+/// Where what is looked at comes from.
+enum class FootageSource { simulation, recording, import, authored, results };
+inline constexpr NameTable kFootageSources{
+    {NamedValue{FootageSource::simulation, "live simulation"},
+     {FootageSource::recording, "recording"},
+     {FootageSource::import, "imported files"},
+     {FootageSource::authored, "authored scene"},
+     {FootageSource::results, "case of results"}}};
+
 /// What to look at. Compared by address: the same one is opened once.
 struct FootageRequest {
   FootageOpener open;  ///< called on the run thread
+  FootageSource source = FootageSource::simulation;
   std::string title;
   /// Requests of the same number, unless 0, show the same scene, perhaps changed: the camera stays
   /// where it is.
   std::uint64_t scene = 0;
   std::filesystem::path recording = {};  ///< "": something else
+  std::string scene_parameters = {};     ///< as formatSceneParameters() writes them; "": unknown
 };
 
 /// What the interface wants.
@@ -70,7 +82,9 @@ struct Snapshot {
   std::vector<Pair> pairs;                                ///< the answer
   std::vector<std::uint32_t> overlaps;  ///< per body, in how many pairs of the answer it is
   bool checked = false;
-  FrameDifference difference;                        ///< from the right answer, if checked
+  std::uint64_t right_pairs = 0;              ///< that the oracle finds, if checked
+  std::vector<std::uint32_t> right_overlaps;  ///< likewise: as `overlaps`, of the oracle's pairs
+  FrameDifference difference;                 ///< from the right answer, if checked
   std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
   std::vector<Track> tracks;
 };

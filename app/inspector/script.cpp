@@ -3,6 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <charconv>
@@ -253,8 +254,11 @@ void ScriptPlayer::choose(const Words& words, Inspector&) {
 
 void ScriptPlayer::type(const Words& words, Inspector&) {
   steps_.push_back([text = words[0]](Inspector&, InputQueue& input) {
-    for (const char c : text) {
-      input.push({.kind = InputEvent::Kind::character, .code = static_cast<unsigned char>(c)});
+    const char* const end = text.data() + text.size();
+    for (const char* at = text.data(); at < end;) {
+      unsigned letter = 0;
+      at += std::max(ImTextCharFromUtf8(&letter, at, end), 1);
+      input.push({.kind = InputEvent::Kind::character, .code = static_cast<int>(letter)});
     }
     return true;
   });

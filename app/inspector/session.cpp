@@ -26,6 +26,17 @@ bool sameWish(const Wish& a, const Wish& b) {
                             [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
 }
 
+/// The parameters that a recording was baked with; "": unknown. Only the frames have to be right.
+std::string parametersOf(const Recording& recording, const fs::path& path) {
+  try {
+    const std::string& stated = recording.origin().scene_parameters;
+    const std::string text = stated.empty() ? bakedParameters(path) : stated;
+    return text.empty() ? "" : formatSceneParameters(*parseSceneParameters(text, path.string()));
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
 /// At most so many bodies are followed through the last frames.
 constexpr std::size_t kMostTracked = 2;
 
@@ -40,6 +51,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
     selection.follow({});
     mismatches.reset();
     noticed_failure_.clear();
+    notices.status = {};  // it told of what was open before
   };
   playback.on_move = [this](bool forward) { mismatches.moved(forward); };
   lanes.on_change = [this] { mismatches.forgetStop(); };
@@ -59,6 +71,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
+  playback.passTime(seconds);
   if (playback.hasReached(progress)) playback.advance(seconds);
 }
 
@@ -125,14 +138,32 @@ void Session::chooseScene(const std::string& scene, const std::string& engine) {
   }
 }
 
-void Session::simulate() {
+void Session::simulate() { playback.show(simulationFootage()); }
+
+FootageRequest Session::simulationFootage() const {
   const std::string text = formatSceneParameters(*draft);
-  playback.show({.open =
-                     [text, swept = swept_] {
-                       return std::make_unique<Footage>(
-                           parseSceneParameters(text, "scene parameters"), swept);
-                     },
-                 .title = fmt::format("{} (live)", draft->listing().name)});
+  return {.open =
+              [text, swept = swept_] {
+                return std::make_unique<Footage>(parseSceneParameters(text, "scene parameters"),
+                                                 swept);
+              },
+          .source = FootageSource::simulation,
+          .title = draft->listing().name,
+          .scene_parameters = text};
+}
+
+bool Session::draftIsOpen() const {
+  return playback.footage() &&
+         playback.footage()->scene_parameters == formatSceneParameters(*draft);
+}
+
+ParameterValues Session::openParameters() const {
+  if (!playback.footage() || playback.footage()->scene_parameters.empty()) return {};
+  const auto simulation =
+      parseSceneParameters(playback.footage()->scene_parameters, playback.footage()->title);
+  ParameterValues values = parameterValues(*simulation);
+  values["scene"] = simulation->listing().id;
+  return values;
 }
 
 void Session::open(const fs::path& path) {
@@ -175,7 +206,7 @@ void Session::openEntry(PlanEntry entry, Opened document_is) {
 }
 
 void Session::enter(PlanEntry& entry, Opened document_is) {
-  enterSource(entry.source, document_is);
+  enterSource(entry.source, document_is, entry.known ? entry.known->id : "");
   if (entry.cases.empty()) return;
   lanes.clear();
   for (const Case& run : entry.cases) lanes.add(run);
@@ -186,7 +217,14 @@ void Session::enter(PlanEntry& entry, Opened document_is) {
   notices.bringUp("Mismatches");
 }
 
-void Session::enterSource(Source& source, Opened document_is) {
+void Session::enterSource(Source& source, Opened document_is, const std::string& case_id) {
+  const auto show = [&](FootageRequest footage) {
+    if (!case_id.empty()) {
+      footage.source = FootageSource::results;
+      footage.title = case_id;
+    }
+    playback.show(std::move(footage));
+  };
   swept_ = source.reference.reading.contains("swept");
   if (auto* authored = dynamic_cast<scenes::SceneDocument*>(source.simulation.get())) {
     const fs::path file = source.simulation->input();
@@ -197,18 +235,19 @@ void Session::enterSource(Source& source, Opened document_is) {
   } else if (source.simulation) {
     // A hash that is expected would be known only after the last frame.
     draft = std::move(source.simulation);
-    simulate();
+    show(simulationFootage());
   } else if (source.imported) {
-    openImport(source.reference);
+    show(importFootage(source.reference));
     tellOfFile(source.reference.path);
   } else if (!source.reference.path.empty()) {
-    openRecording(source.reference.path, source.expected_hash);
+    show(recordingFootage(source.reference.path, source.expected_hash));
     tellOfFile(source.reference.path);
   }
 }
 
-void Session::openRecording(const fs::path& path, const std::string& hash) {
-  openRecordingFile(path);  // a bad one is an error at once, and changes nothing
+FootageRequest Session::recordingFootage(const fs::path& path, const std::string& hash) const {
+  // A bad one is an error at once, and changes nothing.
+  const std::string parameters = parametersOf(*openRecordingFile(path), path);
   const auto open = [path, hash, swept = swept_] {
     std::unique_ptr<Recording> recording = openRecordingFile(path);
     if (!hash.empty()) {
@@ -216,10 +255,14 @@ void Session::openRecording(const fs::path& path, const std::string& hash) {
     }
     return std::make_unique<Footage>(std::move(recording), swept);
   };
-  playback.show({.open = open, .title = path.filename().string(), .recording = path});
+  return {.open = open,
+          .source = FootageSource::recording,
+          .title = path.filename().string(),
+          .recording = path,
+          .scene_parameters = parameters};
 }
 
-void Session::openImport(const RecordingReference& reference) {
+FootageRequest Session::importFootage(const RecordingReference& reference) const {
   const auto open = [reference, swept = swept_]() -> std::unique_ptr<Footage> {
     ReadingOptions reading;
     setParameters(reading, reference.reading);
@@ -228,7 +271,9 @@ void Session::openImport(const RecordingReference& reference) {
     Source source = importedSource({reference.path}, *import, reading);
     return std::make_unique<Footage>(std::move(source.imported), swept);
   };
-  playback.show({.open = open, .title = fs::path(reference.path).filename().string()});
+  return {.open = open,
+          .source = FootageSource::import,
+          .title = fs::path(reference.path).filename().string()};
 }
 
 void Session::offerCases(const fs::path& file, const Results& results) {
@@ -244,6 +289,10 @@ void Session::offerCases(const fs::path& file, const Results& results) {
 }
 
 void Session::play(bool on) {
+  if (on && !playback.footage()) {
+    notices.say("nothing is open: simulate a scene, or open a file", Message::Kind::warning);
+    return;
+  }
   if (on && document.atRest()) document.simulate();
   playback.play(on);
 }
@@ -279,7 +328,7 @@ void Session::openExport() {
   const CaseExport::Report report = case_export.report();
   notices.attempt([&] {
     swept_ = false;
-    openRecording(report.file, {});
+    playback.show(recordingFootage(report.file, {}));
     lanes.clear();
     lanes.add(report.run);
     playback.seek(static_cast<std::int64_t>(report.frames));

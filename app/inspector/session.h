@@ -72,6 +72,10 @@ class Session {
 
   /// Begins a live simulation with the draft's present parameters.
   void simulate();
+  /// Whether what is open is the draft's simulation, or was baked with its parameters.
+  [[nodiscard]] bool draftIsOpen() const;
+  /// Of what is open, "scene" among them, as far as they are known.
+  [[nodiscard]] ParameterValues openParameters() const;
   /// Takes over another built-in scene as the draft, with what both have in common.
   void chooseScene(const std::string& scene, const std::string& engine = {});
 
@@ -121,11 +125,14 @@ class Session {
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);
   void enter(PlanEntry& entry, Opened document_is);
-  void enterSource(Source& source, Opened document_is);
+  /// `case_id`: of results; "": it is no case of any.
+  void enterSource(Source& source, Opened document_is, const std::string& case_id);
+  [[nodiscard]] FootageRequest simulationFootage() const;
   /// `hash`: what it has to be; "": whatever it is. Throws InputError.
-  void openRecording(const std::filesystem::path& path, const std::string& hash);
+  [[nodiscard]] FootageRequest recordingFootage(const std::filesystem::path& path,
+                                                const std::string& hash) const;
   /// Throws InputError.
-  void openImport(const RecordingReference& reference);
+  [[nodiscard]] FootageRequest importFootage(const RecordingReference& reference) const;
   void offerCases(const std::filesystem::path& file, const Results& results);
   void tellOfFile(const std::filesystem::path& path) const {
     if (on_file) on_file(path);

@@ -2,7 +2,11 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
 
 #include "inspector/author_dialogs.h"
 #include "inspector/inspector.h"
@@ -18,34 +22,44 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
     {"Click", "select a body (with Ctrl: add or remove it)"},
     {"Shift + drag", "select all bodies in a rectangle"},
     {"Double click", "fly to a body"},
-    {"W A S D Q E", "fly, while the mouse is over the view"},
     {"Drop a file", "open it"},
 };
+
+/// While keys move among the widgets; Dear ImGui handles them.
+constexpr std::pair<const char*, const char*> kNavigation[] = {
+    {"Arrows", "after F6, or in a list: to the next widget"},
+    {"Enter, Space", "likewise: press it, or type into it"},
+    {"Alt", "likewise: to the menus, and back"},
+    {"Escape", "likewise: back, and at last to the view"},
+};
+
+/// Keys that move among the widgets once F6 has been pressed.
+bool movesFocus(const Shortcut& shortcut) {
+  constexpr Key kKeys[] = {GLFW_KEY_SPACE, GLFW_KEY_LEFT, GLFW_KEY_RIGHT, GLFW_KEY_HOME,
+                           GLFW_KEY_END};
+  return !shortcut.ctrl && std::ranges::find(kKeys, shortcut.key) != std::end(kKeys);
+}
 
 }  // namespace
 
 void Inspector::makeShortcuts() {
   shortcuts_ = {
-      {GLFW_KEY_SPACE, false, false, "Space", "play or pause",
+      {GLFW_KEY_SPACE, false, false, "play or pause",
        [this] { session_.play(!session_.playback.playing()); }},
-      {GLFW_KEY_LEFT, false, false, "Left", "one frame back",
-       [this] { session_.playback.step(-1); }},
-      {GLFW_KEY_RIGHT, false, false, "Right", "one frame on",
-       [this] { session_.playback.step(1); }},
-      {GLFW_KEY_HOME, false, false, "Home", "to the first frame",
-       [this] { session_.playback.goTo(0); }},
-      {GLFW_KEY_END, false, false, "End", "to the last frame",
+      {GLFW_KEY_LEFT, false, false, "one frame back", [this] { session_.playback.step(-1); }},
+      {GLFW_KEY_RIGHT, false, false, "one frame on", [this] { session_.playback.step(1); }},
+      {GLFW_KEY_HOME, false, false, "to the first frame", [this] { session_.playback.goTo(0); }},
+      {GLFW_KEY_END, false, false, "to the last frame",
        [this] { session_.playback.goTo(session_.playback.lastFrame()); }},
-      {GLFW_KEY_F, false, false, "F", "fly to the selection, or to all",
+      {GLFW_KEY_F, false, false, "fly to the selection, or to all",
        [this] { session_.selection.flyThere(); }},
-      {GLFW_KEY_H, false, false, "H", "hide what overlaps nothing, or show it",
+      {GLFW_KEY_H, false, false, "hide what overlaps nothing, or show it",
        [this] { session_.view.hide_free = !session_.view.hide_free; }},
-      {GLFW_KEY_C, false, false, "C", "the next colouring", [this] { ++session_.view.colouring; }},
-      {GLFW_KEY_ESCAPE, false, false, "Escape", "select nothing",
-       [this] { session_.selection.select({}); }},
-      {GLFW_KEY_O, true, false, "Ctrl+O", "open a file", [this] { askOpen(); }},
-      {GLFW_KEY_S, true, false, "Ctrl+S",
-       "save the authored scene, or the frames known so far as a recording",
+      {GLFW_KEY_C, false, false, "the next colouring", [this] { ++session_.view.colouring; }},
+      {GLFW_KEY_ESCAPE, false, false, "close a list, a dialog, this page; select nothing",
+       [this] { escape(); }},
+      {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},
+      {GLFW_KEY_S, true, false, kSave,
        [this] {
          if (session_.document.shown()) {
            saveScene(files_, session_);
@@ -53,19 +67,86 @@ void Inspector::makeShortcuts() {
            askSaveRecording();
          }
        }},
-      {GLFW_KEY_Z, true, false, "Ctrl+Z", "undo an edit of the scene",
+      {GLFW_KEY_Z, true, false, "undo an edit of the scene",
        [this] { editAuthored(&scenes::SceneEditor::undo); }},
-      {GLFW_KEY_Z, true, true, "Ctrl+Shift+Z", "redo it",
-       [this] { editAuthored(&scenes::SceneEditor::redo); }},
-      {GLFW_KEY_A, true, false, "Ctrl+A", "select all bodies of the authored scene",
+      {GLFW_KEY_Z, true, true, "redo it", [this] { editAuthored(&scenes::SceneEditor::redo); }},
+      {GLFW_KEY_A, true, false, "select all bodies of the authored scene",
        [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
-      {GLFW_KEY_DELETE, false, false, "Delete", "delete the selected bodies",
+      {GLFW_KEY_DELETE, false, false, "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
-      {GLFW_KEY_F1, false, false, "F1", "this page", [this] { help_ = !help_; }},
-      {GLFW_KEY_F12, false, false, "F12", "save a picture of the window",
-       [this] { screenshot_asked_ = true; }},
-      {GLFW_KEY_Q, true, false, "Ctrl+Q", "quit", [this] { close(); }},
+      {GLFW_KEY_F6, false, false, kNextPlace, [this] { focusPlace(1); }},
+      {GLFW_KEY_F6, false, true, "likewise, the place before", [this] { focusPlace(-1); }},
+      {GLFW_KEY_F1, false, false, kShowKeys, [this] { help_ = !help_; }},
+      {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
+      {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
   };
+  for (std::size_t i = 0; i < panels_.size() && i < 9; ++i) {
+    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_1 + i), true, false,
+                          fmt::format("the panel {}", panels_[i]->name()),
+                          [this, i] { enterPanel(*panels_[i]); }});
+  }
+}
+
+std::string Shortcut::keys() const {
+  return fmt::format("{}{}{}", ctrl ? "Ctrl+" : "", shift ? "Shift+" : "", keyName(key));
+}
+
+std::string Inspector::keysFor(std::string_view doc) const {
+  const auto found = std::ranges::find(shortcuts_, doc, &Shortcut::doc);
+  return found == shortcuts_.end() ? "" : found->keys();
+}
+
+void Inspector::prepareNavigation() {
+  ImGuiIO& io = ImGui::GetIO();
+  const bool popup = !GImGui->OpenPopupStack.empty();
+  for (const bool pressed : io.MouseDown) {
+    if (pressed) navigates_ = false;
+  }
+  const bool on = navigates_ || popup;
+  io.ConfigFlags = on ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
+                      : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
+  // Enter presses as Space does; in a dialog it answers that.
+  const bool enter = io.KeysDown[GLFW_KEY_ENTER] && !io.WantTextInput;
+  if (on && !ui_.inDialog() && enter) io.NavInputs[ImGuiNavInput_Activate] = 1;
+  if (!on) GImGui->NavDisableHighlight = true;
+}
+
+void Inspector::focusPlace(int step) {
+  // The places, then the playback.
+  const auto count = static_cast<int>(kPlaces.entries.size() + 1);
+  const int from = navigates_ ? static_cast<int>(focused_) : step > 0 ? -1 : 0;
+  to_focus_ = static_cast<std::size_t>((from + step + count) % count);
+}
+
+void Inspector::enterPanel(const Panel& panel) {
+  session_.notices.bringUp(panel.name());
+  for (std::size_t i = 0; i < kPlaces.entries.size(); ++i) {
+    if (kPlaces.entries[i].value == panel.place()) to_focus_ = i;
+  }
+}
+
+void Inspector::takeFocus(std::size_t place) {
+  if (to_focus_ != place) return;
+  to_focus_.reset();
+  focused_ = place;
+  navigates_ = true;
+  ImGuiWindow* const window = ImGui::GetCurrentWindow();
+  ImGui::FocusWindow(window);
+  ImGui::NavInitWindow(window, true);
+  GImGui->NavDisableHighlight = false;
+}
+
+void Inspector::escape() {
+  if (!ui_.escaped()) return;
+  if (navigates_) {
+    navigates_ = false;
+    return;
+  }
+  if (help_) {
+    help_ = false;
+  } else {
+    session_.selection.select({});
+  }
 }
 
 void Inspector::editAuthored(void (scenes::SceneEditor::*change)()) {
@@ -77,6 +158,7 @@ void Inspector::handleShortcuts() {
   const bool dialog = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId);
   if (io.WantTextInput || dialog) return;
   for (const Shortcut& shortcut : shortcuts_) {
+    if (navigates_ && movesFocus(shortcut)) continue;
     if (io.KeyCtrl == shortcut.ctrl && io.KeyShift == shortcut.shift && !io.KeyAlt &&
         ImGui::IsKeyPressed(shortcut.key)) {
       shortcut.act();
@@ -87,7 +169,7 @@ void Inspector::handleShortcuts() {
 void Inspector::drawHelp() {
   if (!help_) return;
   const auto scope = ui_.scope("Keys and mouse");
-  ui_.placeInMiddle({560, 640});
+  ui_.placeInMiddle({600, 660});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::Begin("Keys and mouse", &help_,
                ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -99,11 +181,16 @@ void Inspector::drawHelp() {
       ImGui::TableNextColumn();
       ui_.coloured(ui_.theme.accent, what);
       ImGui::TableNextColumn();
-      ImGui::TextUnformatted(doc);
+      ui_.paragraph(doc);
     };
-    for (const Shortcut& shortcut : shortcuts_) row(shortcut.keys, shortcut.doc);
+    for (const Shortcut& shortcut : shortcuts_) row(shortcut.keys().c_str(), shortcut.doc.c_str());
     row("", "");
     for (const auto& [what, doc] : kMouse) row(what, doc);
+    for (const FlyKey& fly : kFlyKeys) {
+      row(keyName(fly.key).c_str(), fmt::format("fly {}, over the view", fly.doc).c_str());
+    }
+    row("", "");
+    for (const auto& [what, doc] : kNavigation) row(what, doc);
     ImGui::EndTable();
   }
   if (ui_.button("Close")) help_ = false;

@@ -8,11 +8,13 @@ namespace {
 /// The colours that differ between light and dark.
 struct Palette {
   Rgb window, panel, input, hover, border, text, faint, accent, header;
+  Rgb pressed;  ///< behind text
+  Rgb fill;     ///< behind white text
 };
-constexpr Palette kDark = {0x17191D, 0x1E2126, 0x2A2E35, 0x383E48, 0x343941,
-                           0xE4E7EB, 0x8D96A3, 0x3D8BFD, 0x2C313A};
-constexpr Palette kLight = {0xE9ECF0, 0xF7F8FA, 0xFFFFFF, 0xDCE4EE, 0xCBD2DA,
-                            0x1C232B, 0x66707C, 0x1F6FEB, 0xDDE3EA};
+constexpr Palette kDark = {0x17191D, 0x1E2126, 0x2A2E35, 0x363C46, 0x343941, 0xE4E7EB,
+                           0xA3ACB8, 0x7FB2FF, 0x2C313A, 0x29549B, 0x2F6BD0};
+constexpr Palette kLight = {0xE9ECF0, 0xF7F8FA, 0xFFFFFF, 0xDCE4EE, 0xCBD2DA, 0x1C232B,
+                            0x565F6A, 0x1558C0, 0xDDE3EA, 0xA9C8FA, 0x1F6FEB};
 
 /// What each of Dear ImGui's colours is.
 struct ColourUse {
@@ -44,10 +46,10 @@ constexpr ColourUse kColourUses[] = {
     {ImGuiCol_SliderGrabActive, &Palette::accent},
     {ImGuiCol_Button, &Palette::input},
     {ImGuiCol_ButtonHovered, &Palette::hover},
-    {ImGuiCol_ButtonActive, &Palette::accent},
+    {ImGuiCol_ButtonActive, &Palette::pressed},
     {ImGuiCol_Header, &Palette::header},
     {ImGuiCol_HeaderHovered, &Palette::hover},
-    {ImGuiCol_HeaderActive, &Palette::accent},
+    {ImGuiCol_HeaderActive, &Palette::pressed},
     {ImGuiCol_Separator, &Palette::border},
     {ImGuiCol_SeparatorHovered, &Palette::accent},
     {ImGuiCol_SeparatorActive, &Palette::accent},
@@ -116,9 +118,12 @@ void applyTheme(Ui& ui, bool dark, float scale) {
   ui.scale = scale;
   ui.theme = {.dark = dark,
               .accent = palette.accent,
-              .good = dark ? 0x5BC77AU : 0x1A7F37U,
-              .bad = dark ? 0xFF6B6BU : 0xCF222EU,
-              .warning = dark ? 0xF2B84BU : 0x9A6700U,
+              .fill = palette.fill,
+              .good = dark ? 0x5BC77AU : 0x146B2EU,
+              .bad = dark ? 0xFF8080U : 0xB4232CU,
+              .warning = dark ? 0xF2B84BU : 0x7A5200U,
+              .first = dark ? 0x6FB4F5U : 0x1B5FA8U,
+              .second = dark ? 0xC79BEEU : 0x7D3FB0U,
               .faint = palette.faint,
               .background = dark ? 0x202329U : 0xF5F6F8U};
 }

@@ -27,7 +27,36 @@ std::string_view nameOf(std::string_view label) {
   return label.substr(0, split);
 }
 
+/// Puts the tooltip of the last item beside its window, or above it where the window is wide: under
+/// the mouse it would hide the next widget.
+void placeTooltip() {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 item = ImGui::GetItemRectMin();
+  const ImRect window = ImGui::GetCurrentWindowRead()->RootWindow->Rect();
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  if (window.GetWidth() > 0.45F * screen.x || window.GetWidth() < 1) {
+    ImGui::SetNextWindowPos({item.x, item.y - gap}, ImGuiCond_Always, {0, 1});
+  } else if (window.GetCenter().x < screen.x / 2) {
+    ImGui::SetNextWindowPos({window.Max.x + gap, item.y});
+  } else {
+    ImGui::SetNextWindowPos({window.Min.x - gap, item.y}, ImGuiCond_Always, {1, 0});
+  }
+}
+
 }  // namespace
+
+std::string fittingText(std::string text, float room, ImFont* font) {
+  if (font == nullptr) font = ImGui::GetFont();
+  const auto width = [&](const std::string& some) {
+    return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, some.c_str()).x;
+  };
+  if (width(text) <= room) return text;
+  while (!text.empty() && width(text + "…") > room) {
+    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
+    text.pop_back();
+  }
+  return text + "…";
+}
 
 Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
   ui.scope_ += name;
@@ -36,18 +65,45 @@ Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.si
 
 Ui::Scope::~Scope() { ui_->scope_.resize(length_); }
 
-void Ui::begin() { places_.clear(); }
+bool Ui::inDialog() {
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  return !popups.empty() && popups.back().Window != nullptr &&
+         (popups.back().Window->Flags & ImGuiWindowFlags_Modal) != 0;
+}
+
+void Ui::beforePicture() {
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  taken_ = (!popups.empty() && !inDialog()) || ImGui::GetIO().WantTextInput;
+}
+
+void Ui::begin() {
+  places_.clear();
+  focus_.clear();
+  const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+  escaped_ = pressed && !taken_;
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  if (pressed && taken_ && !popups.empty() && !inDialog()) {
+    ImGui::ClosePopupToLevel(popups.Size - 1, true);
+  }
+}
+
+bool Ui::entered() {
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
+         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
+}
 
 std::string Ui::fullName(std::string_view label) const {
   return scope_ + std::string(nameOf(label));
 }
 
 void Ui::note(std::string_view label) {
+  letters.need(label);
   const std::string name = fullName(label);
   if (name == revealed_) {
     ImGui::SetScrollHereY();
     revealed_.clear();
   }
+  if (ImGui::IsItemFocused() && !GImGui->NavDisableHighlight) focus_ = name;
   // Of what is partly clipped away, the rest: that is what can be pressed.
   ImRect rect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
   const bool visible = ImGui::IsItemVisible();
@@ -68,6 +124,7 @@ void Ui::tooltip(const char* text) {
   if (text == nullptr || *text == '\0') return;
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   if (GImGui->HoveredIdTimer < kTooltipDelay) return;
+  placeTooltip();
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
   ImGui::TextUnformatted(text);
@@ -89,8 +146,8 @@ bool Ui::button(const char* label, const char* tip, float width) {
 bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
   const bool was_on = on;
   if (was_on) {
-    ImGui::PushStyleColor(ImGuiCol_Button, colourVector(theme.accent));
-    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colourVector(theme.accent, 0.85F));
+    ImGui::PushStyleColor(ImGuiCol_Button, colourVector(theme.fill));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colourVector(theme.fill));
     ImGui::PushStyleColor(ImGuiCol_Text, colourVector(0xFFFFFF));
   }
   const bool pressed = button(label, tip, width);
@@ -141,8 +198,22 @@ bool Ui::selectable(const char* label, bool selected, const char* tip) {
   return pressed;
 }
 
+bool Ui::selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                    const char* tip) {
+  const std::string shown = fittingText(label, roomBefore(right));
+  ImGui::PushID(label);
+  const bool pressed = ImGui::Selectable(fmt::format("{}##row", shown).c_str(), selected,
+                                         ImGuiSelectableFlags_AllowDoubleClick);
+  ImGui::PopID();
+  note(label);
+  tooltip(tip == nullptr && shown != label ? label : tip);
+  atRightEnd(right, right_colour);
+  return pressed;
+}
+
 bool Ui::text(const char* label, std::string& value, const char* hint) {
   labelledWidth();
+  letters.need(value);
   ImGui::InputTextWithHint(label, hint, &value);
   note(label);
   return ImGui::IsItemDeactivatedAfterEdit();
@@ -164,8 +235,13 @@ bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Nu
   }
   const bool in_range = value >= min && value <= max;  // false for NaN
   const bool changed = ImGui::IsItemDeactivatedAfterEdit() || !in_range;
-  if (changed) value = entered >= min ? std::min(entered, max) : min;
-  return changed;
+  if (!changed) return false;
+  value = entered >= min ? std::min(entered, max) : min;
+  if (value != entered && on_correction) {
+    on_correction(
+        fmt::format("{}: {} is not from {} to {}; {} was taken", name, entered, min, max, value));
+  }
+  return true;
 }
 
 bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
@@ -201,8 +277,12 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
 }
 
 bool Ui::slider(const char* label, int& value, int min, int max, const char* format) {
+  // Of whole numbers Dear ImGui makes the grab as wide as a step: of few it would look half full.
+  auto real = static_cast<float>(value);
   const bool changed =
-      ImGui::SliderInt(label, &value, min, max, format, ImGuiSliderFlags_AlwaysClamp);
+      ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), format,
+                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+  value = static_cast<int>(std::lround(real));
   note(label);
   return changed;
 }
@@ -226,12 +306,20 @@ bool Ui::parameter(const Parameter& parameter) {
   if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
     return checkbox(name.c_str(), **flag, tip.c_str());
   }
+  const auto withUnit = [&](bool changed) {
+    if (const std::string_view unit = parameterUnit(parameter); !unit.empty()) {
+      ImGui::SameLine();
+      faint(unit);
+    }
+    return changed;
+  };
   if (std::int64_t* const* whole = std::get_if<std::int64_t*>(&parameter.value)) {
-    return integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
-                   static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)), tip.c_str());
+    return withUnit(integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
+                            static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)),
+                            tip.c_str()));
   }
   if (double* const* real = std::get_if<double*>(&parameter.value)) {
-    return number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str());
+    return withUnit(number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str()));
   }
   if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
     const auto& options = (*choice)->options;
@@ -267,20 +355,44 @@ bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
 
 bool Ui::cancel(float width) {
   const bool pressed = button("Cancel", nullptr, width);
-  return pressed || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+  return pressed || escaped();
+}
+
+float Ui::roomBefore(std::string_view right) {
+  return ImGui::GetContentRegionAvail().x -
+         ImGui::CalcTextSize(right.data(), right.data() + right.size()).x -
+         ImGui::GetStyle().ItemSpacing.x;
+}
+
+void Ui::atRightEnd(std::string_view words, Rgb rgb) {
+  ImGui::SameLine(ImGui::GetContentRegionMax().x -
+                  ImGui::CalcTextSize(words.data(), words.data() + words.size()).x);
+  coloured(rgb, words);
+}
+
+void Ui::line(std::string_view left, std::string_view right, Rgb right_colour) {
+  const std::string shown = fittingText(std::string(left), roomBefore(right));
+  plain(shown);
+  if (shown != left) tooltip(std::string(left).c_str());
+  atRightEnd(right, right_colour);
 }
 
 void Ui::fact(const char* name, std::string_view value) {
   faint(name);
   ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
-  ImGui::TextUnformatted(value.data(), value.data() + value.size());
+  plain(value);
+}
+
+void Ui::plain(std::string_view words) {
+  letters.need(words);
+  ImGui::TextUnformatted(words.data(), words.data() + words.size());
 }
 
 void Ui::faint(std::string_view words) { coloured(theme.faint, words); }
 
 void Ui::coloured(Rgb rgb, std::string_view words) {
   ImGui::PushStyleColor(ImGuiCol_Text, colourVector(rgb));
-  ImGui::TextUnformatted(words.data(), words.data() + words.size());
+  plain(words);
   ImGui::PopStyleColor();
 }
 
@@ -292,7 +404,7 @@ void Ui::heading(const char* words) {
 
 void Ui::paragraph(std::string_view words) {
   ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(words.data(), words.data() + words.size());
+  plain(words);
   ImGui::PopTextWrapPos();
 }
 

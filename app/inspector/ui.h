@@ -14,6 +14,7 @@
 
 #include "broadmark/debug_draw.h"
 #include "broadmark/parameters.h"
+#include "inspector/letters.h"
 
 namespace broadmark {
 
@@ -29,9 +30,12 @@ struct WidgetPlace {
 struct Theme {
   bool dark = true;
   Rgb accent = 0;
+  Rgb fill = 0;  ///< behind the white text of what is switched on
   Rgb good = 0;
   Rgb bad = 0;
   Rgb warning = 0;
+  Rgb first = 0;       ///< of two bodies
+  Rgb second = 0;      ///< likewise
   Rgb faint = 0;       ///< text of less importance
   Rgb background = 0;  ///< of the view
 };
@@ -57,8 +61,18 @@ class Ui {
   };
   [[nodiscard]] Scope scope(std::string_view name) { return {*this, name}; }
 
-  /// Forgets the places of the last picture.
+  /// To be called before and after a picture is begun: forgets the places of the last one.
+  void beforePicture();
   void begin();
+  /// Whether Escape was pressed, for what is in front: a list that is open or text that is being
+  /// typed takes it first.
+  [[nodiscard]] bool escaped() const { return escaped_; }
+  /// Whether a dialog is in front.
+  [[nodiscard]] static bool inDialog();
+  /// The widget that keys have moved to; "": none.
+  [[nodiscard]] const std::string& focused() const { return focus_; }
+  /// Likewise Enter, which text being typed does not take.
+  [[nodiscard]] static bool entered();
 
   bool button(const char* label, const char* tooltip = nullptr, float width = 0);
   /// A button that stays pressed while `on`.
@@ -68,6 +82,9 @@ class Ui {
   bool combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
              const char* tooltip = nullptr, float width = 0);
   bool selectable(const char* label, bool selected, const char* tooltip = nullptr);
+  /// The same with words at the right end of its line; what does not fit of the label is cut.
+  bool selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                  const char* tooltip = nullptr);
   bool text(const char* label, std::string& value, const char* hint = "");
   /// Numbers count when they are entered (Enter, Tab, or a click elsewhere), within their range.
   bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
@@ -77,7 +94,7 @@ class Ui {
   /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
   bool vector(const char* label, std::array<double, 3>& value, double min, double max,
               const char* tooltip = nullptr);
-  bool slider(const char* label, int& value, int min, int max, const char* format = "%d");
+  bool slider(const char* label, int& value, int min, int max, const char* format = "%.0f");
   bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
                 bool enabled = true);
   bool beginMenu(const char* label);
@@ -95,8 +112,15 @@ class Ui {
   /// A dialog's button "Cancel", which Escape presses, too.
   bool cancel(float width = 0);
 
+  /// Words on the left, which are cut if need be, and on the right end of the line others.
+  void line(std::string_view left, std::string_view right, Rgb right_colour);
+  /// What remains of the line once there is room on its right for these words.
+  [[nodiscard]] static float roomBefore(std::string_view right);
+  /// Writes at the right end of the line that an item has begun.
+  void atRightEnd(std::string_view words, Rgb rgb);
   /// A table row "name: value" in two columns.
   void fact(const char* name, std::string_view value);
+  void plain(std::string_view text);
   void faint(std::string_view text);
   void coloured(Rgb rgb, std::string_view text);
   void heading(const char* text);
@@ -113,8 +137,13 @@ class Ui {
   /// Scrolls to this widget when it is drawn next.
   void reveal(std::string name) { revealed_ = std::move(name); }
 
+  /// Called when a number that was entered is not taken as it is, with why.
+  std::function<void(const std::string&)> on_correction;
+
+  Letters letters;  ///< of all texts that pass through here
   Theme theme;
-  float scale = 1;  ///< pixels per unit
+  float scale = 1;          ///< pixels per unit
+  ImFont* large = nullptr;  ///< for what is to be seen first
 
  private:
   [[nodiscard]] std::string fullName(std::string_view label) const;
@@ -128,7 +157,14 @@ class Ui {
   std::string scope_;
   std::map<std::string, WidgetPlace> places_;
   std::string revealed_;
+  std::string focus_;
+  bool taken_ = false;  ///< Escape, by what is open before the picture
+  bool escaped_ = false;
 };
+
+/// The text; of one that is wider than `room` as much of its beginning as fits, and "…". `font`:
+/// the present one if null.
+std::string fittingText(std::string text, float room, ImFont* font = nullptr);
 
 /// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
 void applyTheme(Ui& ui, bool dark, float scale);

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "inspector/answer_text.h"
 #include "inspector/inspector.h"
 #include "inspector/wrong_pair.h"
 
@@ -152,8 +153,11 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["last_frame"] = std::to_string(session.playback.lastFrame());
   values["known_frames"] = std::to_string(progress.known_frames);
   values["playing"] = yes(session.playback.playing());
+  values["achieved"] =
+      session.playback.achieved() ? fmt::format("{:.1f}", *session.playback.achieved()) : "";
   values["loop"] = yes(session.playback.loop);
   values["speed"] = fmt::format("{:g}", session.playback.frames_per_second);
+  values["source"] = sourceText(progress.footage.get());
   values["title"] = progress.footage ? progress.footage->title : "";
   values["scene"] = progress.scene.name;
   values["object_type"] = progress.scene.object_type;
@@ -167,6 +171,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["error"] = session.notices.errors.empty() ? "" : session.notices.errors.front();
   values["status"] = session.notices.status.text;
   for (const auto& [name, value] : parameterValues(*session.draft)) values["scene." + name] = value;
+  for (const auto& [name, value] : session.openParameters()) values["open." + name] = value;
   for (LaneEdit& lane : session.lanes.list) {
     for (const auto& [name, value] : parameterValues(*lane.parameters)) {
       values[fmt::format("lane.{}.{}", lane.algorithm.id, name)] = value;
@@ -200,8 +205,19 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.pitch"] = fmt::format("{:.4f}", view_.camera().pitch);
   values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
   values["legend"] = legendText(view_.legend());
+  values["legend.oracle"] = legendText(view_.oracleLegend());
+  values["view.answer"] = view_.answer().answer;
+  values["view.oracle"] = view_.answer().beside;
+  values["view.pair"] = view_.answer().pair;
+  values["letters.missing"] = std::to_string(ui_.letters.missing());
+  values["scale"] = fmt::format("{:g}", ui_.scale);
+  values["layout"] =
+      fmt::format("{:g} {:g} {:g}", preferences_.left, preferences_.right, preferences_.bottom);
   values["theme"] = preferences_.dark ? "dark" : "light";
   values["help"] = yes(help_);
+  values["focus"] = ui_.focused();
+  values["popup"] =
+      yes(ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel));
   values["dialog"] = yes(files_.isOpen());
   const auto found = values.find(name);
   if (found == values.end()) return {};

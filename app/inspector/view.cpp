@@ -10,6 +10,7 @@
 
 #include "broadmark/render/input_queue.h"
 #include "broadmark/render/ui_renderer.h"
+#include "inspector/view_overlay.h"
 
 namespace broadmark {
 namespace {
@@ -33,6 +34,13 @@ Aabb enlargedBy(const Aabb& box, float factor) {
 }
 
 }  // namespace
+
+const std::array<FlyKey, 6> kFlyKeys = {{{GLFW_KEY_W, {1, 0, 0}, "forwards"},
+                                         {GLFW_KEY_S, {-1, 0, 0}, "backwards"},
+                                         {GLFW_KEY_A, {0, -1, 0}, "to the left"},
+                                         {GLFW_KEY_D, {0, 1, 0}, "to the right"},
+                                         {GLFW_KEY_Q, {0, 0, -1}, "down"},
+                                         {GLFW_KEY_E, {0, 0, 1}, "up"}}};
 
 View::View(const Gl& gl) : scene_(gl) {}
 
@@ -103,23 +111,31 @@ void View::update(Session& session, const RunProgress& progress, bool dark) {
   content_.shows_axes = options.axes;
   content_.theme = dark ? kDarkScene : kLightScene;
   ++revision_;
+  answer_ = answerText(*progress.snapshot, progress.lanes, session.lanes.shown(), shown_.selection);
   updateBodies(session);
   updateLines(session, dark);
 }
 
 void View::updateBodies(const Session& session) {
   const Snapshot& snapshot = *shown_.snapshot;
-  const std::span<const ColourMode> modes = colourModes();
-  modes[session.view.colouring % modes.size()].colour(
-      {.boxes = *snapshot.boxes,
-       .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
-                                         : std::span<const Aabb>(),
-       .overlaps = snapshot.overlaps,
-       .layers = snapshot.scene.filter.layers(),
-       .missed = snapshot.difference.missed_pairs,
-       .false_pairs = snapshot.difference.false_pairs,
-       .dark = shown_.dark},
-      colouring_);
+  const ColourMode& mode = colourModes()[session.view.colouring % colourModes().size()];
+  ColouringInput input{.boxes = *snapshot.boxes,
+                       .previous = snapshot.boxes_before
+                                       ? std::span<const Aabb>(*snapshot.boxes_before)
+                                       : std::span<const Aabb>(),
+                       .overlaps = snapshot.overlaps,
+                       .layers = snapshot.scene.filter.layers(),
+                       .missed = snapshot.difference.missed_pairs,
+                       .false_pairs = snapshot.difference.false_pairs,
+                       .dark = shown_.dark};
+  oracle_legend_.clear();
+  if (mode.of_answer && snapshot.checked) {
+    input.overlaps = snapshot.right_overlaps;
+    mode.colour(input, colouring_);
+    oracle_legend_ = std::move(colouring_.legend);
+    input.overlaps = snapshot.overlaps;
+  }
+  mode.colour(input, colouring_);
   visible_.clear();
   if (session.view.hide_free) {
     visible_.resize(snapshot.boxes->size());
@@ -223,7 +239,13 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
                              ImGuiButtonFlags_MouseButtonMiddle);
   ui.note("scene");
   handleMouse(ui, session, corner, size);
-  drawLegend(ui, corner, size);
+  const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
+  drawLegend(ui,
+             {.legend = colouring_.legend,
+              .oracle = oracle_legend_,
+              .owner = answer_.owner,
+              .left_out = left_out_},
+             corner, size, taken);
   if (session.view.axes) drawAxisNames(corner);
 }
 
@@ -284,15 +306,16 @@ void View::handleDrag(ImVec2 corner, ImVec2 size) {
 
 void View::handleKeys() {
   const float step = kFlySpeed * ImGui::GetIO().DeltaTime;
-  const auto along = [&](Key forth, Key back) {
-    return step * static_cast<float>(int{ImGui::IsKeyDown(forth)} - int{ImGui::IsKeyDown(back)});
-  };
-  const float forward = along(GLFW_KEY_W, GLFW_KEY_S);
-  const float right = along(GLFW_KEY_D, GLFW_KEY_A);
-  const float up = along(GLFW_KEY_E, GLFW_KEY_Q);
-  if (forward == 0 && right == 0 && up == 0) return;
+  std::array<float, 3> way{};
+  bool any = false;
+  for (const FlyKey& fly : kFlyKeys) {
+    if (!ImGui::IsKeyDown(fly.key)) continue;
+    any = true;
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] += step * fly.direction[i];
+  }
+  if (!any) return;
   flight_.reset();
-  camera_ = flown(camera_, forward, right, up);
+  camera_ = flown(camera_, way[0], way[1], way[2]);
 }
 
 void View::click(Session& session, ImVec2 at, bool fly_there) {
@@ -315,33 +338,6 @@ void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
                                         {{from.x, from.y}, {to.x, to.y}}, visible_));
 }
 
-void View::drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const {
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const auto rows = static_cast<float>(colouring_.legend.size() + (left_out_ > 0 ? 1 : 0));
-  float width = 0;
-  std::vector<std::string> texts;
-  for (const LegendEntry& entry : colouring_.legend) {
-    texts.push_back(fmt::format("{}  {}", entry.label, entry.count));
-    width = std::max(width, ImGui::CalcTextSize(texts.back().c_str()).x);
-  }
-  const float pad = 0.5F * line;
-  if (width + 3 * line > size.x || (rows + 2) * line > size.y) return;
-  const ImVec2 at{corner.x + size.x - width - 2.3F * line, corner.y + pad};
-  draw.AddRectFilled(at, {corner.x + size.x - pad, at.y + rows * line + pad},
-                     colour(ui.theme.background, 0.82F), 4 * ui.scale);
-  float y = at.y + pad / 2;
-  for (std::size_t i = 0; i < texts.size(); ++i, y += line) {
-    draw.AddRectFilled({at.x + pad, y + 0.15F * line}, {at.x + pad + 0.6F * line, y + 0.75F * line},
-                       colour(colouring_.legend[i].swatch), 3 * ui.scale);
-    draw.AddText({at.x + pad + line, y}, ImGui::GetColorU32(ImGuiCol_Text), texts[i].c_str());
-  }
-  if (left_out_ > 0) {
-    const std::string text = fmt::format("{} lines left out", left_out_);
-    draw.AddText({at.x + pad, y}, colour(ui.theme.warning), text.c_str());
-  }
-}
-
 void View::drawAxisNames(ImVec2 corner) const {
   const auto tips = axisTips(scene_.viewpoint(), content_.scale);
   constexpr const char* kNames[] = {"x", "y", "z"};
@@ -349,7 +345,7 @@ void View::drawAxisNames(ImVec2 corner) const {
     const ImVec2 text = ImGui::CalcTextSize(kNames[axis]);
     ImGui::GetWindowDrawList()->AddText(
         {corner.x + tips[axis][0] - text.x / 2, corner.y + tips[axis][1] - text.y / 2},
-        colour(kAxisColours[axis]), kNames[axis]);
+        ImGui::GetColorU32(ImGuiCol_Text), kNames[axis]);
   }
 }
 

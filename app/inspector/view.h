@@ -1,19 +1,30 @@
 // The view of the scene: what is drawn, the camera, and what the mouse does in it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "broadmark/render/colouring.h"
 #include "broadmark/render/gl.h"
+#include "broadmark/render/input_queue.h"
 #include "broadmark/render/orbit_camera.h"
 #include "broadmark/render/overlays.h"
 #include "broadmark/render/scene_view.h"
+#include "inspector/answer_text.h"
 #include "inspector/session.h"
 #include "inspector/ui.h"
 
 namespace broadmark {
+
+/// Keys that fly while they are held and the mouse is over the view.
+struct FlyKey {
+  Key key = 0;
+  std::array<float, 3> direction{};  ///< forward, right, up
+  const char* doc = "";
+};
+extern const std::array<FlyKey, 6> kFlyKeys;
 
 class View {
  public:
@@ -25,6 +36,10 @@ class View {
   [[nodiscard]] bool lively() const { return flight_.has_value(); }
   /// What the colours of the present picture mean.
   [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
+  /// The same of the oracle's answer, where the colours tell of another one.
+  [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
+  /// Whose answer is seen.
+  [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
 
   void lookFrom(Direction direction);
@@ -57,7 +72,6 @@ class View {
   void beginDrag(ImVec2 mouse);
   void click(Session& session, ImVec2 at, bool fly_there);
   void selectWithin(Session& session, ImVec2 from, ImVec2 to);
-  void drawLegend(Ui& ui, ImVec2 corner, ImVec2 size) const;
   void drawAxisNames(ImVec2 corner) const;
   /// Of those that are present; empty if there are none.
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
@@ -70,6 +84,8 @@ class View {
   std::optional<Flight> flight_;
   std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
   Colouring colouring_;
+  std::vector<LegendEntry> oracle_legend_;  ///< of the oracle's answer, if another one is shown
+  AnswerText answer_;
   std::vector<std::uint8_t> visible_;
   std::vector<SceneLine> lines_;
   std::vector<SceneWireBox> wire_boxes_;

@@ -78,10 +78,10 @@ TEST_F(HostileInput, ScriptsWriteHereOnly) {
   for (const std::string& script :
        {fmt::format("places \"{}/x\"\n", elsewhere),
         fmt::format("screenshot \"{}/x\"\n", elsewhere),
-        fmt::format("key Ctrl+S\nenter File/name \"{}/x.aabbs\"\nclick File/Save\n"
+        fmt::format("key Ctrl+S\nenter File/name \"{}/x.aabbs\"\n"
                     "wait settled\n",
                     elsewhere),
-        fmt::format("panel Batch\nenter Batch/directory \"{}/out\"\nclick Batch/Start\n"
+        fmt::format("panel Batch\nenter Batch/output \"{}/out\"\nclick Batch/Start\n"
                     "wait settled\n",
                     elsewhere)}) {
     expectRefusedHere(play(script), script);

@@ -122,10 +122,10 @@ std::vector<Step> steps() {
                  {"scene.json", "old"},
                  {"script.txt",
                   "wait settled\n"
-                  "key Ctrl+S\nenter File/name saved.aabbs\nclick File/Save\nclick File/Save\n"
+                  "key Ctrl+S\nenter File/name saved.aabbs\nclick File/Save\n"
                   "expect dialog = no\nwait settled\n"
                   "click \"Author/From this frame\"\n"
-                  "key Ctrl+S\nenter File/name scene\nclick File/Save\nclick File/Save\n"
+                  "key Ctrl+S\nenter File/name scene\nclick File/Save\n"
                   "expect author.modified = no\nwrite author.bodies bodies.txt\n"}},
        .stride = 3,
        .kill_stride = 3,

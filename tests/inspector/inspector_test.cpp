@@ -153,6 +153,36 @@ TEST_F(InspectorTest, LooksAsItDid) {
       looksLikeGolden(target.read(), places::source("tests/inspector/golden/inspector.png")));
 }
 
+TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
+  draw(3);
+  EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
+  click("Scene/Simulate");
+  settle();
+  EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
+  inspector.session().open(vanishingBodies(directory, 40));
+  settle();
+  EXPECT_EQ(inspector.ui().find("Scene/objects"), nullptr);
+  EXPECT_EQ(value("source"), "recording: vanishing.broadmark");
+  click("Scene/draft");
+  settle();
+  EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
+}
+
+TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
+  inspector.session().simulate();
+  inspector.session().lanes.add("sap");
+  settle();
+  EXPECT_EQ(value("legend.oracle"), "") << "in frame 0 no algorithm answers";
+  key(GLFW_KEY_RIGHT);
+  settle();
+  EXPECT_EQ(value("legend.oracle"), value("legend"));
+  EXPECT_THAT(value("view.answer"), testing::HasSubstr("sap reports"));
+  EXPECT_EQ(value("view.oracle"), "the oracle finds the same");
+  inspector.session().view.colouring = 3;  // motion has nothing to do with the answer
+  settle();
+  EXPECT_EQ(value("legend.oracle"), "");
+}
+
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
   draw(2);
   inspector.session().open("/nowhere/at all.aabbs");
@@ -266,6 +296,51 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   }
   EXPECT_GT(pressed.size(), 30U);
   EXPECT_FALSE(inspector.closing());
+}
+
+// A panel comes to the front with Ctrl and its number, and arrows lead to all that can be pressed.
+TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
+  width = 1000;
+  height = 700;
+  inspector.session().simulate();
+  inspector.session().lanes.add("grid-bf-mt");
+  settle();
+  const auto press = [&](Key which, Key held = 0) {
+    if (held != 0) input.push({.kind = InputEvent::Kind::key, .code = held, .down = true});
+    key(which);
+    if (held != 0) input.push({.kind = InputEvent::Kind::key, .code = held, .down = false});
+    for (int i = 0; i < 8 && (i < 2 || !input.empty()); ++i) draw();
+  };
+  const auto panels = makePanels();
+  for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::string prefix = std::string(panels[i]->name()) + "/";
+    press(static_cast<Key>(GLFW_KEY_1 + i), GLFW_KEY_LEFT_CONTROL);
+    draw(3);
+    std::set<std::string> unreached;
+    for (const auto& [name, place] : inspector.ui().places()) {
+      const std::string last = name.substr(name.rfind('/') + 1);
+      const bool is_picture = last == "plot" || last == "intervals" || last == "open";
+      if (name.starts_with(prefix) && place.enabled && !is_picture) unreached.insert(name);
+    }
+    const auto arrive = [&](Key arrow) {
+      press(arrow);
+      unreached.erase(value("focus"));
+    };
+    unreached.erase(value("focus"));
+    for (int row = 0; row < 70 && !unreached.empty(); ++row) {
+      arrive(GLFW_KEY_DOWN);
+      // A table that scrolls is a window of its own, which has to be entered.
+      if (row == 0 && prefix == "Results/") arrive(GLFW_KEY_ENTER);
+    }
+    // What stands beside others. (To the left a header would be folded.)
+    for (int row = 0; row < 70 && !unreached.empty(); ++row) {
+      for (const Key arrow : {GLFW_KEY_UP, GLFW_KEY_RIGHT, GLFW_KEY_RIGHT, GLFW_KEY_RIGHT}) {
+        arrive(arrow);
+      }
+    }
+    EXPECT_THAT(unreached, testing::IsEmpty()) << prefix;
+    press(GLFW_KEY_ESCAPE);
+  }
 }
 
 class RandomEvents : public InspectorTest, public testing::WithParamInterface<unsigned> {};

@@ -10,6 +10,7 @@
 
 #include "broadmark/render/overlays.h"
 #include "colour.h"
+#include "support/colour_vision.h"
 
 namespace broadmark::tests {
 namespace {
@@ -211,6 +212,42 @@ TEST(Colouring, LightnessAloneTellsTheStepsOfAScaleApart) {
         const double before = luminance(colouring.legend[i - 1].swatch) + 0.05;
         const double step = luminance(colouring.legend[i].swatch) + 0.05;
         EXPECT_GT(dark ? step / before : before / step, 1.15) << id << " step " << i;
+      }
+    }
+  }
+}
+
+// One eye in twelve of men lacks a colour. Every class has to be told from every other, and from
+// the outline of what is selected.
+TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
+  constexpr double kLeast = 9.9;
+  std::vector<Aabb> boxes = someBoxes(8);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = boxOf(0, std::pow(2.0F, float(i)));
+  std::vector<Aabb> previous = boxes;
+  previous[0] = kEmptyBox;
+  previous[1].max[0] += 1;
+  const std::vector<std::uint32_t> overlaps = {0, 1, 2, 4, 8, 16, 32, 64};
+  const std::vector<std::uint8_t> layers = {0, 1, 2, 3, 4, 5, 6, 7};
+  for (const bool dark : {false, true}) {
+    const ColouringInput input{.boxes = boxes,
+                               .previous = previous,
+                               .overlaps = overlaps,
+                               .layers = layers,
+                               .missed = {},
+                               .false_pairs = {},
+                               .dark = dark};
+    for (const ColourMode& mode : colourModes()) {
+      std::vector<LegendEntry> entries = coloured(mode.id, input).legend;
+      EXPECT_GT(entries.size(), 1U) << mode.id;
+      entries.push_back({"selected", (dark ? kDarkScene : kLightScene).selection});
+      for (std::size_t a = 0; a < entries.size(); ++a) {
+        for (std::size_t b = 0; b < a; ++b) {
+          for (const Eye& eye : kEyes) {
+            EXPECT_GT(differenceOf(entries[a].swatch, entries[b].swatch, eye), kLeast)
+                << mode.id << (dark ? ", dark: " : ", light: ") << entries[a].label << " and "
+                << entries[b].label << ", " << eye.name;
+          }
+        }
       }
     }
   }

@@ -108,7 +108,7 @@ class AlgorithmsPanel final : public Panel {
         if (isa == lane.isa) chosen = names.size();
         names.emplace_back(isaName(isa));
       }
-      if (ui.combo("instruction set", chosen, names)) {
+      if (ui.combo("isa", chosen, names, "Instruction set of its kernels")) {
         lane.isa = isas[chosen];
         changed = true;
       }

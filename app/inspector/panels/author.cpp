@@ -157,19 +157,13 @@ class AuthorPanel final : public Panel {
       session.document.simulate();
       session.play(true);
     }
-    if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
-                      bodies && !session.bake.running())) {
+    if (session.bake.running()) {
+      const std::string label =
+          fmt::format("Cancel ({:.0f} %)###Cancel", 100 * session.bake.report().fraction);
+      if (fourth.button(label.c_str(), "Leaves no recording behind")) session.bake.cancel();
+    } else if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
+                             bodies)) {
       askBakeScene(context.files, session);
-    }
-    drawBake(ui, session);
-  }
-
-  static void drawBake(Ui& ui, Session& session) {
-    if (!session.bake.running()) return;
-    ImGui::ProgressBar(session.bake.report().fraction, {-60 * ui.scale, 0});
-    ImGui::SameLine();
-    if (ui.button("Cancel", "Leaves no recording behind", ImGui::GetContentRegionAvail().x)) {
-      session.bake.cancel();
     }
   }
 
@@ -179,11 +173,12 @@ class AuthorPanel final : public Panel {
     ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
     ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
                                   desk.editor.selection().size()));
-    if (session.document.atRest()) return;
+    ImGui::BeginDisabled(session.document.atRest());
     if (ui.button(session.document.shown() ? "Back to the start###show" : "Show the scene###show",
                   "Shows the bodies where they start", ImGui::GetContentRegionAvail().x)) {
       session.document.show();
     }
+    ImGui::EndDisabled();
   }
 
   static void drawBrush(Ui& ui, Session& session) {

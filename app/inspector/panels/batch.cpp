@@ -83,7 +83,7 @@ class BatchPanel final : public Panel {
         if (!preview_.fault.empty()) {
           session.notices.complain(preview_.fault);
         } else {
-          session.notices.attempt([&] { session.bake.start(options_); });
+          begun_ = session.notices.attempt([&] { session.bake.start(options_); });
         }
       }
     }
@@ -91,8 +91,10 @@ class BatchPanel final : public Panel {
     drawOptions(context);
     ImGui::EndDisabled();
     if (stale_) update();
+    // What has just been baked is listed as that.
+    const bool listed = begun_ && report.state == TaskState::done;
     if (report.state != TaskState::idle) drawItems(ui, session, report);
-    if (!running) drawPreview(ui);
+    if (!running && !listed) drawPreview(ui);
   }
 
  private:
@@ -110,7 +112,7 @@ class BatchPanel final : public Panel {
     if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
       options_.threads = static_cast<int>(threads);
     }
-    stale_ |= ui.text("directory", directory_, "where to");
+    stale_ |= ui.text("output", directory_, "directory");
     if (ui.button("Browse…", "Chooses the directory", ImGui::GetContentRegionAvail().x)) {
       context.files.ask({.title = "Directory for recordings",
                          .purpose = FileDialog::Purpose::directory,
@@ -125,12 +127,12 @@ class BatchPanel final : public Panel {
 
   /// Takes over the inputs and makes the preview.
   void update() {
-    stale_ = false;
+    stale_ = begun_ = false;
     preview_ = {};
     try {
       if (options_.scenes.empty()) throw InputError("no scene is chosen");
       if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
-      if (directory_.empty()) throw InputError("a directory is needed");
+      if (directory_.empty()) throw InputError("an output directory is needed");
       options_.scene.objects = parseCounts(counts_);
       if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
       options_.scene.parameters = {{"frames", std::to_string(frames_)},
@@ -170,15 +172,14 @@ class BatchPanel final : public Panel {
       const std::string name = item.path.filename().string();
       ImGui::PushID(item.path.c_str());
       ImGui::BeginDisabled(!there);
-      if (ui.selectable(name.c_str(), false,
-                        there ? "Opens the recording" : item.failure.c_str())) {
+      const Rgb rgb = item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good;
+      if (ui.selectable(
+              name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
+              there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
         session.open(item.path);
       }
       ImGui::EndDisabled();
       ImGui::PopID();
-      const std::string outcome(kBakeOutcomes.nameOf(item.outcome));
-      ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(outcome.c_str()).x);
-      ui.coloured(item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good, outcome);
     }
   }
 
@@ -198,10 +199,7 @@ class BatchPanel final : public Panel {
     while (clipper.Step()) {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
         const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
-        const std::string size = bytesText(bytes);
-        ImGui::TextUnformatted(path.filename().string().c_str());
-        ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(size.c_str()).x);
-        ui.faint(size);
+        ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
       }
     }
   }
@@ -215,7 +213,8 @@ class BatchPanel final : public Panel {
   std::int64_t frames_ = 100;
   std::size_t engine_ = 0;
   std::string directory_ = "recordings";
-  bool stale_ = true;  ///< the preview is not that of the inputs
+  bool stale_ = true;   ///< the preview is not that of the inputs
+  bool begun_ = false;  ///< what the inputs say has been begun
   Preview preview_;
 };
 

@@ -10,6 +10,7 @@
 #include "broadmark/sub_recording.h"
 #include "inspector/pair_drawing.h"
 #include "inspector/panel.h"
+#include "inspector/view.h"
 #include "inspector/wrong_pair.h"
 #include "words.h"
 
@@ -80,7 +81,8 @@ class MismatchesPanel final : public Panel {
       return;
     }
     if (!showsAnswerOf(context, lane)) {
-      ui.faint(context.progress.doing.empty() ? "no answer for this frame" : "on its way…");
+      ui.faint(context.progress.doing.empty() ? "no answer for this frame"
+                                              : context.progress.doing.c_str());
       return;
     }
     const Snapshot& seen = *context.progress.snapshot;
@@ -95,13 +97,12 @@ class MismatchesPanel final : public Panel {
   static void drawSearch(PanelContext& context) {
     Ui& ui = context.ui;
     Session& session = context.session;
+    const float width = ImGui::GetContentRegionAvail().x;
     if (session.mismatches.searching()) {
-      if (ui.button("Stop here", "Stays at the frame that has been reached")) {
+      if (ui.button("Stop here", "Stays at the frame that has been reached", width)) {
         session.mismatches.endSearch(context.progress);
       }
-      ImGui::SameLine();
-      ui.faint(context.progress.doing);
-    } else if (ui.button("Next mismatch", "Goes on to the next frame with a mismatch")) {
+    } else if (ui.button("Next mismatch", "Goes on to the next frame with a mismatch", width)) {
       session.mismatches.goToNext(context.progress);
     }
   }
@@ -109,11 +110,11 @@ class MismatchesPanel final : public Panel {
   static void drawLists(PanelContext& context, const LaneReport& lane) {
     const float height = kListRows * ImGui::GetTextLineHeightWithSpacing();
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::BeginChild("frames", {0.38F * width, height}, true);
+    ImGui::BeginChild("frames", {0.38F * width, height}, true, ImGuiWindowFlags_NavFlattened);
     drawFrames(context, lane);
     ImGui::EndChild();
     ImGui::SameLine();
-    ImGui::BeginChild("pairs", {0, height}, true);
+    ImGui::BeginChild("pairs", {0, height}, true, ImGuiWindowFlags_NavFlattened);
     drawPairs(context, lane);
     ImGui::EndChild();
   }
@@ -123,7 +124,7 @@ class MismatchesPanel final : public Panel {
     for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
       if (lane.frames[frame - 1].mismatch) wrong.push_back(frame);
     }
-    if (wrong.empty()) context.ui.faint("no frames");
+    if (wrong.empty()) context.ui.faintParagraph("no wrong frame so far");
     clipped(wrong.size(), [&](std::size_t row) {
       const std::string name = fmt::format("frame {}", wrong[row]);
       if (context.ui.selectable(name.c_str(), wrong[row] == context.session.playback.frame())) {
@@ -250,6 +251,7 @@ class MismatchesPanel final : public Panel {
     }
     const BoxPair pair{
         {bodies[0], bodies[1]}, (*seen->boxes)[bodies[0]], (*seen->boxes)[bodies[1]]};
+    ui.paragraph(context.view.answer().pair);
     const std::string unwanted = unwantedText(seen->scene.filter, pair.bodies);
     if (!unwanted.empty()) ui.coloured(ui.theme.warning, unwanted);
     if (isEmpty(pair.a) || isEmpty(pair.b)) {

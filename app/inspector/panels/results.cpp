@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "broadmark/render/plot.h"
 #include "inspector/curve_colours.h"
@@ -10,10 +12,6 @@
 
 namespace broadmark::panels::results {
 namespace {
-
-constexpr std::array kColumns = {"algorithm",  "status",        "total",  "update", "clean",
-                                 "structures", "search",        "mean",   "pairs",  "missed",
-                                 "false",      "allowed extra", "invalid"};
 
 std::string time(std::int64_t ns) { return withPrefix(static_cast<double>(ns) * 1e-9, "s"); }
 
@@ -34,78 +32,132 @@ class ResultsPanel final : public Panel {
   ResultsPanel() : Panel("Results", Place::bottom, "What each algorithm did in this frame") {}
 
   void draw(PanelContext& context) override {
-    if (context.progress.lanes.empty()) {
-      context.ui.faint("Add algorithms to see their times and answers side by side.");
+    const std::vector<LaneReport>& lanes = context.progress.lanes;
+    if (lanes.empty()) {
+      context.ui.paragraph(
+          "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
+    }
+    std::vector<Row> rows;
+    for (const LaneReport& lane : lanes) {
+      rows.push_back(rowOf(lane, context.session.playback.frame()));
     }
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
                                        ImGuiTableFlags_ScrollY;
-    if (!ImGui::BeginTable("results", static_cast<int>(kColumns.size()), kFlags)) return;
+    const std::vector<std::string> columns = columnNames();
+    if (!ImGui::BeginTable("results", static_cast<int>(columns.size()), kFlags,
+                           {widthOfWholeColumns(columns, rows), 0})) {
+      return;
+    }
     ImGui::TableSetupScrollFreeze(1, 1);
-    for (const char* column : kColumns) ImGui::TableSetupColumn(column);
+    for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
     ImGui::TableHeadersRow();
-    for (const LaneReport& lane : context.progress.lanes) drawLane(context, lane);
+    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], rows[i]);
     ImGui::EndTable();
   }
 
  private:
-  static void drawLane(PanelContext& context, const LaneReport& lane) {
+  struct Cell {
+    std::string text;
+    bool bad = false;
+  };
+  /// The cells beside name and status.
+  struct Row {
+    std::string name;
+    std::string status;
+    std::vector<Cell> cells;
+    bool disturbed = false;
+  };
+
+  /// The phases are called as everywhere.
+  static std::vector<std::string> columnNames() {
+    std::vector<std::string> names = {"algorithm", "status", "total",   "mean",         "pairs",
+                                      "missed",    "false",  "invalid", "allowed extra"};
+    for (const auto& [phase, name] : kPhases.entries) {
+      if (phase != Phase::total) names.emplace_back(name);
+    }
+    return names;
+  }
+
+  static Row rowOf(const LaneReport& lane, std::uint32_t frame) {
+    const FrameRecord* record = lane.record(frame);
+    Row row{.name = caseName(lane.spec.run),
+            .status = std::string(statusName(lane.status)),
+            .disturbed = record != nullptr && record->disturbed};
+    const auto phase = [&](Phase which) {
+      row.cells.push_back({record == nullptr ? "–" : time(record->times[which])});
+    };
+    phase(Phase::total);
+    if (row.disturbed) row.cells.back().text += " *";
+    const double mean = meanTotal(lane);
+    row.cells.push_back({mean < 0 ? "–" : withPrefix(mean * 1e-9, "s")});
+    row.cells.push_back({record == nullptr ? "–" : std::to_string(record->pairs)});
+    const auto wrong = [&](std::uint64_t FrameRecord::*count, bool allowed = false) {
+      const bool checked = record != nullptr && record->checked;
+      row.cells.push_back({checked ? std::to_string(record->*count) : "–",
+                           checked && !allowed && record->*count > 0});
+    };
+    wrong(&FrameRecord::missed_count);
+    wrong(&FrameRecord::false_count);
+    wrong(&FrameRecord::invalid_count);
+    wrong(&FrameRecord::allowed_extra_count, true);
+    for (const auto& [which, name] : kPhases.entries) {
+      if (which != Phase::total) phase(which);
+    }
+    return row;
+  }
+
+  /// As many columns as are seen wholly: half a number would be a wrong one.
+  static float widthOfWholeColumns(const std::vector<std::string>& columns,
+                                   const std::vector<Row>& rows) {
+    const float room = ImGui::GetContentRegionAvail().x;
+    const auto textWidth = [](const std::string& text) {
+      return ImGui::CalcTextSize(text.c_str()).x;
+    };
+    float whole = 0;
+    for (std::size_t column = 0; column < columns.size(); ++column) {
+      float width = textWidth(columns[column]);
+      for (const Row& row : rows) {
+        width = std::max(width, textWidth(column == 0   ? row.name
+                                          : column == 1 ? row.status
+                                                        : row.cells[column - 2].text));
+      }
+      width += 2 * ImGui::GetStyle().CellPadding.x;
+      if (column > 1 && whole + width > room) break;
+      whole += width;
+    }
+    return std::min(whole, room);
+  }
+
+  static void drawLane(PanelContext& context, const LaneReport& lane, const Row& row) {
     Ui& ui = context.ui;
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
     const bool shown = context.session.lanes.shown() == lane.spec.number;
     ImGui::PushStyleColor(ImGuiCol_Text, colour(curveColour(lane.spec.number, ui.theme.dark)));
-    if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
-                          ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ImGui::Selectable(row.name.c_str(), shown, ImGuiSelectableFlags_SpanAllColumns)) {
       context.session.lanes.show(lane.spec.number);
     }
     ImGui::PopStyleColor();
     ui.note(lane.spec.run.algorithm.id);
     ImGui::TableNextColumn();
     const bool bad = lane.status != Status::ok;
-    ui.coloured(bad ? ui.theme.bad : ui.theme.good, statusName(lane.status));
+    ui.coloured(bad ? ui.theme.bad : ui.theme.good, row.status);
     ui.tooltip(lane.reason.c_str());
-    drawTimes(ui, lane, context.session.playback.frame());
-    ImGui::PopID();
-  }
-
-  static void drawTimes(Ui& ui, const LaneReport& lane, std::uint32_t frame) {
-    const FrameRecord* record = lane.record(frame);
-    const auto cell = [&](const std::string& text, bool bad = false) {
+    for (std::size_t i = 0; i < row.cells.size(); ++i) {
       ImGui::TableNextColumn();
-      if (bad) {
-        ui.coloured(ui.theme.bad, text);
+      if (row.cells[i].bad) {
+        ui.coloured(ui.theme.bad, row.cells[i].text);
       } else {
-        ImGui::TextUnformatted(text.c_str());
+        ImGui::TextUnformatted(row.cells[i].text.c_str());
       }
-    };
-    const auto phase = [&](Phase which) {
-      cell(record == nullptr ? "–" : time(record->times[which]));
-    };
-    phase(Phase::total);
-    if (record != nullptr && record->disturbed) {
-      ImGui::SameLine(0, 3);
-      ui.coloured(ui.theme.warning, "*");
-      ui.tooltip("disturbed: the window was drawn while this frame was timed");
+      if (i == 0 && row.disturbed) {
+        ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
+      }
     }
-    phase(Phase::update_objects);
-    phase(Phase::clean_cache);
-    phase(Phase::update_structures);
-    phase(Phase::search_overlaps);
-    const double mean = meanTotal(lane);
-    cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
-    cell(record == nullptr ? "–" : std::to_string(record->pairs));
-    const auto wrong = [&](std::uint64_t FrameRecord::*count, bool allowed = false) {
-      const bool checked = record != nullptr && record->checked;
-      cell(checked ? std::to_string(record->*count) : "–",
-           checked && !allowed && record->*count > 0);
-    };
-    wrong(&FrameRecord::missed_count);
-    wrong(&FrameRecord::false_count);
-    wrong(&FrameRecord::allowed_extra_count, true);
-    wrong(&FrameRecord::invalid_count);
+    ImGui::PopID();
   }
 };
 

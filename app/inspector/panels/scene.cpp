@@ -1,7 +1,10 @@
-// Choosing a built-in scene and its parameters, and simulating it.
+// What is open and with which parameters, and simulating a built-in scene.
 
 #include <algorithm>
+#include <memory>
+#include <string>
 
+#include "inspector/answer_text.h"
 #include "inspector/panel.h"
 
 namespace broadmark::panels::scene {
@@ -9,11 +12,44 @@ namespace {
 
 class ScenePanel final : public Panel {
  public:
-  ScenePanel() : Panel("Scene", Place::left, "Built-in scenes: choose, adjust, simulate") {}
+  ScenePanel()
+      : Panel("Scene", Place::left, "What is open; built-in scenes: choose, adjust, simulate") {}
 
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     Session& session = context.session;
+    const bool draft_is_open = session.draftIsOpen();
+    const bool anew = seen_ != session.playback.footage();
+    seen_ = session.playback.footage();
+    if (anew) parameters_ = session.openParameters();
+    if (seen_) drawOpen(context, draft_is_open);
+    // The parameters of a simulation that might be are not to be taken for those of what is open.
+    if (anew) {
+      ImGui::SetNextItemOpen(!seen_ || draft_is_open || seen_->source == FootageSource::simulation);
+    }
+    const bool open =
+        ImGui::CollapsingHeader(draft_is_open ? "Its parameters###draft" : "New simulation###draft",
+                                ImGuiTreeNodeFlags_DefaultOpen);
+    ui.note("draft");
+    if (!open) return;
+    drawDraft(ui, session);
+  }
+
+ private:
+  void drawOpen(PanelContext& context, bool draft_is_open) const {
+    Ui& ui = context.ui;
+    ui.heading("Open");
+    ui.paragraph(sourceText(seen_.get()));
+    ui.note("open");
+    if (draft_is_open) return;
+    for (const auto& [name, value] : parameters_) ui.fact(name.c_str(), value);
+    if (!parameters_.empty()) return;
+    ui.faintParagraph(seen_->source == FootageSource::authored
+                          ? "Its parameters stand in the panel Author."
+                          : "With which parameters it was made is not known.");
+  }
+
+  static void drawDraft(Ui& ui, Session& session) {
     chooseScene(ui, session);
     ImGui::Spacing();
     if (ui.button("Simulate",
@@ -26,7 +62,6 @@ class ScenePanel final : public Panel {
     session.notices.attempt([&] { ui.parameters(*session.draft); });
   }
 
- private:
   static void chooseScene(Ui& ui, Session& session) {
     const std::vector<SceneListing> scenes = builtinScenes();
     std::vector<std::string> ids;
@@ -40,6 +75,9 @@ class ScenePanel final : public Panel {
       ui.faintParagraph(scenes[chosen].summary);
     }
   }
+
+  std::shared_ptr<const FootageRequest> seen_;  ///< what was open in the last picture
+  ParameterValues parameters_;                  ///< of that, as far as they are known
 };
 
 }  // namespace

@@ -23,7 +23,8 @@ class SelectionPanel final : public Panel {
   void draw(PanelContext& context) override {
     const Snapshot* snapshot = context.progress.snapshot.get();
     if (snapshot == nullptr) {
-      context.ui.faint("Nothing is open.");
+      context.ui.faintParagraph(
+          "Nothing is open: press Simulate in the panel Scene, or open or drop a file.");
       return;
     }
     goTo(context);
@@ -65,7 +66,7 @@ class SelectionPanel final : public Panel {
                                 box.max[1] - box.min[1], box.max[2] - box.min[2]));
     ui.fact("overlaps", std::to_string(snapshot.overlaps[body]));
     ui.heading("Overlaps with");
-    ImGui::BeginChild("partners");
+    ImGui::BeginChild("partners", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     std::size_t listed = 0;
     for (const Pair& pair : snapshot.pairs) {
       if (pair.a != body && pair.b != body) continue;
@@ -94,7 +95,7 @@ class SelectionPanel final : public Panel {
     const std::vector<std::uint32_t> bodies = context.session.selection.bodies();
     ui.heading(counted(bodies.size(), "body", "bodies").c_str());
     if (ui.button("Fly there", "(F)")) context.session.selection.fly_to = bodies;
-    ImGui::BeginChild("bodies");
+    ImGui::BeginChild("bodies", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
       const std::string label =

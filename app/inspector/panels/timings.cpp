@@ -25,6 +25,11 @@ class TimingsPanel final : public Panel {
               "present") {}
 
   void draw(PanelContext& context) override {
+    if (context.progress.lanes.empty()) {
+      context.ui.paragraph(
+          "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
+      if (context.progress.population.empty()) return;
+    }
     drawControls(context.ui);
     const std::vector<PlotCurve> curves = makeCurves(context);
     const auto last = static_cast<double>(std::max(kFewestFrames, context.progress.known_frames));

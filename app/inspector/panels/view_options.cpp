@@ -53,7 +53,7 @@ class ViewPanel final : public Panel {
     if (deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
       ui.slider("depth", view.structure_level, -1, deepest,
-                view.structure_level < 0 ? "all" : "%d");
+                view.structure_level < 0 ? "all" : "%.0f");
     }
     if (snapshot != nullptr && snapshot->structure && snapshot->structure->boxes().empty() &&
         snapshot->structure->lines().empty()) {

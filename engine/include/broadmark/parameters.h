@@ -45,6 +45,10 @@ std::string parameterText(const Parameter&);
 /// Its range or choices as text: "1…1000", "on|off", "cubes|spheres", "TEXT".
 std::string parameterRange(const Parameter&);
 
+/// The unit that its explanation ends with, "…, in seconds", as people abbreviate it: "s"; "" where
+/// it has none.
+std::string_view parameterUnit(const Parameter&);
+
 /// Sets `parameter` from text. Throws InputError that names it, the text and what would be right.
 void setParameter(const Parameter&, std::string_view text);
 

@@ -43,6 +43,7 @@ struct ColourMode {
   std::string_view help;   ///< one line
   /// Replaces the content of `colouring`; its memory is reused. O(boxes + pairs).
   void (*colour)(const ColouringInput& input, Colouring& colouring);
+  bool of_answer = false;  ///< whether the classes follow from the pairs of an answer alone
 };
 
 /// All modes; the first is the default.

@@ -29,6 +29,9 @@ struct InputEvent {
 /// The key named "Escape", "F12", "Left", "A", …; 0 if there is none.
 Key keyNamed(const std::string& name);
 
+/// The name of a key, which keyNamed() knows; "" if it has none.
+std::string keyName(Key key);
+
 class InputQueue {
  public:
   void push(const InputEvent& event) { events_.push_back(event); }

@@ -32,8 +32,8 @@ struct SceneTheme {
 
   friend bool operator==(const SceneTheme&, const SceneTheme&) = default;
 };
-inline constexpr SceneTheme kLightScene = {0xF5F6F8, 0xE9ECF0, 0xC6CED8, 0x8A97A6, 0x0B5FD9};
-inline constexpr SceneTheme kDarkScene = {0x1B1F24, 0x23282E, 0x363E47, 0x6B7785, 0x5AB0FF};
+inline constexpr SceneTheme kLightScene = {0xF5F6F8, 0xE9ECF0, 0xC6CED8, 0x8A97A6, 0x8800FF};
+inline constexpr SceneTheme kDarkScene = {0x1B1F24, 0x23282E, 0x363E47, 0x6B7785, 0x9955FF};
 
 /// Colours of the axes: x, y, z.
 inline constexpr Rgb kAxisColours[3] = {0xD64545, 0x3D9A50, 0x3B7DD8};

@@ -1,0 +1,120 @@
+#include "inspector/view_overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace broadmark {
+namespace {
+
+constexpr float kBackdrop = 0.82F;  // opacity behind what is written
+
+Rgb verdictColour(const Theme& theme, AnswerText::Verdict verdict) {
+  switch (verdict) {
+    case AnswerText::Verdict::right:
+      return theme.good;
+    case AnswerText::Verdict::wrong:
+      return theme.bad;
+    case AnswerText::Verdict::unchecked:
+      return theme.warning;
+    case AnswerText::Verdict::oracle:
+      return theme.faint;
+  }
+  return theme.faint;
+}
+
+}  // namespace
+
+ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 size) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float pad = 6 * ui.scale;
+  const float room = size.x - 4 * pad;
+  if (room < 60 * ui.scale || size.y < 120 * ui.scale) return corner;
+  struct Line {
+    ImFont* font;
+    std::string text;
+    ImU32 colour;
+  };
+  std::vector<Line> lines;
+  const auto add = [&](ImFont* font, const std::string& text, ImU32 rgb) {
+    if (!text.empty()) lines.push_back({font, fittingText(text, room, font), rgb});
+  };
+  const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
+  add(ui.large, answer.answer, plain);
+  add(ui.large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
+  add(ImGui::GetFont(), answer.pair, plain);
+
+  float width = 0;
+  float height = 0;
+  for (const Line& line : lines) {
+    const ImVec2 extent =
+        line.font->CalcTextSizeA(line.font->FontSize, FLT_MAX, 0, line.text.c_str());
+    width = std::max(width, extent.x);
+    height += extent.y;
+  }
+  const ImVec2 at{corner.x + pad, corner.y + pad};
+  const ImVec2 end{at.x + width + 2 * pad, at.y + height + pad};
+  draw.AddRectFilled(at, end, colour(ui.theme.background, kBackdrop), 4 * ui.scale);
+  float y = at.y + pad / 2;
+  for (const Line& line : lines) {
+    draw.AddText(line.font, line.font->FontSize, {at.x + pad, y}, line.colour, line.text.c_str());
+    y += line.font->FontSize;
+  }
+  return end;
+}
+
+void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 size, ImVec2 taken) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float pad = 0.5F * line;
+  // Columns: label, count by the shown answer, count by the oracle's.
+  std::vector<std::vector<std::string>> rows;
+  if (!legend.oracle.empty()) rows.push_back({"", legend.owner, "oracle"});
+  for (std::size_t i = 0; i < legend.legend.size(); ++i) {
+    std::vector<std::string>& row = rows.emplace_back();
+    row = {legend.legend[i].label, std::to_string(legend.legend[i].count)};
+    if (!legend.oracle.empty()) row.push_back(std::to_string(legend.oracle[i].count));
+  }
+  std::vector<float> widths(legend.oracle.empty() ? 2 : 3, 0);
+  float width = line;
+  for (std::size_t column = 0; column < widths.size(); ++column) {
+    for (const auto& row : rows) {
+      widths[column] = std::max(widths[column], ImGui::CalcTextSize(row[column].c_str()).x);
+    }
+    width += widths[column] + pad;
+  }
+  const std::string left_out =
+      legend.left_out > 0 ? fmt::format("{} lines left out", legend.left_out) : "";
+  const auto height = static_cast<float>(rows.size() + (left_out.empty() ? 0 : 1)) * line;
+  const float left = corner.x + size.x - width - 2 * pad;
+  const float top = left > taken.x + pad ? corner.y : taken.y;
+  const ImVec2 at{left, top + pad / 2};
+  if (at.x < corner.x || at.y + height + 2 * line > corner.y + size.y) return;
+  draw.AddRectFilled(at, {at.x + width + pad, at.y + height + pad},
+                     colour(ui.theme.background, kBackdrop), 4 * ui.scale);
+  const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
+  float y = at.y + pad / 2;
+  for (std::size_t i = 0; i < rows.size(); ++i, y += line) {
+    const std::size_t headings = rows.size() - legend.legend.size();
+    if (i >= headings) {
+      draw.AddRectFilled({at.x + pad, y + 0.15F * line},
+                         {at.x + pad + 0.6F * line, y + 0.75F * line},
+                         colour(legend.legend[i - headings].swatch), 3 * ui.scale);
+    }
+    float x = at.x + pad + line;
+    for (std::size_t column = 0; column < widths.size(); ++column) {
+      // Numbers stand below each other by their last digits.
+      const float shift =
+          column == 0 ? 0 : widths[column] - ImGui::CalcTextSize(rows[i][column].c_str()).x;
+      draw.AddText({x + shift, y}, i < headings ? colour(ui.theme.faint) : plain,
+                   rows[i][column].c_str());
+      x += widths[column] + pad;
+    }
+  }
+  if (!left_out.empty()) {
+    draw.AddText({at.x + pad, y}, colour(ui.theme.warning), left_out.c_str());
+  }
+}
+
+}  // namespace broadmark

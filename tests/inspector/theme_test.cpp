@@ -1,0 +1,86 @@
+// Whether texts can be read, and curves be told apart.
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <array>
+#include <cmath>
+
+#include "inspector/curve_colours.h"
+#include "inspector/ui.h"
+#include "support/colour_vision.h"
+
+namespace broadmark::tests {
+namespace {
+
+constexpr double kReadable = 4.5;  // WCAG 2, level AA, for text of normal size
+
+class ThemeTest : public testing::TestWithParam<bool> {
+ protected:
+  ThemeTest() : context(ImGui::CreateContext()) { applyTheme(ui, GetParam(), 1); }
+  ~ThemeTest() override { ImGui::DestroyContext(context); }
+
+  static Rgb styleColour(ImGuiCol_ which) {
+    const ImVec4& colour = ImGui::GetStyle().Colors[which];
+    const auto channel = [](float value) { return static_cast<Rgb>(std::lround(255 * value)); };
+    return channel(colour.x) << 16 | channel(colour.y) << 8 | channel(colour.z);
+  }
+
+  ImGuiContext* context;
+  Ui ui;
+};
+
+/// What text stands on: all that is opaque.
+constexpr std::array kGrounds = {
+    ImGuiCol_WindowBg,       ImGuiCol_PopupBg,       ImGuiCol_MenuBarBg,     ImGuiCol_FrameBg,
+    ImGuiCol_FrameBgHovered, ImGuiCol_Button,        ImGuiCol_ButtonHovered, ImGuiCol_Header,
+    ImGuiCol_HeaderHovered,  ImGuiCol_Tab,           ImGuiCol_TabActive,     ImGuiCol_TabHovered,
+    ImGuiCol_TitleBg,        ImGuiCol_TitleBgActive, ImGuiCol_TableHeaderBg};
+
+TEST_P(ThemeTest, EveryTextCanBeReadOnEveryGround) {
+  for (const ImGuiCol_ ground : kGrounds) {
+    ASSERT_EQ(ImGui::GetStyle().Colors[ground].w, 1) << ImGui::GetStyleColorName(ground);
+    for (const auto& [name, text] : {std::pair{"text", styleColour(ImGuiCol_Text)},
+                                     {"faint", ui.theme.faint},
+                                     {"accent", ui.theme.accent},
+                                     {"good", ui.theme.good},
+                                     {"bad", ui.theme.bad},
+                                     {"warning", ui.theme.warning}}) {
+      EXPECT_GE(contrastOf(text, styleColour(ground)), kReadable)
+          << name << " on " << ImGui::GetStyleColorName(ground);
+    }
+  }
+}
+
+TEST_P(ThemeTest, TextOfSpecialGroundsCanBeRead) {
+  const Rgb text = styleColour(ImGuiCol_Text);
+  for (const Rgb shown : {text, ui.theme.faint, ui.theme.good, ui.theme.bad, ui.theme.warning}) {
+    EXPECT_GE(contrastOf(shown, ui.theme.background), kReadable) << "over the view";
+  }
+  EXPECT_GE(contrastOf(0xFFFFFF, ui.theme.fill), kReadable) << "what is switched on";
+  for (const ImGuiCol_ pressed : {ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}) {
+    EXPECT_GE(contrastOf(text, styleColour(pressed)), kReadable);
+  }
+  for (const Rgb body : {ui.theme.first, ui.theme.second}) {
+    EXPECT_GE(contrastOf(body, styleColour(ImGuiCol_WindowBg)), kReadable) << "of two bodies";
+  }
+}
+
+TEST_P(ThemeTest, CurvesAreToldApartByColourBlindEyesAndReadAsNames) {
+  for (int a = 1; a <= 8; ++a) {
+    const Rgb colour = curveColour(a, GetParam());
+    for (const ImGuiCol_ ground : {ImGuiCol_WindowBg, ImGuiCol_Header, ImGuiCol_HeaderHovered}) {
+      EXPECT_GE(contrastOf(colour, styleColour(ground)), kReadable) << "curve " << a;
+    }
+    for (int b = 1; b < a; ++b) {
+      for (const Eye& eye : kEyes) {
+        EXPECT_GT(differenceOf(colour, curveColour(b, GetParam()), eye), 15)
+            << a << " and " << b << ", " << eye.name;
+      }
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(DarkAndLight, ThemeTest, testing::Bool());
+
+}  // namespace
+}  // namespace broadmark::tests
