@@ -57,10 +57,13 @@ template <class ClassOf>
 void colourByClass(std::span<const Aabb> boxes, std::vector<LegendEntry> legend,
                    Colouring& colouring, const ClassOf& classOf) {
   colouring.colours.resize(boxes.size());
+  colouring.classes.resize(boxes.size());
   colouring.legend = std::move(legend);
   for (std::size_t body = 0; body < boxes.size(); ++body) {
     if (isEmpty(boxes[body])) continue;
-    LegendEntry& entry = colouring.legend[classOf(body)];
+    const auto which = static_cast<std::uint8_t>(classOf(body));
+    LegendEntry& entry = colouring.legend[which];
+    colouring.classes[body] = which;
     ++entry.count;
     colouring.colours[body] = entry.swatch;
   }

@@ -118,14 +118,14 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
 }
 
 struct PlotColours {
-  ImU32 background, grid, text, marker;
+  ImU32 background, grid, text, marker, limit;
 };
 
 PlotColours plotColours(bool dark) {
   return dark ? PlotColours{packed(0x17191D), packed(0xFFFFFF, 22), packed(0xA3ACB8),
-                            packed(0x3D8BFD)}
+                            packed(0x3D8BFD), packed(0xF2B84B)}
               : PlotColours{packed(0xFFFFFF), packed(0x000000, 22), packed(0x565F6A),
-                            packed(0x1F6FEB)};
+                            packed(0x1F6FEB), packed(0x7A5200)};
 }
 
 void drawAxes(ImDrawList& draw, const Axes& axes, const PlotColours& colours, const char* unit) {
@@ -193,6 +193,22 @@ void drawBackdrop(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
     draw.AddRectFilled({x, axes.max.y - height - 1}, {x + 1, axes.max.y - height + 1},
                        packed(curve.colour, 120));
   }
+}
+
+/// At the border that it lies beyond, if it is out of range.
+void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+               const PlotColours& colours) {
+  const float line = ImGui::GetTextLineHeight();
+  const float y = std::clamp(axes.y(options.limit), axes.min.y, axes.max.y);
+  const bool within = options.limit >= axes.low && options.limit <= axes.high;
+  if (within) draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colours.limit, line / 10);
+  const std::string text = fmt::format("{}{}",
+                                       within                      ? ""
+                                       : options.limit > axes.high ? "↑ "
+                                                                   : "↓ ",
+                                       withPrefix(options.limit, options.unit));
+  draw.AddText({axes.min.x + line / 3, y - axes.min.y < line ? y : y - line}, colours.limit,
+               text.c_str());
 }
 
 void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
@@ -304,6 +320,7 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   for (const PlotCurve& curve : curves) {
     if (!curve.hidden) drawCurve(draw, curve, axes, line / 15);
   }
+  if (options.limit > 0) drawLimit(draw, axes, options, colours);
   if (options.marked_frame >= 0) {
     const float x = axes.x(options.marked_frame);
     draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.marker, line / 10);

@@ -5,11 +5,16 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/pair.h"
 
 namespace broadmark {
+
+/// Ids from text: "17, 40-50", each at most `last`. Throws InputError, naming `what`.
+std::vector<std::uint32_t> parseIds(std::string_view text, std::string_view what,
+                                    std::uint32_t last);
 
 class BodySelection {
  public:

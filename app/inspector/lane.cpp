@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "broadmark/frame_table.h"
 #include "broadmark/runner.h"
 
@@ -12,6 +14,13 @@ constexpr RunPolicy kPolicy{.check = CheckMode::hash,
                             .frame_limit_seconds = Lane::kFrameLimitSeconds};
 
 }  // namespace
+
+std::uint64_t framesOver(const LaneReport& lane, double ms) {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(lane.frames, [&](const FrameRecord& frame) {
+        return frame.run && static_cast<double>(frame.times[Phase::total]) > ms * 1e6;
+      }));
+}
 
 template <class Call>
 void Lane::attempt(Call&& call) {

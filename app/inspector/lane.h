@@ -60,6 +60,9 @@ struct LaneReport {
   }
 };
 
+/// How many of the frames took longer.
+std::uint64_t framesOver(const LaneReport& lane, double ms);
+
 /// The running lane: a CaseRun, which begins another pass when an earlier frame is wanted.
 class Lane {
  public:

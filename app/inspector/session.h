@@ -12,6 +12,7 @@
 #include "broadmark/algorithm.h"
 #include "broadmark/scenes/simulation.h"
 #include "inspector/background_bake.h"
+#include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
 #include "inspector/document.h"
@@ -30,6 +31,8 @@ struct ViewOptions {
   bool hide_free = false;     ///< show only what overlaps
   bool pair_lines = false;    ///< a line between the centres of overlapping bodies…
   bool lines_of_all = false;  ///< …of all pairs, not only those of the selection
+  BodyFilter filter;          ///< who else is not shown
+  bool xray = false;          ///< the selection is seen through what stands before it
   bool world_box = true;
   bool ground = true;
   bool axes = true;
@@ -102,6 +105,7 @@ class Session {
 
   std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
   ViewOptions view;
+  double budget_ms = 16.7;                ///< that a frame may take; 0: any
   std::optional<CaseChoice> case_choice;  ///< to be made by the user
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;

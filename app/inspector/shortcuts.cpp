@@ -55,7 +55,11 @@ void Inspector::makeShortcuts() {
        [this] { session_.selection.flyThere(); }},
       {GLFW_KEY_H, false, false, "hide what overlaps nothing, or show it",
        [this] { session_.view.hide_free = !session_.view.hide_free; }},
-      {GLFW_KEY_C, false, false, "the next colouring", [this] { ++session_.view.colouring; }},
+      {GLFW_KEY_C, false, false, "the next colouring",
+       [this] {
+         ++session_.view.colouring;
+         session_.view.filter.hidden_classes = 0;
+       }},
       {GLFW_KEY_ESCAPE, false, false, "close a list, a dialog, this page; select nothing",
        [this] { escape(); }},
       {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},

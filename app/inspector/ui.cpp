@@ -255,6 +255,10 @@ bool Ui::number(const char* label, double& value, double min, double max, const 
   return enterNumber(label, label, value, min, max, tip);
 }
 
+bool Ui::entry(const char* name, double& value, double min, double max, const char* tip) {
+  return enterNumber(fmt::format("##{}", name).c_str(), name, value, min, max, tip);
+}
+
 bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
                 const char* tip) {
   constexpr const char* kComponents[] = {"x", "y", "z"};
@@ -307,9 +311,15 @@ bool Ui::parameter(const Parameter& parameter) {
     return checkbox(name.c_str(), **flag, tip.c_str());
   }
   const auto withUnit = [&](bool changed) {
-    if (const std::string_view unit = parameterUnit(parameter); !unit.empty()) {
-      ImGui::SameLine();
+    const std::string_view unit = parameterUnit(parameter);
+    if (unit.empty()) return changed;
+    ImGui::SameLine();
+    // Where there is no room for it the tooltip says it.
+    const ImVec2 wanted = ImGui::CalcTextSize(unit.data(), unit.data() + unit.size());
+    if (ImGui::GetContentRegionAvail().x >= wanted.x) {
       faint(unit);
+    } else {
+      ImGui::NewLine();
     }
     return changed;
   };

@@ -91,6 +91,8 @@ class Ui {
                const char* tooltip = nullptr);
   bool number(const char* label, double& value, double min, double max,
               const char* tooltip = nullptr);
+  /// The same without a label beside it, as wide as has been set.
+  bool entry(const char* name, double& value, double min, double max, const char* tooltip);
   /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
   bool vector(const char* label, std::array<double, 3>& value, double min, double max,
               const char* tooltip = nullptr);

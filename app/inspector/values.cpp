@@ -24,12 +24,13 @@ void addCounts(Values& values, const std::string& prefix, const Counts& counts) 
   values[prefix + "invalid"] = std::to_string(counts.invalid_count);
 }
 
-void addLanes(Values& values, const RunProgress& progress) {
+void addLanes(Values& values, const Session& session, const RunProgress& progress) {
   for (const LaneReport& lane : progress.lanes) {
     const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
     values[name + "status"] = statusName(lane.status);
     values[name + "reason"] = lane.reason;
     values[name + "frame"] = std::to_string(lane.frame);
+    values[name + "over"] = std::to_string(framesOver(lane, session.budget_ms));
     FrameRecord sum;
     for (const FrameRecord& record : lane.frames) {
       sum.missed_count += record.missed_count;
@@ -183,7 +184,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addAuthored(values, session);
   addBatch(values, session.bake);
-  addLanes(values, progress);
+  addLanes(values, session, progress);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
@@ -209,6 +210,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["view.answer"] = view_.answer().answer;
   values["view.oracle"] = view_.answer().beside;
   values["view.pair"] = view_.answer().pair;
+  values["hidden"] = std::to_string(view_.hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);
   values["layout"] =

@@ -22,6 +22,8 @@ constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
 constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
 
+constexpr std::size_t kMostXrayed = 2000;
+
 constexpr Rgb kMissed = 0xE5484D;
 constexpr Rgb kLine = 0x4C8DFF;
 
@@ -136,22 +138,49 @@ void View::updateBodies(const Session& session) {
     input.overlaps = snapshot.overlaps;
   }
   mode.colour(input, colouring_);
-  visible_.clear();
-  if (session.view.hide_free) {
-    visible_.resize(snapshot.boxes->size());
-    for (std::size_t body = 0; body < visible_.size(); ++body) {
-      visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
-    }
-    // What is missing is what one looks for.
-    for (const Pair& pair : snapshot.difference.missed_pairs)
-      visible_[pair.a] = visible_[pair.b] = 1;
-    for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
-  }
+  updateVisible(session.view);
   content_.boxes = *snapshot.boxes;
   content_.colours = colouring_.colours;
   content_.visible = visible_;
   content_.selected = shown_.selection;
   content_.bodies_revision = revision_;
+}
+
+void View::updateVisible(const ViewOptions& options) {
+  const Snapshot& snapshot = *shown_.snapshot;
+  visible_.clear();
+  if (!options.hide_free && !options.filter.hides()) return;
+  visible_.assign(snapshot.boxes->size(), 1);
+  if (options.hide_free) {
+    for (std::size_t body = 0; body < visible_.size(); ++body) {
+      visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
+    }
+    // What is missing is what one looks for.
+    for (const Pair& pair : snapshot.difference.missed_pairs) {
+      visible_[pair.a] = visible_[pair.b] = 1;
+    }
+  }
+  hideBodies(options.filter,
+             {.boxes = *snapshot.boxes,
+              .layers = snapshot.scene.filter.layers(),
+              .classes = colouring_.classes,
+              .world = snapshot.scene.world},
+             visible_);
+  for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
+}
+
+std::size_t View::hiddenBodies() const {
+  return static_cast<std::size_t>(std::ranges::count(visible_, 0));
+}
+
+void View::addXray(bool dark) {
+  for (const std::uint32_t body :
+       std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
+    wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
+                           .colour = (dark ? kDarkScene : kLightScene).selection,
+                           .width = 2.5F,
+                           .behind = Behind::shown});
+  }
 }
 
 void View::add(Overlay overlay) {
@@ -202,6 +231,13 @@ void View::updateLines(const Session& session, bool dark) {
                         .colour = (dark ? kDarkScene : kLightScene).selection,
                         .behind = Behind::faint});
     }
+  }
+  if (options.xray) addXray(dark);
+  if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
+    wire_boxes_.push_back({.box = *plane,
+                           .colour = (dark ? kDarkScene : kLightScene).world,
+                           .width = 2,
+                           .behind = Behind::faint});
   }
   content_.lines = lines_;
   content_.wire_boxes = wire_boxes_;

@@ -38,6 +38,8 @@ class View {
   [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
   /// The same of the oracle's answer, where the colours tell of another one.
   [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
+  /// How many bodies are not drawn because the user does not want to see them.
+  [[nodiscard]] std::size_t hiddenBodies() const;
   /// Whose answer is seen.
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
@@ -61,6 +63,8 @@ class View {
 
   void update(Session& session, const RunProgress& progress, bool dark);
   void updateBodies(const Session& session);
+  void updateVisible(const ViewOptions& options);
+  void addXray(bool dark);
   void updateLines(const Session& session, bool dark);
   void add(Overlay overlay);
   void takeFlightRequest(Session& session);

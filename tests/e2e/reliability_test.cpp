@@ -124,7 +124,7 @@ std::vector<Step> steps() {
                   "wait settled\n"
                   "key Ctrl+S\nenter File/name saved.aabbs\nclick File/Save\n"
                   "expect dialog = no\nwait settled\n"
-                  "click \"Author/From this frame\"\n"
+                  "click \"Author/From this frame\"\nexpect author.shown = yes\n"
                   "key Ctrl+S\nenter File/name scene\nclick File/Save\n"
                   "expect author.modified = no\nwrite author.bodies bodies.txt\n"}},
        .stride = 3,

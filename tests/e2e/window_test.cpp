@@ -116,7 +116,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
             "places choice\n"
             "expect lanes = 1\n"
             "wait settled\n"
-            "expect lane.kd.status = ok\n"
+            "expect lane.sap.status = ok\n"
             "places chosen\n"
             "expect scene.objects = 275\n"
             "places typed\n"
@@ -134,7 +134,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   click(screen, "paused", "View/scene");
   click(screen, "picked", "Algorithms");
   click(screen, "algorithms", "Algorithms/Add…");
-  click(screen, "choice", "Algorithms/add/kd");
+  click(screen, "choice", "Algorithms/add/sap");
   click(screen, "chosen", "Scene");
   std::this_thread::sleep_for(500ms);
   click(screen, "opened", "Scene/objects");

@@ -51,6 +51,17 @@ TEST(Parameters, AllTypesAreSetFromText) {
   EXPECT_EQ(knobs.input, "a b=c");
 }
 
+TEST(Parameters, UnitsAreThoseThatTheExplanationEndsWith) {
+  double value = 0;
+  const auto unit = [&](std::string_view doc) {
+    return parameterUnit({.name = "some", .doc = doc, .value = &value});
+  };
+  EXPECT_EQ(unit("time between frames, in seconds"), "s");
+  EXPECT_EQ(unit("speed below which a body is slow, in world units per second"), "units/s");
+  EXPECT_EQ(unit("size of a subproblem, in boxes, below which it is scanned"), "");
+  EXPECT_EQ(unit("bodies per cell"), "");
+}
+
 TEST(Parameters, SwitchesTakeTheUsualWords) {
   for (const auto& [text, value] : std::map<std::string, bool>{{"on", true},
                                                                {"true", true},

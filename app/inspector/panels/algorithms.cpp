@@ -3,12 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "inspector/panel.h"
 
+#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+
 namespace broadmark::panels::algorithms {
 namespace {
+
+constexpr float kListWidth = 260;   // units: of the algorithms to choose from
+constexpr float kListHeight = 360;  // likewise
 
 /// A family's algorithms, to choose from.
 struct Family {
@@ -58,20 +66,55 @@ class AlgorithmsPanel final : public Panel {
   }
 
  private:
-  static void drawChoice(Ui& ui, Session& session) {
+  /// A click takes one; with Ctrl several are marked, and then added at once.
+  void drawChoice(Ui& ui, Session& session) {
     if (!ImGui::BeginPopup("add")) return;
     const auto scope = ui.scope("add");
-    const Algorithm* chosen = nullptr;
+    if (ImGui::IsWindowAppearing()) {
+      searched_.clear();
+      marked_.clear();
+      ImGui::SetKeyboardFocusHere();
+    }
+    ImGui::SetNextItemWidth(kListWidth * ui.scale);
+    ImGui::InputTextWithHint("##search", "search", &searched_);
+    ui.note("search");
+    ImGui::BeginDisabled(marked_.empty());
+    const bool add = ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
+                               "Adds those that were marked by a click with Ctrl");
+    ImGui::EndDisabled();
+    std::vector<std::string> chosen;
+    if (add) chosen = marked_;
+    ImGui::BeginChild("list", {kListWidth * ui.scale, kListHeight * ui.scale}, false,
+                      ImGuiWindowFlags_NavFlattened);
     for (const Family& family : familiesOf(session.lanes.algorithms())) {
-      ui.faint(family.name);
-      for (const Algorithm* algorithm : family.members) {
-        if (ui.selectable(algorithm->id.c_str(), false, algorithm->summary.c_str())) {
-          chosen = algorithm;
-        }
+      drawFamily(ui, family, chosen);
+    }
+    ImGui::EndChild();
+    for (const std::string& id : chosen) session.lanes.add(id);
+    if (!chosen.empty()) ImGui::CloseCurrentPopup();
+    ImGui::EndPopup();
+  }
+
+  void drawFamily(Ui& ui, const Family& family, std::vector<std::string>& chosen) {
+    bool headed = false;
+    for (const Algorithm* algorithm : family.members) {
+      const std::string& id = algorithm->id;
+      if (id.find(searched_) == id.npos && family.name.find(searched_) == id.npos) continue;
+      if (!std::exchange(headed, true)) ui.faint(family.name);
+      const auto mark = std::ranges::find(marked_, id);
+      const bool pressed = ImGui::Selectable(id.c_str(), mark != marked_.end(),
+                                             ImGuiSelectableFlags_DontClosePopups);
+      ui.note(id);
+      ui.tooltip(algorithm->summary.c_str());
+      if (!pressed) continue;
+      if (!ImGui::GetIO().KeyCtrl) {
+        chosen = {id};
+      } else if (mark == marked_.end()) {
+        marked_.push_back(id);
+      } else {
+        marked_.erase(mark);
       }
     }
-    if (chosen != nullptr) session.lanes.add(chosen->id);
-    ImGui::EndPopup();
   }
 
   /// Returns whether it is to be kept.
@@ -122,6 +165,9 @@ class AlgorithmsPanel final : public Panel {
     }
     return changed;
   }
+
+  std::string searched_;             ///< part of an id or a family's name
+  std::vector<std::string> marked_;  ///< ids
 };
 
 }  // namespace

@@ -39,13 +39,14 @@ class SelectionPanel final : public Panel {
 
  private:
   void goTo(PanelContext& context) {
-    const auto last = static_cast<std::int64_t>(context.progress.scene.objects) - 1;
-    if (last < 0) return;
-    if (context.ui.integer("body", wanted_, 0, last,
-                           "Selects a body by its number, and flies there")) {
-      context.session.selection.select({static_cast<std::uint32_t>(wanted_)});
-      context.session.selection.flyThere();
-    }
+    if (context.progress.scene.objects == 0) return;
+    Ui& ui = context.ui;
+    if (!ui.text("body", wanted_, "17, 40-50")) return;
+    Session& session = context.session;
+    session.notices.attempt([&] {
+      session.selection.select(parseIds(wanted_, "body", context.progress.scene.objects - 1));
+      session.selection.flyThere();
+    });
   }
 
   static void drawBody(PanelContext& context, const Snapshot& snapshot, std::uint32_t body) {
@@ -138,7 +139,7 @@ class SelectionPanel final : public Panel {
     ui.faintParagraph("Click a body to select it; drag with Shift to select several.");
   }
 
-  std::int64_t wanted_ = 0;
+  std::string wanted_;  ///< the ids searched for
   std::shared_ptr<const Snapshot> described_;
   Changes changes_;  ///< in the frame described
 };

@@ -16,6 +16,7 @@ namespace {
 
 /// Shown of a simulation that has just begun.
 constexpr std::uint32_t kFewestFrames = 20;
+constexpr float kOneRowWidth = 600;  // units: narrower, the controls have two rows
 
 class TimingsPanel final : public Panel {
  public:
@@ -30,7 +31,7 @@ class TimingsPanel final : public Panel {
           "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
       if (context.progress.population.empty()) return;
     }
-    drawControls(context.ui);
+    drawControls(context);
     const std::vector<PlotCurve> curves = makeCurves(context);
     const auto last = static_cast<double>(std::max(kFewestFrames, context.progress.known_frames));
     if (!zoomed_) {
@@ -48,6 +49,7 @@ class TimingsPanel final : public Panel {
                   .first = first_,
                   .last = last_,
                   .dark = context.ui.theme.dark,
+                  .limit = quantity_ == 0 ? 0 : context.session.budget_ms * 1e-3,
                   .backdrop = population.values.empty() ? nullptr : &population},
                  room.x, room.y);
     context.ui.note("plot");
@@ -59,7 +61,9 @@ class TimingsPanel final : public Panel {
   }
 
  private:
-  void drawControls(Ui& ui) {
+  void drawControls(PanelContext& context) {
+    Ui& ui = context.ui;
+    const bool roomy = ImGui::GetContentRegionAvail().x > kOneRowWidth * ui.scale;
     std::vector<std::string> names = {"pairs"};
     for (const std::string& phase : kPhases.names()) names.push_back(phase);
     const float width = 150 * ui.scale;
@@ -70,6 +74,20 @@ class TimingsPanel final : public Panel {
     ImGui::BeginDisabled(!zoomed_);
     if (ui.button("All frames", "Undoes zooming with the wheel")) zoomed_ = false;
     ImGui::EndDisabled();
+    if (roomy) ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    ui.faint("budget");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(60 * ui.scale);
+    ui.entry("budget", context.session.budget_ms, 0, 1e5,
+             "What a frame may take, in milliseconds: a line in the plot; 0: none");
+    ImGui::SameLine();
+    std::uint64_t over = 0;
+    for (const LaneReport& lane : context.progress.lanes) {
+      if (context.session.budget_ms > 0) over += framesOver(lane, context.session.budget_ms);
+    }
+    ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
+    ui.note("over");
   }
 
   std::vector<PlotCurve> makeCurves(const PanelContext& context) const {

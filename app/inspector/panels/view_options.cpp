@@ -1,12 +1,17 @@
 // How the scene is shown.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "inspector/panel.h"
 #include "inspector/view.h"
 
 namespace broadmark::panels::view_options {
 namespace {
+
+constexpr double kLargestSize = 1e9;
 
 class ViewPanel final : public Panel {
  public:
@@ -26,16 +31,74 @@ class ViewPanel final : public Panel {
     ui.checkbox("world", view.world_box);
     ui.checkbox("ground", view.ground);
     ui.checkbox("axes", view.axes);
+    ui.checkbox("selection through others", view.xray,
+                "Outlines the selected bodies over what stands before them");
+    drawFilter(context);
     drawStructure(context);
     drawDirections(context);
   }
 
  private:
+  /// A checkbox that shows or hides what a bit stands for.
+  template <class Bits>
+  static void showBit(Ui& ui, const std::string& label, Bits& hidden, std::size_t bit) {
+    bool shown = ((hidden >> bit) & 1U) == 0;
+    ImGui::PushID(static_cast<int>(bit));  // two may be called alike
+    if (ui.checkbox(label.c_str(), shown, "Whether these bodies are drawn")) {
+      hidden ^= Bits{1} << bit;
+    }
+    ImGui::PopID();
+  }
+
+  static void drawFilter(PanelContext& context) {
+    Ui& ui = context.ui;
+    BodyFilter& filter = context.session.view.filter;
+    ui.heading("Show of the crowd");
+    const auto& legend = context.view.legend();
+    for (std::size_t i = 0; i < std::min<std::size_t>(legend.size(), 64); ++i) {
+      showBit(ui, legend[i].label, filter.hidden_classes, i);
+    }
+    drawLayers(context);
+    ui.number("smallest", filter.smallest, 0, kLargestSize,
+              "Bodies whose longest edge is shorter are hidden, in world units");
+    ui.number("largest", filter.largest, 0, kLargestSize,
+              "Bodies whose longest edge is longer are hidden, in world units; 0: none");
+    std::size_t axis = static_cast<std::size_t>(filter.clip_axis + 1);
+    if (ui.combo("clip", axis, {"nothing", "along x", "along y", "along z"},
+                 "Hides the bodies whose centres lie beyond a plane")) {
+      filter.clip_axis = static_cast<int>(axis) - 1;
+    }
+    ImGui::BeginDisabled(filter.clip_axis < 0);
+    int percent = static_cast<int>(std::lround(100 * filter.clip_at));
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
+    if (ui.slider("clip at", percent, 0, 100, "%.0f %%")) filter.clip_at = percent / 100.0;
+    ui.checkbox("clip below", filter.clip_below, "Hides what lies below the plane, not above");
+    ImGui::EndDisabled();
+    ImGui::BeginDisabled(!filter.hides());
+    if (ui.button("Show all bodies")) filter = {};
+    ImGui::EndDisabled();
+  }
+
+  static void drawLayers(PanelContext& context) {
+    if (!context.progress.snapshot) return;
+    std::uint32_t used = 0;
+    for (const std::uint8_t layer : context.progress.snapshot->scene.filter.layers()) {
+      used |= 1U << layer;
+    }
+    for (std::size_t layer = 0; layer < 32; ++layer) {
+      if (((used >> layer) & 1U) == 0) continue;
+      showBit(context.ui, fmt::format("layer {}", layer), context.session.view.filter.hidden_layers,
+              layer);
+    }
+  }
+
   static void drawColours(Ui& ui, ViewOptions& view) {
+    const std::size_t before = view.colouring;
     std::vector<std::string> titles;
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
     view.colouring %= titles.size();
     ui.combo("colours", view.colouring, titles, "What the bodies' colours tell (C: the next)");
+    if (view.colouring != before) view.filter.hidden_classes = 0;  // they are of the other colours
     ui.faintParagraph(colourModes()[view.colouring].help);
   }
 

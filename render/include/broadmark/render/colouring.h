@@ -33,7 +33,8 @@ struct LegendEntry {
 };
 
 struct Colouring {
-  std::vector<Rgb> colours;  ///< one for each box
+  std::vector<Rgb> colours;           ///< one for each box
+  std::vector<std::uint8_t> classes;  ///< likewise: which entry of the legend
   std::vector<LegendEntry> legend;
 };
 

@@ -29,6 +29,7 @@ struct PlotOptions {
   double first = 0;
   double last = 1;
   bool dark = true;
+  double limit = 0;  ///< a horizontal line with its value; 0: none
   /// Drawn behind the curves, from 0 on a scale of its own, without a unit; null: nothing.
   const PlotCurve* backdrop = nullptr;
 };
