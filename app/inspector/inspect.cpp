@@ -167,7 +167,8 @@ void inspectOffscreen(const InspectOptions& options) {
       target = std::make_unique<Framebuffer>(gl, width, height, 1);
     }
     inspector.draw(input, width, height, kOffscreenSeconds, [&] { target->bind(); });
-    gl.Finish();  // or pictures that nobody waits for would pile up in the driver, gigabytes of them
+    gl.Finish();  // or pictures that nobody waits for would pile up in the driver, gigabytes of
+                  // them
     const auto picture = [&] { return target->read(); };
     takePictures(inspector, movie, picture);
     if (const auto path = script ? script->player.takeScreenshot() : std::nullopt) {

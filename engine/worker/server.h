@@ -6,7 +6,8 @@
 
 namespace broadmark::worker {
 
-/// Answers the calls of the other side until that hangs up. Throws HostError for what is no message.
+/// Answers the calls of the other side until that hangs up. Throws HostError for what is no
+/// message.
 void answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
                  const AlgorithmFinder& find);
 

@@ -96,7 +96,7 @@ class Rounds:
         self._deeds: list[Callable[[], str]] = []
 
     def __iter__(self) -> Iterator[str]:
-        yield "patience 20\nclick Playback/Loop\nexpect loop = yes\n"
+        yield "patience 20\nopen yardstick.broadmark\nclick Playback/Loop\nexpect loop = yes\n"
         yield "click Batch/scenes/freefall\nclick Batch/scenes/brownian\n"  # of the two only this
         while True:
             yield "".join(self._next()() for _ in range(2)) + YARDSTICK
@@ -161,7 +161,6 @@ expect error = ""
 key Ctrl+S
 expect dialog = yes
 enter File/name {name}
-click File/Save
 {replace}expect dialog = no
 wait settled
 open {name}
@@ -278,7 +277,6 @@ wait settled
 expect mismatch_pairs > 0
 click "Mismatches/Export case…"
 enter File/name {name}
-click File/Save
 {replace}expect export.state = done
 key Escape
 click Algorithms/faulty/Remove
@@ -288,7 +286,7 @@ click Algorithms/faulty/Remove
         return f"""
 enter Batch/objects "{self._number(10, 40)}, {self._number(41, 90)}"
 enter Batch/frames {self._number(2, 9)}
-enter Batch/directory batch
+enter Batch/output batch
 click Batch/Start
 expect batch.state = done
 expect batch.failed = 0
