@@ -142,7 +142,11 @@ wait settled
 """
 
     def _simulate(self) -> str:
+        # With a recording open, what else might be simulated is folded away.
         return f"""
+open yardstick.broadmark
+wait settled
+click Scene/draft
 choose Scene/scene {self._random.choice(SCENES)}
 enter Scene/objects {self._number(20, 300)}
 enter Scene/frames {self._number(5, 40)}
