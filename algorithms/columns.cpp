@@ -4,8 +4,8 @@
 //  1. A sample of the boxes tells which axes to cut, and how often (columns/layout.h).
 //  2. One pass over the boxes copies each into the columns that it touches, with its bounds on the
 //     two axes in 32 bits (columns/copies.h, columns/chains.h).
-//  3. Each column is put in order along the sweep axis, in one counting sort by as many buckets as
-//     there are copies: a window ends with the bucket in which its box ends.
+//  3. Each column is put in order along the sweep axis, in one counting sort by at least as many
+//     buckets as there are copies: a window ends with the bucket in which its box ends.
 //  4. Columns that turn out to be crowded are cut into columns of their own, as if each were a
 //     world: steps 1 to 3 again.
 //  5. Windows are swept with vectors of bytes. Where bounds share a step, the boxes decide.

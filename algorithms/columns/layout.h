@@ -11,19 +11,13 @@
 
 namespace broadmark::columns {
 
-/// How the coordinates on an axis become steps: (coordinate - low) * factor, from 0 to `last`.
+/// How the coordinates on an axis become steps: (coordinate - low) * factor, from 0 to `last`. What
+/// overflows gets an outermost step, and NaN (infinity · 0) gets 0.
 struct StepScale {
   int axis = 0;
   float low = 0;
   float factor = 0;
   float last = 0;
-
-  [[nodiscard]] std::uint32_t of(float coordinate) const {
-    const float step = (coordinate - low) * factor;
-    // What overflows gets an outermost step, and NaN (infinity · 0) gets 0.
-    const float at_least = step > 0 ? step : 0;
-    return static_cast<std::uint32_t>(static_cast<std::int32_t>(at_least < last ? at_least : last));
-  }
 };
 struct StepScales {
   std::array<StepScale, 2> of;  ///< the axes that are cut
