@@ -62,10 +62,8 @@ void AuthorDesk::chooseBrush(std::size_t which) {
   chosen_brush_ = which;
 }
 
-std::size_t AuthorDesk::addStroke() {
-  scenes::Stroke stroke = scenes::paint(*brush_, paint, paint_at, editor.scene().bodies);
-  editor.add(std::move(stroke.bodies));
-  return stroke.left_out;
+scenes::Stroke AuthorDesk::stroke() const {
+  return scenes::paint(*brush_, paint, paint_at, editor.scene().bodies);
 }
 
 scenes::AuthoredScene sceneFromFootage(const FootageRequest& request, std::uint32_t frame) {

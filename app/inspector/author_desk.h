@@ -1,4 +1,4 @@
-// What a scene is put together on: the document with its history, its file, the brush.
+// What a scene is put together on: the document with its history, its file, the brush, the tools.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
 #include "inspector/footage.h"
+#include "inspector/tools.h"
 
 namespace broadmark {
 
@@ -44,13 +45,15 @@ class AuthorDesk {
   void chooseBrush(std::size_t which);
   [[nodiscard]] std::size_t chosenBrush() const { return chosen_brush_; }
   [[nodiscard]] scenes::Brush& brush() { return *brush_; }
-  /// Paints once and selects the new bodies. Returns how many found no room. Throws InputError.
-  std::size_t addStroke();
+  [[nodiscard]] const scenes::Brush& brush() const { return *brush_; }
+  /// What the brush paints at `paint_at`. Throws InputError.
+  [[nodiscard]] scenes::Stroke stroke() const;
 
   scenes::SceneEditor editor;
   const std::vector<scenes::BrushEntry> brushes = scenes::brushEntries();
   scenes::Paint paint;
-  Vec3 paint_at{};  ///< where the brush paints
+  Vec3 paint_at{};  ///< where stroke() paints
+  Tools tools;
 
  private:
   std::filesystem::path path_;

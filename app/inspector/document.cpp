@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "broadmark/files.h"
+#include "words.h"
 
 namespace broadmark {
 
@@ -52,6 +53,24 @@ void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
     show();
   } else {
     selection_.follow(desk.editor.selection());
+  }
+}
+
+void Document::add(const std::function<scenes::Stroke()>& painted) {
+  std::optional<std::size_t> added;
+  std::size_t left_out = 0;
+  edit([&](scenes::SceneEditor& editor) {
+    scenes::Stroke stroke = painted();
+    left_out = stroke.left_out;
+    const std::size_t count = stroke.bodies.size();
+    editor.add(std::move(stroke.bodies));
+    added = count;
+  });
+  if (added && left_out == 0) {
+    notices_.say(fmt::format("{} added", counted(*added, "body", "bodies")));
+  } else if (added) {
+    notices_.say(fmt::format("no room for {}", counted(left_out, "body", "bodies")),
+                 Message::Kind::warning);
   }
 }
 

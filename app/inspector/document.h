@@ -36,6 +36,9 @@ class Document {
 
   /// Changes the scene and shows it at rest. What goes wrong becomes an error.
   void edit(const std::function<void(scenes::SceneEditor&)>& change);
+  /// Adds what has been painted, selects it, and says how much that was. What goes wrong becomes an
+  /// error.
+  void add(const std::function<scenes::Stroke()>& painted);
   /// Shows the scene at rest, or moves it on from its first frame.
   void show();
   void simulate();

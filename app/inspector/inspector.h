@@ -110,6 +110,7 @@ class Inspector {
   /// To be called inside the window of a place: gives it the keys if they are to go there.
   void takeFocus(std::size_t place);
   void escape();
+  void takeTool(Tool tool);
   void editAuthored(void (scenes::SceneEditor::*change)());
   void askOpen();
   void askSaveRecording();

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <memory>
 #include <cmath>
 
 #include "broadmark/error.h"
@@ -290,11 +291,23 @@ void ScriptPlayer::drag(const Words& words, Inspector&) {
   const int button = words.size() > 5 ? static_cast<int>(number(words[5])) : 0;
   const Key held = words.size() > 6 ? keyNamed(words[6]) : 0;
   reveal(widget);
-  moveInto(widget, at[0], at[1]);
+  // The widget may move along: what counts is where it was.
+  const auto where = std::make_shared<WidgetPlace>();
+  const auto move_to = [&](float x, float y) {
+    steps_.push_back([where, x, y](Inspector&, InputQueue& input) {
+      input.push(moveTo(within(*where, x, y)));
+      return true;
+    });
+  };
+  steps_.push_back([this, widget, where](Inspector& inspector, InputQueue&) {
+    *where = place(inspector, widget);
+    return true;
+  });
+  move_to(at[0], at[1]);
   if (held != 0) push(keyEvent(held, true));
   push(buttonEvent(button, true));
   for (const float share : {0.25F, 0.5F, 0.75F, 1.0F}) {
-    moveInto(widget, at[0] + share * (at[2] - at[0]), at[1] + share * (at[3] - at[1]));
+    move_to(at[0] + share * (at[2] - at[0]), at[1] + share * (at[3] - at[1]));
   }
   push(buttonEvent(button, false));
   if (held != 0) push(keyEvent(held, false));

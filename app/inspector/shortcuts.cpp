@@ -20,6 +20,8 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
     {"Right or middle drag", "move the camera sideways"},
     {"Wheel", "towards the pointer, or away"},
     {"Click", "select a body (with Ctrl: add or remove it)"},
+    {"Drag a handle", "move, turn or scale the selected bodies (with Ctrl: by steps)"},
+    {"Click, drag with brush", "paint bodies on the ground or on others"},
     {"Shift + drag", "select all bodies in a rectangle"},
     {"Double click", "fly to a body"},
     {"Drop a file", "open it"},
@@ -60,7 +62,17 @@ void Inspector::makeShortcuts() {
          ++session_.view.colouring;
          session_.view.filter.hidden_classes = 0;
        }},
-      {GLFW_KEY_ESCAPE, false, false, "close a list, a dialog, this page; select nothing",
+      {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
+       [this] { takeTool(Tool::move); }},
+      {GLFW_KEY_T, false, false, "likewise: the gizmo that turns",
+       [this] { takeTool(Tool::turn); }},
+      {GLFW_KEY_R, false, false, "likewise: the gizmo that scales",
+       [this] { takeTool(Tool::scale); }},
+      {GLFW_KEY_L, false, false, "likewise: the gizmo along the first body's axes, or the world's",
+       [this] { session_.document.desk.tools.local = !session_.document.desk.tools.local; }},
+      {GLFW_KEY_B, false, false, "likewise: the brush, or none", [this] { takeTool(Tool::brush); }},
+      {GLFW_KEY_ESCAPE, false, false,
+       "close a list, a dialog, this page; take a drag back; put down the brush; select nothing",
        [this] { escape(); }},
       {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},
       {GLFW_KEY_S, true, false, kSave,
@@ -76,6 +88,12 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_Z, true, true, "redo it", [this] { editAuthored(&scenes::SceneEditor::redo); }},
       {GLFW_KEY_A, true, false, "select all bodies of the authored scene",
        [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
+      {GLFW_KEY_D, true, false, "copy the selected bodies; the copies are in their places",
+       [this] {
+         if (session_.document.shown()) {
+           session_.document.edit([](scenes::SceneEditor& editor) { editor.duplicate({}); });
+         }
+       }},
       {GLFW_KEY_DELETE, false, false, "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
       {GLFW_KEY_F6, false, false, kNextPlace, [this] { focusPlace(1); }},
@@ -146,11 +164,20 @@ void Inspector::escape() {
     navigates_ = false;
     return;
   }
+  Tools& tools = session_.document.desk.tools;
   if (help_) {
     help_ = false;
+  } else if (view_.hands().cancel()) {
+    return;
+  } else if (session_.document.shown() && tools.tool == Tool::brush) {
+    tools.tool = Tool::none;
   } else {
     session_.selection.select({});
   }
+}
+
+void Inspector::takeTool(Tool tool) {
+  if (session_.document.shown()) session_.document.desk.tools.toggle(tool);
 }
 
 void Inspector::editAuthored(void (scenes::SceneEditor::*change)()) {

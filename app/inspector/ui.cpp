@@ -115,6 +115,10 @@ void Ui::note(std::string_view label) {
                    .visible = visible && rect.GetWidth() >= 1 && rect.GetHeight() >= 1};
 }
 
+void Ui::noteAt(std::string_view name, ImVec2 min, ImVec2 max) {
+  places_[fullName(name)] = {.min = min, .max = max};
+}
+
 const WidgetPlace* Ui::find(const std::string& name) const {
   const auto found = places_.find(name);
   return found == places_.end() ? nullptr : &found->second;

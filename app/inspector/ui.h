@@ -133,6 +133,8 @@ class Ui {
 
   /// Notes the item drawn last under a name of its own.
   void note(std::string_view name);
+  /// Notes a place that is not an item's.
+  void noteAt(std::string_view name, ImVec2 min, ImVec2 max);
   /// The place of a widget in the last picture, until the next one; or null.
   [[nodiscard]] const WidgetPlace* find(const std::string& name) const;
   [[nodiscard]] const std::map<std::string, WidgetPlace>& places() const { return places_; }

@@ -79,6 +79,8 @@ void addAuthored(Values& values, Session& session) {
   values["author.redo"] = desk.editor.redoName();
   values["author.modified"] = yes(desk.isModified());
   values["author.path"] = desk.path().string();
+  values["author.tool"] = kTools.nameOf(desk.tools.tool);
+  values["author.local"] = yes(desk.tools.local);
   values["author.leaving"] = yes(session.document.leaving != nullptr);
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
   if (desk.editor.selection().empty()) return;
@@ -87,6 +89,8 @@ void addAuthored(Values& values, Session& session) {
     return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]);
   };
   values["author.body.position"] = vec(body.pose.position);
+  const auto& [x, y, z, w] = body.pose.rotation;
+  values["author.body.rotation"] = fmt::format("{:.4g} {:.4g} {:.4g} {:.4g}", x, y, z, w);
   values["author.body.velocity"] = vec(body.linear_velocity);
   values["author.body.angular_velocity"] = vec(body.angular_velocity);
   values["author.body.mass"] = fmt::format("{:.6g}", body.mass);
@@ -209,6 +213,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["legend.oracle"] = legendText(view_.oracleLegend());
   values["view.answer"] = view_.answer().answer;
   values["view.oracle"] = view_.answer().beside;
+  values["view.hands"] = view_.hands().text();
   values["view.pair"] = view_.answer().pair;
   values["hidden"] = std::to_string(view_.hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());

@@ -274,7 +274,20 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   ui.note("scene");
-  handleMouse(ui, session, corner, size);
+  const ImGuiIO& io = ImGui::GetIO();
+  Hands::Seen seen{.session = session,
+                   .snapshot = shown_.snapshot,
+                   .visible = visible_,
+                   .sight = Sight(content_.space, scene_.viewpoint()),
+                   .scale = ui.scale,
+                   .mouse = {},
+                   .ctrl = io.KeyCtrl};
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    seen.mouse = Pixel{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  }
+  hands_.look(seen);
+  handleMouse(ui, seen, corner, size);
+  hands_.draw(ui, seen, corner);
   const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
   drawLegend(ui,
              {.legend = colouring_.legend,
@@ -283,31 +296,42 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
               .left_out = left_out_},
              corner, size, taken);
   if (session.view.axes) drawAxisNames(corner);
+  if (session.document.shown()) drawTools(ui, session, corner, size);
 }
 
-void View::beginDrag(ImVec2 mouse) {
+void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
   const ImGuiIO& io = ImGui::GetIO();
   drag_from_ = mouse;
   dragged_ = false;
-  drag_ = !io.MouseDown[0] ? Drag::pan : io.KeyShift ? Drag::rectangle : Drag::orbit;
+  drag_ = !io.MouseDown[0]     ? Drag::pan
+          : io.KeyShift        ? Drag::rectangle
+          : hands_.press(seen) ? Drag::hands
+                               : Drag::orbit;
   flight_.reset();
 }
 
-void View::handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
+void View::handleRelease(const Hands::Seen& seen, ImVec2 mouse) {
+  const Drag drag = std::exchange(drag_, Drag::none);
+  if (drag == Drag::hands && !hands_.busy()) return;  // given up
+  if (hands_.busy() && (dragged_ || hands_.painting())) {
+    hands_.release(seen);
+  } else if (drag == Drag::rectangle && dragged_) {
+    selectWithin(seen.session, drag_from_, mouse);
+  } else if (!dragged_ && drag != Drag::pan) {
+    hands_.cancel();
+    click(seen.session, mouse, ImGui::GetIO().MouseDoubleClicked[0]);
+  }
+}
+
+void View::handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
-  if (ImGui::IsItemActivated()) beginDrag(mouse);
+  if (ImGui::IsItemActivated()) beginDrag(seen, mouse);
   if (ImGui::IsItemActive()) handleDrag(corner, size);
-  if (ImGui::IsItemDeactivated()) {
-    if (drag_ == Drag::rectangle && dragged_) {
-      selectWithin(session, drag_from_, mouse);
-    } else if (!dragged_ && drag_ != Drag::pan) {
-      click(session, mouse, io.MouseDoubleClicked[0]);
-    }
-    drag_ = Drag::none;
-  }
-  if (!ImGui::IsItemHovered()) return;
-  if (ImGui::IsMouseDoubleClicked(0)) click(session, mouse, true);
+  if (ImGui::IsItemDeactivated()) handleRelease(seen, mouse);
+  // While a body is in hand, the camera stays where it is.
+  if (!ImGui::IsItemHovered() || hands_.busy()) return;
+  if (ImGui::IsMouseDoubleClicked(0)) click(seen.session, mouse, true);
   if (io.MouseWheel != 0) {
     flight_.reset();
     const float x = 2 * mouse.x / size.x - 1;

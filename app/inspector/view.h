@@ -13,6 +13,7 @@
 #include "broadmark/render/overlays.h"
 #include "broadmark/render/scene_view.h"
 #include "inspector/answer_text.h"
+#include "inspector/hands.h"
 #include "inspector/session.h"
 #include "inspector/ui.h"
 
@@ -43,6 +44,8 @@ class View {
   /// Whose answer is seen.
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
+  /// What the mouse does with bodies.
+  [[nodiscard]] Hands& hands() { return hands_; }
 
   void lookFrom(Direction direction);
   void lookAtAll();
@@ -70,10 +73,11 @@ class View {
   void takeFlightRequest(Session& session);
   void fly(const OrbitCamera& to);
   void moveOn(float seconds);
-  void handleMouse(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
+  void handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size);
+  void handleRelease(const Hands::Seen& seen, ImVec2 mouse);
   void handleDrag(ImVec2 corner, ImVec2 size);
   void handleKeys();
-  void beginDrag(ImVec2 mouse);
+  void beginDrag(const Hands::Seen& seen, ImVec2 mouse);
   void click(Session& session, ImVec2 at, bool fly_there);
   void selectWithin(Session& session, ImVec2 from, ImVec2 to);
   void drawAxisNames(ImVec2 corner) const;
@@ -95,9 +99,10 @@ class View {
   std::vector<SceneWireBox> wire_boxes_;
   std::uint64_t revision_ = 0;
   std::size_t left_out_ = 0;  ///< lines and boxes that were too many
+  Hands hands_;
   int width_ = 1;
   int height_ = 1;
-  enum class Drag { none, orbit, pan, rectangle } drag_ = Drag::none;
+  enum class Drag { none, orbit, pan, rectangle, hands } drag_ = Drag::none;
   ImVec2 drag_from_;
   bool dragged_ = false;  ///< the mouse has moved since the button went down
 };

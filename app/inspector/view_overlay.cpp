@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace broadmark {
@@ -115,6 +117,51 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
   if (!left_out.empty()) {
     draw.AddText({at.x + pad, y}, colour(ui.theme.warning), left_out.c_str());
   }
+}
+
+void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
+  constexpr std::pair<Tool, const char*> kButtons[] = {
+      {Tool::move, "Moves the selected bodies by their handles (M)"},
+      {Tool::turn, "Turns the selected bodies about their common centre (T)"},
+      {Tool::scale, "Scales the selected bodies about their common centre (R)"},
+      {Tool::brush, "Paints bodies where one clicks and drags (B)"}};
+  Tools& tools = session.document.desk.tools;
+  const bool brush = tools.tool == Tool::brush;
+  const char* hint = "Click or drag to paint; Escape ends it";
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float button = 54 * ui.scale;
+  const float pad = 6 * ui.scale;
+  const float gap = style.ItemSpacing.x;
+  const float line = ImGui::GetFrameHeightWithSpacing();
+  const float width = 4 * button + 3 * gap + 2 * pad;
+  const float height = (brush ? 3 : 2) * line + 2 * pad - style.ItemSpacing.y;
+  if (width > size.x || height + 2 * line > size.y) return;
+  const auto scope = ui.scope("Tools");
+  ImGui::SetCursorScreenPos({corner.x + size.x - width - pad, corner.y + size.y - height - pad});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad, pad});
+  ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 4 * ui.scale);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, colourVector(ui.theme.background, kBackdrop));
+  ImGui::BeginChild("Tools", {width, height}, false,
+                    ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoScrollbar |
+                        ImGuiWindowFlags_NavFlattened);
+  if (brush) ui.coloured(ui.theme.accent, fittingText(hint, width - 2 * pad));
+  ImGui::BeginDisabled(!session.document.atRest());
+  for (const auto& [tool, tip] : kButtons) {
+    if (tool != Tool::move) ImGui::SameLine();
+    std::string label(kTools.nameOf(tool));
+    label[0] = static_cast<char>(label[0] - 'a' + 'A');
+    bool on = tools.tool == tool;
+    if (ui.toggle(label.c_str(), on, tip, button)) tools.toggle(tool);
+  }
+  const float half = (width - 2 * pad - gap) / 2;
+  ui.toggle("Local", tools.local, "The axes of the first selected body, not the world's (L)", half);
+  ImGui::SameLine();
+  ui.toggle("Snap", tools.snaps, "Drags go by steps; with Ctrl down it is the other way round",
+            half);
+  ImGui::EndDisabled();
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(2);
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-// What is written over the view: whose answer it shows, and what the colours mean.
+// What stands over the view: whose answer it shows, what the colours mean, the tools.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +7,7 @@
 
 #include "broadmark/render/colouring.h"
 #include "inspector/answer_text.h"
+#include "inspector/session.h"
 #include "inspector/ui.h"
 
 namespace broadmark {
@@ -23,5 +24,8 @@ struct ViewLegend {
 /// In the upper right corner, below what is `taken` by drawAnswer() if need be; left out where
 /// there is no room.
 void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 size, ImVec2 taken);
+
+/// Buttons of the tools in the lower right corner; left out where there is no room.
+void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
 
 }  // namespace broadmark

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <type_traits>
 
 #include "authoring/faults.h"
 #include "broadmark/error.h"
@@ -42,18 +41,6 @@ std::string faultOfBody(const AuthoredBody& body, std::size_t id) {
 }
 
 }  // namespace
-
-Vec3 edgesOf(const Shape& shape) {
-  const auto edges = [](const auto& kind) -> Vec3 {
-    if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, BoxShape>) {
-      const auto& [x, y, z] = kind.half_extents;
-      return {2 * x, 2 * y, 2 * z};
-    } else {
-      return {2 * kind.radius, 2 * kind.radius, 2 * kind.radius};
-    }
-  };
-  return std::visit(edges, shape);
-}
 
 std::string faultOfBody(const AuthoredBody& body) {
   if (!std::ranges::all_of(edgesOf(body.shape), isSize)) {

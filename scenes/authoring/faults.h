@@ -17,7 +17,4 @@ void requireSound(const AuthoredScene&);
 /// What is wrong with a number that is no layer, and what would be right.
 std::string faultOfLayer(std::string_view key);
 
-/// The edges of a box, or three times the diameter of a sphere.
-Vec3 edgesOf(const Shape&);
-
 }  // namespace broadmark::scenes

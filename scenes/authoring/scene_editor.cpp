@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <iterator>
@@ -21,32 +20,6 @@ namespace broadmark::scenes {
 namespace {
 
 Vec3 plus(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-
-/// The point `factor` times as far from the centre.
-Vec3 scaledAbout(const Vec3& centre, const Vec3& point, float factor) {
-  Vec3 scaled;
-  for (int axis = 0; axis < 3; ++axis) {
-    scaled[axis] = centre[axis] + factor * (point[axis] - centre[axis]);
-  }
-  return scaled;
-}
-
-Shape scaled(const Shape& shape, float factor) {
-  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
-    return SphereShape{factor * sphere->radius};
-  }
-  const auto& [x, y, z] = std::get<BoxShape>(shape).half_extents;
-  return BoxShape{{factor * x, factor * y, factor * z}};
-}
-
-/// The pose after turning about a point.
-Pose turnedAbout(const Vec3& centre, const Pose& pose, const Eigen::Quaternionf& by) {
-  using Eigen::Vector3f;
-  const Vector3f middle(centre.data());
-  const Vector3f to = middle + by * (Vector3f(pose.position.data()) - middle);
-  const Eigen::Quaternionf rotation = (by * Eigen::Quaternionf(pose.rotation.data())).normalized();
-  return {{to.x(), to.y(), to.z()}, {rotation.x(), rotation.y(), rotation.z(), rotation.w()}};
-}
 
 BodyIds idsFrom(std::size_t first, std::size_t end) {
   BodyIds ids(end - first);
@@ -147,37 +120,32 @@ void SceneEditor::duplicate(const Vec3& offset) {
   addCopies("duplicate", std::move(copies));
 }
 
-void SceneEditor::move(const Vec3& by) {
-  changeBodies("move", &AuthoredBody::pose, [&](const AuthoredBody& body) {
-    return Pose{plus(body.pose.position, by), body.pose.rotation};
-  });
-}
-
-void SceneEditor::turn(const Quaternion& by) {
-  const Vec3 centre = selectionCentre();
-  const Eigen::Quaternionf rotation(by.data());
-  changeBodies("turn", &AuthoredBody::pose,
-               [&](const AuthoredBody& body) { return turnedAbout(centre, body.pose, rotation); });
-}
-
-void SceneEditor::scale(float factor) {
-  const Vec3 centre = selectionCentre();
-  const auto place = [&](const AuthoredBody& body) {
-    return Pose{scaledAbout(centre, body.pose.position, factor), body.pose.rotation};
-  };
+void SceneEditor::transform(std::string_view verb, const Transformation& change) {
   // Two properties change: both must be valid before the first one changes.
   for (const std::uint32_t id : *selection_) {
     AuthoredBody body = scene_.bodies[id];
-    body.pose = place(body);
-    body.shape = scaled(body.shape, factor);
+    body.shape = transformedShape(body, change);
+    body.pose = transformedPose(body, change);
     requireSound(body, id);
   }
   const bool alone = !in_gesture_;
-  if (alone) beginGesture(stepName("scale", selection_->size()));
-  changeBodies("scale", &AuthoredBody::pose, place);
-  changeBodies("scale", &AuthoredBody::shape,
-               [&](const AuthoredBody& body) { return scaled(body.shape, factor); });
+  if (alone) beginGesture(stepName(verb, selection_->size()));
+  // The shape first: it depends on the former rotation.
+  changeBodies(verb, &AuthoredBody::shape,
+               [&](const AuthoredBody& body) { return transformedShape(body, change); });
+  changeBodies(verb, &AuthoredBody::pose,
+               [&](const AuthoredBody& body) { return transformedPose(body, change); });
   if (alone) endGesture();
+}
+
+void SceneEditor::move(const Vec3& by) { transform("move", {.move = by}); }
+
+void SceneEditor::turn(const Quaternion& by) {
+  transform("turn", {.centre = selectionCentre(), .turn = by});
+}
+
+void SceneEditor::scale(float factor) {
+  transform("scale", {.centre = selectionCentre(), .scale = {factor, factor, factor}});
 }
 
 void SceneEditor::setSize(const Vec3& edges) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "broadmark/error.h"
@@ -52,18 +53,30 @@ void Paint::visitParameters(const ParameterVisitor& visit) {
   visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
 }
 
-Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at,
-             std::span<const AuthoredBody> present) {
+TakenRoom::TakenRoom(std::span<const AuthoredBody> bodies) : boxes_(std::make_unique<Occupied>()) {
+  for (const AuthoredBody& body : bodies) add(body);
+}
+TakenRoom::~TakenRoom() = default;
+TakenRoom::TakenRoom(TakenRoom&&) noexcept = default;
+TakenRoom& TakenRoom::operator=(TakenRoom&&) noexcept = default;
+
+void TakenRoom::add(const AuthoredBody& body) {
+  boxes_->add(core(tightBox(body.shape, body.pose)));
+}
+
+bool TakenRoom::overlaps(const AuthoredBody& body) const {
+  return boxes_->overlaps(core(tightBox(body.shape, body.pose)));
+}
+
+Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const TakenRoom& taken,
+             std::size_t most) {
   Random random(static_cast<std::uint64_t>(paint.seed));
   const ObjectType type = entryOf(objectTypes(), paint.object_type.value, "object type");
   const std::size_t count = checkedCount(brush.count(paint.scale * paint.scale * paint.scale));
-  Occupied occupied;
-  if (!paint.overlap) {
-    for (const AuthoredBody& body : present) occupied.add(core(tightBox(body.shape, body.pose)));
-  }
+  TakenRoom own;
   Stroke stroke;
   const int tries = brush.scatters() && !paint.overlap ? kTries : 1;
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < std::min(count, most); ++i) {
     AuthoredBody body;
     body.shape = type.shape(i, paint.scale, random);
     body.mass = paint.mass;
@@ -73,15 +86,20 @@ Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at,
       const Vec3 place = brush.place(i, random);
       for (std::size_t axis = 0; axis < 3; ++axis)
         body.pose.position[axis] = at[axis] + place[axis];
-      const Aabb box = core(tightBox(body.shape, body.pose));
-      if (!paint.overlap && occupied.overlaps(box)) continue;
+      if (!paint.overlap && (taken.overlaps(body) || own.overlaps(body))) continue;
       placed = true;
-      if (!paint.overlap) occupied.add(box);
+      if (!paint.overlap) own.add(body);
       stroke.bodies.push_back(body);
     }
     stroke.left_out += placed ? 0 : 1;
   }
   return stroke;
+}
+
+Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at,
+             std::span<const AuthoredBody> present) {
+  return scenes::paint(brush, paint, at,
+                       TakenRoom(paint.overlap ? std::span<const AuthoredBody>() : present));
 }
 
 }  // namespace broadmark::scenes

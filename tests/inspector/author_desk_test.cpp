@@ -212,7 +212,7 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
     desk.chooseBrush(brush);
     desk.paint_at = {100.0F * static_cast<float>(brush), 0, 0};
     const std::size_t before = desk.editor.scene().bodies.size();
-    session.document.edit([&](SceneEditor&) { desk.addStroke(); });
+    session.document.add([&] { return desk.stroke(); });
     EXPECT_GT(desk.editor.scene().bodies.size(), before) << desk.brushes[brush].listing.id;
     EXPECT_NEAR(desk.editor.selectionCentre()[0], desk.paint_at[0], 12);
   }

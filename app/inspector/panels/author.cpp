@@ -9,7 +9,6 @@
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/author_dialogs.h"
 #include "inspector/panel.h"
-#include "words.h"
 
 namespace broadmark::panels::author {
 namespace {
@@ -76,6 +75,7 @@ class AuthorPanel final : public Panel {
     drawState(context.ui, session);
     drawBrush(context.ui, session);
     drawSelection(context.ui, session);
+    drawSteps(context.ui, session.document.desk.tools);
     drawScene(context.ui, session);
     while (!changes_.empty()) {
       const auto change = std::move(changes_.front());
@@ -199,13 +199,7 @@ class AuthorPanel final : public Panel {
     ui.parameters(desk.paint);
     if (ui.button("Add", "Paints once, and selects what was added",
                   ImGui::GetContentRegionAvail().x)) {
-      std::size_t left_out = 0;
-      session.document.edit([&](SceneEditor&) { left_out = desk.addStroke(); });
-      const std::size_t added = desk.editor.selection().size();
-      session.notices.say(left_out == 0
-                              ? fmt::format("{} added", counted(added, "body", "bodies"))
-                              : fmt::format("no room for {}", counted(left_out, "body", "bodies")),
-                          left_out == 0 ? Message::Kind::note : Message::Kind::warning);
+      session.document.add([&desk] { return desk.stroke(); });
     }
     ImGui::PopID();
   }
@@ -302,6 +296,17 @@ class AuthorPanel final : public Panel {
       });
       known_ = false;
     }
+  }
+
+  static void drawSteps(Ui& ui, Tools& tools) {
+    if (!ImGui::CollapsingHeader("Steps")) return;
+    const auto scope = ui.scope("Steps");
+    ImGui::PushID("steps");
+    ui.number("move by", tools.move_step, 1e-6, 1e6,
+              "Step of the gizmo when it snaps, in world units");
+    ui.number("turn by", tools.turn_step, 0.1, 180, "Likewise, in degrees");
+    ui.number("scale by", tools.scale_step, 0.01, 10, "Likewise, of the factor");
+    ImGui::PopID();
   }
 
   void drawScene(Ui& ui, const Session& session) {

@@ -10,6 +10,7 @@
 #include "broadmark/render/plot.h"
 #include "inspector/curve_colours.h"
 #include "inspector/panel.h"
+#include "words.h"
 
 namespace broadmark::panels::timings {
 namespace {

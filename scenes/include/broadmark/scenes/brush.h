@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +14,8 @@
 #include "broadmark/scenes/random.h"
 
 namespace broadmark::scenes {
+
+class Occupied;  // private to the sources
 
 /// Says how many bodies go where, relative to a point. Visits the parameters that only this brush
 /// has. Lengths are in world units.
@@ -57,10 +60,28 @@ struct Stroke {
   std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// Bodies placed around the point `at`. Unless the paint allows overlaps, no tight box overlaps
-/// that of another placed body or of one in `present` by more than a touch: a brush that scatters
-/// tries other places, and a body without room is left out. The same arguments give the same
-/// bodies. O(present + placed). Throws InputError when the brush would place more than kMostBodies.
+/// The room that bodies take: their tight boxes, but for a touch.
+class TakenRoom {
+ public:
+  explicit TakenRoom(std::span<const AuthoredBody> bodies = {});
+  ~TakenRoom();
+  TakenRoom(TakenRoom&&) noexcept;
+  TakenRoom& operator=(TakenRoom&&) noexcept;
+
+  void add(const AuthoredBody&);
+  [[nodiscard]] bool overlaps(const AuthoredBody&) const;
+
+ private:
+  std::unique_ptr<Occupied> boxes_;
+};
+
+/// Bodies placed around the point `at`, `most` of them or fewer. Unless the paint allows overlaps,
+/// no tight box overlaps that of another placed body or `taken` by more than a touch: a brush that
+/// scatters tries other places, and a body without room is left out. The same arguments give the
+/// same bodies. O(placed). Throws InputError when the brush would place more than kMostBodies.
+Stroke paint(const Brush&, const Paint&, const Vec3& at, const TakenRoom& taken,
+             std::size_t most = std::numeric_limits<std::size_t>::max());
+/// The same among the bodies that are `present`. O(present + placed).
 Stroke paint(const Brush&, const Paint&, const Vec3& at, std::span<const AuthoredBody> present);
 
 }  // namespace broadmark::scenes

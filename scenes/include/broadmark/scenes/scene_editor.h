@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "broadmark/scenes/authored_scene.h"
+#include "broadmark/scenes/transformation.h"
 
 namespace broadmark::scenes {
 
@@ -61,6 +62,8 @@ class SceneEditor {
   void erase();
   /// Appends copies of the selected bodies, moved by `offset`, and selects them.
   void duplicate(const Vec3& offset);
+  /// `verb` names the step: "move".
+  void transform(std::string_view verb, const Transformation& change);
   void move(const Vec3& by);
   /// Turns the selected bodies about their common centre by a quaternion of unit length.
   void turn(const Quaternion& by);

@@ -22,6 +22,9 @@ struct SphereShape {
 /// The shape of a body around its centre.
 using Shape = std::variant<BoxShape, SphereShape>;
 
+/// The edges of a box along its own axes; of a sphere the diameter, three times.
+Vec3 edgesOf(const Shape&);
+
 /// The smallest axis-aligned box around the posed shape, with no margin: a turned box reaches
 /// |R|·half extents from its centre, a sphere its radius.
 Aabb tightBox(const Shape&, const Pose&);

@@ -1,0 +1,57 @@
+// Computed in double precision, so that moving alone adds floats exactly.
+
+#include "broadmark/scenes/transformation.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace broadmark::scenes {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+Vector3d wide(const Vec3& v) { return {v[0], v[1], v[2]}; }
+Quaterniond wide(const Quaternion& q) { return {q[3], q[0], q[1], q[2]}; }
+Vec3 narrow(const Vector3d& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+/// How much longer an edge in this direction becomes.
+double factorAlong(const Vector3d& direction, const Transformation& change) {
+  const Vector3d along = wide(change.axes).conjugate() * direction;
+  return along.cwiseProduct(wide(change.scale)).norm() / along.norm();
+}
+
+}  // namespace
+
+Pose transformedPose(const AuthoredBody& body, const Transformation& change) {
+  const Vector3d centre = wide(change.centre);
+  const Quaterniond axes = wide(change.axes);
+  const Vector3d along = axes.conjugate() * (wide(body.pose.position) - centre);
+  const Vector3d scaled = axes * along.cwiseProduct(wide(change.scale));
+  Pose pose = body.pose;
+  pose.position = narrow(centre + wide(change.turn) * scaled + wide(change.move));
+  if (change.turn == Transformation().turn) return pose;
+  const Quaterniond turned = (wide(change.turn) * wide(body.pose.rotation)).normalized();
+  const Vec3 parts = narrow(turned.vec());
+  pose.rotation = {parts[0], parts[1], parts[2], static_cast<float>(turned.w())};
+  return pose;
+}
+
+Shape transformedShape(const AuthoredBody& body, const Transformation& change) {
+  if (change.scale == Transformation().scale) return body.shape;
+  if (const auto* sphere = std::get_if<SphereShape>(&body.shape)) {
+    const double factor = std::cbrt(wide(change.scale).prod());
+    return SphereShape{static_cast<float>(factor * sphere->radius)};
+  }
+  BoxShape box = std::get<BoxShape>(body.shape);
+  const Quaterniond rotation = wide(body.pose.rotation);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double factor = factorAlong(rotation * Vector3d::Unit(axis), change);
+    box.half_extents[static_cast<std::size_t>(axis)] *= static_cast<float>(factor);
+  }
+  return box;
+}
+
+}  // namespace broadmark::scenes
