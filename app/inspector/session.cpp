@@ -45,6 +45,7 @@ constexpr std::size_t kMostTracked = 2;
 Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
     : draft(makeSimulation("freefall")),
       lanes(std::move(algorithms)),
+      benchmark(make_host),
       runs(make_host),
       make_host_(std::move(make_host)) {
   playback.on_show = [this] {
@@ -66,6 +67,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
 
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeBake();
+  noticeBenchmark();
   noticeExport();
   if (!playback.follow(progress)) return;
   noticeFailure(progress);
@@ -75,8 +77,14 @@ void Session::advance(const RunProgress& progress, double seconds) {
   if (playback.hasReached(progress)) playback.advance(seconds);
 }
 
-bool Session::busy() {
-  return playback.playing() || !runs.settled() || bake.running() || case_export.running();
+bool Session::busy() { return playback.playing() || !runs.settled() || atWork(); }
+
+void Session::end(std::function<void()> then) {
+  if (atWork()) {
+    ending = std::move(then);
+  } else {
+    document.leave(std::move(then));
+  }
 }
 
 Wish Session::wish() const {
@@ -123,6 +131,14 @@ void Session::noticeBake() {
   const BackgroundBake::Report report = bake.report();
   if (!report.failure.empty()) notices.complain(report.failure);
   notices.say(report.text(), report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
+}
+
+void Session::noticeBenchmark() {
+  if (!benchmark.takeEnd()) return;
+  const BackgroundBenchmark::Report report = benchmark.report();
+  if (!report.failure.empty()) return notices.complain(report.failure);
+  notices.say(fmt::format("{}: {}", report.file.string(), report.text()),
+              report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
 }
 
 void Session::chooseScene(const std::string& scene, const std::string& engine) {

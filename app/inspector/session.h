@@ -12,6 +12,7 @@
 #include "broadmark/algorithm.h"
 #include "broadmark/scenes/simulation.h"
 #include "inspector/background_bake.h"
+#include "inspector/background_benchmark.h"
 #include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
@@ -73,6 +74,14 @@ class Session {
   /// Whether anything goes on by itself.
   [[nodiscard]] bool busy();
 
+  /// Whether work goes on in the background that closing would end.
+  [[nodiscard]] bool atWork() const {
+    return bake.running() || benchmark.running() || case_export.running();
+  }
+  /// Calls `then`, which ends all; with unsaved changes or work in the background it waits until
+  /// the user has decided.
+  void end(std::function<void()> then);
+
   /// Begins a live simulation with the draft's present parameters.
   void simulate();
   /// Whether what is open is the draft's simulation, or was baked with its parameters.
@@ -107,6 +116,7 @@ class Session {
   ViewOptions view;
   double budget_ms = 16.7;                ///< that a frame may take; 0: any
   std::optional<CaseChoice> case_choice;  ///< to be made by the user
+  std::function<void()> ending;           ///< waits for what goes on in the background
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;
 
@@ -116,6 +126,7 @@ class Session {
   Lanes lanes;
   Mismatches mismatches{playback, lanes, selection, notices};
   BackgroundBake bake;
+  BackgroundBenchmark benchmark;
   Document document{playback, selection, notices, bake};
   CaseExport case_export;
   RunThread runs;
@@ -125,6 +136,7 @@ class Session {
   void noticeFailure(const RunProgress& progress);
   void noticeExport();
   void noticeBake();
+  void noticeBenchmark();
   /// How an authored scene is shown first.
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);

@@ -112,6 +112,14 @@ void addBatch(Values& values, const BackgroundBake& bake) {
   values["batch.failed"] = std::to_string(report.failed());
 }
 
+void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
+  const BackgroundBenchmark::Report report = benchmark.report();
+  values["benchmark.state"] = kTaskStates.nameOf(report.state);
+  values["benchmark.cases"] = std::to_string(report.cases);
+  values["benchmark.run"] = std::to_string(report.items.size());
+  values["benchmark.failed"] = std::to_string(report.failed());
+}
+
 /// Whether the first selected body is there.
 std::string presenceText(const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
@@ -184,6 +192,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addAuthored(values, session);
   addBatch(values, session.bake);
+  addBenchmark(values, session.benchmark);
   addLanes(values, session, progress);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
