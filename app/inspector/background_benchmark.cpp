@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/runner.h"
 #include "output.h"
 #include "plan_run.h"
 #include "words.h"
@@ -60,7 +61,10 @@ class BackgroundBenchmark::Watcher final : public RunWatcher {
   }
 
   void ended(const CaseResult& result) override {
-    Item item{.id = result.id, .status = result.status, .reason = result.reason};
+    Item item{.id = result.id,
+              .name = fmt::format("{} · {}", caseNameOf(result), recordingId(result.recording)),
+              .status = result.status,
+              .reason = result.reason};
     if (!result.repetitions.empty()) item.median_seconds = result.summary().median;
     task_.update([&](Report& report) { report.items.push_back(std::move(item)); });
   }

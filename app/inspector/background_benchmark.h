@@ -20,6 +20,7 @@ class BackgroundBenchmark {
   /// A case that has been run.
   struct Item {
     std::string id;
+    std::string name;  ///< the same with the algorithm first
     Status status = Status::ok;
     std::string reason = {};    ///< for every status but ok
     double median_seconds = 0;  ///< of a frame

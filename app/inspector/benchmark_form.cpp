@@ -173,7 +173,7 @@ void BenchmarkForm::drawItems(Ui& ui, Session& session, const BackgroundBenchmar
       ImGui::BeginDisabled(!opens);
       const std::string right =
           ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
-      if (ui.selectable(item.id.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
                         item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
         session.openCase(report.file, item.id);
       }

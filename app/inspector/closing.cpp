@@ -24,6 +24,7 @@ void drawEnding(Ui& ui, Session& session) {
   if (session.benchmark.running()) {
     ui.paragraph("Running algorithms: " + session.benchmark.report().text() + ".");
   }
+  if (session.duel.running()) ui.paragraph("A duel goes on.");
   if (session.case_export.running()) ui.paragraph("A case is being exported.");
   ui.paragraph("What is finished is kept.");
   ImGui::Spacing();

@@ -68,6 +68,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeBake();
   noticeBenchmark();
+  noticeDuel();
   noticeExport();
   if (!playback.follow(progress)) return;
   noticeFailure(progress);
@@ -139,6 +140,12 @@ void Session::noticeBenchmark() {
   if (!report.failure.empty()) return notices.complain(report.failure);
   notices.say(fmt::format("{}: {}", report.file.string(), report.text()),
               report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
+}
+
+void Session::noticeDuel() {
+  if (!duel.takeEnd()) return;
+  const BackgroundDuel::Report report = duel.report();
+  if (!report.failure.empty()) notices.complain(report.failure);
 }
 
 void Session::chooseScene(const std::string& scene, const std::string& engine) {
@@ -337,6 +344,19 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
     }
     if (!source) throw InputError("exporting a case: another scene has been opened");
     case_export.start(run, std::move(source), snapshot->difference, file, make_host_);
+  });
+}
+
+void Session::startDuel(double most_seconds) {
+  later([this, most_seconds] {
+    std::vector<Case> cases;
+    for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
+    std::unique_ptr<IndexedFrames> frames;
+    runs.withFootage([&](Footage* footage) {
+      if (footage != nullptr) frames = footage->source(footage->known());
+    });
+    if (!frames) throw InputError("duel: nothing is open");
+    duel.start(cases, std::move(frames), most_seconds, make_host_);
   });
 }
 

@@ -13,6 +13,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "inspector/background_bake.h"
 #include "inspector/background_benchmark.h"
+#include "inspector/background_duel.h"
 #include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
@@ -76,7 +77,7 @@ class Session {
 
   /// Whether work goes on in the background that closing would end.
   [[nodiscard]] bool atWork() const {
-    return bake.running() || benchmark.running() || case_export.running();
+    return bake.running() || benchmark.running() || duel.running() || case_export.running();
   }
   /// Calls `then`, which ends all; with unsaved changes or work in the background it waits until
   /// the user has decided.
@@ -109,6 +110,8 @@ class Session {
   /// if it has none.
   void exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot,
                   std::filesystem::path file);
+  /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
+  void startDuel(double most_seconds);
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
@@ -127,6 +130,7 @@ class Session {
   Mismatches mismatches{playback, lanes, selection, notices};
   BackgroundBake bake;
   BackgroundBenchmark benchmark;
+  BackgroundDuel duel;
   Document document{playback, selection, notices, bake};
   CaseExport case_export;
   RunThread runs;
@@ -137,6 +141,7 @@ class Session {
   void noticeExport();
   void noticeBake();
   void noticeBenchmark();
+  void noticeDuel();
   /// How an authored scene is shown first.
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);

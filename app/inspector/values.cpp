@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "duel_report.h"
 #include "inspector/answer_text.h"
 #include "inspector/inspector.h"
 #include "inspector/wrong_pair.h"
@@ -120,6 +121,13 @@ void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
   values["benchmark.failed"] = std::to_string(report.failed());
 }
 
+void addDuel(Values& values, const BackgroundDuel& duel) {
+  const BackgroundDuel::Report report = duel.report();
+  values["duel.state"] = kTaskStates.nameOf(report.state);
+  values["duel.rounds"] = std::to_string(report.result.sides.empty() ? 0 : report.result.rounds());
+  values["duel.verdict"] = report.result.places.empty() ? "" : verdictOf(report.result);
+}
+
 /// Whether the first selected body is there.
 std::string presenceText(const Session& session, const Snapshot* snapshot) {
   const auto& bodies = session.selection.bodies();
@@ -193,6 +201,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addAuthored(values, session);
   addBatch(values, session.bake);
   addBenchmark(values, session.benchmark);
+  addDuel(values, session.duel);
   addLanes(values, session, progress);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
