@@ -21,6 +21,7 @@
 #include "inspector/notices.h"
 #include "inspector/playback.h"
 #include "inspector/run_thread.h"
+#include "inspector/timeline.h"
 #include "plan.h"
 
 namespace broadmark {
@@ -112,6 +113,7 @@ class Session {
 
   Notices notices;
   Playback playback;
+  Timeline timeline;
   BodySelection selection;
   Lanes lanes;
   Mismatches mismatches{playback, lanes, selection, notices};

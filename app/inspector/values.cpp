@@ -67,6 +67,12 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
   return text;
 }
 
+void addTimeline(Values& values, const Timeline& timeline) {
+  values["timeline.first"] = fmt::format("{:.1f}", timeline.first());
+  values["timeline.last"] = fmt::format("{:.1f}", timeline.last());
+  values["timeline.zoomed"] = yes(timeline.zoomed());
+}
+
 void addAuthored(Values& values, Session& session) {
   const AuthorDesk& desk = session.document.desk;
   const scenes::AuthoredScene& scene = desk.editor.scene();
@@ -185,6 +191,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addAuthored(values, session);
   addBatch(values, session.bake);
   addLanes(values, session, progress);
+  addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
