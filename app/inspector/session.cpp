@@ -71,6 +71,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeDuel();
   noticeExport();
   if (!playback.follow(progress)) return;
+  timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);

@@ -23,6 +23,7 @@
 #include "inspector/notices.h"
 #include "inspector/playback.h"
 #include "inspector/run_thread.h"
+#include "inspector/timeline.h"
 #include "plan.h"
 
 namespace broadmark {
@@ -125,6 +126,7 @@ class Session {
 
   Notices notices;
   Playback playback;
+  Timeline timeline;
   BodySelection selection;
   Lanes lanes;
   Mismatches mismatches{playback, lanes, selection, notices};

@@ -68,6 +68,12 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
   return text;
 }
 
+void addTimeline(Values& values, const Timeline& timeline) {
+  values["timeline.first"] = fmt::format("{:.1f}", timeline.first());
+  values["timeline.last"] = fmt::format("{:.1f}", timeline.last());
+  values["timeline.zoomed"] = yes(timeline.zoomed());
+}
+
 void addAuthored(Values& values, Session& session) {
   const AuthorDesk& desk = session.document.desk;
   const scenes::AuthoredScene& scene = desk.editor.scene();
@@ -203,6 +209,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBenchmark(values, session.benchmark);
   addDuel(values, session.duel);
   addLanes(values, session, progress);
+  addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());

@@ -15,7 +15,7 @@ namespace broadmark::panels::duel {
 namespace {
 
 constexpr std::size_t kBins = 48;
-constexpr float kTableShare = 0.58F;  // of the width; the rest is the histogram's
+constexpr float kTableShare = 0.68F;  // of the width; the rest is the histogram's
 
 class DuelPanel final : public Panel {
  public:
@@ -128,7 +128,8 @@ class DuelPanel final : public Panel {
   /// Of how many rounds had which ratio; a line where both are as fast.
   void drawHistogram(Ui& ui, const DuelResult& result) const {
     const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
-    ui.faint(fmt::format("rounds by {} / {}", result.sides[side].name, result.sides[0].name));
+    ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
+                         ImGui::GetContentRegionAvail().x));
     const Histogram histogram = histogramOf(result.ratios(side, 0), kBins);
     if (histogram.counts.empty()) return;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
