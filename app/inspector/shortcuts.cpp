@@ -60,7 +60,7 @@ void Inspector::makeShortcuts() {
          ++session_.view.colouring;
          session_.view.filter.hidden_classes = 0;
        }},
-      {GLFW_KEY_ESCAPE, false, false, "close a list, a dialog, this page; select nothing",
+      {GLFW_KEY_ESCAPE, false, false, "close a list, a dialog, this page; no span; no body",
        [this] { escape(); }},
       {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},
       {GLFW_KEY_S, true, false, kSave,
@@ -84,8 +84,8 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
       {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
   };
-  for (std::size_t i = 0; i < panels_.size() && i < 9; ++i) {
-    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_1 + i), true, false,
+  for (std::size_t i = 0; i < panels_.size() && i < 10; ++i) {
+    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), true, false,
                           fmt::format("the panel {}", panels_[i]->name()),
                           [this, i] { enterPanel(*panels_[i]); }});
   }
@@ -148,6 +148,8 @@ void Inspector::escape() {
   }
   if (help_) {
     help_ = false;
+  } else if (session_.timeline.span()) {
+    session_.timeline.clearSpan();
   } else {
     session_.selection.select({});
   }

@@ -7,6 +7,7 @@
 #include "duel_report.h"
 #include "inspector/answer_text.h"
 #include "inspector/inspector.h"
+#include "inspector/span_statistics.h"
 #include "inspector/wrong_pair.h"
 
 namespace broadmark {
@@ -42,6 +43,10 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
     addCounts(values, name, sum);
     const FrameRecord* record = lane.record(lane.frame);
     values[name + "pairs"] = record ? std::to_string(record->pairs) : "";
+    if (const auto span = session.timeline.span()) {
+      const auto of = statisticsOf(lane.curves.pairs, lane.curves.disturbed, *span);
+      values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
+    }
   }
 }
 
@@ -72,6 +77,8 @@ void addTimeline(Values& values, const Timeline& timeline) {
   values["timeline.first"] = fmt::format("{:.1f}", timeline.first());
   values["timeline.last"] = fmt::format("{:.1f}", timeline.last());
   values["timeline.zoomed"] = yes(timeline.zoomed());
+  const auto span = timeline.span();
+  values["timeline.span"] = span ? fmt::format("{}-{}", span->first, span->last) : "";
 }
 
 void addAuthored(Values& values, Session& session) {

@@ -8,13 +8,13 @@
 
 #include "broadmark/statistics.h"
 #include "duel_report.h"
+#include "inspector/histogram.h"
 #include "inspector/panel.h"
 #include "words.h"
 
 namespace broadmark::panels::duel {
 namespace {
 
-constexpr std::size_t kBins = 48;
 constexpr float kTableShare = 0.68F;  // of the width; the rest is the histogram's
 
 class DuelPanel final : public Panel {
@@ -45,7 +45,7 @@ class DuelPanel final : public Panel {
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("histogram", {0, 0});
-    drawHistogram(ui, report.result);
+    drawRatios(ui, report.result);
     ImGui::EndChild();
   }
 
@@ -126,43 +126,12 @@ class DuelPanel final : public Panel {
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.
-  void drawHistogram(Ui& ui, const DuelResult& result) const {
+  void drawRatios(Ui& ui, const DuelResult& result) const {
     const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
     ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
                          ImGui::GetContentRegionAvail().x));
-    const Histogram histogram = histogramOf(result.ratios(side, 0), kBins);
-    if (histogram.counts.empty()) return;
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float text = ImGui::GetTextLineHeight();
-    const ImVec2 size = {ImGui::GetContentRegionAvail().x,
-                         std::max(ImGui::GetContentRegionAvail().y - text, text)};
-    const float bottom = corner.y + size.y;
-    ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const auto most = static_cast<float>(*std::ranges::max_element(histogram.counts));
-    const float width = size.x / static_cast<float>(kBins);
-    for (std::size_t bin = 0; bin < kBins; ++bin) {
-      const float left = corner.x + width * static_cast<float>(bin);
-      const float height = size.y * static_cast<float>(histogram.counts[bin]) / most;
-      draw.AddRectFilled({left, bottom - height}, {left + width - 1, bottom},
-                         colour(ui.theme.accent));
-    }
-    const auto x_of = [&](double ratio) {
-      const double share = (ratio - histogram.low) / (histogram.high - histogram.low);
-      return corner.x + size.x * static_cast<float>(share);
-    };
-    if (histogram.low < 1 && 1 < histogram.high) {
-      draw.AddLine({x_of(1), corner.y}, {x_of(1), bottom}, colour(ui.theme.warning), 2 * ui.scale);
-    }
-    const auto label = [&](double ratio, float share) {
-      const std::string number = fmt::format("{:.3f}", ratio);
-      const float left = corner.x + share * (size.x - ImGui::CalcTextSize(number.c_str()).x);
-      draw.AddText({left, bottom}, colour(ui.theme.faint), number.c_str());
-    };
-    label(histogram.low, 0);
-    label((histogram.low + histogram.high) / 2, 0.5F);
-    label(histogram.high, 1);
-    ImGui::Dummy(size);
-    ui.note("histogram");
+    const auto text = [](double ratio) { return fmt::format("{:.3f}", ratio); };
+    drawHistogram(ui, result.ratios(side, 0), text, 1);
   }
 
   double most_seconds_ = 60;
