@@ -73,7 +73,6 @@ class Tide final : public BroadPhase {
 
   std::int64_t from_scratch_ = 10;
   bool reports_events_ = false;
-  ThreadTeam* team_ = nullptr;
   CollisionFilter filter_;
   std::vector<std::uint32_t> bodies_;  ///< all ids
 
@@ -96,7 +95,6 @@ class Tide final : public BroadPhase {
 };
 
 void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
-  team_ = &execution.team();
   filter_ = scene.filter;
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
@@ -105,7 +103,7 @@ void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& exe
   if (reports_events_) anew_ = withEvents(std::move(anew_));
   anew_->initialize(scene, first, execution);
   if (!reports_events_) findAnew(first.index, first.boxes);
-  grid_.emplace(execution.isa());
+  grid_.emplace();
   buildGrid(first.boxes);
   is_anew_ = true;
   quiet_frames_ = kQuietFrames;
@@ -127,7 +125,7 @@ void Tide::updateObjects(const Frame& frame) {
   if (grid_is_ready && !isMany(moves_, from_scratch_)) {
     is_anew_ = false;
     grid_->resetWork();
-    grid_->addMoves(*frame.changed, frame.boxes, *team_);
+    grid_->addMoves(*frame.changed, frame.boxes);
     return;
   }
   if (!is_anew_) {
@@ -164,8 +162,7 @@ void Tide::cleanCache() {
 }
 
 void Tide::updateStructures() {
-  if (is_anew_) return anew_->updateStructures();
-  grid_->update();
+  if (is_anew_) anew_->updateStructures();
 }
 
 void Tide::searchOverlaps() {
@@ -203,9 +200,9 @@ void Tide::takePairs() {
 /// Bodies may crowd where the grid has too few cells for them. Once the work beyond the usual has
 /// cost as much as a new grid does, there is one.
 void Tide::followCrowds() {
-  constexpr double kWorkOfBuilding = 50;  // for a body, in tests
-  constexpr double kLeast = 32;           // for a move: never worth it
-  const double work = static_cast<double>(grid_->work().cells + grid_->work().tests);
+  constexpr double kWorkOfBuilding = 15;  // for a body, in lines that are looked into
+  constexpr double kLeast = 16;           // for a move: never worth it
+  const double work = static_cast<double>(grid_->work().lines + grid_->work().tests);
   const double moves = static_cast<double>(moves_);
   if (usual_work_ == 0) usual_work_ = 2 * std::max(work / moves, kLeast);
   excess_work_ += std::max(0.0, work - usual_work_ * moves);
@@ -229,7 +226,7 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
     anew_->visitCounters(visit);
     return;
   }
-  visit("cells looked into", grid_->work().cells);
+  visit("lines looked into", grid_->work().lines);
   visit("tests", grid_->work().tests);
   visit("cell changes", grid_->work().cell_changes);
   visit("pairs begun", began_.size());

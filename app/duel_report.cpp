@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "broadmark/json_fields.h"
@@ -41,22 +40,13 @@ std::string table(const DuelResult& result) {
 std::string histogram(const std::vector<double>& ratios) {
   constexpr std::size_t kLines = 9;
   constexpr std::size_t kWidest = 40;
-  // The tails would squeeze all else into one line.
-  const double low = quantile(ratios, 0.02);
-  const double high = quantile(ratios, 0.98);
-  if (low >= high) return "";
-  std::array<std::size_t, kLines> counts{};
-  for (const double ratio : ratios) {
-    const double place = std::clamp((ratio - low) / (high - low), 0.0, 1.0) * kLines;
-    ++counts[std::min(static_cast<std::size_t>(place), kLines - 1)];
-  }
-  const std::size_t most = *std::ranges::max_element(counts);
+  const Histogram histogram = histogramOf(ratios, kLines);
   std::string text;
-  for (std::size_t line = 0; line < kLines; ++line) {
-    const double from = std::lerp(low, high, static_cast<double>(line) / kLines);
-    text += fmt::format("{:>8.3f} ", from);
-    for (std::size_t i = 0; i < counts[line] * kWidest / most; ++i) text += "█";
-    text += fmt::format(" {}\n", counts[line]);
+  for (std::size_t line = 0; line < histogram.counts.size(); ++line) {
+    const std::size_t most = *std::ranges::max_element(histogram.counts);
+    text += fmt::format("{:>8.3f} ", histogram.begin(line));
+    for (std::size_t i = 0; i < histogram.counts[line] * kWidest / most; ++i) text += "█";
+    text += fmt::format(" {}\n", histogram.counts[line]);
   }
   return text;
 }
@@ -77,16 +67,6 @@ std::string verdictOnTwo(const DuelResult& result) {
   return fmt::format("{} is {} than {}", b, changeText(ratio.value), a);
 }
 
-std::string verdict(const DuelResult& result) {
-  if (result.sides.size() == 2) return verdictOnTwo(result);
-  std::vector<std::string> best;
-  for (const DuelPlace& place : result.places) {
-    if (place.place == 1) best.push_back(result.sides[place.side].name);
-  }
-  return best.size() == 1 ? fmt::format("{} is the fastest", best.front())
-                          : fmt::format("{} are not told apart at the top", fmt::join(best, ", "));
-}
-
 std::string failures(const DuelResult& result) {
   std::string text;
   for (const DuelResult::Side& side : result.sides) {
@@ -97,6 +77,16 @@ std::string failures(const DuelResult& result) {
 }
 
 }  // namespace
+
+std::string verdictOf(const DuelResult& result) {
+  if (result.sides.size() == 2) return verdictOnTwo(result);
+  std::vector<std::string> best;
+  for (const DuelPlace& place : result.places) {
+    if (place.place == 1) best.push_back(result.sides[place.side].name);
+  }
+  return best.size() == 1 ? fmt::format("{} is the fastest", best.front())
+                          : fmt::format("{} are not told apart at the top", fmt::join(best, ", "));
+}
 
 std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
   std::string text =
@@ -109,7 +99,7 @@ std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
     text += fmt::format("rounds by ratio {} / {}:\n{}", result.sides[1].name, result.sides[0].name,
                         histogram(result.ratios(1, 0)));
   }
-  return text + verdict(result);
+  return text + verdictOf(result);
 }
 
 std::string duelJson(const DuelResult& result, const RecordingReference& recording) {

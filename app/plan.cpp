@@ -128,7 +128,11 @@ void nameScreenshots(Plan& plan, const SessionOptions& options) {
 }  // namespace
 
 Plan makePlan(const SessionOptions& options) {
-  Plan plan{.algorithms = availableAlgorithms(options.plugins)};
+  return makePlan(options, availableAlgorithms(options.plugins));
+}
+
+Plan makePlan(const SessionOptions& options, std::vector<Algorithm> algorithms) {
+  Plan plan{.algorithms = std::move(algorithms)};
   for (const std::string& source : options.sources) addSource(plan, source, options);
   const std::vector<Case> selected = selectedCases(plan, options);
   for (PlanEntry& entry : plan.entries) addCases(entry, selected, options);

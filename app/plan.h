@@ -31,6 +31,8 @@ struct Plan {
 /// Opens the sources and makes the cases. Entries that --filter and --shard leave without cases are
 /// kept for the inspector only. Throws InputError.
 Plan makePlan(const SessionOptions&);
+/// The same with these algorithms, whichever plug-ins the options name.
+Plan makePlan(const SessionOptions&, std::vector<Algorithm> algorithms);
 
 /// The ids of all cases, as --list prints them.
 std::vector<std::string> caseIds(const Plan&);

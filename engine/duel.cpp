@@ -130,7 +130,7 @@ class Duel {
   /// Whether to go on.
   void look() {
     const std::size_t rounds = result_.rounds();
-    if (options_.progress) options_.progress({rounds, elapsed()});
+    if (options_.progress) options_.progress(result_, elapsed());
     const bool time_is_up = elapsed() >= options_.most_seconds;
     if (rounds < next_look_ && !time_is_up) return;
     next_look_ = static_cast<std::size_t>(static_cast<double>(rounds) * kNextLook) + 1;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "block_bootstrap.h"
 
@@ -159,6 +158,22 @@ std::optional<Interval> confidence95(std::span<const double> values) {
       studentT975(static_cast<double>(values.size() - 1)) * std::sqrt(squaredStandardError(values));
   const double centre = mean(values);
   return Interval{centre - half, centre + half};
+}
+
+double Histogram::begin(std::size_t bin) const {
+  return std::lerp(low, high, static_cast<double>(bin) / static_cast<double>(counts.size()));
+}
+
+Histogram histogramOf(std::span<const double> values, std::size_t bins) {
+  Histogram histogram{.low = quantile(values, 0.02), .high = quantile(values, 0.98)};
+  if (histogram.low >= histogram.high) return histogram;
+  histogram.counts.resize(bins);
+  for (const double value : values) {
+    const double share = (value - histogram.low) / (histogram.high - histogram.low);
+    const double bin = std::clamp(share, 0.0, 1.0) * static_cast<double>(bins);
+    ++histogram.counts[std::min(static_cast<std::size_t>(bin), bins - 1)];
+  }
+  return histogram;
 }
 
 Summary summarise(std::span<const std::span<const double>> repetitions) {

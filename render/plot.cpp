@@ -1,18 +1,22 @@
+// Where several frames fall onto one pixel, blocks of frames are drawn in place of frames: the
+// largest that are no wider than a pixel. So the work depends on the pixels alone.
+
 #include "broadmark/render/plot.h"
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 
 namespace broadmark {
 namespace {
 
 constexpr float kLineWidth = 1.6F;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr float kThinLineWidth = 1;
+constexpr float kMarkRow = 0.45F;   // of a line of text
+constexpr float kClickPixels = 3;   // a press that moves less is a click
+constexpr float kMarkedPixels = 4;  // so near a click is meant for a mark
 
 ImU32 packed(Rgb rgb, unsigned alpha = 255) {
   return IM_COL32((rgb >> 16) & 255U, (rgb >> 8) & 255U, rgb & 255U, alpha);
@@ -39,102 +43,137 @@ struct Axes {
   [[nodiscard]] double frameAt(float pixel) const {
     return first + static_cast<double>((pixel - min.x) / (max.x - min.x)) * (last - first);
   }
-};
+  /// The frame at a pixel that exists.
+  [[nodiscard]] std::uint32_t nearestFrame(float pixel) const {
+    return static_cast<std::uint32_t>(std::max(std::round(frameAt(pixel)), 0.0));
+  }
+  [[nodiscard]] bool contains(ImVec2 at) const {
+    return at.x >= min.x && at.x <= max.x && at.y >= min.y && at.y <= max.y;
+  }
+  [[nodiscard]] unsigned level() const {
+    return plotLevel((last - first) / static_cast<double>(max.x - min.x));
+  }
+  /// The frames shown, also those of which only a part is.
+  [[nodiscard]] FrameValues::Range valuesOf(const FrameValues& values) const {
+    return values.within(static_cast<std::uint32_t>(first),
+                         static_cast<std::uint32_t>(std::ceil(last)));
+  }
 
-double valueAt(const PlotCurve& curve, double frame) {
-  const double index = std::round(frame);
-  if (index < 0 || index >= static_cast<double>(curve.values.size())) return kNone;
-  return curve.values[static_cast<std::size_t>(index)];
-}
-
-/// Lowest and highest shown value; NaN if there are none.
-std::array<double, 2> valueRange(const std::vector<PlotCurve>& curves, const PlotOptions& options) {
-  double low = kNone;
-  double high = kNone;
-  for (const PlotCurve& curve : curves) {
-    if (curve.hidden) continue;
-    const auto begin = static_cast<std::size_t>(std::max(0.0, std::floor(options.first)));
-    const auto end = static_cast<std::size_t>(std::max(0.0, std::ceil(options.last) + 1));
-    for (std::size_t i = begin; i < std::min(end, curve.values.size()); ++i) {
-      const double value = curve.values[i];
-      if (std::isnan(value) || (options.logarithmic && value <= 0)) continue;
-      low = std::fmin(low, value);
-      high = std::fmax(high, value);
+  /// Calls `draw(from, to, range)` with the first and last frame of each block that is in sight,
+  /// also of those whose values are not known.
+  template <class Draw>
+  void eachBlock(const FrameValues& values, Draw&& draw) const {
+    if (values.size() == 0) return;
+    const unsigned level = this->level();
+    const auto begin = static_cast<std::uint32_t>(first) >> level;
+    const auto end =
+        std::min(static_cast<std::uint32_t>(std::ceil(last)), values.size() - 1) >> level;
+    for (std::uint32_t index = begin; index <= end; ++index) {
+      const double from = static_cast<double>(std::uint64_t{index} << level);
+      draw(from, from + static_cast<double>((std::uint64_t{1} << level) - 1),
+           values.block(level, index));
     }
   }
-  return {low, high};
-}
+};
 
-void widen(std::array<double, 2>& range, bool logarithmic) {
-  auto& [low, high] = range;
-  if (std::isnan(low)) {
-    low = logarithmic ? 1e-6 : 0;
-    high = 1e-3;
+/// A scale with room for all values of the curves.
+void fitScale(Axes& axes, const std::vector<const PlotCurve*>& curves) {
+  FrameValues::Range range;
+  for (const PlotCurve* curve : curves) {
+    const FrameValues::Range shown = axes.valuesOf(*curve->values);
+    range = {std::fmin(range.low, shown.low), std::fmax(range.high, shown.high)};
   }
-  if (logarithmic) {
-    low *= 0.8;
-    high *= 1.25;
+  if (!range.known()) range = {axes.logarithmic ? 1e-6F : 0.0F, 1e-3F};
+  axes.low = range.low;
+  axes.high = range.high;
+  if (axes.logarithmic) {
+    if (axes.high <= 0) axes.high = 1;
+    if (axes.low <= 0) axes.low = 1e-3 * axes.high;
+    axes.low *= 0.8;
+    axes.high *= 1.25;
     return;
   }
-  low = std::min(low, 0.0);
-  high = high > low ? low + (high - low) * 1.08 : low + 1;
+  axes.low = std::min(axes.low, 0.0);
+  axes.high = axes.high > axes.low ? axes.low + (axes.high - axes.low) * 1.08 : axes.low + 1;
 }
 
-/// Draws the range of the values that fall onto each pixel column.
-void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float scale) {
+void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float width) {
   const ImU32 colour = packed(curve.colour);
-  const auto count = static_cast<double>(curve.values.size());
-  const auto begin = static_cast<std::size_t>(std::clamp(std::floor(axes.first), 0.0, count));
-  const auto end = static_cast<std::size_t>(std::clamp(std::ceil(axes.last) + 1, 0.0, count));
   ImVec2 before{};
   bool joined = false;
-  for (std::size_t i = begin; i < end;) {
-    const float column = std::floor(axes.x(static_cast<double>(i)));
-    double low = kNone;
-    double high = kNone;
-    std::size_t taken = 0;
-    for (; i < end && (taken == 0 || std::floor(axes.x(static_cast<double>(i))) == column);
-         ++i, ++taken) {
-      low = std::fmin(low, curve.values[i]);
-      high = std::fmax(high, curve.values[i]);
-    }
-    if (std::isnan(low)) {
+  axes.eachBlock(*curve.values, [&](double from, double to, FrameValues::Range range) {
+    if (!range.known()) {
       joined = false;
-      continue;
+      return;
     }
-    const float x = taken == 1 ? axes.x(static_cast<double>(i - 1)) : column;
-    const ImVec2 top{x, axes.y(high)};
-    const ImVec2 bottom{x, axes.y(low)};
-    if (joined) draw.AddLine(before, bottom, colour, kLineWidth * scale);
-    if (taken > 1) draw.AddLine(top, {bottom.x, bottom.y + 1}, colour, kLineWidth * scale);
-    if (!joined) draw.AddCircleFilled(bottom, kLineWidth * scale, colour, 8);
+    const float x = axes.x((from + to) / 2);
+    const ImVec2 top{x, axes.y(range.high)};
+    const ImVec2 bottom{x, axes.y(range.low)};
+    if (joined) draw.AddLine(before, bottom, colour, width);
+    if (to > from) draw.AddLine(top, {bottom.x, bottom.y + 1}, colour, width);
+    if (!joined) draw.AddCircleFilled(bottom, width, colour, 8);
     before = bottom;
     joined = true;
-  }
-  for (const std::uint32_t frame : curve.disturbed) {
-    if (frame < begin || frame >= end || std::isnan(curve.values[frame])) continue;
-    draw.AddCircle({axes.x(frame), axes.y(curve.values[frame])}, 3.5F * scale, colour, 10, scale);
-  }
+  });
+  if (curve.circled == nullptr || axes.level() > 0) return;
+  axes.eachBlock(*curve.circled, [&](double frame, double, FrameValues::Range mark) {
+    if (!mark.known()) return;
+    const float value = curve.values->at(static_cast<std::uint32_t>(frame));
+    draw.AddCircle({axes.x(frame), axes.y(value)}, 2.2F * width, colour, 10, width / kLineWidth);
+  });
 }
 
+void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
+  const float most = curve.values->within(0, curve.values->size()).high;
+  if (!(most > 0)) return;
+  axes.eachBlock(*curve.values, [&](double from, double to, FrameValues::Range range) {
+    if (!range.known()) return;
+    const float left = std::floor(axes.x(from - 0.5));
+    const float right = std::max(std::floor(axes.x(to + 0.5)), left + 1);
+    const float top = axes.max.y - 0.92F * range.high / most * (axes.max.y - axes.min.y);
+    draw.AddRectFilled({left, top}, {right, axes.max.y}, packed(curve.colour, 38));
+    draw.AddRectFilled({left, top - 1}, {right, top + 1}, packed(curve.colour, 120));
+  });
+}
+
+/// What the style of Dear ImGui gives to the parts of a plot.
 struct PlotColours {
-  ImU32 background, grid, text, marker, limit;
+  ImU32 background = ImGui::GetColorU32(ImGuiCol_WindowBg);
+  ImU32 frame = ImGui::GetColorU32(ImGuiCol_Border);
+  ImU32 grid = ImGui::GetColorU32(ImGuiCol_TextDisabled, 0.2F);
+  ImU32 text = ImGui::GetColorU32(ImGuiCol_TextDisabled);
+  ImU32 playhead = ImGui::GetColorU32(ImGuiCol_CheckMark);
+  ImU32 span = ImGui::GetColorU32(ImGuiCol_CheckMark, 0.15F);
 };
 
-PlotColours plotColours(bool dark) {
-  return dark ? PlotColours{packed(0x17191D), packed(0xFFFFFF, 22), packed(0xA3ACB8),
-                            packed(0x3D8BFD), packed(0xF2B84B)}
-              : PlotColours{packed(0xFFFFFF), packed(0x000000, 22), packed(0x565F6A),
-                            packed(0x1F6FEB), packed(0x7A5200)};
+int fittingRows(const Axes& axes) {
+  return std::max(
+      2, static_cast<int>((axes.max.y - axes.min.y) / (2.2F * ImGui::GetTextLineHeight())));
 }
 
-void drawAxes(ImDrawList& draw, const Axes& axes, const PlotColours& colours, const char* unit) {
+/// Below the playhead, with its frame; at the border where it lies beyond it.
+struct Flag {
+  Flag(const Axes& axes, std::uint32_t frame) {
+    const float line = ImGui::GetTextLineHeight();
+    text =
+        fmt::format("{}{}{}", frame < axes.first ? "← " : "", frame, frame > axes.last ? " →" : "");
+    const float width = ImGui::CalcTextSize(text.c_str()).x + line / 2;
+    const float left = std::clamp(axes.x(frame) - width / 2, axes.min.x, axes.max.x - width);
+    min = {left, axes.max.y + 1};
+    max = {left + width, min.y + line + 2};
+  }
+
+  std::string text;
+  ImVec2 min, max;
+};
+
+void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
+              const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
-  const int rows = std::max(2, static_cast<int>((axes.max.y - axes.min.y) / (2.2F * line)));
-  for (const double value : axisTicks(axes.low, axes.high, rows, axes.logarithmic)) {
+  for (const double value : axisTicks(axes.low, axes.high, fittingRows(axes), axes.logarithmic)) {
     const float y = axes.y(value);
     draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colours.grid);
-    const std::string text = withPrefix(value, unit);
+    const std::string text = withPrefix(value, options.unit);
     draw.AddText({axes.min.x - ImGui::CalcTextSize(text.c_str()).x - 5, y - line / 2}, colours.text,
                  text.c_str());
   }
@@ -144,32 +183,48 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotColours& colours, co
     const float x = axes.x(frame);
     draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.grid);
     const std::string text = fmt::format("{:.0f}", frame);
-    draw.AddText({x - ImGui::CalcTextSize(text.c_str()).x / 2, axes.max.y + 2}, colours.text,
-                 text.c_str());
+    const float half = ImGui::CalcTextSize(text.c_str()).x / 2;
+    if (x + half > flag.min.x && x - half < flag.max.x) continue;
+    draw.AddText({x - half, axes.max.y + 2}, colours.text, text.c_str());
   }
 }
 
+/// The thin curve, on its scale at the right.
+void drawThin(ImDrawList& draw, const PlotCurve& curve, const Axes& shown) {
+  const float line = ImGui::GetTextLineHeight();
+  Axes axes = shown;
+  axes.logarithmic = false;
+  fitScale(axes, {&curve});
+  drawCurve(draw, curve, axes, kThinLineWidth * line / 15);
+  draw.PushClipRectFullScreen();
+  for (const double value : axisTicks(axes.low, axes.high, fittingRows(axes), false)) {
+    draw.AddText({axes.max.x + 4, axes.y(value) - line / 2}, packed(curve.colour),
+                 withPrefix(value, "").c_str());
+  }
+  draw.PopClipRect();
+}
+
 /// Width of the legend beside the curves; at most a third of the plot.
-float legendWidth(const std::vector<PlotCurve>& curves, float plot_width) {
+float legendWidth(const std::vector<const PlotCurve*>& curves, float plot_width) {
   if (curves.empty()) return 0;
   float width = 0;
-  for (const PlotCurve& curve : curves) {
-    width = std::max(width, ImGui::CalcTextSize(curve.label.c_str()).x);
+  for (const PlotCurve* curve : curves) {
+    width = std::max(width, ImGui::CalcTextSize(curve->label.c_str()).x);
   }
   return std::min(width + 1.8F * ImGui::GetTextLineHeightWithSpacing(), plot_width / 3);
 }
 
-/// Draws the legend at the right of the axes. Returns the entry under the mouse.
-std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCurve>& curves,
-                                      const Axes& axes, float width, const PlotColours& colours) {
+/// Draws the legend into the area at the right of the axes. Returns the entry under the mouse.
+std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<const PlotCurve*>& curves,
+                                      ImVec2 min, ImVec2 max, const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeightWithSpacing();
-  const std::size_t fitting =
-      static_cast<std::size_t>(std::max(0.0F, (axes.max.y - axes.min.y) / line));
+  const std::size_t fitting = static_cast<std::size_t>(std::max(0.0F, (max.y - min.y) / line));
   std::optional<std::size_t> hovered;
-  ImVec2 at{axes.max.x + line / 4, axes.min.y};
+  ImVec2 at{min.x + line / 4, min.y};
+  draw.PushClipRect(min, max, true);
   for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
-    const PlotCurve& curve = curves[i];
-    if (ImGui::IsMouseHoveringRect(at, {axes.max.x + width, at.y + line})) hovered = i;
+    const PlotCurve& curve = *curves[i];
+    if (ImGui::IsMouseHoveringRect(at, {max.x, at.y + line})) hovered = i;
     const unsigned alpha = curve.hidden ? 70 : 255;
     draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
                        {at.x + line * 0.8F, at.y + line * 0.75F}, packed(curve.colour, alpha), 3);
@@ -177,74 +232,151 @@ std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<PlotCu
                  (colours.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT),
                  curve.label.c_str());
   }
+  draw.PopClipRect();
   return hovered;
 }
 
-/// A column of pixels for each frame whose value is known.
-void drawBackdrop(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
-  double most = 0;
-  for (const double value : curve.values) most = std::fmax(most, value);
-  if (most == 0) return;
-  for (float x = axes.min.x; x < axes.max.x; ++x) {
-    const double value = valueAt(curve, axes.frameAt(x + 0.5F));
-    if (std::isnan(value)) continue;
-    const auto height = static_cast<float>(0.92 * value / most) * (axes.max.y - axes.min.y);
-    draw.AddRectFilled({x, axes.max.y - height}, {x + 1, axes.max.y}, packed(curve.colour, 38));
-    draw.AddRectFilled({x, axes.max.y - height - 1}, {x + 1, axes.max.y - height + 1},
-                       packed(curve.colour, 120));
-  }
-}
-
 /// At the border that it lies beyond, if it is out of range.
-void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
-               const PlotColours& colours) {
+void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
   const float line = ImGui::GetTextLineHeight();
   const float y = std::clamp(axes.y(options.limit), axes.min.y, axes.max.y);
   const bool within = options.limit >= axes.low && options.limit <= axes.high;
-  if (within) draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colours.limit, line / 10);
+  const ImU32 colour = packed(options.limit_colour);
+  if (within) draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colour, line / 10);
   const std::string text = fmt::format("{}{}",
                                        within                      ? ""
                                        : options.limit > axes.high ? "↑ "
                                                                    : "↓ ",
                                        withPrefix(options.limit, options.unit));
-  draw.AddText({axes.min.x + line / 3, y - axes.min.y < line ? y : y - line}, colours.limit,
-               text.c_str());
+  draw.AddText({axes.min.x + line / 3, y - axes.min.y < line ? y : y - line}, colour, text.c_str());
+}
+
+/// The rows of marks stand above the axes, the first on top.
+float marksTop(const Axes& axes, const PlotOptions& options) {
+  return axes.min.y -
+         kMarkRow * ImGui::GetTextLineHeight() * static_cast<float>(options.marks.size());
+}
+
+void drawMarks(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
+  const float row = kMarkRow * ImGui::GetTextLineHeight();
+  float top = marksTop(axes, options);
+  for (const PlotMarks& marks : options.marks) {
+    for (const FrameValues* frames : marks.frames) {
+      axes.eachBlock(*frames, [&](double from, double to, FrameValues::Range mark) {
+        if (!mark.known()) return;
+        const float x = axes.x((from + to) / 2);
+        draw.AddRectFilled({x - 1, top + 1}, {x + 1, top + row}, packed(marks.colour));
+      });
+    }
+    top += row;
+  }
+}
+
+/// The marked frame that the mouse means.
+std::optional<std::uint32_t> markedFrame(const Axes& axes, const PlotOptions& options,
+                                         ImVec2 mouse) {
+  const float row = (mouse.y - marksTop(axes, options)) / (kMarkRow * ImGui::GetTextLineHeight());
+  if (row < 0 || row >= static_cast<float>(options.marks.size())) return {};
+  std::optional<std::uint32_t> marked;
+  for (const FrameValues* frames : options.marks[static_cast<std::size_t>(row)].frames) {
+    const auto found = frames->firstKnown(axes.nearestFrame(mouse.x - kMarkedPixels),
+                                          axes.nearestFrame(mouse.x + kMarkedPixels));
+    if (found && (!marked || *found < *marked)) marked = found;
+  }
+  return marked;
+}
+
+void drawPlayhead(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
+                  const PlotColours& colours) {
+  const float x = axes.x(options.playhead);
+  const float line = ImGui::GetTextLineHeight();
+  if (x >= axes.min.x && x <= axes.max.x) {
+    draw.AddLine({x, marksTop(axes, options)}, {x, axes.max.y}, colours.playhead, line / 10);
+  }
+  draw.AddRect(flag.min, flag.max, colours.playhead, 3);
+  draw.AddText({flag.min.x + line / 4, flag.min.y + 1}, colours.playhead, flag.text.c_str());
+}
+
+void drawSpan(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+              const PlotColours& colours) {
+  const float left = axes.x((*options.span)[0] - 0.5);
+  const float right = std::max(axes.x((*options.span)[1] + 0.5), left + 1);
+  draw.AddRectFilled({left, axes.min.y}, {right, axes.max.y}, colours.span);
+  draw.AddLine({left, axes.min.y}, {left, axes.max.y}, colours.playhead);
+  draw.AddLine({right, axes.min.y}, {right, axes.max.y}, colours.playhead);
+}
+
+void tellOfScale(const PlotCurve* curve, std::uint32_t frame) {
+  if (curve == nullptr || std::isnan(curve->values->at(frame))) return;
+  const std::string text =
+      fmt::format("{} {}", curve->label, withPrefix(curve->values->at(frame), ""));
+  ImGui::TextUnformatted(text.c_str());
 }
 
 void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const Axes& axes,
-                   const PlotOptions& options, const PlotColours& colours) {
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const double frame = std::round(axes.frameAt(mouse.x));
+                   const PlotOptions& options, std::uint32_t frame, const PlotColours& colours) {
   const float x = axes.x(frame);
   draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.text);
   ImGui::BeginTooltip();
-  ImGui::Text("frame %.0f", frame);
+  ImGui::Text("frame %u", frame);
+  for (const PlotMarks& marks : options.marks) {
+    const bool marked = std::ranges::any_of(
+        marks.frames, [&](const FrameValues* frames) { return !std::isnan(frames->at(frame)); });
+    if (!marked) continue;
+    ImGui::SameLine();
+    ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(packed(marks.colour)), "%s",
+                       marks.label.c_str());
+  }
   bool known = false;
   for (const PlotCurve& curve : curves) {
-    const double value = valueAt(curve, frame);
+    const double value = curve.values->at(frame);
     if (curve.hidden || std::isnan(value)) continue;
     known = true;
-    const bool disturbed = std::ranges::find(curve.disturbed, static_cast<std::uint32_t>(frame)) !=
-                           curve.disturbed.end();
     ImGui::PushStyleColor(ImGuiCol_Text, packed(curve.colour));
     ImGui::TextUnformatted(curve.label.c_str());
     ImGui::PopStyleColor();
     ImGui::SameLine();
-    ImGui::Text("%s%s", withPrefix(value, options.unit).c_str(), disturbed ? "  (disturbed)" : "");
+    ImGui::TextUnformatted(withPrefix(value, options.unit).c_str());
     draw.AddCircleFilled({x, axes.y(value)}, 3, packed(curve.colour));
   }
   if (!known) ImGui::TextUnformatted("not run yet");
-  if (options.backdrop != nullptr) {
-    const double value = valueAt(*options.backdrop, frame);
-    if (!std::isnan(value)) {
-      ImGui::TextUnformatted(
-          fmt::format("{} {}", options.backdrop->label, withPrefix(value, "")).c_str());
-    }
-  }
+  tellOfScale(options.thin, frame);
+  tellOfScale(options.area, frame);
   ImGui::EndTooltip();
 }
 
+/// What the mouse does with the plot, which is the last item.
+void takeMouse(const Axes& axes, const PlotOptions& options, PlotResult& result) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 pressed = io.MouseClickedPos[0];
+  const double here = axes.frameAt(std::clamp(io.MousePos.x, axes.min.x, axes.max.x));
+  const bool across = pressed.x >= axes.min.x && pressed.x <= axes.max.x;
+  const bool on_numbers = across && pressed.y > axes.max.y;
+  const bool is_drag = io.MouseDragMaxDistanceSqr[0] > kClickPixels * kClickPixels;
+  if (ImGui::IsItemActive() && io.MouseDown[0]) {
+    if (on_numbers) {
+      result.clicked_frame = here;
+    } else if (across && is_drag) {
+      result.dragged = {axes.frameAt(pressed.x), here};
+    }
+  } else if (ImGui::IsItemActive() && (io.MouseDown[1] || io.MouseDown[2])) {
+    result.moved = axes.frameAt(0) - axes.frameAt(io.MouseDelta.x);
+  }
+  if (ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(0) && across && !is_drag) {
+    const auto marked = markedFrame(axes, options, pressed);
+    result.clicked_frame = marked ? *marked : here;
+  }
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
+    result.zoom = static_cast<double>(io.MouseWheel);
+    result.zoom_at = here;
+  }
+}
+
 }  // namespace
+
+unsigned plotLevel(double frames_per_pixel) {
+  return frames_per_pixel < 2 ? 0 : static_cast<unsigned>(std::log2(frames_per_pixel));
+}
 
 std::string withPrefix(double value, const char* unit) {
   if (*unit == '\0') {
@@ -295,56 +427,60 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
                     const PlotOptions& options, float width, float height) {
   PlotResult result;
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  ImGui::InvisibleButton(id, {std::max(width, 1.0F), std::max(height, 1.0F)});
-  const bool hovered = ImGui::IsItemHovered();
-  const bool held = ImGui::IsItemActive();
+  ImGui::InvisibleButton(id, {std::max(width, 1.0F), std::max(height, 1.0F)},
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
   const float line = ImGui::GetTextLineHeight();
-  std::array<double, 2> range = valueRange(curves, options);
-  widen(range, options.logarithmic);
-  const float legend = legendWidth(curves, width);
-  const Axes axes{.min = {corner.x + 4.8F * line, corner.y + line / 2},
-                  .max = {corner.x + width - 1.4F * line - legend, corner.y + height - 1.4F * line},
-                  .first = options.first,
-                  .last = std::max(options.last, options.first + 1),
-                  .low = range[0],
-                  .high = range[1],
-                  .logarithmic = options.logarithmic};
+  std::vector<const PlotCurve*> all;
+  for (const PlotCurve& curve : curves) all.push_back(&curve);
+  for (const PlotCurve* behind : {options.thin, options.area}) {
+    if (behind != nullptr) all.push_back(behind);
+  }
+  const float legend = legendWidth(all, width);
+  const float right_scale = options.thin != nullptr ? 3.2F * line : 1.4F * line;
+  const float marks = kMarkRow * line * static_cast<float>(options.marks.size());
+  Axes axes{.min = {corner.x + 4.8F * line, corner.y + std::max(line / 2, marks)},
+            .max = {corner.x + width - right_scale - legend, corner.y + height - 1.4F * line},
+            .first = options.first,
+            .last = std::max(options.last, options.first + 1),
+            .low = 0,
+            .high = 1,
+            .logarithmic = options.logarithmic};
   if (axes.max.x < axes.min.x + line || axes.max.y < axes.min.y + line) return result;
+  std::vector<const PlotCurve*> shown;
+  for (const PlotCurve& curve : curves) {
+    if (!curve.hidden) shown.push_back(&curve);
+  }
+  fitScale(axes, shown);
 
-  const PlotColours colours = plotColours(options.dark);
+  const PlotColours colours;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddRectFilled(axes.min, axes.max, colours.background, 3);
-  drawAxes(draw, axes, colours, options.unit);
+  const Flag flag(axes, options.playhead);
+  drawAxes(draw, axes, options, flag, colours);
   draw.PushClipRect(axes.min, axes.max, true);
-  if (options.backdrop != nullptr) drawBackdrop(draw, *options.backdrop, axes);
-  for (const PlotCurve& curve : curves) {
-    if (!curve.hidden) drawCurve(draw, curve, axes, line / 15);
-  }
-  if (options.limit > 0) drawLimit(draw, axes, options, colours);
-  if (options.marked_frame >= 0) {
-    const float x = axes.x(options.marked_frame);
-    draw.AddLine({x, axes.min.y}, {x, axes.max.y}, colours.marker, line / 10);
-  }
+  if (options.area != nullptr) drawArea(draw, *options.area, axes);
+  if (options.span) drawSpan(draw, axes, options, colours);
+  if (options.thin != nullptr) drawThin(draw, *options.thin, axes);
+  for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kLineWidth * line / 15);
+  if (options.limit > 0) drawLimit(draw, axes, options);
   draw.PopClipRect();
-  draw.PushClipRect(axes.min, {axes.max.x + legend, axes.max.y}, true);
-  result.hovered = drawLegend(draw, curves, axes, legend, colours);
-  draw.PopClipRect();
+  draw.AddRect(axes.min, axes.max, colours.frame, 3);
+  drawMarks(draw, axes, options);
+  drawPlayhead(draw, axes, options, flag, colours);
+  const ImVec2 legend_min{corner.x + width - legend, axes.min.y};
+  result.hovered = drawLegend(draw, all, legend_min, {corner.x + width, axes.max.y}, colours);
 
+  const bool hovered = ImGui::IsItemHovered();
+  if (!hovered && !ImGui::IsItemActive()) result.hovered.reset();
+  if (result.hovered >= curves.size()) result.hovered.reset();
+  if (result.hovered && ImGui::IsMouseClicked(0)) result.toggled = result.hovered;
+  takeMouse(axes, options, result);
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const auto within = [&](ImVec2 at) {
-    return at.x >= axes.min.x && at.x <= axes.max.x && at.y >= axes.min.y && at.y <= axes.max.y;
-  };
-  const bool inside = within(mouse);
-  if (!hovered && !held) result.hovered.reset();
-  if (result.hovered && ImGui::IsMouseClicked(0)) {
-    result.toggled = result.hovered;
-  } else if (held && ImGui::IsMouseDown(0) && within(ImGui::GetIO().MouseClickedPos[0])) {
-    result.clicked_frame = axes.frameAt(std::clamp(mouse.x, axes.min.x, axes.max.x));
-  }
-  if (hovered && inside && !result.hovered) drawCrosshair(draw, curves, axes, options, colours);
-  if (hovered && ImGui::GetIO().MouseWheel != 0) {
-    result.zoom = static_cast<double>(ImGui::GetIO().MouseWheel);
-    result.zoom_at = axes.frameAt(mouse.x);
+  const auto marked = markedFrame(axes, options, mouse);
+  if (hovered && (axes.contains(mouse) || marked)) {
+    drawCrosshair(draw, curves, axes, options, marked ? *marked : axes.nearestFrame(mouse.x),
+                  colours);
   }
   return result;
 }

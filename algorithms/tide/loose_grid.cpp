@@ -1,7 +1,4 @@
 // Choosing cells, and moving bodies between them.
-//
-// What an update costs is waiting for memory: for an entry, for the cells around. So what will be
-// needed for the moves ahead is sent for beforehand.
 
 #include "tide/loose_grid.h"
 
@@ -67,13 +64,12 @@ double crowding(std::span<const Aabb> boxes, double edge) {
 }  // namespace
 
 void LooseGrid::build(std::span<const Aabb> boxes) {
-  moves_.clear();
-  first_number_ = 1;
   const std::vector<Aabb> sample = sampleOf(boxes);
   std::array<Bulk, 3> bulk;
   for (int axis = 0; axis < 3 && !sample.empty(); ++axis) bulk[axis] = bulkOf(sample, axis);
   chooseSteps(boxes, sample, bulk);
-  layOut(boxes, bulk);
+  chooseCells(boxes, bulk);
+  putInto(boxes);
 }
 
 /// The size of the cells that promises to cost least. It begins with large ones, a few bodies in
@@ -119,25 +115,16 @@ void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> s
   factor_ = static_cast<float>((1 << kCellBits) / edge);
 }
 
-void LooseGrid::layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk) {
+/// As many as it takes to cover the bulk, but not many more than bodies.
+void LooseGrid::chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk) {
   levels_ = {};
-  used_ = 0;
-  for (std::vector<std::uint32_t>& blocks : free_blocks_) blocks.clear();
-  entry_of_.assign(boxes.size(), kNowhere);
-  const auto for_each_body = [&](auto visit) {
-    for (std::size_t body = 0; body < boxes.size(); ++body) {
-      if (isEmpty(boxes[body])) continue;
-      const Steps min = stepsOf(boxes[body].min);
-      const Steps max = stepsOf(boxes[body].max);
-      visit(static_cast<std::uint32_t>(body), min, max, levelOf(min, max));
-    }
-  };
-  for_each_body([&](std::uint32_t, const Steps& min, const Steps& max, std::uint32_t level) {
-    ++levels_[level].entries;
-    reach(min, max, level);
-  });
-
-  // As many cells as it takes to cover the bulk, but not many more than bodies.
+  std::array<std::uint32_t, kLevels> bodies{};
+  for (const Aabb& box : boxes) {
+    if (isEmpty(box)) continue;
+    const Extent extent = extentOf(box);
+    ++bodies[levelOf(extent)];
+    reach(extent);
+  }
   Steps low{};
   Steps high{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -146,7 +133,7 @@ void LooseGrid::layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& b
     corner[axis] = static_cast<float>(bulk[axis].high);
     high[axis] = stepsOf(corner)[axis];
   }
-  std::uint32_t cells = 0;
+  cell_count_ = 0;
   for (std::uint32_t level = 0; level < kLevels; ++level) {
     Level& at = levels_[level];
     for (int axis = 0; axis < 3; ++axis) {
@@ -158,292 +145,273 @@ void LooseGrid::layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& b
       for (const std::int32_t count : at.counts) product *= count;
       return product;
     };
-    while (size() > 2.0 * at.entries + 1) {
+    while (size() > 2.0 * bodies[level] + 1) {
       std::int32_t& most = *std::ranges::max_element(at.counts);
       most = (most + 1) / 2;
     }
-    at.first_cell = cells;
-    cells += static_cast<std::uint32_t>(size());
+    at.first_cell = cell_count_;
+    cell_count_ += static_cast<std::uint32_t>(size());
   }
-  cells_.assign(cells, {});
-  block_bits_.assign(cells, 0);
-
-  for_each_body([&](std::uint32_t, const Steps& min, const Steps&, std::uint32_t level) {
-    ++cells_[placeOf(min, level).cell].count;
-  });
-  std::size_t places = 0;
-  for (const Cell& cell : cells_) places += cell.count == 0 ? 0 : std::bit_ceil(cell.count + 1U);
-  entries_.resize(places + places / 4);
-  for (std::uint32_t cell = 0; cell < cells; ++cell) {
-    const std::uint32_t count = std::exchange(cells_[cell].count, 0);
-    if (count > 0) resizeBlock(cell, static_cast<unsigned>(std::bit_width(count)));
-  }
-  for_each_body([&](std::uint32_t body, const Steps& min, const Steps&, std::uint32_t level) {
-    Cell& cell = cells_[placeOf(min, level).cell];
-    entry_of_[body] = cell.begin + cell.count;
-    entries_[entry_of_[body]].set(boxes[body], body, 0);
-    ++cell.count;
-  });
 }
 
-std::uint32_t LooseGrid::levelOf(const Steps& min, const Steps& max) {
-  std::int32_t longest = 0;
-  for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, max[axis] - min[axis]);
+void LooseGrid::putInto(std::span<const Aabb> boxes) {
+  lines_.resize(cell_count_);
+  std::ranges::fill(lines_, Line());
+  free_lines_.clear();
+  bodies_.resize(boxes.size());
+  for (std::size_t body = 0; body < boxes.size(); ++body) {
+    if (body + kPrefetchAhead < boxes.size()) {
+      const std::uint32_t cell = cellOf(boxes[body + kPrefetchAhead]);
+      if (cell != kNowhere) prefetch(&lines_[cell]);
+    }
+    const Aabb& box = boxes[body];
+    bodies_[body].move(box, cellOf(box), 0);
+    if (isEmpty(box)) continue;
+    const Extent extent = extentOf(box);
+    insert(bodies_[body].cell(), static_cast<std::uint32_t>(body), boundsOf(extent, extent));
+  }
+  frame_ = 1;
+  to_move_.assign(boxes.size() / 64 + 1, 0);
+}
+
+std::uint32_t LooseGrid::levelOf(const Extent& extent) {
+  const std::int32_t longest = std::max({extent.edge(0), extent.edge(1), extent.edge(2)});
   std::uint32_t level = 0;
   while (level + 1 < kLevels && longest > 1 << shiftOf(level)) ++level;
   return level;
 }
 
-Place LooseGrid::placeOf(const Steps& min, std::uint32_t level) const {
+inline std::uint32_t LooseGrid::wrapped(std::int32_t cell, std::int32_t first, std::int32_t count) {
+  const std::uint32_t from_first =
+      static_cast<std::uint32_t>(cell) - static_cast<std::uint32_t>(first);
+  if (from_first < static_cast<std::uint32_t>(count)) [[likely]]
+    return from_first;
+  const std::int64_t rest = (std::int64_t{cell} - first) % count;
+  return static_cast<std::uint32_t>(rest < 0 ? rest + count : rest);
+}
+
+inline LooseGrid::Steps LooseGrid::stepsOf(const std::array<float, 4>& corner) const {
+  const Corner steps = (cornerOf(corner) - cornerOf(low_)) * factor_;
+  return truncated(smaller(larger(steps, Corner{} - kLastStep), Corner{} + kLastStep));
+}
+
+std::uint32_t LooseGrid::cellOf(const Aabb& box) const {
+  if (isEmpty(box)) return kNowhere;
+  const Extent extent = extentOf(box);
+  const std::uint32_t level = levelOf(extent);
   const Level& at = levels_[level];
   std::uint32_t cell = 0;
   for (int axis = 2; axis >= 0; --axis) {
     cell = cell * static_cast<std::uint32_t>(at.counts[axis]) +
-           wrapped(min[axis] >> shiftOf(level), at.first[axis], at.counts[axis]);
+           wrapped(extent.min[axis] >> shiftOf(level), at.first[axis], at.counts[axis]);
   }
-  return {level, at.first_cell + cell};
+  return at.first_cell + cell;
 }
 
-Place LooseGrid::placeOf(const Aabb& box) const {
-  const Steps min = stepsOf(box.min);
-  return placeOf(min, levelOf(min, stepsOf(box.max)));
-}
-
-void LooseGrid::reach(const Steps& min, const Steps& max, std::uint32_t level) {
-  Counts& reach = levels_[level].reach;
-  for (int axis = 0; axis < 3; ++axis) reach[axis] = std::max(reach[axis], max[axis] - min[axis]);
-}
-
-std::uint32_t LooseGrid::newBlock(unsigned bits) {
-  std::vector<std::uint32_t>& free = free_blocks_[bits];
-  if (!free.empty()) {
-    const std::uint32_t begin = free.back();
-    free.pop_back();
-    return begin;
-  }
-  const std::uint32_t begin = used_;
-  used_ += 1U << bits;
-  if (used_ > entries_.size()) entries_.resize(used_ + used_ / 4);
-  return begin;
-}
-
-/// Moves the cell's entries to a block of another size; 0 bits: there is none.
-void LooseGrid::resizeBlock(std::uint32_t cell, unsigned bits) {
-  Cell& resized = cells_[cell];
-  const unsigned bits_before = std::exchange(block_bits_[cell], static_cast<std::uint8_t>(bits));
-  const std::uint32_t before = resized.begin;
-  if (bits > 0) {
-    resized.begin = newBlock(bits);
-    for (std::uint32_t i = 0; i < resized.count; ++i) relocate(before + i, resized.begin + i);
-  }
-  if (bits_before > 0) free_blocks_[bits_before].push_back(before);
-}
-
-std::uint32_t LooseGrid::insert(Place place, const Aabb& box, std::uint32_t body,
-                                std::uint32_t move) {
-  Cell& cell = cells_[place.cell];
-  const unsigned bits = block_bits_[place.cell];
-  if (bits == 0 || cell.count == 1U << bits) resizeBlock(place.cell, bits + 1);
-  const std::uint32_t entry = cell.begin + cell.count;
-  entries_[entry].set(box, body, move);
-  ++cell.count;
-  ++levels_[place.level].entries;
-  return entry;
-}
-
-void LooseGrid::remove(Place place, std::uint32_t entry) {
-  Cell& cell = cells_[place.cell];
-  --cell.count;
-  --levels_[place.level].entries;
-  const std::uint32_t last = cell.begin + cell.count;
-  if (entry != last) relocate(last, entry);
-  // Smaller with room to spare: it may grow again at once.
-  const unsigned bits = block_bits_[place.cell];
-  if (cell.count == 0) {
-    resizeBlock(place.cell, 0);
-  } else if (bits > 1 && cell.count <= 1U << bits >> 2) {
-    resizeBlock(place.cell, bits - 1);
-  }
-}
-
-/// Copies an entry, and tells whoever knew where it was.
-void LooseGrid::relocate(std::uint32_t from, std::uint32_t to) {
-  const Entry& entry = entries_[to] = entries_[from];
-  if ((entry.move() & kLeft) != 0) {
-    moves_[(entry.move() >> kFlagBits) - first_number_].left = to;
-  } else {
-    entry_of_[entry.body()] = to;
-  }
-}
-
-/// In the order of the cells: neighbours find in the caches what they look at.
-void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes,
-                         ThreadTeam& team) {
-  constexpr std::size_t kFew = 256;  // these find everything in the caches anyway
-  const auto add = [&](std::uint32_t body) {
-    Move& move = moves_.emplace_back();
-    move.now = boxes[body];
-    move.body = body;
-    if (isEmpty(move.now)) return;
-    const Steps min = stepsOf(move.now.min);
-    const Steps max = stepsOf(move.now.max);
-    const std::uint32_t level = levelOf(min, max);
-    move.place = placeOf(min, level);
-    reach(min, max, level);
+/// The two bytes of an axis; what is lower or higher than they can tell counts as their limit.
+inline LooseGrid::Bounds LooseGrid::boundsOnAxis(int axis, std::int32_t low, std::int32_t high) {
+  const auto in_cell = [](std::int32_t step) {
+    return static_cast<Bounds>(std::clamp(step, 0, kLastInCell));
   };
-  if (bodies.size() < kFew) {
-    for (const std::uint32_t body : bodies) add(body);
-    return;
+  return (in_cell(high) | (kLastInCell - in_cell(low)) << 8) << 16 * axis;
+}
+
+/// In the cell of a body, which is part of the extent.
+LooseGrid::Bounds LooseGrid::boundsOf(const Extent& extent, const Extent& body) const {
+  const std::uint32_t level = levelOf(body);
+  const Level& at = levels_[level];
+  const int to_level = shiftOf(level) - kCellBits;
+  Bounds bounds = kNobody | kSomebody;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int32_t cell = body.min[axis] >> shiftOf(level);
+    const std::int32_t begin = cell << kCellBits;
+    const std::int64_t from_first = std::int64_t{cell} - at.first[axis];
+    // Who looks into a cell takes it for one in the bulk.
+    const bool in_bulk = 0 <= from_first && from_first < at.counts[axis] &&
+                         extent.min[axis] >> shiftOf(level) == cell;
+    bounds |= in_bulk ? boundsOnAxis(axis, (extent.min[axis] >> to_level) - begin,
+                                     (extent.max[axis] >> to_level) - begin)
+                      : boundsOnAxis(axis, 0, kLastInCell);
   }
-  sorter_.resize(bodies.size(), team.size());
-  const std::span<SortEntry> order = sorter_.entries();
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    if (i + kPrefetchAhead < order.size()) prefetch(&boxes[bodies[i + kPrefetchAhead]]);
-    const Aabb& box = boxes[bodies[i]];
-    order[i] = {isEmpty(box) ? 0 : placeOf(box).cell, bodies[i]};
-  }
-  sorter_.sort(team);
-  const std::span<const SortEntry> sorted = sorter_.entries();
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    if (i + kPrefetchAhead < sorted.size()) prefetch(&boxes[sorted[i + kPrefetchAhead].body]);
-    add(sorted[i].body);
+  return bounds;
+}
+
+void LooseGrid::reach(const Extent& extent) {
+  Level& level = levels_[levelOf(extent)];
+  level.is_used = true;
+  for (int axis = 0; axis < 3; ++axis) {
+    level.reach[axis] = std::max(level.reach[axis], extent.edge(axis));
   }
 }
 
-void LooseGrid::update() {
-  const std::size_t count = moves_.size();
-  for (std::size_t move = 0; move < count; ++move) {
-    if (move + 2 * kPrefetchAhead < count)
-      prefetch(&entry_of_[moves_[move + 2 * kPrefetchAhead].body]);
-    if (move + kPrefetchAhead < count) {
-      const std::uint32_t entry = entry_of_[moves_[move + kPrefetchAhead].body];
-      if (entry != kNowhere) prefetch(&entries_[entry]);
+std::uint32_t LooseGrid::newLine() {
+  if (free_lines_.empty()) {
+    const auto line = static_cast<std::uint32_t>(lines_.size());
+    lines_.resize(lines_.size() + 1);
+    return line;
+  }
+  const std::uint32_t line = free_lines_.back();
+  free_lines_.pop_back();
+  return line;
+}
+
+/// Where a body lies that is in the cell.
+LooseGrid::Place LooseGrid::find(std::uint32_t cell, std::uint32_t body) {
+  for (Line* line = &lines_[cell];; line = &lines_[line->next]) {
+    for (std::uint32_t place = 0; place < Line::kPlaces; ++place) {
+      if (line->bodies[place] == body && line->bounds[place] != kNobody) return {line, place};
     }
-    updateOne(static_cast<std::uint32_t>(move));
   }
 }
 
-void LooseGrid::updateOne(std::uint32_t index) {
-  Move& move = moves_[index];
-  const std::uint32_t number = (first_number_ + index) << kFlagBits;
-  const std::uint32_t entry = std::exchange(entry_of_[move.body], kNowhere);
-  const bool comes = entry == kNowhere;
-  const bool goes = isEmpty(move.now);
-  if (comes) {
-    move.before = kEmptyBox;
-  } else {
-    move.before = entries_[entry].box;
-    move.before.min[3] = move.before.max[3] = 0;
-    move.place_before = placeOf(move.before);
+/// Lines behind a cell's own are full: what comes and goes does so in its own.
+void LooseGrid::insert(std::uint32_t cell, std::uint32_t body, Bounds bounds) {
+  std::uint32_t place = lines_[cell].count();
+  if (place == Line::kPlaces) {
+    const std::uint32_t behind = newLine();
+    lines_[behind] = std::exchange(lines_[cell], Line());
+    lines_[cell].next = behind;
+    place = 0;
   }
-  if (!comes && !goes && move.place == move.place_before) {
-    entries_[entry].set(move.now, move.body, number);
-    entry_of_[move.body] = entry;
+  lines_[cell].bounds[place] = bounds;
+  lines_[cell].bodies[place] = body;
+}
+
+void LooseGrid::remove(std::uint32_t cell, std::uint32_t body) {
+  const Place hole = find(cell, body);
+  Line& own = lines_[cell];
+  const std::uint32_t last = own.count() - 1;
+  hole.line->bodies[hole.place] = own.bodies[last];
+  hole.line->bounds[hole.place] = own.bounds[last];
+  own.bounds[last] = kNobody;
+  if (last == 0 && own.next != kNowhere) {
+    free_lines_.push_back(own.next);
+    own = lines_[own.next];
+  }
+}
+
+void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
+  moves_.assign(bodies.begin(), bodies.end());
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kPrefetchAhead < bodies.size()) {
+      prefetch(&boxes[bodies[i + kPrefetchAhead]]);
+      prefetch(&bodies_[bodies[i + kPrefetchAhead]]);
+    }
+    const std::uint32_t body = bodies[i];
+    const Aabb& box = boxes[body];
+    const std::uint32_t cell_before = bodies_[body].cell();
+    bodies_[body].move(box, cellOf(box), frame_);
+    if (bodies_[body].cell() != kNowhere) reach(extentOf(box));
+    if (bodies_[body].cell() != kNowhere || cell_before != kNowhere) {
+      to_move_[body / 64] |= std::uint64_t{1} << body % 64;
+    }
+  }
+}
+
+void LooseGrid::makeMove(const Step& step) {
+  const Body& body = bodies_[step.body];
+  if (body.cell() == body.cellBefore()) {
+    const Place place = find(body.cell(), step.body);
+    place.line->bounds[place.place] = step.bounds;
     return;
   }
   ++work_.cell_changes;
-  if (!comes) {
-    entries_[entry].setMove(number | kLeft);
-    move.left = entry;
-  }
-  if (!goes) {
-    const std::uint32_t now = insert(move.place, move.now, move.body, number | kCame);
-    entry_of_[move.body] = now;
-  }
+  if (body.cellBefore() != kNowhere) left_.push_back({step.body, body.cellBefore()});
+  if (body.cell() != kNowhere) insert(body.cell(), step.body, step.bounds);
 }
 
-/// Adds the cells in which there may be somebody whose overlap with the body changes.
-void LooseGrid::lookAround(std::uint32_t index) {
-  const Move& move = moves_[index];
-  const bool was = !isEmpty(move.before);
-  const bool is = !isEmpty(move.now);
+/// Adds to the next batch what is to be done for the body.
+void LooseGrid::prepare(std::uint32_t index) {
+  const Body& body = bodies_[index];
+  const bool was = body.cellBefore() != kNowhere;
+  const bool is = body.cell() != kNowhere;
   if (!was && !is) return;
-  const Steps min_before = stepsOf(move.before.min);
-  const Steps max_before = stepsOf(move.before.max);
-  const Steps min_now = stepsOf(move.now.min);
-  const Steps max_now = stepsOf(move.now.max);
+  const Extent before = extentOf(body.before);
+  const Extent now = extentOf(body.box);
   // Around both places at once, unless it has moved far.
   bool near = true;
+  Extent both;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t both = 1 << kCellBits | (max_now[axis] - min_now[axis]);
-    near = near && std::abs(min_now[axis] - min_before[axis]) <= both &&
-           std::abs(max_now[axis] - max_before[axis]) <= both;
+    const std::int32_t far = 1 << kCellBits | now.edge(axis);
+    near = near && std::abs(now.min[axis] - before.min[axis]) <= far &&
+           std::abs(now.max[axis] - before.max[axis]) <= far;
+    both.min[axis] = std::min(before.min[axis], now.min[axis]);
+    both.max[axis] = std::max(before.max[axis], now.max[axis]);
   }
-  if (near) {
-    Steps min;
-    Steps max;
-    for (int axis = 0; axis < 3; ++axis) {
-      min[axis] = std::min(min_before[axis], min_now[axis]);
-      max[axis] = std::max(max_before[axis], max_now[axis]);
-    }
-    addCells(index, min, max, kBeginnings | kEnds);
-    return;
-  }
-  if (was) addCells(index, min_before, max_before, kEnds);
-  if (is) addCells(index, min_now, max_now, kBeginnings);
+  // In a cell that it does not leave it is found at both places.
+  const Extent& found = body.cell() == body.cellBefore() ? both : now;
+  next_batch_.steps.push_back({index, boundsOf(found, now)});
+  if (near) return lookAround(index, both, kBeginnings | kEnds);
+  if (was) lookAround(index, before, kEnds);
+  if (is) lookAround(index, now, kBeginnings);
 }
 
-void LooseGrid::addCells(std::uint32_t move, const Steps& min, const Steps& max, unsigned wanted) {
+/// Adds looks into the cells where somebody may overlap the extent.
+void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, unsigned wanted) {
+  constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
   for (std::uint32_t level = 0; level < kLevels; ++level) {
     const Level& at = levels_[level];
-    if (at.entries == 0) continue;
-    Cells cells = {{}, {}, level, move, wanted, 0};
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::int32_t first = (min[axis] - at.reach[axis]) >> shiftOf(level);
-      const std::int32_t last = max[axis] >> shiftOf(level);
+    if (!at.is_used) continue;
+    // Calls with each cell on an axis, and with what bounds must reach there.
+    const auto for_each_on = [&](int axis, auto visit) {
+      const std::int32_t first = (extent.min[axis] - at.reach[axis]) >> shiftOf(level);
+      const std::int32_t last = extent.max[axis] >> shiftOf(level);
+      // Beyond the bulk bounds tell nothing.
+      const bool in_bulk =
+          first >= at.first[axis] && std::int64_t{last} - at.first[axis] < at.counts[axis];
+      const int to_level = shiftOf(level) - kCellBits;
+      const std::int32_t begin = first << kCellBits;
+      std::int32_t low = in_bulk ? (extent.min[axis] >> to_level) - begin : 0;
+      std::int32_t high = in_bulk ? (extent.max[axis] >> to_level) - begin : kFarOff;
+      std::uint32_t cell = wrapped(first, at.first[axis], at.counts[axis]);
       // Where that is all there are, each once.
-      cells.counts[axis] = std::min(last - first + 1, at.counts[axis]);
-      cells.first[axis] =
-          static_cast<std::int32_t>(wrapped(first, at.first[axis], at.counts[axis]));
-    }
-    forEachRow(at, cells, [&](std::size_t row) {
-      prefetch(&cells_[row + static_cast<std::size_t>(cells.first[0])]);
+      for (std::int32_t rest = std::min(last - first + 1, at.counts[axis]); rest > 0; --rest) {
+        visit(cell, boundsOnAxis(axis, high, low));
+        low -= 1 << kCellBits;
+        high -= 1 << kCellBits;
+        cell = cell + 1 == static_cast<std::uint32_t>(at.counts[axis]) ? 0 : cell + 1;
+      }
+    };
+    const auto [in_row, rows, slices] = at.counts;
+    for_each_on(2, [&](std::uint32_t z, Bounds on_z) {
+      for_each_on(1, [&](std::uint32_t y, Bounds on_y) {
+        const std::uint32_t row = at.first_cell + (z * rows + y) * in_row;
+        for_each_on(0, [&](std::uint32_t x, Bounds on_x) {
+          prefetch(&lines_[row + x]);
+          next_batch_.looks.push_back({kSomebody | on_z | on_y | on_x, row + x});
+        });
+      });
     });
-    around_.push_back(cells);
   }
+  next_batch_.searches.push_back({body, wanted, next_batch_.looks.size(), 0});
 }
 
-/// Lists the entries in the cells, and sends for them.
-void LooseGrid::lookInto(Cells& cells) {
-  const Level& level = levels_[cells.level];
-  forEachRow(level, cells, [&](std::size_t row) {
-    std::int32_t x = cells.first[0];
-    for (std::int32_t i = 0; i < cells.counts[0]; ++i) {
-      const Cell& cell = cells_[row + static_cast<std::size_t>(x)];
-      x = x + 1 == level.counts[0] ? 0 : x + 1;
-      const Entry* const entries = entries_.data() + cell.begin;
-      std::uint32_t rest = cell.count;
-      for (; rest > kMostHits; rest -= kMostHits) {
-        runs_.push_back({entries + cell.count - rest, kMostHits});
-      }
-      runs_.push_back({entries + cell.count - rest, rest});
-      // Two cache lines; who has more waits for the others, or the processor guesses.
-      prefetch(entries);
-      prefetch(entries + 2);
+/// Lists who is there and reaches what was wanted, and sends for them.
+void LooseGrid::lookInto(const Look& look) {
+  for (const Line* line = &lines_[look.cell];; line = &lines_[line->next]) {
+    for (std::uint32_t place = 0; place < Line::kPlaces; ++place) {
+      if (!reaches(line->bounds[place], look.least)) continue;
+      prefetch(&bodies_[line->bodies[place]]);
+      candidates_.push_back({line->bodies[place], look.cell});
     }
-  });
-  cells.runs_end = runs_.size();
-  work_.cells += static_cast<std::uint64_t>(cells.counts[0]) * cells.counts[1] * cells.counts[2];
+    ++work_.lines;
+    if (line->next == kNowhere) break;
+  }
 }
 
 void LooseGrid::settle() {
-  for (const Move& move : moves_) {
-    if (move.left != kNowhere) remove(move.place_before, move.left);
+  for (const Left& left : left_) {
+    remove(left.cell, left.body);
   }
-  first_number_ += static_cast<std::uint32_t>(moves_.size());
+  left_.clear();
   moves_.clear();
-  if (first_number_ <= most_numbers_) return;
-  first_number_ = 1;
-  for (const std::uint32_t entry : entry_of_) {
-    if (entry != kNowhere) entries_[entry].setMove(0);
-  }
+  ++frame_;
 }
 
 void LooseGrid::boxes(std::vector<Aabb>& into) const {
-  into.assign(entry_of_.size(), kEmptyBox);
+  into.resize(bodies_.size());
   for (std::size_t body = 0; body < into.size(); ++body) {
-    if (entry_of_[body] == kNowhere) continue;
-    into[body] = entries_[entry_of_[body]].box;
+    into[body] = bodies_[body].box;
     into[body].min[3] = into[body].max[3] = 0;
   }
 }
@@ -452,10 +420,11 @@ void LooseGrid::boxes(std::vector<Aabb>& into) const {
 void LooseGrid::draw(DebugDraw& draw) const {
   constexpr Rgb kCellColour = 0x3FA7A0;
   std::vector<std::array<std::int32_t, 4>> drawn;
-  for (const std::uint32_t entry : entry_of_) {
-    if (entry == kNowhere) continue;
-    Steps cell = stepsOf(entries_[entry].box.min);
-    const std::uint32_t level = levelOf(cell, stepsOf(entries_[entry].box.max));
+  for (const Body& body : bodies_) {
+    if (isEmpty(body.box)) continue;
+    const Extent extent = extentOf(body.box);
+    const std::uint32_t level = levelOf(extent);
+    Steps cell = extent.min;
     for (int axis = 0; axis < 3; ++axis) cell[axis] >>= shiftOf(level);
     cell[3] = static_cast<std::int32_t>(level);
     drawn.push_back(cell);
@@ -476,42 +445,42 @@ void LooseGrid::draw(DebugDraw& draw) const {
 
 std::string LooseGrid::validate() const {
   std::size_t present = 0;
-  for (std::size_t body = 0; body < entry_of_.size(); ++body) {
-    const std::uint32_t at = entry_of_[body];
-    if (at == kNowhere) continue;
+  for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
+    const Body& of = bodies_[body];
+    if (isToMove(body)) return fmt::format("body {} has not moved", body);
+    if (isEmpty(of.box)) continue;
     ++present;
-    if (at >= used_ || entries_[at].body() != body) return fmt::format("body {} is lost", body);
-    const Entry& entry = entries_[at];
-    if (entry.move() >= moving()) return fmt::format("body {} still moves", body);
-    const Place place = placeOf(entry.box);
-    const Cell& cell = cells_[place.cell];
-    if (at < cell.begin || at - cell.begin >= cell.count) {
-      return fmt::format("body {} is not in its cell", body);
-    }
-    const Steps min = stepsOf(entry.box.min);
-    const Steps max = stepsOf(entry.box.max);
+    const Extent extent = extentOf(of.box);
+    const Counts& reach = levels_[levelOf(extent)].reach;
     for (int axis = 0; axis < 3; ++axis) {
-      if (max[axis] - min[axis] > levels_[place.level].reach[axis]) {
+      if (extent.edge(axis) > reach[axis]) {
         return fmt::format("body {} reaches farther than its level", body);
       }
     }
+    const Bounds bounds = boundsOf(extent, extent) & ~kNobody;
+    bool is_there = false;
+    for (std::uint32_t line = of.cell(); line != kNowhere; line = lines_[line].next) {
+      for (std::uint32_t place = 0; place < lines_[line].count(); ++place) {
+        is_there |=
+            lines_[line].bodies[place] == body && reaches(lines_[line].bounds[place], bounds);
+      }
+    }
+    if (!is_there) return fmt::format("body {} is not in its cell", body);
   }
-  std::size_t entries = 0;
-  std::size_t places = 0;
-  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    const std::size_t size = block_bits_[cell] == 0 ? 0 : std::size_t{1} << block_bits_[cell];
-    if (cells_[cell].count > size) return "a cell has more bodies than places";
-    entries += cells_[cell].count;
-    places += size;
+  std::size_t in_cells = 0;
+  std::size_t lines = free_lines_.size();
+  for (std::uint32_t cell = 0; cell < cell_count_; ++cell) {
+    if (lines_[cell].count() == 0 && lines_[cell].next != kNowhere)
+      return "an empty line before a full one";
+    for (std::uint32_t line = cell; line != kNowhere; line = lines_[line].next) {
+      if (line != cell && lines_[line].count() < Line::kPlaces)
+        return "a line behind a cell's own is not full";
+      in_cells += lines_[line].count();
+      ++lines;
+    }
   }
-  if (entries != present) return "a cell holds somebody else";
-  std::size_t by_level = 0;
-  for (const Level& level : levels_) by_level += level.entries;
-  if (by_level != present) return "bodies of a level miscounted";
-  for (std::size_t bits = 0; bits < free_blocks_.size(); ++bits) {
-    places += free_blocks_[bits].size() << bits;
-  }
-  return places == used_ ? std::string() : "places are lost";
+  if (in_cells != present) return "a cell holds somebody else";
+  return lines == lines_.size() ? std::string() : "lines are lost";
 }
 
 }  // namespace broadmark::tide

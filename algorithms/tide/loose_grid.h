@@ -5,10 +5,15 @@
 // levels, each of cells four times as long as those of the one before; a body lies in the first one
 // whose cells are no shorter than it is. So small and large bodies don't get in each other's way.
 //
+// What a move costs is waiting for memory, so a cell is one cache line: of five bodies it has the
+// numbers and the bounds, a byte each, which three instructions test together. Their boxes are in
+// an array by body, a line each, and looked at for the few that pass. A crowded cell has full lines
+// behind its own.
+//
 // A level has cells for the bulk of the world only. Beyond, it begins anew from the other side:
 // what lies far off shares cells with others, costs tests, and needs no bounds.
 //
-// Coordinates are turned into whole numbers first, steps, 256 to a cell of level 0. A higher
+// Coordinates are turned into whole numbers first, steps, 64 to a cell of level 0. A higher
 // coordinate never gets a lower step, whatever is rounded: correctness rests on that alone.
 //
 // After: T. Ulrich, "Loose Octrees", Game Programming Gems, 2000; C. Ericson, "Real-Time Collision
@@ -27,64 +32,36 @@
 
 #include "broadmark/aabb.h"
 #include "broadmark/debug_draw.h"
-#include "broadmark/execution.h"
 #include "corner.h"
 #include "large_array.h"
 #include "prefetch.h"
-#include "radix_sort.h"
 #include "sample.h"
-#include "tide/kernels.h"
 
 namespace broadmark::tide {
 
 inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
-/// Where a body lies.
-struct Place {
-  std::uint32_t level = 0;
-  std::uint32_t cell = 0;
-
-  friend bool operator==(const Place&, const Place&) = default;
-};
-
-/// A body that moves, comes or goes in this frame.
-struct Move {
-  Aabb before;
-  Aabb now;
-  std::uint32_t body = 0;
-  std::uint32_t left = kNowhere;  ///< its entry in a cell that it left, until settle()
-  Place place;                    ///< now
-  Place place_before;
-};
-
 /// What a frame took.
 struct Work {
-  std::uint64_t cells = 0;  ///< looked into
-  std::uint64_t tests = 0;  ///< of a box against a body's
+  std::uint64_t lines = 0;  ///< cache lines of cells that were looked into
+  std::uint64_t tests = 0;  ///< of a box against another body's
   std::uint64_t cell_changes = 0;
 };
 
-/// A frame: addMoves(), update(), search(), settle().
+/// A frame: addMoves(), search(), settle().
 class LooseGrid {
  public:
   /// Most bodies.
   static constexpr std::uint32_t kMostBodies = 1U << 29;
 
-  /// Moves have numbers; after `most_numbers` of them every entry is gone through once.
-  explicit LooseGrid(Isa isa, std::uint32_t most_numbers = kMostBodies)
-      : most_numbers_(most_numbers), kernels_(&kernels(isa)) {}
-
   /// Chooses cells for these boxes, one per body, and puts the bodies into them. O(n).
   void build(std::span<const Aabb> boxes);
 
-  /// Takes over where these bodies are now; `boxes` has one for each body.
-  void addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes,
-                ThreadTeam& team);
+  /// Takes over where these bodies are now, each once; `boxes` has one for each body.
+  void addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
-  /// Puts the bodies where they are now. What has left a cell stays there, marked, until settle().
-  void update();
-
-  /// Calls began(a, b) and ended(a, b) for every pair that begins or ends to overlap, once.
+  /// Moves them to other cells, and calls began(a, b) and ended(a, b) for every pair that begins or
+  /// ends to overlap, once.
   template <class Began, class Ended>
   void search(Began began, Ended ended);
 
@@ -103,25 +80,70 @@ class LooseGrid {
   [[nodiscard]] std::string validate() const;
 
  private:
-  static constexpr int kCellBits = 8;   ///< of the steps in a cell of level 0
+  static constexpr int kCellBits = 6;   ///< of the steps in a cell of level 0
   static constexpr int kLevelBits = 2;  ///< cells are 2^that times as long from level to level
-  static constexpr int kLevels = 12;    ///< the last one takes the longest edges that there are
+  static constexpr int kLevels = 13;    ///< the last one takes the longest edges that there are
   static constexpr float kLastStep = static_cast<float>(1 << 29);
 
   /// Where a coordinate lies, on three axes; the fourth number means nothing.
   using Steps = std::array<std::int32_t, 4>;
   using Counts = std::array<std::int32_t, 3>;
 
-  // The move of an entry: its number, from 1 on and higher from frame to frame, and what that means
-  // for this entry. Lower numbers than this frame's mean nothing.
-  static constexpr std::uint32_t kLeft = 1;  ///< it lies where the body was
-  static constexpr std::uint32_t kCame = 2;  ///< it lies where the body was not
-  static constexpr int kFlagBits = 2;
+  /// A box in steps.
+  struct Extent {
+    Steps min;
+    Steps max;
+    [[nodiscard]] std::int32_t edge(int axis) const { return max[axis] - min[axis]; }
+  };
 
-  /// Its entries lie side by side.
-  struct Cell {
-    std::uint32_t begin = 0;
-    std::uint32_t count = 0;
+  /// Of a box in a cell: on each axis a byte for its upper bound, counted from the cell's
+  /// beginning, and one for its lower bound, counted down from kLastInCell; a seventh one is 1. All
+  /// are at most kLastInCell, and the bit above that is set. Of a box that is looked for: what
+  /// these must reach for the two to overlap, without that bit.
+  using Bounds = std::uint64_t;
+  static constexpr std::int32_t kLastInCell = 127;  ///< a loose cell is as long as two
+  static constexpr Bounds kNobody = 0x0080'8080'8080'8080;
+  static constexpr Bounds kSomebody = Bounds{1} << 48;
+
+  /// A byte that is too small takes its highest bit away.
+  static bool reaches(Bounds bounds, Bounds least) {
+    return ((bounds - least) & kNobody) == kNobody;
+  }
+
+  /// A cache line: of a cell, or one of those behind it, which are full.
+  struct alignas(64) Line {
+    static constexpr std::uint32_t kPlaces = 5;
+    std::array<Bounds, kPlaces> bounds{kNobody, kNobody, kNobody, kNobody, kNobody};
+    std::array<std::uint32_t, kPlaces> bodies{};
+    std::uint32_t next = kNowhere;
+
+    [[nodiscard]] std::uint32_t count() const {
+      return static_cast<std::uint32_t>(std::ranges::find(bounds, kNobody) - bounds.begin());
+    }
+  };
+  struct Place {
+    Line* line;
+    std::uint32_t place;
+  };
+
+  /// A cache line, too: where a body is, and where it was before its last move. The fourth
+  /// components have the frame of that, and cells.
+  struct alignas(64) Body {
+    Aabb box;
+    Aabb before;
+
+    [[nodiscard]] std::uint32_t frame() const { return std::bit_cast<std::uint32_t>(box.min[3]); }
+    /// kNowhere: it is absent.
+    [[nodiscard]] std::uint32_t cell() const { return std::bit_cast<std::uint32_t>(box.max[3]); }
+    [[nodiscard]] std::uint32_t cellBefore() const {
+      return std::bit_cast<std::uint32_t>(before.max[3]);
+    }
+    void move(const Aabb& to, std::uint32_t to_cell, std::uint32_t in_frame) {
+      before = box;
+      box = to;
+      box.min[3] = std::bit_cast<float>(in_frame);
+      box.max[3] = std::bit_cast<float>(to_cell);
+    }
   };
 
   struct Level {
@@ -129,170 +151,161 @@ class LooseGrid {
     Counts counts{};  ///< cells
     Counts reach{};   ///< the longest edges of bodies there were, in steps
     std::uint32_t first_cell = 0;
-    std::uint32_t entries = 0;
+    bool is_used = false;  ///< there has been somebody
   };
 
-  /// Cells to look into, around a box.
-  struct Cells {
-    Counts first;  ///< from 0 to the number of the level's cells
-    Counts counts;
-    std::uint32_t level;
-    std::uint32_t move;
-    unsigned wanted;       ///< kBeginnings, kEnds or both
-    std::size_t runs_end;  ///< its cells' entries are in runs_, up to here
-  };
   static constexpr unsigned kBeginnings = 1;
   static constexpr unsigned kEnds = 2;
+
+  /// A body that moves, and what its bounds become.
+  struct Step {
+    std::uint32_t body;
+    Bounds bounds;
+  };
+  /// Whose overlap with a body may change.
+  struct Search {
+    std::uint32_t body;
+    unsigned wanted;             ///< kBeginnings, kEnds or both
+    std::size_t looks_end;       ///< where to look is in Batch::looks, up to here
+    std::size_t candidates_end;  ///< who was found is in candidates_, up to here
+  };
+  /// Into a cell.
+  struct Look {
+    Bounds least;
+    std::uint32_t cell;
+  };
+  /// What is to be done for a few moves.
+  struct Batch {
+    std::vector<Step> steps;
+    std::vector<Search> searches;
+    std::vector<Look> looks;
+    void clear() {
+      steps.clear();
+      searches.clear();
+      looks.clear();
+    }
+  };
+  /// Somebody who may overlap a body that moves.
+  struct Candidate {
+    std::uint32_t body;
+    std::uint32_t cell;
+  };
+  /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
+  struct Left {
+    std::uint32_t body;
+    std::uint32_t cell;
+  };
 
   static int shiftOf(std::uint32_t level) {
     return kCellBits + kLevelBits * static_cast<int>(level);
   }
   static std::uint32_t wrapped(std::int32_t cell, std::int32_t first, std::int32_t count);
+  static Bounds boundsOnAxis(int axis, std::int32_t low, std::int32_t high);
 
   [[nodiscard]] Steps stepsOf(const std::array<float, 4>& corner) const;
-  /// The moves of this frame's entries are at least this.
-  [[nodiscard]] std::uint32_t moving() const { return first_number_ << kFlagBits; }
-  static std::uint32_t levelOf(const Steps& min, const Steps& max);
-  [[nodiscard]] Place placeOf(const Aabb& box) const;
-  [[nodiscard]] Place placeOf(const Steps& min, std::uint32_t level) const;
-  void reach(const Steps& min, const Steps& max, std::uint32_t level);
+  [[nodiscard]] Extent extentOf(const Aabb& box) const {
+    return {stepsOf(box.min), stepsOf(box.max)};
+  }
+  static std::uint32_t levelOf(const Extent& extent);
+  /// kNowhere if the box is empty.
+  [[nodiscard]] std::uint32_t cellOf(const Aabb& box) const;
+  [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& body) const;
+  void reach(const Extent& extent);
 
   void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
                    const std::array<Bulk, 3>& bulk);
-  void layOut(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk);
+  void chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk);
+  void putInto(std::span<const Aabb> boxes);
 
-  std::uint32_t newBlock(unsigned bits);
-  void resizeBlock(std::uint32_t cell, unsigned bits);
-  std::uint32_t insert(Place place, const Aabb& box, std::uint32_t body, std::uint32_t move);
-  void remove(Place place, std::uint32_t entry);
-  void relocate(std::uint32_t from, std::uint32_t to);
+  std::uint32_t newLine();
+  Place find(std::uint32_t cell, std::uint32_t body);
+  void insert(std::uint32_t cell, std::uint32_t body, Bounds bounds);
+  void remove(std::uint32_t cell, std::uint32_t body);
 
-  void updateOne(std::uint32_t move);
-  void lookAround(std::uint32_t move);
-  void lookInto(Cells& cells);
-  void addCells(std::uint32_t move, const Steps& min, const Steps& max, unsigned wanted);
-  template <class Visit>
-  static void forEachRow(const Level& level, const Cells& cells, Visit visit);
+  void makeMove(const Step& step);
+  void prepare(std::uint32_t body);
+  void lookAround(std::uint32_t body, const Extent& extent, unsigned wanted);
+  void lookInto(const Look& look);
+  /// Whether it moves in this frame, and search() has yet to come to it.
+  [[nodiscard]] bool isToMove(std::uint32_t body) const {
+    return (to_move_[body / 64] >> body % 64 & 1) != 0;
+  }
   template <class Began, class Ended>
-  void test(const Cells& cells, std::span<const Run> runs, Began& began, Ended& ended);
-  template <class Began, class Ended>
-  void consider(const Move& move, std::uint32_t number, const Entry& entry, unsigned wanted,
-                Began& began, Ended& ended) const;
+  void consider(const Search& search, const Candidate& candidate, Began& began, Ended& ended);
 
   std::array<float, 4> low_{};
   float factor_ = 1;  ///< steps to a unit of length
   std::array<Level, kLevels> levels_;
-  std::vector<Cell> cells_;
-  /// By cell: its entries have a block of 2^that places; 0: none.
-  std::vector<std::uint8_t> block_bits_;
-  LargeArray<Entry> entries_;
-  std::uint32_t used_ = 0;                                  ///< entries in blocks, free ones too
-  std::array<std::vector<std::uint32_t>, 32> free_blocks_;  ///< by the bits of their size
-  std::vector<std::uint32_t> entry_of_;                     ///< by body; kNowhere: absent
-  std::vector<Move> moves_;
-  RadixSorter sorter_;
-  std::vector<Cells> around_;       ///< of a few moves
-  std::vector<Run> runs_;           ///< the entries in these
-  std::uint32_t first_number_ = 1;  ///< of this frame's moves
-  std::uint32_t most_numbers_;
-  const Kernels* kernels_;
+  std::uint32_t cell_count_ = 0;
+  LargeArray<Line> lines_;                 ///< of the cells, then those behind them
+  std::vector<std::uint32_t> free_lines_;  ///< of these, nobody's
+  LargeArray<Body> bodies_;
+  std::vector<std::uint32_t> moves_;    ///< the bodies of this frame's moves
+  std::vector<std::uint64_t> to_move_;  ///< a bit for each body
+  Batch batch_;
+  Batch next_batch_;
+  std::vector<Candidate> candidates_;
+  std::vector<Left> left_;
+  std::uint32_t frame_ = 1;
   Work work_;
 };
 
 // In the header, for what is called with an event to be inlined.
 
-inline std::uint32_t LooseGrid::wrapped(std::int32_t cell, std::int32_t first, std::int32_t count) {
-  const std::uint32_t from_first =
-      static_cast<std::uint32_t>(cell) - static_cast<std::uint32_t>(first);
-  if (from_first < static_cast<std::uint32_t>(count)) [[likely]]
-    return from_first;
-  const std::int64_t rest = (std::int64_t{cell} - first) % count;
-  return static_cast<std::uint32_t>(rest < 0 ? rest + count : rest);
-}
-
-inline LooseGrid::Steps LooseGrid::stepsOf(const std::array<float, 4>& corner) const {
-  const Corner steps = (cornerOf(corner) - cornerOf(low_)) * factor_;
-  return truncated(smaller(larger(steps, Corner{} - kLastStep), Corner{} + kLastStep));
-}
-
-template <class Visit>
-void LooseGrid::forEachRow(const Level& level, const Cells& cells, Visit visit) {
-  const auto following = [&](std::int32_t cell, int axis) {
-    return cell + 1 == level.counts[axis] ? 0 : cell + 1;
-  };
-  std::int32_t z = cells.first[2];
-  for (std::int32_t k = 0; k < cells.counts[2]; ++k, z = following(z, 2)) {
-    std::int32_t y = cells.first[1];
-    for (std::int32_t j = 0; j < cells.counts[1]; ++j, y = following(y, 1)) {
-      const std::int64_t row = (std::int64_t{z} * level.counts[1] + y) * level.counts[0];
-      visit(level.first_cell + static_cast<std::size_t>(row));
-    }
-  }
-}
-
 template <class Began, class Ended>
 void LooseGrid::search(Began began, Ended ended) {
-  // Memory is waited for once in each step of a batch, and not for each move.
-  constexpr std::uint32_t kBatch = 16;
-  const auto count = static_cast<std::uint32_t>(moves_.size());
-  for (std::uint32_t first = 0; first < count; first += kBatch) {
-    const std::uint32_t last = std::min(first + kBatch, count);
-    around_.clear();
-    runs_.clear();
-    for (std::uint32_t move = first; move < last; ++move) lookAround(move);
-    for (Cells& cells : around_) lookInto(cells);
-    std::size_t run = 0;
-    for (const Cells& cells : around_) {
-      test(cells, std::span(runs_).subspan(run, cells.runs_end - run), began, ended);
-      run = cells.runs_end;
+  // While a few moves are made, the cells around the next ones come from memory.
+  constexpr std::size_t kBatch = 8;
+  const auto moves_from = [&](std::size_t first) {
+    const std::span<const std::uint32_t> moves = moves_;
+    first = std::min(first, moves.size());
+    return moves.subspan(first, std::min(kBatch, moves.size() - first));
+  };
+  const auto prepare_from = [&](std::size_t first) {
+    next_batch_.clear();
+    for (const std::uint32_t body : moves_from(first + kBatch)) prefetch(&bodies_[body]);
+    for (const std::uint32_t body : moves_from(first)) prepare(body);
+  };
+  prepare_from(0);
+  for (std::size_t first = 0; first < moves_.size(); first += kBatch) {
+    std::swap(batch_, next_batch_);
+    prepare_from(first + kBatch);
+    for (const Step& step : batch_.steps) makeMove(step);
+    candidates_.clear();
+    std::size_t look = 0;
+    for (Search& search : batch_.searches) {
+      for (; look < search.looks_end; ++look) lookInto(batch_.looks[look]);
+      search.candidates_end = candidates_.size();
+    }
+    std::size_t candidate = 0;
+    for (const Search& search : batch_.searches) {
+      to_move_[search.body / 64] &= ~(std::uint64_t{1} << search.body % 64);
+      for (; candidate < search.candidates_end; ++candidate) {
+        consider(search, candidates_[candidate], began, ended);
+      }
     }
   }
 }
 
+/// Two bodies that both move are a pair of the one that search() comes to last.
 template <class Began, class Ended>
-void LooseGrid::test(const Cells& cells, std::span<const Run> runs, Began& began, Ended& ended) {
-  const Move& move = moves_[cells.move];
-  // What does not overlap this concerns nobody.
-  const Aabb hull = cells.wanted == kBeginnings ? move.now
-                    : cells.wanted == kEnds     ? move.before
-                                                : merged(move.before, move.now);
-  std::array<const Entry*, kMostHits + 1> hits;
-  const Run* const end = runs.data() + runs.size();
-  for (const Run* first = runs.data(); first != end;) {
-    std::uint32_t entries = first->count;
-    const Run* last = first + 1;
-    for (; last != end && entries + last->count <= kMostHits; ++last) entries += last->count;
-    work_.tests += entries;
-    const std::size_t count = kernels_->find_hits(first, last, hull, moving(), hits.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      consider(move, first_number_ + cells.move, *hits[i], cells.wanted, began, ended);
-    }
-    first = last;
-  }
-}
-
-/// Two bodies that both move are a pair of the one that comes first.
-template <class Began, class Ended>
-void LooseGrid::consider(const Move& move, std::uint32_t number, const Entry& entry,
-                         unsigned wanted, Began& began, Ended& ended) const {
-  bool was = false;
-  bool is = false;
-  const std::uint32_t other = entry.move() >> kFlagBits;
-  unsigned flags = 0;
-  if (other < first_number_) {
-    was = overlaps(move.before, entry.box);
-    is = overlaps(move.now, entry.box);
-  } else {
-    if (other <= number) return;
-    const Move& its = moves_[other - first_number_];
-    was = overlaps(move.before, its.before);
-    is = overlaps(move.now, its.now);
-    flags = entry.move();
-  }
+void LooseGrid::consider(const Search& search, const Candidate& candidate, Began& began,
+                         Ended& ended) {
+  if (candidate.body == search.body || isToMove(candidate.body)) return;
+  const Body& body = bodies_[search.body];
+  const Body& other = bodies_[candidate.body];
+  const bool moved = other.frame() == frame_;
+  const bool was = overlaps(body.before, moved ? other.before : other.box);
+  const bool is = overlaps(body.box, other.box);
+  ++work_.tests;
   if (was == is) return;
-  // An entry that the other left tells of ends only, one where it came of beginnings only.
-  if (is && (wanted & kBeginnings) != 0 && (flags & kLeft) == 0) began(move.body, entry.body());
-  if (was && (wanted & kEnds) != 0 && (flags & kCame) == 0) ended(move.body, entry.body());
+  unsigned wanted = search.wanted;
+  // A cell that it left tells of ends only, one into which it came of beginnings only.
+  if (moved && other.cellBefore() != other.cell()) {
+    wanted &= candidate.cell == other.cell() ? kBeginnings : kEnds;
+  }
+  if (is && (wanted & kBeginnings) != 0) began(search.body, candidate.body);
+  if (was && (wanted & kEnds) != 0) ended(search.body, candidate.body);
 }
 
 }  // namespace broadmark::tide

@@ -104,17 +104,4 @@ void BackgroundBake::take(const BakedJob& job) {
   });
 }
 
-std::vector<std::uint32_t> parseCounts(std::string_view text) {
-  std::vector<std::uint32_t> counts;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find_first_of(", ", start), text.size());
-    const std::string_view word = text.substr(start, end - start);
-    start = end + 1;
-    if (word.empty()) continue;
-    counts.push_back(
-        static_cast<std::uint32_t>(parseInteger(word, "number of bodies", 1, kMostBodies)));
-  }
-  return counts;
-}
-
 }  // namespace broadmark

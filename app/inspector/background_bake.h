@@ -63,7 +63,4 @@ inline constexpr NameTable kBakeOutcomes{{NamedValue{BackgroundBake::Outcome::wa
                                           {BackgroundBake::Outcome::baked, "baked"},
                                           {BackgroundBake::Outcome::failed, "failed"}}};
 
-/// Numbers of bodies from text, "1000, 8000". Throws InputError.
-std::vector<std::uint32_t> parseCounts(std::string_view text);
-
 }  // namespace broadmark

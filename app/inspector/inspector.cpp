@@ -14,6 +14,7 @@
 
 #include "inspector/author_dialogs.h"
 #include "inspector/case_chooser.h"
+#include "inspector/closing.h"
 
 namespace broadmark {
 namespace {
@@ -210,6 +211,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   session_.notices.wanted_panels.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
+  drawEnding(ui_, session_);
   drawCaseChooser(ui_, session_);
   drawHelp();
   drawErrors();

@@ -63,9 +63,9 @@ class Inspector {
   [[nodiscard]] View& view() { return view_; }
   [[nodiscard]] const Preferences& preferences() const { return preferences_; }
   [[nodiscard]] bool closing() const { return closing_; }
-  /// Closes, once unsaved changes are saved or given up.
+  /// Closes, once it is decided what becomes of unsaved changes and of work in the background.
   void close() {
-    session_.document.leave([this] { closing_ = true; });
+    session_.end([this] { closing_ = true; });
   }
   /// Whether pictures change without input.
   [[nodiscard]] bool lively();

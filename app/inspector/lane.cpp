@@ -15,6 +15,16 @@ constexpr RunPolicy kPolicy{.check = CheckMode::hash,
 
 }  // namespace
 
+void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
+  for (std::size_t phase = 0; phase < seconds.size(); ++phase) {
+    seconds[phase].set(frame,
+                       static_cast<float>(1e-9 * static_cast<double>(record.times.ns[phase])));
+  }
+  pairs.set(frame, static_cast<float>(record.pairs));
+  disturbed.set(frame, record.disturbed ? 1 : FrameValues::kUnknown);
+  mismatches.set(frame, record.mismatch ? 1 : FrameValues::kUnknown);
+}
+
 std::uint64_t framesOver(const LaneReport& lane, double ms) {
   return static_cast<std::uint64_t>(
       std::ranges::count_if(lane.frames, [&](const FrameRecord& frame) {

@@ -1,6 +1,7 @@
 // An algorithm under observation: its case, and what it has done frame by frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "broadmark/case_run.h"
+#include "broadmark/render/frame_values.h"
 #include "inspector/draw_gate.h"
 
 namespace broadmark {
@@ -26,6 +28,16 @@ struct FrameRecord {
   bool disturbed = false;  ///< something was drawn while it was timed
   bool checked = false;
   bool mismatch = false;
+};
+
+/// The records of a lane as curves.
+struct LaneCurves {
+  std::array<FrameValues, kPhases.entries.size()> seconds;  ///< by phase
+  FrameValues pairs;
+  FrameValues disturbed;   ///< 1 in such frames, unknown in others
+  FrameValues mismatches;  ///< likewise
+
+  void set(std::uint32_t frame, const FrameRecord& record);
 };
 
 /// A case that is looked at. The number tells apart two that are otherwise alike.
@@ -50,6 +62,7 @@ struct LaneReport {
   std::int64_t initialize_ns = 0;
   float margin = 0;
   std::vector<FrameRecord> frames;                ///< frame k at [k - 1]
+  LaneCurves curves;                              ///< of these; kept by the run thread
   std::map<std::string, std::uint64_t> setup;     ///< counted once, in the initialisation
   std::map<std::string, std::uint64_t> counters;  ///< of work, in the last frame
 

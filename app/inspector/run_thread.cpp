@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <limits>
 #include <utility>
 
 #include "broadmark/pair.h"
@@ -19,6 +18,12 @@ constexpr std::uint32_t kTrackFrames = 60;
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
          a.tracked == b.tracked;
+}
+
+/// How many pairs overlap, by what an algorithm reported and how wrong that was.
+std::uint64_t rightPairs(const FrameRecord& record) {
+  return record.pairs + record.missed_count - record.false_count - record.allowed_extra_count -
+         record.invalid_count;
 }
 
 std::uint32_t presentIn(std::span<const Aabb> boxes) {
@@ -203,8 +208,12 @@ bool RunThread::reconcileLanes() {
   stop_.reset();
   const std::lock_guard lock(mutex_);
   progress_.stop.reset();
-  progress_.lanes.clear();
-  for (const auto& lane : lanes_) progress_.lanes.push_back(lane->report());
+  std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
+  for (const auto& lane : lanes_) {
+    const auto report = std::ranges::find_if(
+        reports, [&](const LaneReport& known) { return known.spec.same(lane->spec()); });
+    progress_.lanes.push_back(report != reports.end() ? std::move(*report) : lane->report());
+  }
   return true;
 }
 
@@ -217,11 +226,9 @@ std::uint32_t RunThread::target() const {
 Frame RunThread::frameAt(std::uint32_t index) {
   const Frame frame = footage_->at(index);
   if (footage_->scene().all_present) return frame;
-  const double present = presentIn(frame.boxes);
+  const auto present = static_cast<float>(presentIn(frame.boxes));
   const std::lock_guard lock(mutex_);
-  std::vector<double>& known = progress_.population;
-  if (known.size() <= index) known.resize(index + 1, std::numeric_limits<double>::quiet_NaN());
-  known[index] = present;
+  progress_.population.set(index, present);
   return frame;
 }
 
@@ -297,8 +304,16 @@ void RunThread::report(const Lane& lane) {
   if (shown == progress_.lanes.end()) return;
   // Its history changes at the present frame only, and is too long to be copied every time.
   std::vector<FrameRecord> frames = std::move(shown->frames);
+  LaneCurves curves = std::move(shown->curves);
   frames.resize(now.frames.size());
-  if (now.frame > 0) frames[now.frame - 1] = now.frames[now.frame - 1];
+  if (now.frame > 0) {
+    const FrameRecord& record = now.frames[now.frame - 1];
+    frames[now.frame - 1] = record;
+    curves.set(now.frame, record);
+    if (now.spec.run.answer == AnswerKind::pairs && now.spec.run.algorithm.traits.finds_pairs) {
+      progress_.pairs.set(now.frame, static_cast<float>(rightPairs(record)));
+    }
+  }
   *shown = {.spec = now.spec,
             .status = now.status,
             .reason = now.reason,
@@ -307,6 +322,7 @@ void RunThread::report(const Lane& lane) {
             .initialize_ns = now.initialize_ns,
             .margin = now.margin,
             .frames = std::move(frames),
+            .curves = std::move(curves),
             .setup = now.setup,
             .counters = now.counters};
 }
@@ -377,6 +393,7 @@ void RunThread::show() {
   snapshot->overlaps = overlapCounts(snapshot->boxes->size(), {&answer, 1});
   shown_ = true;
   const std::lock_guard lock(mutex_);
+  if (lane == nullptr) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = std::move(snapshot);
 }
 

@@ -96,9 +96,12 @@ struct RunProgress {
   SceneInfo scene;
   std::uint32_t known_frames = 0;  ///< that exist already
   bool live = false;               ///< more can be simulated
-  /// How many bodies are present in each frame that has been looked at; NaN in others. Empty where
-  /// nobody is ever absent.
-  std::vector<double> population;
+  /// How many bodies are present in each frame that has been looked at. Empty where nobody is ever
+  /// absent.
+  FrameValues population;
+  /// Likewise how many pairs overlap, as far as the oracle was asked; else how many an algorithm
+  /// reported.
+  FrameValues pairs;
   std::vector<LaneReport> lanes;
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
   /// The frame at which all stay, as the lane of this number is wrong there.

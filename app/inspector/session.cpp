@@ -45,6 +45,7 @@ constexpr std::size_t kMostTracked = 2;
 Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
     : draft(makeSimulation("freefall")),
       lanes(std::move(algorithms)),
+      benchmark(make_host),
       runs(make_host),
       make_host_(std::move(make_host)) {
   playback.on_show = [this] {
@@ -66,8 +67,11 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
 
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeBake();
+  noticeBenchmark();
+  noticeDuel();
   noticeExport();
   if (!playback.follow(progress)) return;
+  timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
@@ -75,8 +79,14 @@ void Session::advance(const RunProgress& progress, double seconds) {
   if (playback.hasReached(progress)) playback.advance(seconds);
 }
 
-bool Session::busy() {
-  return playback.playing() || !runs.settled() || bake.running() || case_export.running();
+bool Session::busy() { return playback.playing() || !runs.settled() || atWork(); }
+
+void Session::end(std::function<void()> then) {
+  if (atWork()) {
+    ending = std::move(then);
+  } else {
+    document.leave(std::move(then));
+  }
 }
 
 Wish Session::wish() const {
@@ -123,6 +133,20 @@ void Session::noticeBake() {
   const BackgroundBake::Report report = bake.report();
   if (!report.failure.empty()) notices.complain(report.failure);
   notices.say(report.text(), report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
+}
+
+void Session::noticeBenchmark() {
+  if (!benchmark.takeEnd()) return;
+  const BackgroundBenchmark::Report report = benchmark.report();
+  if (!report.failure.empty()) return notices.complain(report.failure);
+  notices.say(fmt::format("{}: {}", report.file.string(), report.text()),
+              report.failed() > 0 ? Message::Kind::error : Message::Kind::note);
+}
+
+void Session::noticeDuel() {
+  if (!duel.takeEnd()) return;
+  const BackgroundDuel::Report report = duel.report();
+  if (!report.failure.empty()) notices.complain(report.failure);
 }
 
 void Session::chooseScene(const std::string& scene, const std::string& engine) {
@@ -321,6 +345,19 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
     }
     if (!source) throw InputError("exporting a case: another scene has been opened");
     case_export.start(run, std::move(source), snapshot->difference, file, make_host_);
+  });
+}
+
+void Session::startDuel(double most_seconds) {
+  later([this, most_seconds] {
+    std::vector<Case> cases;
+    for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
+    std::unique_ptr<IndexedFrames> frames;
+    runs.withFootage([&](Footage* footage) {
+      if (footage != nullptr) frames = footage->source(footage->known());
+    });
+    if (!frames) throw InputError("duel: nothing is open");
+    duel.start(cases, std::move(frames), most_seconds, make_host_);
   });
 }
 

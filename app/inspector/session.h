@@ -12,6 +12,8 @@
 #include "broadmark/algorithm.h"
 #include "broadmark/scenes/simulation.h"
 #include "inspector/background_bake.h"
+#include "inspector/background_benchmark.h"
+#include "inspector/background_duel.h"
 #include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
@@ -21,6 +23,7 @@
 #include "inspector/notices.h"
 #include "inspector/playback.h"
 #include "inspector/run_thread.h"
+#include "inspector/timeline.h"
 #include "plan.h"
 
 namespace broadmark {
@@ -73,6 +76,14 @@ class Session {
   /// Whether anything goes on by itself.
   [[nodiscard]] bool busy();
 
+  /// Whether work goes on in the background that closing would end.
+  [[nodiscard]] bool atWork() const {
+    return bake.running() || benchmark.running() || duel.running() || case_export.running();
+  }
+  /// Calls `then`, which ends all; with unsaved changes or work in the background it waits until
+  /// the user has decided.
+  void end(std::function<void()> then);
+
   /// Begins a live simulation with the draft's present parameters.
   void simulate();
   /// Whether what is open is the draft's simulation, or was baked with its parameters.
@@ -100,6 +111,8 @@ class Session {
   /// if it has none.
   void exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot,
                   std::filesystem::path file);
+  /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
+  void startDuel(double most_seconds);
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
@@ -107,15 +120,19 @@ class Session {
   ViewOptions view;
   double budget_ms = 16.7;                ///< that a frame may take; 0: any
   std::optional<CaseChoice> case_choice;  ///< to be made by the user
+  std::function<void()> ending;           ///< waits for what goes on in the background
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;
 
   Notices notices;
   Playback playback;
+  Timeline timeline;
   BodySelection selection;
   Lanes lanes;
   Mismatches mismatches{playback, lanes, selection, notices};
   BackgroundBake bake;
+  BackgroundBenchmark benchmark;
+  BackgroundDuel duel;
   Document document{playback, selection, notices, bake};
   CaseExport case_export;
   RunThread runs;
@@ -125,6 +142,8 @@ class Session {
   void noticeFailure(const RunProgress& progress);
   void noticeExport();
   void noticeBake();
+  void noticeBenchmark();
+  void noticeDuel();
   /// How an authored scene is shown first.
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);

@@ -72,7 +72,7 @@ void Inspector::makeShortcuts() {
        [this] { session_.document.desk.tools.local = !session_.document.desk.tools.local; }},
       {GLFW_KEY_B, false, false, "likewise: the brush, or none", [this] { takeTool(Tool::brush); }},
       {GLFW_KEY_ESCAPE, false, false,
-       "close a list, a dialog, this page; take a drag back; put down the brush; select nothing",
+       "close a list, a dialog, this page; take a drag back; no brush; no span; no body",
        [this] { escape(); }},
       {GLFW_KEY_O, true, false, kOpenFile, [this] { askOpen(); }},
       {GLFW_KEY_S, true, false, kSave,
@@ -102,8 +102,8 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
       {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
   };
-  for (std::size_t i = 0; i < panels_.size() && i < 9; ++i) {
-    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_1 + i), true, false,
+  for (std::size_t i = 0; i < panels_.size() && i < 10; ++i) {
+    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), true, false,
                           fmt::format("the panel {}", panels_[i]->name()),
                           [this, i] { enterPanel(*panels_[i]); }});
   }
@@ -171,6 +171,8 @@ void Inspector::escape() {
     return;
   } else if (session_.document.shown() && tools.tool == Tool::brush) {
     tools.tool = Tool::none;
+  } else if (session_.timeline.span()) {
+    session_.timeline.clearSpan();
   } else {
     session_.selection.select({});
   }

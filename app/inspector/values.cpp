@@ -4,8 +4,10 @@
 
 #include <map>
 
+#include "duel_report.h"
 #include "inspector/answer_text.h"
 #include "inspector/inspector.h"
+#include "inspector/span_statistics.h"
 #include "inspector/wrong_pair.h"
 
 namespace broadmark {
@@ -41,6 +43,10 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
     addCounts(values, name, sum);
     const FrameRecord* record = lane.record(lane.frame);
     values[name + "pairs"] = record ? std::to_string(record->pairs) : "";
+    if (const auto span = session.timeline.span()) {
+      const auto of = statisticsOf(lane.curves.pairs, lane.curves.disturbed, *span);
+      values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
+    }
   }
 }
 
@@ -65,6 +71,14 @@ std::string legendText(const std::vector<LegendEntry>& legend) {
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", entry.label, entry.count);
   }
   return text;
+}
+
+void addTimeline(Values& values, const Timeline& timeline) {
+  values["timeline.first"] = fmt::format("{:.1f}", timeline.first());
+  values["timeline.last"] = fmt::format("{:.1f}", timeline.last());
+  values["timeline.zoomed"] = yes(timeline.zoomed());
+  const auto span = timeline.span();
+  values["timeline.span"] = span ? fmt::format("{}-{}", span->first, span->last) : "";
 }
 
 void addAuthored(Values& values, Session& session) {
@@ -114,6 +128,21 @@ void addBatch(Values& values, const BackgroundBake& bake) {
   values["batch.done"] = std::to_string(report.count(Outcome::baked));
   values["batch.kept"] = std::to_string(report.count(Outcome::kept));
   values["batch.failed"] = std::to_string(report.failed());
+}
+
+void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
+  const BackgroundBenchmark::Report report = benchmark.report();
+  values["benchmark.state"] = kTaskStates.nameOf(report.state);
+  values["benchmark.cases"] = std::to_string(report.cases);
+  values["benchmark.run"] = std::to_string(report.items.size());
+  values["benchmark.failed"] = std::to_string(report.failed());
+}
+
+void addDuel(Values& values, const BackgroundDuel& duel) {
+  const BackgroundDuel::Report report = duel.report();
+  values["duel.state"] = kTaskStates.nameOf(report.state);
+  values["duel.rounds"] = std::to_string(report.result.sides.empty() ? 0 : report.result.rounds());
+  values["duel.verdict"] = report.result.places.empty() ? "" : verdictOf(report.result);
 }
 
 /// Whether the first selected body is there.
@@ -188,7 +217,10 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addAuthored(values, session);
   addBatch(values, session.bake);
+  addBenchmark(values, session.benchmark);
+  addDuel(values, session.duel);
   addLanes(values, session, progress);
+  addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());

@@ -421,7 +421,8 @@ TEST_F(SharedFolder, ARecordingThatAnotherReplacesIsReadToItsEnd) {
   fs::rename(file("other.aabbs"), file("some.aabbs"));
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
-  for (const Json& one : readJson(file("results.json")).at("cases")) {
+  const Json results = readJson(file("results.json"));
+  for (const Json& one : results.at("cases")) {
     EXPECT_EQ(one.at("status"), "ok");
     EXPECT_THAT(verified.out, HasSubstr(one.at("recording").at("hash").get<std::string>()));
   }

@@ -5,6 +5,7 @@
 
 #include "broadmark/recording.h"
 #include "e2e/end_to_end.h"
+#include "engine/helpers.h"
 #include "support/places.h"
 
 namespace broadmark::tests {
@@ -57,6 +58,7 @@ TEST_F(Torture, TellsKindsOfFaultsApart) {
                                                                      {"hang", "hang"},
                                                                      {"break", "broken invariant"},
                                                                      {"keep", "leak"}}) {
+    if (kSanitized && kind == "leak") continue;  // their malloc does not tell what is taken
     SCOPED_TRACE(deed);
     const std::string name = places::unrulyPlugin() + ":unruly/frame=1/deed=" + deed;
     const Ended ended = run(call(

@@ -84,14 +84,5 @@ TEST_F(BackgroundBakeTest, WhatCannotBeWrittenIsAFailure) {
   EXPECT_THAT(report.failure, testing::HasSubstr("baked"));
 }
 
-TEST(ParseCounts, UnderstandsListsAndNamesWhatIsWrong) {
-  EXPECT_THAT(parseCounts("1000,8000"), testing::ElementsAre(1000, 8000));
-  EXPECT_THAT(parseCounts(" 1  2, 3,"), testing::ElementsAre(1, 2, 3));
-  EXPECT_TRUE(parseCounts("").empty());
-  for (const char* bad : {"0", "-3", "1e3", "many", "10000001", "99999999999"}) {
-    EXPECT_THROW(parseCounts(bad), InputError) << bad;
-  }
-}
-
 }  // namespace
 }  // namespace broadmark::tests

@@ -29,7 +29,7 @@ class InspectorTest : public testing::Test {
   InspectorTest()
       : context(makeOffscreenContext(GlSource::automatic)),
         gl(*context),
-        inspector(gl, builtinAlgorithms(), {}, 1),
+        inspector(gl, algorithmsAndFaultyOnes(), {}, 1),
         former_directory(std::filesystem::current_path()) {
     std::filesystem::current_path(directory / "");  // screenshots go there
     setParameters(*inspector.session().draft, {{"objects", "40"}, {"frames", "20"}});
@@ -122,6 +122,30 @@ TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
   settle();
   EXPECT_EQ(value("playing"), "no");
   EXPECT_EQ(value("frame"), "0");
+}
+
+// Among several frames for each pixel.
+TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
+  Session& session = inspector.session();
+  setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
+  session.chooseScene("brownian");
+  session.simulate();
+  session.lanes.add("faulty");
+  session.playback.seek(300);
+  settle();
+  const std::string wrong = value("stop_frame");
+  ASSERT_NE(wrong, "") << "the fault did not show";
+  inspector.showPanel("Timeline");
+  draw(3);
+  const WidgetPlace plot = *inspector.ui().find("Timeline/plot");
+  int arrived = 0;
+  for (float x = plot.min.x; x < plot.max.x; x += 2) {
+    session.playback.goTo(0);
+    press({x, plot.min.y + 3});
+    draw(4);
+    if (value("frame") == wrong) ++arrived;
+  }
+  EXPECT_GE(arrived, 3);
 }
 
 TEST_F(InspectorTest, EverySizeCanBeDrawn) {

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
+#include <random>
+#include <set>
+#include <vector>
 
 namespace broadmark::tests {
 namespace {
@@ -40,6 +44,67 @@ TEST(Plot, TicksAreRoundAndWithinTheAxis) {
     }
   }
   EXPECT_TRUE(axisTicks(1, 1, 5, false).empty());
+}
+
+TEST(Plot, BlocksAreNoWiderThanAPixelAndNoNarrowerThanHalf) {
+  EXPECT_EQ(plotLevel(0.01), 0U);
+  for (const double frames : {1.0, 1.9, 2.0, 3.0, 100.0, 125.0, 1e6}) {
+    const double block = std::exp2(plotLevel(frames));
+    EXPECT_LE(block, frames);
+    EXPECT_GT(2 * block, frames);
+  }
+}
+
+// Against looking at every frame, whatever the order in which they become known.
+TEST(FrameValues, KnowsLowestHighestAndFirstOfAnyFrames) {
+  for (const std::uint32_t frames : {1U, 2U, 5U, 64U, 1000U}) {
+    std::mt19937 engine(frames);
+    const auto below = [&](std::uint32_t bound) {
+      return std::uniform_int_distribution<std::uint32_t>(0, bound - 1)(engine);
+    };
+    FrameValues values;
+    std::vector<float> plain(frames, FrameValues::kUnknown);
+    for (std::uint32_t step = 0; step < 3 * frames; ++step) {
+      const std::uint32_t frame = below(frames);
+      const float value = below(3) == 0 ? FrameValues::kUnknown : static_cast<float>(below(100));
+      values.set(frame, value);
+      plain[frame] = value;
+      const std::uint32_t first = below(frames);
+      const std::uint32_t last = first + below(frames);  // perhaps beyond the end
+      FrameValues::Range range;
+      std::optional<std::uint32_t> known;
+      for (std::uint32_t i = first; i <= last && i < frames; ++i) {
+        range = {std::fmin(range.low, plain[i]), std::fmax(range.high, plain[i])};
+        if (!known && !std::isnan(plain[i])) known = i;
+      }
+      const FrameValues::Range found = values.within(first, last);
+      ASSERT_EQ(found.known(), range.known());
+      if (range.known()) {
+        ASSERT_EQ(found.low, range.low);
+        ASSERT_EQ(found.high, range.high);
+      }
+      ASSERT_EQ(values.firstKnown(first, last), known);
+    }
+  }
+}
+
+// A plot of 800 pixels shows each of the few marks among many frames, in a block of its own width.
+TEST(FrameValues, ThinningLosesNoMark) {
+  constexpr std::uint32_t kFrames = 100'000;
+  FrameValues marks;
+  marks.set(kFrames - 1, FrameValues::kUnknown);
+  const std::vector<std::uint32_t> marked = {0, 1, 4711, 50'000, kFrames - 1};
+  for (const std::uint32_t frame : marked) marks.set(frame, 1);
+  const unsigned level = plotLevel(kFrames / 800.0);
+  std::set<std::uint32_t> seen;
+  for (std::uint32_t block = 0; block <= (kFrames - 1) >> level; ++block) {
+    if (marks.block(level, block).known()) seen.insert(block);
+  }
+  std::set<std::uint32_t> wanted;
+  for (const std::uint32_t frame : marked) wanted.insert(frame >> level);
+  EXPECT_EQ(seen, wanted);
+  EXPECT_FALSE(marks.block(level, kFrames).known());
+  EXPECT_TRUE(marks.block(30, 0).known());
 }
 
 }  // namespace

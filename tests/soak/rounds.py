@@ -184,8 +184,8 @@ wait settled
 {self._seek()}
 {right}panel Results
 wait 3
-panel Timings
-click Timings/logarithmic
+panel Timeline
+click Timeline/logarithmic
 wait 5
 {remove}expect lanes = 0
 """

@@ -182,6 +182,8 @@ class HeadlessRuns:
             ]
             + ["--algorithm", "sap,kd-mt,columns,tide", "--threads", "2"]
             + ["--json", "results.json", "--csv", "results.csv"]
+            # How busy the machine is is no fault of theirs.
+            + ["--allow-timeout", "--hard-limit", "600"]
         )
         self._folder = folder
         self._process: subprocess.Popen[bytes] | None = None

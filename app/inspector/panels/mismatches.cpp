@@ -121,8 +121,10 @@ class MismatchesPanel final : public Panel {
 
   static void drawFrames(PanelContext& context, const LaneReport& lane) {
     std::vector<std::uint32_t> wrong;
-    for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
-      if (lane.frames[frame - 1].mismatch) wrong.push_back(frame);
+    const FrameValues& marks = lane.curves.mismatches;
+    for (auto frame = marks.firstKnown(0, marks.size()); frame;
+         frame = marks.firstKnown(*frame + 1, marks.size())) {
+      wrong.push_back(*frame);
     }
     if (wrong.empty()) context.ui.faintParagraph("no wrong frame so far");
     clipped(wrong.size(), [&](std::size_t row) {

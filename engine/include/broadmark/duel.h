@@ -32,11 +32,7 @@ struct DuelSide {
   HostMaker make_host = makeLocalHost;
 };
 
-/// How far a duel has got.
-struct DuelProgress {
-  std::size_t rounds = 0;
-  double seconds = 0;
-};
+struct DuelResult;
 
 struct DuelOptions {
   /// Width of the intervals at which the duel ends. The margin is twice that: an interval that
@@ -45,7 +41,8 @@ struct DuelOptions {
   double most_seconds = 60;           ///< after which it ends whatever is known
   std::uint64_t seed = 1;             ///< of the order of turns
   CheckMode check = CheckMode::hash;  ///< of the first pass; later ones give the same answers
-  std::function<void(const DuelProgress&)> progress = {};
+  /// Told after each round what is known so far, and after how many seconds.
+  std::function<void(const DuelResult&, double seconds)> progress = {};
   CancelQuery cancelled = {};
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace broadmark {
 
@@ -42,6 +43,19 @@ std::size_t blockLength(std::span<const double> values);
 
 /// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
 std::optional<Interval> confidence95(std::span<const double> values);
+
+/// How many values lie where.
+struct Histogram {
+  double low = 0;   ///< where the first bin begins
+  double high = 0;  ///< where the last one ends
+  std::vector<std::size_t> counts;
+
+  [[nodiscard]] double begin(std::size_t bin) const;
+};
+
+/// From the second to the 98th percentile: the tails would squeeze all else into one bin, and count
+/// to the first and the last. No bins if all of these are the same. Not empty.
+Histogram histogramOf(std::span<const double> values, std::size_t bins);
 
 /// Times of one case, in seconds. Outliers are counted, never dropped.
 struct Summary {

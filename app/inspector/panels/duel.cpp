@@ -1,0 +1,145 @@
+// The algorithms take turns on what is open, frame by frame: which is faster, and how surely.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "broadmark/statistics.h"
+#include "duel_report.h"
+#include "inspector/histogram.h"
+#include "inspector/panel.h"
+#include "words.h"
+
+namespace broadmark::panels::duel {
+namespace {
+
+constexpr float kTableShare = 0.68F;  // of the width; the rest is the histogram's
+
+class DuelPanel final : public Panel {
+ public:
+  DuelPanel()
+      : Panel("Duel", Place::bottom,
+              "Lets the algorithms take turns on what is open, until it is known which is faster") {
+  }
+
+  void draw(PanelContext& context) override {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    const BackgroundDuel::Report report = session.duel.report();
+    drawControls(ui, session, report);
+    if (report.state == TaskState::idle) {
+      ui.paragraph(
+          "Two or more algorithms of the panel Algorithms run the frames that are known so far, in "
+          "turns, until their ratio is known within 1 % or time is up. Best while nothing is "
+          "played.");
+      return;
+    }
+    if (!report.result.ok()) return drawFailures(ui, report.result);
+    if (report.result.rounds() == 0) return;
+    if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::BeginChild("table", {width * kTableShare, 0});
+    drawTable(ui, report.result);
+    ImGui::EndChild();
+    ImGui::SameLine();
+    ImGui::BeginChild("histogram", {0, 0});
+    drawRatios(ui, report.result);
+    ImGui::EndChild();
+  }
+
+ private:
+  void drawControls(Ui& ui, Session& session, const BackgroundDuel::Report& report) {
+    if (session.duel.running()) {
+      if (ui.button("Cancel", "Ends it without a verdict")) session.duel.cancel();
+      ImGui::SameLine();
+      ImGui::AlignTextToFramePadding();
+      ui.faint(fmt::format("{}, {:.0f} of at most {:.0f} s",
+                           counted(report.result.rounds(), "round"), report.seconds,
+                           report.most_seconds));
+      return;
+    }
+    ImGui::BeginDisabled(session.playback.footage() == nullptr || session.lanes.list.size() < 2);
+    if (ui.button("Start", "Runs the algorithms in turns")) session.startDuel(most_seconds_);
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(60 * ui.scale);
+    ui.entry("seconds", most_seconds_, 1, 3600, "Ends it, whatever is known then");
+    ImGui::SameLine();
+    ui.faint("s at most");
+    if (report.state == TaskState::idle) return;
+    ImGui::SameLine();
+    ui.faint(fmt::format("{}: {} in {}", kTaskStates.nameOf(report.state),
+                         counted(report.result.rounds(), "round"), waitingTime(report.seconds)));
+  }
+
+  static void drawFailures(Ui& ui, const DuelResult& result) {
+    for (const DuelResult::Side& side : result.sides) {
+      if (side.status == Status::ok) continue;
+      ui.coloured(ui.theme.bad,
+                  fmt::format("{}: {}: {}", side.name, statusName(side.status), side.reason));
+    }
+  }
+
+  /// The ranking, or, until there is one, the algorithms in their own order.
+  void drawTable(Ui& ui, const DuelResult& result) {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
+                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
+    if (!ImGui::BeginTable("ranking", 6, kFlags)) return;
+    for (const char* name : {"", "algorithm", "median", "least", "ratio", "95 % interval"}) {
+      ImGui::TableSetupColumn(name);
+    }
+    ImGui::TableHeadersRow();
+    for (std::size_t row = 0; row < result.sides.size(); ++row) {
+      const DuelPlace* place = result.places.empty() ? nullptr : &result.places[row];
+      drawSide(ui, result, place == nullptr ? row : place->side, place);
+    }
+    ImGui::EndTable();
+  }
+
+  void drawSide(Ui& ui, const DuelResult& result, std::size_t side, const DuelPlace* place) {
+    const std::vector<double>& seconds = result.sides[side].seconds;
+    const double ratio =
+        place != nullptr ? place->ratio.value : quantile(result.ratios(side, 0), 0.5);
+    const auto cell = [&](const std::string& text) {
+      ImGui::TableNextColumn();
+      ui.plain(text);
+    };
+    ImGui::TableNextRow();
+    cell(place == nullptr ? "" : fmt::format("{}.", place->place));
+    ImGui::TableNextColumn();
+    ImGui::PushID(static_cast<int>(side));
+    if (ImGui::Selectable(result.sides[side].name.c_str(), side == shown_,
+                          ImGuiSelectableFlags_SpanAllColumns)) {
+      shown_ = side;
+    }
+    ui.note(result.sides[side].name);
+    ui.tooltip("Shows its ratios to the first one in the histogram");
+    ImGui::PopID();
+    cell(durationText(quantile(seconds, 0.5)));
+    cell(durationText(quantile(seconds, 0)));
+    cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
+    cell(side == 0 || place == nullptr
+             ? ""
+             : fmt::format("{:.3f}…{:.3f}", place->ratio.ci95.low, place->ratio.ci95.high));
+  }
+
+  /// Of how many rounds had which ratio; a line where both are as fast.
+  void drawRatios(Ui& ui, const DuelResult& result) const {
+    const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
+    ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
+                         ImGui::GetContentRegionAvail().x));
+    const auto text = [](double ratio) { return fmt::format("{:.3f}", ratio); };
+    drawHistogram(ui, result.ratios(side, 0), text, 1);
+  }
+
+  double most_seconds_ = 60;
+  std::size_t shown_ = 1;  ///< whose ratios are in the histogram
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<DuelPanel>(); }
+
+}  // namespace broadmark::panels::duel

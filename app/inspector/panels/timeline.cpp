@@ -1,0 +1,251 @@
+// The whole recording over its frames: times of all algorithms as curves, live, with pairs, bodies
+// and marks at what to look at.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "broadmark/render/plot.h"
+#include "inspector/curve_colours.h"
+#include "inspector/histogram.h"
+#include "inspector/panel.h"
+#include "inspector/span_statistics.h"
+
+namespace broadmark::panels::timeline {
+namespace {
+
+Rgb rgbOf(ImGuiCol_ which) {
+  const ImU32 packed = ImGui::GetColorU32(which);
+  const auto channel = [&](int shift) { return (packed >> shift) & 0xFFU; };
+  return channel(IM_COL32_R_SHIFT) << 16 | channel(IM_COL32_G_SHIFT) << 8 |
+         channel(IM_COL32_B_SHIFT);
+}
+
+constexpr float kPlotShare = 0.56F;  // of the width, beside a span's statistics
+
+class TimelinePanel final : public Panel {
+ public:
+  TimelinePanel()
+      : Panel("Timeline", Place::bottom,
+              "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
+              "at wrong and disturbed frames") {}
+
+  void draw(PanelContext& context) override {
+    if (context.progress.lanes.empty()) {
+      context.ui.faintParagraph(
+          "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
+    }
+    if (!context.progress.footage) return;
+    drawControls(context);
+    ImVec2 room = ImGui::GetContentRegionAvail();
+    const bool beside = context.session.timeline.span() && !context.progress.lanes.empty();
+    if (beside) room.x *= kPlotShare;
+    act(context, drawCurves(context, room));
+    if (!beside) return;
+    ImGui::SameLine();
+    ImGui::BeginChild("span", {0, 0});
+    drawSpan(context);
+    ImGui::EndChild();
+  }
+
+ private:
+  void drawControls(PanelContext& context) {
+    Ui& ui = context.ui;
+    Timeline& timeline = context.session.timeline;
+    std::vector<std::string> names = {"pairs"};
+    for (const std::string& phase : kPhases.names()) names.push_back(phase);
+    ui.combo("##quantity", quantity_, names, "What of the algorithms is plotted", 150 * ui.scale);
+    besideIfRoom(110 * ui.scale);
+    ui.checkbox("logarithmic", logarithmic_);
+    besideIfRoom(65 * ui.scale);
+    ui.checkbox("pairs", shows_pairs_,
+                "How many pairs overlap, as a thin line whose scale stands at the right");
+    if (context.progress.population.size() > 0) {
+      besideIfRoom(75 * ui.scale);
+      ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
+    }
+    besideIfRoom(90 * ui.scale);
+    ImGui::BeginDisabled(!timeline.zoomed());
+    if (ui.button("All frames", "Undoes zooming with the wheel")) timeline.showAll();
+    ImGui::EndDisabled();
+    besideIfRoom(240 * ui.scale);
+    drawBudget(context);
+  }
+
+  /// Puts what is `width` wide beside the last item, or, without room for it, into the next line.
+  static void besideIfRoom(float width) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) {
+      ImGui::SameLine();
+    }
+  }
+
+  static void drawBudget(PanelContext& context) {
+    Ui& ui = context.ui;
+    ImGui::AlignTextToFramePadding();
+    ui.faint("budget");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(60 * ui.scale);
+    ui.entry("budget", context.session.budget_ms, 0, 1e5,
+             "What a frame may take, in milliseconds: a line in the plot; 0: none");
+    ImGui::SameLine();
+    std::uint64_t over = 0;
+    for (const LaneReport& lane : context.progress.lanes) {
+      if (context.session.budget_ms > 0) over += framesOver(lane, context.session.budget_ms);
+    }
+    ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
+    ui.note("over");
+  }
+
+  /// What the algorithms took in the selected span.
+  void drawSpan(PanelContext& context) {
+    Ui& ui = context.ui;
+    Timeline& timeline = context.session.timeline;
+    if (!timeline.span()) return;  // it was cleared in this picture
+    const auto [first, last] = *timeline.span();
+    ui.plain(fmt::format("frames {} to {}", first, last));
+    ImGui::SameLine();
+    if (ui.button("Show", "Zooms to the span")) timeline.showSpan();
+    ImGui::SameLine();
+    if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
+    summarise(context, {first, last});
+    drawStatistics(ui, context.progress.lanes);
+    const auto shown = std::ranges::find(context.progress.lanes, context.session.lanes.shown(),
+                                         [](const LaneReport& lane) { return lane.spec.number; });
+    const std::size_t which =
+        shown == context.progress.lanes.end()
+            ? 0
+            : static_cast<std::size_t>(shown - context.progress.lanes.begin());
+    drawHistogram(ui, statistics_.at(which).values,
+                  [this](double value) { return valueText(value); });
+  }
+
+  /// Sorting long spans takes a while: not for each picture.
+  void summarise(const PanelContext& context, FrameSpan span) {
+    const auto& lanes = context.progress.lanes;
+    const double now = ImGui::GetTime();
+    if (summarised_ == span && statistics_.size() == lanes.size() && now < summarise_next_) return;
+    summarised_ = span;
+    summarise_next_ = now + 0.25;
+    statistics_.clear();
+    for (const LaneReport& lane : lanes) {
+      statistics_.push_back(statisticsOf(valuesOf(lane), lane.curves.disturbed, span));
+    }
+  }
+
+  void drawStatistics(Ui& ui, const std::vector<LaneReport>& lanes) const {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
+                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
+    const float height =
+        ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(lanes.size()) + 1.8F);
+    if (!ImGui::BeginTable("statistics", 8, kFlags, {0, height})) return;
+    ImGui::TableSetupScrollFreeze(1, 1);
+    for (const char* name :
+         {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}) {
+      ImGui::TableSetupColumn(name);
+    }
+    ImGui::TableHeadersRow();
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+      const SpanStatistics& of = statistics_[i];
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ui.coloured(curveColour(lanes[i].spec.number, ui.theme.dark), caseName(lanes[i].spec.run));
+      for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
+        ImGui::TableNextColumn();
+        ui.plain(of.values.empty() ? "–" : valueText(of.quantile(share)));
+      }
+      ImGui::TableNextColumn();
+      ui.plain(of.values.empty() ? "–" : valueText(of.total));
+      ImGui::TableNextColumn();
+      ui.plain(std::to_string(of.values.size()));
+      if (of.disturbed > 0) {
+        ui.tooltip(fmt::format("and {} left out as disturbed", of.disturbed).c_str());
+      }
+    }
+    ImGui::EndTable();
+  }
+
+  [[nodiscard]] std::string valueText(double value) const {
+    return withPrefix(value, quantity_ == 0 ? "" : "s");
+  }
+
+  /// What is plotted.
+  [[nodiscard]] const FrameValues& valuesOf(const LaneReport& lane) const {
+    return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
+  }
+
+  PlotResult drawCurves(PanelContext& context, ImVec2 room) const {
+    const RunProgress& progress = context.progress;
+    const Theme& theme = context.ui.theme;
+    const Timeline& timeline = context.session.timeline;
+    std::vector<PlotCurve> curves;
+    PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
+    PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
+    for (const LaneReport& lane : progress.lanes) {
+      curves.push_back({.label = caseName(lane.spec.run),
+                        .colour = curveColour(lane.spec.number, theme.dark),
+                        .values = &valuesOf(lane),
+                        .circled = &lane.curves.disturbed,
+                        .hidden = hidden_.contains(lane.spec.number)});
+      wrong.frames.push_back(&lane.curves.mismatches);
+      disturbed.frames.push_back(&lane.curves.disturbed);
+    }
+    const PlotCurve pairs{
+        .label = "pairs", .colour = rgbOf(ImGuiCol_Text), .values = &progress.pairs};
+    const PlotCurve bodies{
+        .label = "bodies", .colour = theme.faint, .values = &progress.population};
+    std::optional<std::array<double, 2>> span;
+    if (timeline.span())
+      span = {{static_cast<double>(timeline.span()->first),
+               static_cast<double>(timeline.span()->last)}};
+    const PlotOptions options{
+        .logarithmic = logarithmic_,
+        .unit = quantity_ == 0 ? "" : "s",
+        .first = timeline.first(),
+        .last = timeline.last(),
+        .playhead = context.session.playback.frame(),
+        .limit = quantity_ == 0 ? 0 : context.session.budget_ms * 1e-3,
+        .limit_colour = theme.warning,
+        .span = span,
+        .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
+        .thin = shows_pairs_ ? &pairs : nullptr,
+        .marks = {wrong, disturbed}};
+    const PlotResult done = drawPlot("plot", curves, options, room.x, room.y);
+    context.ui.note("plot");
+    return done;
+  }
+
+  void act(PanelContext& context, const PlotResult& done) {
+    Timeline& timeline = context.session.timeline;
+    if (done.clicked_frame) context.session.playback.goTo(std::llround(*done.clicked_frame));
+    if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
+    if (done.toggled) toggle(context.progress.lanes[*done.toggled].spec.number);
+    if (done.zoom != 0) timeline.zoom(done.zoom, done.zoom_at);
+    if (done.moved != 0) timeline.move(done.moved);
+  }
+
+  void toggle(int lane) {
+    if (hidden_.erase(lane) == 0) hidden_.insert(lane);
+  }
+
+  std::size_t quantity_ = kPhases.entries.size();  ///< 0: pairs; then the phases; the last: total
+  bool logarithmic_ = true;
+  bool shows_pairs_ = true;
+  bool shows_bodies_ = true;
+  std::set<int> hidden_;
+  std::vector<SpanStatistics> statistics_;  ///< of the lanes
+  FrameSpan summarised_;                    ///< of which span
+  double summarise_next_ = 0;               ///< seconds of the user interface
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<TimelinePanel>(); }
+
+}  // namespace broadmark::panels::timeline
