@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <memory>
 #include <cmath>
+#include <memory>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"

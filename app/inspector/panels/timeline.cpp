@@ -16,6 +16,7 @@
 #include "inspector/histogram.h"
 #include "inspector/panel.h"
 #include "inspector/span_statistics.h"
+#include "words.h"
 
 namespace broadmark::panels::timeline {
 namespace {
