@@ -24,11 +24,8 @@ class BackgroundBake {
     std::string failure = {};
   };
   /// A failure of the task is what kept the batch as a whole from being baked.
-  struct Report : TaskReport {
+  struct Report : WorkReport {
     std::vector<Item> items;  ///< known once it is planned
-    float fraction = 0;       ///< of the work
-    double seconds_left = 0;  ///< 0: not known
-    std::string doing;        ///< at present, in words
 
     [[nodiscard]] std::size_t count(Outcome outcome) const;
     [[nodiscard]] std::size_t failed() const { return count(Outcome::failed); }

@@ -27,13 +27,10 @@ class BackgroundBenchmark {
     bool kept = false;          ///< it is in the results file
   };
   /// A failure of the task is what kept the plan as a whole from being run.
-  struct Report : TaskReport {
+  struct Report : WorkReport {
     std::vector<Item> items;     ///< in the order in which they ended
     std::size_t cases = 0;       ///< in all
     std::filesystem::path file;  ///< the results
-    float fraction = 0;          ///< of the work
-    double seconds_left = 0;     ///< 0: not known
-    std::string doing;           ///< at present, in words
 
     [[nodiscard]] std::size_t failed() const;
     /// What it has come to, in words.

@@ -27,6 +27,13 @@ struct TaskReport {
   std::string failure = {};  ///< of a failed one
 };
 
+/// Of work that knows how far it is.
+struct WorkReport : TaskReport {
+  float fraction = 0;       ///< of the work
+  double seconds_left = 0;  ///< 0: not known
+  std::string doing = {};   ///< at present, in words
+};
+
 /// One piece of work at a time. `Report` is derived from TaskReport.
 template <class Report>
 class BackgroundTask {

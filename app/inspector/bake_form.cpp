@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "broadmark/error.h"
+#include "inspector/batch_parts.h"
 #include "inspector/text_lists.h"
 #include "words.h"
 
@@ -67,7 +68,7 @@ void BakeForm::draw(PanelContext& context) {
   const BackgroundBake::Report report = session.bake.report();
   const bool running = session.bake.running();
   if (running) {
-    drawProgress(ui, session, report);
+    if (drawProgress(ui, report, "Keeps what is finished")) session.bake.cancel();
   } else {
     if (ui.button("Start", "Bakes in the background; what is there already is kept",
                   ImGui::GetContentRegionAvail().x)) {
@@ -103,17 +104,7 @@ void BakeForm::drawOptions(PanelContext& context) {
   if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
     options_.threads = static_cast<int>(threads);
   }
-  stale_ |= ui.text("output", directory_, "directory");
-  if (ui.button("Browse…", "Chooses the directory", ImGui::GetContentRegionAvail().x)) {
-    context.files.ask({.title = "Directory for recordings",
-                       .purpose = FileDialog::Purpose::directory,
-                       .extensions = {},
-                       .suggestion = directory_,
-                       .chosen = [this](const fs::path& path) {
-                         directory_ = path.string();
-                         stale_ = true;
-                       }});
-  }
+  drawFolder(context, "output", "Directory for recordings", directory_, stale_);
 }
 
 void BakeForm::update() {
@@ -140,17 +131,6 @@ void BakeForm::update() {
   } catch (const InputError& error) {
     preview_.fault = error.what();
   }
-}
-
-void BakeForm::drawProgress(Ui& ui, Session& session, const BackgroundBake::Report& report) {
-  ImGui::ProgressBar(report.fraction, {-70 * ui.scale, 0});
-  ImGui::SameLine();
-  if (ui.button("Cancel", "Keeps what is finished", ImGui::GetContentRegionAvail().x)) {
-    session.bake.cancel();
-  }
-  const std::string left =
-      report.seconds_left > 0 ? fmt::format("about {} left", waitingTime(report.seconds_left)) : "";
-  ui.faintParagraph(left.empty() ? report.doing : fmt::format("{}; {}", left, report.doing));
 }
 
 void BakeForm::drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report) {

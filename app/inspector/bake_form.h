@@ -28,7 +28,6 @@ class BakeForm {
   void drawOptions(PanelContext& context);
   /// Takes over the inputs and makes the preview.
   void update();
-  static void drawProgress(Ui& ui, Session& session, const BackgroundBake::Report& report);
   static void drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report);
   void drawPreview(Ui& ui) const;
 

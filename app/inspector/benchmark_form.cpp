@@ -7,6 +7,7 @@
 
 #include "broadmark/error.h"
 #include "cases.h"
+#include "inspector/batch_parts.h"
 #include "inspector/text_lists.h"
 #include "words.h"
 
@@ -44,7 +45,7 @@ void BenchmarkForm::draw(PanelContext& context) {
   const BackgroundBenchmark::Report report = session.benchmark.report();
   const bool running = session.benchmark.running();
   if (running) {
-    drawProgress(ui, session, report);
+    if (drawProgress(ui, report, "Keeps the cases that are finished")) session.benchmark.cancel();
   } else if (ui.button("Start", "Runs in the background; best while nothing is played",
                        ImGui::GetContentRegionAvail().x)) {
     session.notices.attempt(
@@ -60,33 +61,10 @@ void BenchmarkForm::draw(PanelContext& context) {
   }
 }
 
-void BenchmarkForm::drawProgress(Ui& ui, Session& session,
-                                 const BackgroundBenchmark::Report& report) {
-  ImGui::ProgressBar(report.fraction, {-70 * ui.scale, 0});
-  ImGui::SameLine();
-  if (ui.button("Cancel", "Keeps the cases that are finished", ImGui::GetContentRegionAvail().x)) {
-    session.benchmark.cancel();
-  }
-  const std::string left = report.seconds_left > 0
-                               ? fmt::format("about {} left; ", waitingTime(report.seconds_left))
-                               : "";
-  ui.faintParagraph(left + report.doing);
-}
-
 void BenchmarkForm::drawOptions(PanelContext& context) {
   Ui& ui = context.ui;
   ui.heading("Recordings");
-  stale_ |= ui.text("folder", directory_, "directory");
-  if (ui.button("Browse…", "Chooses the folder", ImGui::GetContentRegionAvail().x)) {
-    context.files.ask({.title = "Folder of recordings",
-                       .purpose = FileDialog::Purpose::directory,
-                       .extensions = {},
-                       .suggestion = directory_,
-                       .chosen = [this](const fs::path& path) {
-                         directory_ = path.string();
-                         stale_ = true;
-                       }});
-  }
+  drawFolder(context, "folder", "Folder of recordings", directory_, stale_);
   if (stale_ || ImGui::IsWindowAppearing()) findRecordings();
   drawRecordings(ui);
   ui.heading("How they are run");

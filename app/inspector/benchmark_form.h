@@ -16,7 +16,6 @@ class BenchmarkForm {
   void draw(PanelContext& context);
 
  private:
-  static void drawProgress(Ui& ui, Session& session, const BackgroundBenchmark::Report& report);
   void drawOptions(PanelContext& context);
   void drawRecordings(Ui& ui);
   static void drawItems(Ui& ui, Session& session, const BackgroundBenchmark::Report& report);
