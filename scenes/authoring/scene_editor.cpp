@@ -148,6 +148,28 @@ void SceneEditor::scale(float factor) {
   transform("scale", {.centre = selectionCentre(), .scale = {factor, factor, factor}});
 }
 
+void SceneEditor::align(std::size_t axis, Alignment alignment) {
+  const auto place = [&](const Aabb& box) {
+    switch (alignment) {
+      case Alignment::low:
+        return box.min[axis];
+      case Alignment::high:
+        return box.max[axis];
+      case Alignment::middle:
+        break;
+    }
+    return (box.min[axis] + box.max[axis]) / 2;
+  };
+  const auto box_of = [](const AuthoredBody& body) { return tightBox(body.shape, body.pose); };
+  Aabb all = kEmptyBox;
+  for (const std::uint32_t id : *selection_) all = merged(all, box_of(scene_.bodies[id]));
+  changeBodies("align", &AuthoredBody::pose, [&](const AuthoredBody& body) {
+    Pose pose = body.pose;
+    pose.position[axis] += place(all) - place(box_of(body));
+    return pose;
+  });
+}
+
 void SceneEditor::setSize(const Vec3& edges) {
   changeBodies("resize", &AuthoredBody::shape, [&](const AuthoredBody& body) -> Shape {
     if (std::holds_alternative<SphereShape>(body.shape)) return SphereShape{edges[0] / 2};

@@ -98,6 +98,23 @@ TEST(SceneEditor, ScalesAndTurnsAboutTheCommonCentre) {
   EXPECT_NEAR(editor.scene().bodies[2].pose.position[2], -2, 1e-5);
 }
 
+TEST(SceneEditor, AlignsByTightBoxes) {
+  using Alignment = SceneEditor::Alignment;
+  SceneEditor editor;
+  std::vector<AuthoredBody> bodies = row(2);  // cubes of edge 1…
+  bodies[1].shape = SphereShape{1};           // …and a sphere of diameter 2
+  bodies[1].pose.position = {5, 3, 0};
+  editor.add(bodies);
+  editor.align(0, Alignment::low);
+  EXPECT_THAT(places(editor), ElementsAre(0, 0.5));
+  editor.align(0, Alignment::high);
+  EXPECT_THAT(places(editor), ElementsAre(1, 0.5));
+  editor.align(0, Alignment::middle);
+  EXPECT_THAT(places(editor), ElementsAre(0.5, 0.5));
+  EXPECT_EQ(editor.scene().bodies[1].pose.position[1], 3) << "along one axis only";
+  EXPECT_EQ(editor.undoName(), "align 2 bodies");
+}
+
 TEST(SceneEditor, DuplicatesAreSelected) {
   SceneEditor editor;
   editor.add(row(2));

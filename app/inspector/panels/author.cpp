@@ -242,6 +242,27 @@ class AuthorPanel final : public Panel {
     if (row.button("Paint here", "The brush paints at the centre of the selection")) {
       session.document.desk.paint_at = session.document.desk.editor.selectionCentre();
     }
+    drawAlignments(ui);
+  }
+
+  /// A row for each axis.
+  void drawAlignments(Ui& ui) {
+    using Alignment = SceneEditor::Alignment;
+    constexpr std::pair<Alignment, const char*> kAlignments[] = {
+        {Alignment::low, "low"}, {Alignment::middle, "middle"}, {Alignment::high, "high"}};
+    if (selection_.size() < 2) return;
+    const auto scope = ui.scope("align");
+    ButtonRow row(ui, 3);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const auto& [alignment, name] : kAlignments) {
+        const std::string label = fmt::format("{} {}", "xyz"[axis], name);
+        if (row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes")) {
+          edit([axis, alignment = alignment](SceneEditor& editor) {
+            editor.align(axis, alignment);
+          });
+        }
+      }
+    }
   }
 
   void drawProperties(Ui& ui) {

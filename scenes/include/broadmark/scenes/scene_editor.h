@@ -69,6 +69,10 @@ class SceneEditor {
   void turn(const Quaternion& by);
   /// Scales places and sizes about the common centre.
   void scale(float factor);
+  /// Moves each selected body along an axis (0, 1, 2) until its tight box begins, ends or has its
+  /// middle where that of all of them together does.
+  enum class Alignment { low, middle, high };
+  void align(std::size_t axis, Alignment alignment);
   /// Sets the edges of boxes, and the diameter of spheres to the first of the three.
   void setSize(const Vec3& edges);
   /// Spheres become cubes whose edge is the diameter; boxes become spheres whose diameter is the
