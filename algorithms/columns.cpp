@@ -153,6 +153,9 @@ inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t
                         Visit visit) {
   constexpr int kBits = Layout::kStepBits;
   constexpr std::uint32_t kLast = Layout::kLastStep;
+  // Marks are by axis: columns within a column may be cut on other axes than it.
+  const MarkedBody mark_a = axisMark(layout.scales().of[0].axis);
+  const MarkedBody mark_b = axisMark(layout.scales().of[1].axis);
   std::array<std::uint32_t, BoxBlock::kBoxes> crossing;
   std::size_t crossings = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -178,7 +181,7 @@ inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t
         const std::uint32_t first_a = later_a ? 0 : low_a & kLast;
         const std::uint32_t last_a = a != high_a >> kBits ? kLast : high_a & kLast;
         copy.key = keyOf(first_a, first_b, last_a, last_b);
-        copy.body = body | cellMarks(later_a, later_b, false);
+        copy.body = body | (later_a ? mark_a : 0) | (later_b ? mark_b : 0);
         visit(layout.indexOf(a, b), copy);
       }
     }

@@ -18,7 +18,9 @@ inline constexpr int kMarkShift = 29;
 inline constexpr MarkedBody kMaxMarkedBodies = MarkedBody{1} << kMarkShift;
 inline constexpr MarkedBody kNumberMask = kMaxMarkedBodies - 1;
 
-/// The marks of a cell, already in their place.
+/// The mark for an axis, already in its place.
+constexpr MarkedBody axisMark(int axis) { return MarkedBody{1} << (kMarkShift + axis); }
+/// The marks of a cell.
 constexpr MarkedBody cellMarks(bool x, bool y, bool z) {
   return (MarkedBody{x} | MarkedBody{y} << 1 | MarkedBody{z} << 2) << kMarkShift;
 }

@@ -239,6 +239,34 @@ inline std::vector<Aabb> onePlane(std::size_t n, std::uint32_t frame, std::uint6
   });
 }
 
+/// Clusters of rods and plates, each with a shape and an extent of its own on each axis, among unit
+/// cubes: what is cut on some axes is cut again on others.
+inline std::vector<Aabb> rodsAndPlates(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
+  constexpr std::array kExtents = {0.5F, 2.0F, 8.0F, 20.0F};
+  constexpr std::array kEdges = {0.05F, 0.2F, 1.0F, 5.0F};
+  constexpr std::size_t kCluster = 97;  // bodies
+  const float side = cubeRoot(10.0 * static_cast<double>(n));
+  const auto any = [](Random& random, const auto& of) {
+    return of[static_cast<std::size_t>(random.integer(0, 3))];
+  };
+  Vec3 corner{};
+  Vec3 extent{};
+  Vec3 edges{};
+  return generate(n, frame, seed, [&](Random& random, std::size_t i) {
+    if (i % 4 == 0) return boxAt(random.inCube(side), {1, 1, 1});
+    if (i % kCluster == 1) {
+      corner = random.inCube(side);
+      for (int axis = 0; axis < 3; ++axis) {
+        extent[axis] = any(random, kExtents);
+        edges[axis] = any(random, kEdges);
+      }
+    }
+    Vec3 place = random.inCube(1);
+    for (int axis = 0; axis < 3; ++axis) place[axis] = corner[axis] + place[axis] * extent[axis];
+    return boxAt(place, edges);
+  });
+}
+
 /// Bounds at the ends of the range of floats, beyond what any recording holds: sums and differences
 /// of bounds overflow. For algorithms that only ever compare.
 inline std::vector<Aabb> limits(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
@@ -266,7 +294,7 @@ inline constexpr std::array kAll = {
     Input{"clustered", clustered}, Input{"still", still},
     Input{"drifting", drifting},   Input{"teleporting", teleporting},
     Input{"growing", growing},     Input{"two clusters", twoClusters},
-    Input{"one plane", onePlane},
+    Input{"one plane", onePlane},  Input{"rods and plates", rodsAndPlates},
 };
 
 }  // namespace broadmark::inputs

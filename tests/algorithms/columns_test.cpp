@@ -294,6 +294,11 @@ TEST_P(ColumnsFamily, CopeWithBoxesOfAllSizesAndPlaces) {
     check(boxes(700, 0, 1));
     if (HasFatalFailure()) return;
   }
+  // Columns within a column are cut on other axes than it.
+  for (std::uint32_t frame = 0; frame < 6; ++frame) {
+    check(inputs::rodsAndPlates(1500, frame, 1));
+    if (HasFatalFailure()) return;
+  }
   check({});
   check({inputs::boxAt({0, 0, 0}, {1, 1, 1})});
 }
