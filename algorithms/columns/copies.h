@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "large_array.h"
 #include "marked_body.h"
@@ -41,8 +40,8 @@ struct alignas(16) Copy {
   MarkedBody body;
 };
 
-/// All copies, column by column, within each in the order of their lower bounds, roughly. Behind
-/// the last one there is padding for whole vectors and groups of rows.
+/// The copies of a column in the order of their lower bounds, roughly. Behind the last one there is
+/// padding for whole vectors and groups of rows.
 struct Sorted {
   static constexpr std::size_t kPadding = 64;
 
@@ -50,16 +49,16 @@ struct Sorted {
   LargeArray<std::uint32_t> keys;  ///< of the copies, for the sweep
   LargeArray<std::uint32_t> ends;  ///< copy i is to be tested against those in (i, ends[i])
   std::size_t size = 0;
+  std::uint64_t tests = 0;  ///< the lengths of all [i, ends[i])
 
-  /// The copies keep their values; new ones have none yet.
+  /// The copies have no values yet.
   void resize(std::size_t count) {
     size = count;
+    copies.resize(count);
     const auto resize_padded = [&](auto& array) {
       array.resize(count + kPadding);
-      std::fill_n(array.data() + count, kPadding,
-                  typename std::remove_cvref_t<decltype(array[0])>());
+      std::fill_n(array.data() + count, kPadding, 0);
     };
-    resize_padded(copies);
     resize_padded(keys);
     resize_padded(ends);
   }

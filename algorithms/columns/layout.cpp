@@ -90,6 +90,7 @@ Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& cos
       const double cost = copies * (costs.copy + window);
       if (cost < cost_) {
         cost_ = cost;
+        met_ = met;
         axes = {sweep, first, second};
         counts_ = {static_cast<std::int32_t>(firsts), static_cast<std::int32_t>(seconds)};
       }

@@ -59,6 +59,9 @@ class Layout {
   /// What finding the pairs of a box is expected to cost, copying included.
   [[nodiscard]] double costPerBox() const { return cost_; }
 
+  /// What part of the copies in a column a box meets on the sweep axis, behind its lower bound.
+  [[nodiscard]] double metPart() const { return met_; }
+
   /// The column at a place on the first axis that is cut, and one on the second.
   [[nodiscard]] std::size_t indexOf(std::uint32_t first, std::uint32_t second) const {
     return std::size_t{second} * scales_.columns_in_row + first;
@@ -73,6 +76,7 @@ class Layout {
   StepScales scales_;
   std::array<std::int32_t, 2> counts_ = {1, 1};  ///< on the first axis that is cut, and the second
   double cost_ = 0;
+  double met_ = 0;
 };
 
 }  // namespace broadmark::columns
