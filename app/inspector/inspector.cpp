@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "inspector/author_dialogs.h"
-#include "inspector/case_chooser.h"
 #include "inspector/closing.h"
 
 namespace broadmark {
@@ -212,7 +211,6 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
   drawEnding(ui_, session_);
-  drawCaseChooser(ui_, session_);
   drawHelp();
   drawErrors();
   ImGui::PopStyleVar();

@@ -12,6 +12,7 @@
 #include "export_case.h"
 #include "recordings.h"
 #include "sources/make_source.h"
+#include "sources/results.h"
 
 namespace broadmark {
 namespace {
@@ -194,7 +195,7 @@ void Session::open(const fs::path& path) {
   notices.attempt([&] {
     OpenedSource opened = openSource(path.string(), {.algorithms = lanes.algorithms()});
     if (opened.results) {
-      offerCases(path, *opened.results);
+      listCases(path, std::move(*opened.results));
     } else {
       openEntry(std::move(opened.entries.at(0)), Opened::at_rest);
     }
@@ -210,11 +211,21 @@ void Session::openCase(const fs::path& results, const std::string& id) {
   });
 }
 
+void Session::openCase(OpenedResults::Row& row) {
+  try {
+    openEntry(entryOf(row.result, results->file(), lanes.algorithms()), Opened::in_motion);
+    row.obstacle.clear();
+  } catch (const InputError& error) {
+    row.obstacle = error.what();
+    notices.say(row.obstacle, Message::Kind::error);
+  }
+}
+
 void Session::open(Plan plan) {
   for (const Case& run : plan.cases) lanes.add(run);
-  if (const auto& choice = plan.unchosen_case) {
-    offerCases(choice->file, choice->results);
-    tellOfFile(choice->file);
+  if (auto& unchosen = plan.unchosen_case) {
+    listCases(unchosen->file, std::move(unchosen->results));
+    tellOfFile(unchosen->file);
   }
   if (!plan.entries.empty()) openEntry(std::move(plan.entries.front()), Opened::in_motion);
 }
@@ -300,16 +311,9 @@ FootageRequest Session::importFootage(const RecordingReference& reference) const
           .title = fs::path(reference.path).filename().string()};
 }
 
-void Session::offerCases(const fs::path& file, const Results& results) {
-  CaseChoice choice{.file = file};
-  for (const CaseResult& result : results.cases) {
-    choice.cases.push_back({.id = result.id,
-                            .status = result.status,
-                            .reason = result.reason,
-                            .wrong = !result.differences.empty()});
-  }
-  choice.all = std::ranges::none_of(choice.cases, &CaseChoice::Item::wrong);
-  case_choice = std::move(choice);
+void Session::listCases(const fs::path& file, Results listed) {
+  results.emplace(file, std::move(listed), lanes.algorithms());
+  notices.bringUp("Cases");
 }
 
 void Session::play(bool on) {

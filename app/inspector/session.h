@@ -21,6 +21,7 @@
 #include "inspector/lanes.h"
 #include "inspector/mismatches.h"
 #include "inspector/notices.h"
+#include "inspector/opened_results.h"
 #include "inspector/playback.h"
 #include "inspector/run_thread.h"
 #include "inspector/timeline.h"
@@ -44,19 +45,6 @@ struct ViewOptions {
   int structure_level = -1;    ///< only this depth; -1: all
 
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
-};
-
-/// A results file that has been opened, one of whose cases is to be chosen.
-struct CaseChoice {
-  struct Item {
-    std::string id;
-    Status status = Status::ok;
-    std::string reason;
-    bool wrong = false;  ///< gave a wrong answer
-  };
-  std::filesystem::path file;
-  std::vector<Item> cases;  ///< as in the file
-  bool all = false;         ///< show also those that were right
 };
 
 class Session {
@@ -94,12 +82,14 @@ class Session {
   void chooseScene(const std::string& scene, const std::string& engine = {});
 
   /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
-  /// file one case is to be chosen; of a file that names a case, that becomes the only lane.
+  /// file all cases are listed; of a file that names a case, that becomes the only lane.
   void open(const std::filesystem::path& path);
   /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
   /// error.
   void openCase(const std::filesystem::path& results, const std::string& id);
-  /// Opens the first entry with its cases as lanes, or offers those of results; without either
+  /// Likewise a row of the opened results. Why it cannot be opened is kept there, and said.
+  void openCase(OpenedResults::Row& row);
+  /// Opens the first entry with its cases as lanes, or lists those of results; without either
   /// there are only lanes. Throws InputError.
   void open(Plan plan);
 
@@ -118,9 +108,9 @@ class Session {
 
   std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
   ViewOptions view;
-  double budget_ms = 16.7;                ///< that a frame may take; 0: any
-  std::optional<CaseChoice> case_choice;  ///< to be made by the user
-  std::function<void()> ending;           ///< waits for what goes on in the background
+  double budget_ms = 16.7;               ///< that a frame may take; 0: any
+  std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
+  std::function<void()> ending;          ///< waits for what goes on in the background
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;
 
@@ -156,7 +146,7 @@ class Session {
                                                 const std::string& hash) const;
   /// Throws InputError.
   [[nodiscard]] FootageRequest importFootage(const RecordingReference& reference) const;
-  void offerCases(const std::filesystem::path& file, const Results& results);
+  void listCases(const std::filesystem::path& file, Results results);
   void tellOfFile(const std::filesystem::path& path) const {
     if (on_file) on_file(path);
   }

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <span>
 
 #include "duel_report.h"
 #include "inspector/answer_text.h"
@@ -138,6 +141,16 @@ void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
   values["benchmark.failed"] = std::to_string(report.failed());
 }
 
+void addCases(Values& values, const std::optional<OpenedResults>& results) {
+  const auto rows = results ? std::span(results->rows()) : std::span<const OpenedResults::Row>();
+  values["cases"] = results ? std::to_string(rows.size()) : "";
+  values["cases.listed"] = results ? std::to_string(results->listed().size()) : "";
+  values["cases.marked"] = std::to_string(std::ranges::count_if(rows, &OpenedResults::Row::marked));
+  values["cases.wrong"] = results ? std::to_string(results->wrong()) : "";
+  const bool any = results && !results->listed().empty();
+  values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
+}
+
 void addDuel(Values& values, const BackgroundDuel& duel) {
   const BackgroundDuel::Report report = duel.report();
   values["duel.state"] = kTaskStates.nameOf(report.state);
@@ -226,7 +239,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
   values["searching"] = yes(session.mismatches.searching());
-  values["cases"] = session.case_choice ? std::to_string(session.case_choice->cases.size()) : "";
+  addCases(values, session.results);
   return values;
 }
 
