@@ -23,6 +23,7 @@ bool sameWish(const Wish& a, const Wish& b) {
   return a.footage == b.footage && a.frame == b.frame && a.check == b.check &&
          a.stop_at_mismatch == b.stop_at_mismatch && a.known_mismatch == b.known_mismatch &&
          a.shown_lane == b.shown_lane && a.structure == b.structure && a.tracked == b.tracked &&
+         a.second == b.second &&
          std::ranges::equal(a.lanes, b.lanes,
                             [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
 }
@@ -52,6 +53,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   playback.on_show = [this] {
     selection.follow({});
     mismatches.reset();
+    if (second) second->frame.reset();
     noticed_failure_.clear();
     notices.status = {};  // it told of what was open before
   };
@@ -99,7 +101,8 @@ Wish Session::wish() const {
             .known_mismatch = mismatches.known(),
             .shown_lane = lanes.shown(),
             .structure = view.structure,
-            .tracked = selection.bodies()};
+            .tracked = selection.bodies(),
+            .second = second};
   if (wish.tracked.size() > kMostTracked) wish.tracked.clear();
   return wish;
 }
@@ -362,6 +365,27 @@ void Session::startDuel(double most_seconds) {
     });
     if (!frames) throw InputError("duel: nothing is open");
     duel.start(cases, std::move(frames), most_seconds, make_host_);
+  });
+}
+
+void Session::showSecond(bool on) {
+  second.reset();
+  if (!on) return;
+  second.emplace();
+  const auto other = std::ranges::find_if(
+      lanes.list, [this](const LaneEdit& lane) { return lane.number != lanes.shown(); });
+  if (other != lanes.list.end()) second->lane = other->number;
+  // Without another algorithm's answer it is the same one's, and stays where it is.
+  if (other == lanes.list.end() && lanes.shown() == 0) second->frame = playback.frame();
+}
+
+void Session::showBeside(const fs::path& recording) {
+  notices.attempt([&] {
+    FootageRequest footage = recordingFootage(recording, {});
+    if (!second) showSecond(true);
+    second->footage = std::make_shared<const FootageRequest>(std::move(footage));
+    second->frame.reset();
+    second->lane = lanes.shown();
   });
 }
 

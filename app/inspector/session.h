@@ -103,11 +103,17 @@ class Session {
                   std::filesystem::path file);
   /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
   void startDuel(double most_seconds);
+  /// Shows a second view, of another algorithm's answer if there is one, or none.
+  void showSecond(bool on);
+  /// Shows this recording in the second view. A bad one becomes an error.
+  void showBeside(const std::filesystem::path& recording);
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
   std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
   ViewOptions view;
+  std::optional<SecondWish> second;      ///< what the second view shows, if there is one
+  bool linked = true;                    ///< one camera moves both views
   double budget_ms = 16.7;               ///< that a frame may take; 0: any
   std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
   std::function<void()> ending;          ///< waits for what goes on in the background

@@ -67,6 +67,15 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
                             : "0";
 }
 
+void addSecond(Values& values, const Session& session, const RunProgress& progress) {
+  const Snapshot* second = progress.second.get();
+  values["second"] = yes(session.second.has_value());
+  values["second.frame"] = second ? std::to_string(second->frame) : "";
+  values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
+  values["second.bodies"] = second ? std::to_string(second->present) : "";
+  values["second.failure"] = progress.second_failure;
+}
+
 /// "overlapping 12, free 28"
 std::string legendText(const std::vector<LegendEntry>& legend) {
   std::string text;
@@ -235,6 +244,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addLanes(values, session, progress);
   addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
+  addSecond(values, session, progress);
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
@@ -260,6 +270,13 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["view.oracle"] = view_.answer().beside;
   values["view.hands"] = view_.hands().text();
   values["view.pair"] = view_.answer().pair;
+  values["view.where"] = view_.answer().where;
+  values["second.where"] = second_view_.answer().where;
+  values["second.answer"] = second_view_.answer().answer;
+  values["second.oracle"] = second_view_.answer().beside;
+  values["second.pair"] = second_view_.answer().pair;
+  values["second.yaw"] = fmt::format("{:.4f}", second_view_.camera().yaw);
+  values["second.distance"] = fmt::format("{:.4f}", second_view_.camera().distance);
   values["hidden"] = std::to_string(view_.hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);

@@ -40,9 +40,13 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   };
   std::vector<Line> lines;
   const auto add = [&](ImFont* font, const std::string& text, ImU32 rgb) {
-    if (!text.empty()) lines.push_back({font, fittingText(text, room, font), rgb});
+    if (text.empty()) return;
+    const bool fits = font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text.c_str()).x <= room;
+    if (!fits) font = ImGui::GetFont();
+    lines.push_back({font, fittingText(text, room, font), rgb});
   };
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
+  add(ui.large, answer.where, plain);
   add(ui.large, answer.answer, plain);
   add(ui.large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
   add(ImGui::GetFont(), answer.pair, plain);
