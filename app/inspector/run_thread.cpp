@@ -382,11 +382,17 @@ void RunThread::show() {
   }
   if (index > 0) notePopulation(index - 1, *snapshot->boxes_before);
   notePopulation(index, *snapshot->boxes);
+  std::shared_ptr<const PairComparison> comparison;
+  if (second) {
+    comparison =
+        std::make_shared<const PairComparison>(comparePairs(snapshot->pairs, second->pairs));
+  }
   shown_ = true;
   const std::lock_guard lock(mutex_);
   if (lane == nullptr) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = snapshot;
   progress_.second = std::move(second);
+  progress_.comparison = std::move(comparison);
   progress_.second_failure = current_.second ? second_.failure() : "";
 }
 

@@ -22,6 +22,7 @@
 #include "inspector/draw_gate.h"
 #include "inspector/footage.h"
 #include "inspector/lane.h"
+#include "inspector/pair_comparison.h"
 #include "inspector/second_run.h"
 #include "inspector/snapshot.h"
 
@@ -60,6 +61,8 @@ struct RunProgress {
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
   std::shared_ptr<const Snapshot> second;    ///< of the second view; null: there is none
   std::string second_failure;                ///< why there is none
+  /// Of the answers in both views; null: there are not two.
+  std::shared_ptr<const PairComparison> comparison;
   /// The frame at which all stay, as the lane of this number is wrong there.
   struct Stop {
     std::uint32_t frame = 0;

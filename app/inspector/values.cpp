@@ -73,6 +73,13 @@ void addSecond(Values& values, const Session& session, const RunProgress& progre
   values["second.frame"] = second ? std::to_string(second->frame) : "";
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
+  const PairComparison* comparison = progress.comparison.get();
+  const auto count = [&](const std::vector<Pair> PairComparison::*pairs) {
+    return comparison ? std::to_string((comparison->*pairs).size()) : "";
+  };
+  values["compare.both"] = comparison ? std::to_string(comparison->both) : "";
+  values["compare.first_only"] = count(&PairComparison::first_only);
+  values["compare.second_only"] = count(&PairComparison::second_only);
   values["second.failure"] = progress.second_failure;
 }
 

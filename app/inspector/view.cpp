@@ -95,13 +95,14 @@ void View::update(Session& session, const RunProgress& progress, bool dark) {
   // What has just been added is selected already, but not to be seen yet.
   std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
-  const bool same = snapshot == shown_.snapshot && selection == shown_.selection &&
-                    options == shown_.options && dark == shown_.dark;
+  const bool same = snapshot == shown_.snapshot && progress.comparison == shown_.comparison &&
+                    selection == shown_.selection && options == shown_.options &&
+                    dark == shown_.dark;
   if (same) return;
   const auto seen = std::exchange(footage_, snapshot->footage);
   const bool new_scene =
       !seen || (seen != footage_ && (seen->scene == 0 || seen->scene != footage_->scene));
-  shown_ = {snapshot, std::move(selection), options, dark};
+  shown_ = {snapshot, progress.comparison, std::move(selection), options, dark};
   if (new_scene) {
     const Aabb all = shownBox(snapshot->scene.world, *snapshot->boxes);
     content_.space = viewSpaceOf(all);
@@ -132,7 +133,13 @@ void View::updateBodies(const Session& session) {
                        .layers = snapshot.scene.filter.layers(),
                        .missed = snapshot.difference.missed_pairs,
                        .false_pairs = snapshot.difference.false_pairs,
+                       .comparison = nullptr,
                        .dark = shown_.dark};
+  ColouringInput::Comparison comparison;
+  if (shown_.comparison) {
+    comparison = {shown_.comparison->first_only, shown_.comparison->second_only};
+    input.comparison = &comparison;
+  }
   oracle_legend_.clear();
   if (mode.of_answer && snapshot.checked) {
     input.overlaps = snapshot.right_overlaps;

@@ -65,6 +65,7 @@ class View {
   /// What a picture of the bodies was made from.
   struct Shown {
     std::shared_ptr<const Snapshot> snapshot;
+    std::shared_ptr<const PairComparison> comparison;  ///< with the other view; null: none
     std::vector<std::uint32_t> selection;
     ViewOptions options;
     bool dark = false;
