@@ -73,6 +73,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeBenchmark();
   noticeDuel();
   noticeExport();
+  noticeReport();
   if (!playback.follow(progress)) return;
   timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
@@ -153,6 +154,15 @@ void Session::noticeDuel() {
   if (!report.failure.empty()) notices.complain(report.failure);
 }
 
+void Session::noticeReport() {
+  if (!report_page.takeEnd()) return;
+  const BackgroundReport::Report report = report_page.report();
+  if (!report.failure.empty()) return notices.complain(report.failure);
+  if (report.state == TaskState::done) {
+    notices.say(fmt::format("report page: {}", fs::absolute(report.page).string()));
+  }
+}
+
 void Session::chooseScene(const std::string& scene, const std::string& engine) {
   ParameterValues values = parameterValues(*draft);
   draft = makeSimulation(scene, engine);
@@ -206,10 +216,10 @@ void Session::open(const fs::path& path) {
   });
 }
 
-void Session::openCase(const fs::path& results, const std::string& id) {
+void Session::openCase(const fs::path& file, const std::string& id) {
   notices.attempt([&] {
     OpenedSource opened =
-        openSource(results.string(), {.case_id = id, .algorithms = lanes.algorithms()});
+        openSource(file.string(), {.case_id = id, .algorithms = lanes.algorithms()});
     openEntry(std::move(opened.entries.at(0)), Opened::in_motion);
   });
 }

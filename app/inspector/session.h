@@ -14,6 +14,7 @@
 #include "inspector/background_bake.h"
 #include "inspector/background_benchmark.h"
 #include "inspector/background_duel.h"
+#include "inspector/background_report.h"
 #include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
@@ -66,7 +67,8 @@ class Session {
 
   /// Whether work goes on in the background that closing would end.
   [[nodiscard]] bool atWork() const {
-    return bake.running() || benchmark.running() || duel.running() || case_export.running();
+    return bake.running() || benchmark.running() || duel.running() || case_export.running() ||
+           report_page.running();
   }
   /// Calls `then`, which ends all; with unsaved changes or work in the background it waits until
   /// the user has decided.
@@ -86,7 +88,7 @@ class Session {
   void open(const std::filesystem::path& path);
   /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
   /// error.
-  void openCase(const std::filesystem::path& results, const std::string& id);
+  void openCase(const std::filesystem::path& file, const std::string& id);
   /// Likewise a row of the opened results. Why it cannot be opened is kept there, and said.
   void openCase(OpenedResults::Row& row);
   /// Opens the first entry with its cases as lanes, or lists those of results; without either
@@ -129,6 +131,7 @@ class Session {
   BackgroundBake bake;
   BackgroundBenchmark benchmark;
   BackgroundDuel duel;
+  BackgroundReport report_page;
   Document document{playback, selection, notices, bake};
   CaseExport case_export;
   RunThread runs;
@@ -140,6 +143,7 @@ class Session {
   void noticeBake();
   void noticeBenchmark();
   void noticeDuel();
+  void noticeReport();
   /// How an authored scene is shown first.
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);

@@ -248,6 +248,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBatch(values, session.bake);
   addBenchmark(values, session.benchmark);
   addDuel(values, session.duel);
+  values["report.state"] = kTaskStates.nameOf(session.report_page.report().state);
   addLanes(values, session, progress);
   addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
+#include "child_program.h"
 #include "inspector/curve_colours.h"
 #include "inspector/panel.h"
 #include "words.h"
@@ -73,7 +74,7 @@ class CasesPanel final : public Panel {
     }
     OpenedResults& results = *context.session.results;
     const bool both = ImGui::GetContentRegionAvail().x >= kRoomForBoth * ui.scale;
-    drawControls(ui, results, both);
+    drawControls(context, results, both);
     const float width = ImGui::GetContentRegionAvail().x;
     if (both || !plot_alone_) {
       ImGui::BeginChild("table", {both ? width * kTableShare : 0, 0}, false,
@@ -89,23 +90,58 @@ class CasesPanel final : public Panel {
   }
 
  private:
-  void drawControls(Ui& ui, OpenedResults& results, bool both) {
-    ImGui::SetNextItemWidth(120 * ui.scale);
+  void drawControls(PanelContext& context, OpenedResults& results, bool both) {
+    Ui& ui = context.ui;
+    const std::string what = summaryText(results);
+    ui.faint(fittingText(what, ImGui::GetContentRegionAvail().x));
+    ui.tooltip(fmt::format("{}: {}", results.file().string(), what).c_str());
+    ImGui::SetNextItemWidth(110 * ui.scale);
     ImGui::InputTextWithHint("##search", "search", &searched_);
     ui.note("search");
     ui.tooltip("Lists the cases whose id contains this");
     ImGui::SameLine();
     ui.checkbox("wrong only", only_wrong_, "Lists the cases that gave a wrong answer");
     results.filter(searched_, only_wrong_);
-    if (!both) {
-      ImGui::SameLine();
-      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
-    }
     ImGui::SameLine();
-    ImGui::AlignTextToFramePadding();
-    const std::string what = summaryText(results);
-    ui.faint(fittingText(what, ImGui::GetContentRegionAvail().x));
-    ui.tooltip(fmt::format("{}: {}", results.file().string(), what).c_str());
+    if (!both) {
+      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
+      ImGui::SameLine();
+    }
+    drawReport(context, results);
+  }
+
+  /// Writes the report page of all cases, and opens it.
+  static void drawReport(PanelContext& context, const OpenedResults& results) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    const BackgroundReport::Report report = session.report_page.report();
+    if (report.state == TaskState::running) {
+      if (ui.button("Cancel report", "It is being written")) session.report_page.cancel();
+      return;
+    }
+    if (ui.button("Report page…",
+                  "Writes all cases as an HTML page, as python3 -m broadmark "
+                  "report does")) {
+      askPage(context, results);
+    }
+    static const bool opens = isProgramThere("xdg-open");
+    if (report.state != TaskState::done || !opens) return;
+    ImGui::SameLine();
+    if (ui.button("Open page", report.page.string().c_str())) {
+      session.notices.attempt([&] { openByDesktop(report.page); });
+    }
+  }
+
+  static void askPage(PanelContext& context, const OpenedResults& results) {
+    std::filesystem::path page = results.file();
+    context.files.ask({.title = "Write the report page",
+                       .purpose = FileDialog::Purpose::save,
+                       .extensions = {".html"},
+                       .suggestion = page.replace_extension(".html"),
+                       .chosen = [&session = context.session,
+                                  file = results.file()](const std::filesystem::path& chosen) {
+                         session.notices.attempt([&] { session.report_page.start(file, chosen); });
+                       }});
   }
 
   static std::string summaryText(const OpenedResults& results) {
