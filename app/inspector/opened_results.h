@@ -19,25 +19,25 @@ namespace broadmark {
 enum class CaseColumn {
   algorithm,
   recording,
-  isa,
-  threads,
   status,
-  mean,
   median,
+  mean,
   p95,
   pairs,
-  mismatches
+  mismatches,
+  isa,
+  threads
 };
 inline constexpr NameTable kCaseColumns{{NamedValue{CaseColumn::algorithm, "algorithm"},
                                          {CaseColumn::recording, "recording"},
-                                         {CaseColumn::isa, "isa"},
-                                         {CaseColumn::threads, "threads"},
                                          {CaseColumn::status, "status"},
-                                         {CaseColumn::mean, "mean"},
                                          {CaseColumn::median, "median"},
+                                         {CaseColumn::mean, "mean"},
                                          {CaseColumn::p95, "95 %"},
                                          {CaseColumn::pairs, "pairs"},
-                                         {CaseColumn::mismatches, "mismatches"}}};
+                                         {CaseColumn::mismatches, "mismatches"},
+                                         {CaseColumn::isa, "isa"},
+                                         {CaseColumn::threads, "threads"}}};
 
 class OpenedResults {
  public:

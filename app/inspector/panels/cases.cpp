@@ -22,7 +22,7 @@ namespace broadmark::panels::cases {
 namespace {
 
 constexpr float kTableShare = 0.56F;     // of the width; the rest is the plot's
-constexpr float kRoomForBoth = 620;      // units: narrower, it is either the one or the other
+constexpr float kRoomForBoth = 760;      // units: narrower, it is either the one or the other
 constexpr std::size_t kMostCurves = 24;  // more could not be told apart
 
 using Row = OpenedResults::Row;

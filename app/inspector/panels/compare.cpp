@@ -18,6 +18,7 @@ namespace broadmark::panels::compare {
 namespace {
 
 constexpr float kPairsShare = 0.42F;        // of the width; the rest is the plot's
+constexpr float kRoomForBoth = 560;         // units: narrower, it is either the one or the other
 constexpr double kBetweenSummaries = 0.25;  // seconds
 
 class ComparePanel final : public Panel {
@@ -38,10 +39,18 @@ class ComparePanel final : public Panel {
       return;
     }
     const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::BeginChild("pairs", {width * kPairsShare, 0}, false, ImGuiWindowFlags_NavFlattened);
-    drawPairs(context);
-    ImGui::EndChild();
-    ImGui::SameLine();
+    const bool both = width >= kRoomForBoth * ui.scale;
+    if (!both) {
+      ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");
+    }
+    if (both || !times_alone_) {
+      ImGui::BeginChild("pairs", {both ? width * kPairsShare : 0, 0}, false,
+                        ImGuiWindowFlags_NavFlattened);
+      drawPairs(context);
+      ImGui::EndChild();
+      if (both) ImGui::SameLine();
+    }
+    if (!both && !times_alone_) return;
     ImGui::BeginChild("times", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     drawTimes(context);
     ImGui::EndChild();
@@ -58,7 +67,7 @@ class ComparePanel final : public Panel {
     ui.plain(fmt::format("{} in both", counted(comparison->both, "pair")));
     ui.coloured(ui.theme.bad, fmt::format("{} first only", comparison->first_only.size()));
     ImGui::SameLine();
-    ui.coloured(ui.theme.second, fmt::format("{} second only", comparison->second_only.size()));
+    ui.coloured(ui.theme.accent, fmt::format("{} second only", comparison->second_only.size()));
     ui.tooltip("Look colours the bodies of these pairs: First and second view");
     ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
     const std::size_t firsts = comparison->first_only.size();
@@ -83,7 +92,7 @@ class ComparePanel final : public Panel {
     const bool is_selected = selected.size() == 2 && selected[0] == pair.a && selected[1] == pair.b;
     ImGui::PushID(of_first ? 0 : 1);
     if (ui.selectable(pairName(pair).c_str(), is_selected, of_first ? "first only" : "second only",
-                      of_first ? ui.theme.bad : ui.theme.second,
+                      of_first ? ui.theme.bad : ui.theme.accent,
                       "Selects both bodies and flies to them")) {
       context.session.selection.visit(pair);
     }
@@ -121,7 +130,7 @@ class ComparePanel final : public Panel {
                     ImGui::GetContentRegionAvail().x));
     ui.note("median");
     drawExtreme(context, "most", *ratios_.highest);
-    ImGui::SameLine();
+    Ui::besideIfRoom(150 * ui.scale);
     drawExtreme(context, "least", *ratios_.lowest);
     drawRatios(context);
   }
@@ -137,9 +146,8 @@ class ComparePanel final : public Panel {
 
   void drawRatios(PanelContext& context) const {
     const Timeline& timeline = context.session.timeline;
-    const PlotCurve curve{.label = "time of first / second",
-                          .colour = context.ui.theme.accent,
-                          .values = &ratios_.ratios};
+    const PlotCurve curve{
+        .label = "ratio", .colour = context.ui.theme.accent, .values = &ratios_.ratios};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotResult done = drawPlot("ratios", {curve},
                                      {.logarithmic = true,
@@ -168,6 +176,7 @@ class ComparePanel final : public Panel {
     ratios_ = ratiosOf(first, second);
   }
 
+  bool times_alone_ = false;
   TimeRatios ratios_;
   std::array<int, 2> summarised_{};  ///< lanes, by number
   double summarise_next_ = 0;        ///< seconds of the user interface
