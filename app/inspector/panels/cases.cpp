@@ -14,6 +14,7 @@
 #include "child_program.h"
 #include "inspector/curve_colours.h"
 #include "inspector/panel.h"
+#include "inspector/two_parts.h"
 #include "words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
@@ -73,20 +74,10 @@ class CasesPanel final : public Panel {
       return;
     }
     OpenedResults& results = *context.session.results;
-    const bool both = ImGui::GetContentRegionAvail().x >= kRoomForBoth * ui.scale;
-    drawControls(context, results, both);
-    const float width = ImGui::GetContentRegionAvail().x;
-    if (both || !plot_alone_) {
-      ImGui::BeginChild("table", {both ? width * kTableShare : 0, 0}, false,
-                        ImGuiWindowFlags_NavFlattened);
-      drawTable(context, results);
-      ImGui::EndChild();
-      if (both) ImGui::SameLine();
-    }
-    if (!both && !plot_alone_) return;
-    ImGui::BeginChild("times", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
-    drawTimes(context, results);
-    ImGui::EndChild();
+    const TwoParts parts{
+        .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
+    drawControls(context, results, parts.both());
+    parts.draw([&] { drawTable(context, results); }, [&] { drawTimes(context, results); });
   }
 
  private:
@@ -102,11 +93,11 @@ class CasesPanel final : public Panel {
     ImGui::SameLine();
     ui.checkbox("wrong only", only_wrong_, "Lists the cases that gave a wrong answer");
     results.filter(searched_, only_wrong_);
-    ImGui::SameLine();
     if (!both) {
-      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
       ImGui::SameLine();
+      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
     }
+    Ui::besideIfRoom(105 * ui.scale);
     drawReport(context, results);
   }
 
@@ -126,7 +117,7 @@ class CasesPanel final : public Panel {
     }
     static const bool opens = isProgramThere("xdg-open");
     if (report.state != TaskState::done || !opens) return;
-    ImGui::SameLine();
+    Ui::besideIfRoom(85 * ui.scale);
     if (ui.button("Open page", report.page.string().c_str())) {
       session.notices.attempt([&] { openByDesktop(report.page); });
     }

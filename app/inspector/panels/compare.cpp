@@ -11,6 +11,7 @@
 #include "broadmark/render/plot.h"
 #include "inspector/panel.h"
 #include "inspector/time_ratios.h"
+#include "inspector/two_parts.h"
 #include "inspector/wrong_pair.h"
 #include "words.h"
 
@@ -38,22 +39,12 @@ class ComparePanel final : public Panel {
       }
       return;
     }
-    const float width = ImGui::GetContentRegionAvail().x;
-    const bool both = width >= kRoomForBoth * ui.scale;
-    if (!both) {
+    const TwoParts parts{
+        .share = kPairsShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = times_alone_};
+    if (!parts.both()) {
       ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");
     }
-    if (both || !times_alone_) {
-      ImGui::BeginChild("pairs", {both ? width * kPairsShare : 0, 0}, false,
-                        ImGuiWindowFlags_NavFlattened);
-      drawPairs(context);
-      ImGui::EndChild();
-      if (both) ImGui::SameLine();
-    }
-    if (!both && !times_alone_) return;
-    ImGui::BeginChild("times", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
-    drawTimes(context);
-    ImGui::EndChild();
+    parts.draw([&] { drawPairs(context); }, [&] { drawTimes(context); });
   }
 
  private:
