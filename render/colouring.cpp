@@ -236,15 +236,15 @@ constexpr ColourMode kModes[] = {
     {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount, true},
     {"correctness", "Missed and false", "bodies of missed pairs and of false pairs",
      colourByCorrectness},
-    {"comparison", "First and second view",
-     "bodies of pairs that only one of two views shows, the first view's before the second's",
-     colourByComparison},
     {"motion", "Moving and static", "bodies whose box has changed since the previous frame",
      colourByMotion},
     {"changes", "Changed now", "bodies that appeared or moved since the previous frame",
      colourByChange},
     {"layers", "Layer", "the layer of each body; beyond eight the colours repeat", colourByLayer},
     {"size", "Size", "longest edge of each body, in steps of equal ratio", colourBySize},
+    {"comparison", "First and second view",
+     "bodies of pairs that only one of two views shows, the first view's before the second's",
+     colourByComparison},
 };
 
 }  // namespace

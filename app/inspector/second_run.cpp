@@ -39,8 +39,12 @@ std::uint32_t SecondRun::frame(const SecondWish& wish, const First& first) {
 Lane* SecondRun::lane(const SecondWish& wish, const First& first) {
   const auto found = std::ranges::find_if(
       first.lanes, [&](const auto& lane) { return lane->spec().number == wish.lane; });
+  if (found == first.lanes.end()) {
+    lane_.reset();
+    return nullptr;
+  }
   const std::uint32_t frame = this->frame(wish, first);
-  if (found == first.lanes.end() || frame == 0) return nullptr;  // frame 0 has no answer
+  if (frame == 0) return nullptr;  // which has no answer
   Lane& of_first = **found;
   if (!opened_ && frame == first.frame) return &of_first;
   if (!lane_ || !lane_->spec().same(of_first.spec())) {
