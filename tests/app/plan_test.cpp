@@ -235,6 +235,19 @@ TEST_F(PlanOfResults, HasTheChosenCase) {
   ASSERT_TRUE(plan.entries.front().known);
 }
 
+TEST_F(PlanOfResults, MayBeOfLines) {
+  const std::string text = readTextFile(directory_ / "results.json");
+  const Results results = parseResults(text, "results.json");
+  for (const ResultWriter& writer : resultWriters()) {
+    if (writer.name == "jsonl") {
+      writeTextFile(directory_ / "results.jsonl", writer.format(results));
+    }
+  }
+  asked_.sources = {(directory_ / "results.jsonl").string()};
+  asked_.case_id = wrong_.id;
+  EXPECT_THAT(caseIds(makePlan(asked_)), testing::ElementsAre(wrong_.id));
+}
+
 TEST_F(PlanOfResults, NeedsAChosenCase) {
   EXPECT_THAT(complaint(asked_), AllOf(HasSubstr("results.json"), HasSubstr("--case"),
                                        HasSubstr("'" + wrong_.id + "'")));
