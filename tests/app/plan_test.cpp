@@ -8,6 +8,8 @@
 #include <set>
 
 #include "app/session_files.h"
+#include "broadmark/files.h"
+#include "broadmark/results.h"
 #include "session_options.h"
 
 namespace broadmark::tests {
