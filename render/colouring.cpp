@@ -126,6 +126,26 @@ void colourAlike(const ColouringInput& input, const std::string& label, Rgb colo
   colourByClass(input.boxes, {{label, colour}}, colouring, [](std::size_t) { return 0U; });
 }
 
+void colourByComparison(const ColouringInput& input, Colouring& colouring) {
+  const Palette palette = paletteOf(input);
+  if (input.comparison == nullptr) {
+    colourAlike(input, "no second view", palette.quiet, colouring);
+    return;
+  }
+  std::vector<std::uint8_t> classes(input.boxes.size());
+  for (std::size_t body = 0; body < classes.size(); ++body) {
+    classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
+  }
+  mark(classes, input.comparison->second_only, 1);
+  mark(classes, input.comparison->first_only, 0);
+  colourByClass(input.boxes,
+                {{"first only", palette.missed},
+                 {"second only", palette.false_pair},
+                 {"both", palette.right},
+                 {"free", palette.quiet}},
+                colouring, [&](std::size_t body) { return classes[body]; });
+}
+
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {
   const Palette palette = paletteOf(input);
   if (input.previous.size() != input.boxes.size()) {
@@ -222,6 +242,9 @@ constexpr ColourMode kModes[] = {
      colourByChange},
     {"layers", "Layer", "the layer of each body; beyond eight the colours repeat", colourByLayer},
     {"size", "Size", "longest edge of each body, in steps of equal ratio", colourBySize},
+    {"comparison", "First and second view",
+     "bodies of pairs that only one of two views shows, the first view's before the second's",
+     colourByComparison},
 };
 
 }  // namespace

@@ -89,6 +89,10 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& l
   return text;
 }
 
+std::string whereText(const Snapshot& snapshot) {
+  return fmt::format("frame {}, {}", snapshot.frame, sourceText(snapshot.footage.get()));
+}
+
 std::string sourceText(const FootageRequest* footage) {
   if (footage == nullptr) return "";
   return fmt::format("{}: {}", kFootageSources.nameOf(footage->source), footage->title);

@@ -139,6 +139,12 @@ void BenchmarkForm::drawPreview(Ui& ui, const Session& session) {
 
 void BenchmarkForm::drawItems(Ui& ui, Session& session, const BackgroundBenchmark::Report& report) {
   ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
+  const bool any_kept = std::ranges::any_of(report.items, &BackgroundBenchmark::Item::kept);
+  if (report.state != TaskState::running && any_kept &&
+      ui.button("Open results", "Lists them in the panel Cases",
+                ImGui::GetContentRegionAvail().x)) {
+    session.open(report.file);
+  }
   const auto scope = ui.scope("cases");
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(report.items.size()));

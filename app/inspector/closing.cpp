@@ -26,6 +26,7 @@ void drawEnding(Ui& ui, Session& session) {
   }
   if (session.duel.running()) ui.paragraph("A duel goes on.");
   if (session.case_export.running()) ui.paragraph("A case is being exported.");
+  if (session.report_page.running()) ui.paragraph("A report page is being written.");
   ui.paragraph("What is finished is kept.");
   ImGui::Spacing();
   const float width = 84 * ui.scale;

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "inspector/author_dialogs.h"
-#include "inspector/case_chooser.h"
 #include "inspector/closing.h"
 
 namespace broadmark {
@@ -48,6 +47,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
       gl_(&gl),
       session_(std::move(algorithms), std::move(make_host)),
       view_(gl),
+      second_view_(gl, View::Role::second),
       panels_(makePanels()),
       screen_scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
@@ -114,7 +114,7 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
 }
 
 bool Inspector::lively() {
-  return session_.busy() || view_.lively() || ImGui::GetIO().WantTextInput;
+  return session_.busy() || view_.lively() || second_view_.lively() || ImGui::GetIO().WantTextInput;
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
@@ -194,11 +194,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
     splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
              preferences_.bottom, -1);
   }
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  beginAt("View", {view_left, top}, {middle, view_bottom - top}, ImGuiWindowFlags_NoScrollbar);
-  view_.draw(ui_, session_, progress);
-  ImGui::End();
-  ImGui::PopStyleVar();
+  drawViews(progress, {view_left, top}, {middle, view_bottom - top});
   beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
           ImGuiWindowFlags_NoScrollbar);
   takeFocus(kPlaces.entries.size());
@@ -212,9 +208,28 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
   drawEnding(ui_, session_);
-  drawCaseChooser(ui_, session_);
   drawHelp();
   drawErrors();
+  ImGui::PopStyleVar();
+}
+
+void Inspector::drawViews(const RunProgress& progress, ImVec2 position, ImVec2 size) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  const float gap = kSplitterSize * ui_.scale;
+  const float width = session_.second ? std::max((size.x - gap) / 2, 1.0F) : size.x;
+  // Of both, if each has a camera of its own.
+  const std::optional<BodySelection::Bodies> fly_to = session_.selection.fly_to;
+  beginAt("View", position, {width, size.y}, ImGuiWindowFlags_NoScrollbar);
+  view_.draw(ui_, session_, progress);
+  ImGui::End();
+  if (session_.second) {
+    if (!session_.linked && !session_.selection.fly_to) session_.selection.fly_to = fly_to;
+    beginAt("Second view", {position.x + size.x - width, position.y}, {width, size.y},
+            ImGuiWindowFlags_NoScrollbar);
+    second_view_.draw(ui_, session_, progress, session_.linked ? &view_ : nullptr);
+    ImGui::End();
+    if (session_.linked && second_view_.moved()) view_.follow(second_view_);
+  }
   ImGui::PopStyleVar();
 }
 

@@ -61,6 +61,7 @@ class Inspector {
   [[nodiscard]] Session& session() { return session_; }
   [[nodiscard]] Ui& ui() { return ui_; }
   [[nodiscard]] View& view() { return view_; }
+  [[nodiscard]] View& secondView() { return second_view_; }
   [[nodiscard]] const Preferences& preferences() const { return preferences_; }
   [[nodiscard]] bool closing() const { return closing_; }
   /// Closes, once it is decided what becomes of unsaved changes and of work in the background.
@@ -89,6 +90,7 @@ class Inspector {
   void drawMenus(const RunProgress& progress);
   void drawScaleMenu();
   void resetLayout();
+  void drawViews(const RunProgress& progress, ImVec2 position, ImVec2 size);
   void drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size);
   [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
@@ -125,6 +127,7 @@ class Inspector {
   FileDialog files_;
   Session session_;
   View view_;
+  View second_view_;
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<Shortcut> shortcuts_;
   bool help_ = false;

@@ -115,7 +115,7 @@ void Inspector::drawScaleMenu() {
 
 void Inspector::askOpen() {
   std::vector<std::string> extensions = recordingExtensions();
-  extensions.emplace_back(".json");
+  for (const char* of_results : {".json", ".jsonl"}) extensions.emplace_back(of_results);
   files_.ask({.title = "Open a recording, a scene or results",
               .purpose = FileDialog::Purpose::open,
               .extensions = std::move(extensions),

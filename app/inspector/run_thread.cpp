@@ -6,29 +6,19 @@
 #include <exception>
 #include <utility>
 
-#include "broadmark/pair.h"
-
 namespace broadmark {
 namespace {
-
-/// How many frames of a tracked body are looked back at.
-constexpr std::uint32_t kTrackFrames = 60;
 
 /// Whether one wish's snapshot also serves the other.
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
-         a.tracked == b.tracked;
+         a.tracked == b.tracked && a.second == b.second;
 }
 
 /// How many pairs overlap, by what an algorithm reported and how wrong that was.
 std::uint64_t rightPairs(const FrameRecord& record) {
   return record.pairs + record.missed_count - record.false_count - record.allowed_extra_count -
          record.invalid_count;
-}
-
-std::uint32_t presentIn(std::span<const Aabb> boxes) {
-  return static_cast<std::uint32_t>(boxes.size()) -
-         static_cast<std::uint32_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
 float fractionOf(std::uint32_t part, std::uint32_t whole) {
@@ -38,7 +28,9 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 }  // namespace
 
 RunThread::RunThread(HostMaker make_host)
-    : make_host_(std::move(make_host)), thread_([this] { loop(); }) {}
+    : make_host_(std::move(make_host)),
+      second_(make_host_, [this](const LaneSpec& spec) { return isUnwantedBeside(spec); }),
+      thread_([this] { loop(); }) {}
 
 RunThread::~RunThread() {
   {
@@ -139,7 +131,7 @@ bool RunThread::step() {
   }
   if (footage_ == nullptr) return false;
   if (reconcileLanes()) return true;
-  if (advance()) return true;
+  if (advance() || advanceSecond()) return true;
   if (shown_) return false;
   show();
   return true;
@@ -156,6 +148,13 @@ bool RunThread::isUnwanted(const LaneSpec& spec) {
   return stopping_ || wished_.footage != opened_ || std::ranges::none_of(wished_.lanes, is_same);
 }
 
+bool RunThread::isUnwantedBeside(const LaneSpec& spec) {
+  if (isUnwanted(spec)) return true;
+  const std::lock_guard lock(mutex_);
+  return !wished_.second || wished_.second->lane != spec.number ||
+         wished_.second->footage != current_.second->footage;
+}
+
 void RunThread::tell(std::string doing, float fraction) {
   const std::lock_guard lock(mutex_);
   progress_.doing = std::move(doing);
@@ -165,6 +164,7 @@ void RunThread::tell(std::string doing, float fraction) {
 void RunThread::openFootage() {
   tell(current_.footage ? fmt::format("opening {}", current_.footage->title) : "", 0);
   lanes_.clear();
+  second_.clear();
   footage_.reset();
   oracle_ = Oracle(std::size_t{256} << 20);
   stop_.reset();
@@ -225,11 +225,15 @@ std::uint32_t RunThread::target() const {
 /// A frame of the footage; takes note of its population.
 Frame RunThread::frameAt(std::uint32_t index) {
   const Frame frame = footage_->at(index);
-  if (footage_->scene().all_present) return frame;
-  const auto present = static_cast<float>(presentIn(frame.boxes));
+  notePopulation(index, frame.boxes);
+  return frame;
+}
+
+void RunThread::notePopulation(std::uint32_t index, std::span<const Aabb> boxes) {
+  if (footage_->scene().all_present) return;
+  const auto present = static_cast<float>(presentIn(boxes));
   const std::lock_guard lock(mutex_);
   progress_.population.set(index, present);
-  return frame;
 }
 
 /// Brings the footage and one lane a frame nearer to the target. Returns whether it had to.
@@ -240,7 +244,9 @@ bool RunThread::advance() {
     const std::lock_guard lock(mutex_);
     progress_.stop.reset();
   }
-  if (const std::uint32_t wanted = target(); footage_->known() < wanted) {
+  const std::uint32_t beside =
+      current_.second ? SecondRun::frameOfFirst(*current_.second, footage_->scene()) : 0;
+  if (const std::uint32_t wanted = std::max(target(), beside); footage_->known() < wanted) {
     tell(fmt::format("simulating frame {}", footage_->known() + 1),
          fractionOf(footage_->known(), wanted));
     footage_->extend();
@@ -336,65 +342,58 @@ Lane* RunThread::shownLane() const {
   return nullptr;
 }
 
-std::vector<Track> RunThread::tracks(std::uint32_t frame) {
-  std::vector<Track> tracks;
-  const std::uint32_t first = frame - std::min(frame, kTrackFrames - 1);
-  for (const std::uint32_t body : current_.tracked) {
-    if (body < footage_->scene().objects) tracks.push_back({.body = body, .first = first});
-  }
-  if (tracks.empty()) return tracks;
-  for (std::uint32_t index = first; index <= frame; ++index) {
-    const Frame past = footage_->at(index);
-    for (Track& track : tracks) track.boxes.push_back(past.boxes[track.body]);
-  }
-  return tracks;
+SecondRun::First RunThread::firstView() const {
+  return {.request = opened_,
+          .footage = *footage_,
+          .frame = target(),
+          .lanes = lanes_,
+          .check = current_.check,
+          .structure = current_.structure,
+          .tracked = current_.tracked};
+}
+
+/// Brings what the second view shows nearer to what it is to be. Returns whether it had to.
+bool RunThread::advanceSecond() {
+  if (!current_.second) return false;
+  if (!second_.advance(*current_.second, firstView(), gate_)) return false;
+  tell(second_.doing(), 1);
+  shown_ = false;
+  return true;
 }
 
 void RunThread::show() {
   const std::uint32_t index = target();
-  auto snapshot = std::make_shared<Snapshot>();
-  snapshot->footage = opened_;
-  snapshot->scene = footage_->scene();
-  snapshot->frame = index;
-  snapshot->tracks = tracks(index);
-  const auto copy = [&](std::uint32_t which) {
-    const Frame frame = frameAt(which);
-    return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
-  };
-  if (index > 0) snapshot->boxes_before = copy(index - 1);
-  snapshot->boxes = copy(index);
-  snapshot->present = presentIn(*snapshot->boxes);
-  const Frame frame{index, *snapshot->boxes};
   Lane* const lane = shownLane();
-  if (lane != nullptr) {
-    snapshot->lane = lane->spec().number;
-    snapshot->pairs = lane->answer();
-    if (current_.check && lane->standsAt(index)) {
-      if (std::optional<FrameDifference> difference = lane->check(frame, oracle_)) {
-        snapshot->checked = true;
-        snapshot->difference = std::move(*difference);
-        const PairRun right = oracle_.pairs(frame.boxes, snapshot->scene.filter);
-        snapshot->right_pairs = right.size();
-        snapshot->right_overlaps = overlapCounts(snapshot->boxes->size(), {&right, 1});
-      }
-    }
-    if (current_.structure && lane->standsAt(index)) {
-      snapshot->structure = std::make_shared<RecordedDrawing>(lane->structure());
-    }
-    if (!lane->standsAt(index)) {  // lost on the way: shown without it
-      report(*lane);
-      return;
-    }
-  } else {
-    const std::span<const Pair> pairs = oracle_.pairs(frame.boxes, snapshot->scene.filter);
-    snapshot->pairs.assign(pairs.begin(), pairs.end());
+  const auto snapshot = takeSnapshot({.request = opened_,
+                                      .footage = *footage_,
+                                      .frame = index,
+                                      .lane = lane,
+                                      .check = current_.check,
+                                      .structure = current_.structure,
+                                      .tracked = current_.tracked},
+                                     oracle_);
+  std::shared_ptr<const Snapshot> second;
+  if (!current_.second) second_.clear();
+  if (snapshot && current_.second) second = second_.take(*current_.second, firstView());
+  const bool lost = current_.second && !second && second_.failure().empty();
+  if (!snapshot || lost) {  // a lane was, on the way: shown without it
+    for (const auto& one : lanes_) report(*one);
+    return;
   }
-  const PairRun answer = snapshot->pairs;
-  snapshot->overlaps = overlapCounts(snapshot->boxes->size(), {&answer, 1});
+  if (index > 0) notePopulation(index - 1, *snapshot->boxes_before);
+  notePopulation(index, *snapshot->boxes);
+  std::shared_ptr<const PairComparison> comparison;
+  if (second) {
+    comparison =
+        std::make_shared<const PairComparison>(comparePairs(snapshot->pairs, second->pairs));
+  }
   shown_ = true;
   const std::lock_guard lock(mutex_);
   if (lane == nullptr) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
-  progress_.snapshot = std::move(snapshot);
+  progress_.snapshot = snapshot;
+  progress_.second = std::move(second);
+  progress_.comparison = std::move(comparison);
+  progress_.second_failure = current_.second ? second_.failure() : "";
 }
 
 }  // namespace broadmark

@@ -9,44 +9,24 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "broadmark/names.h"
 #include "broadmark/oracle.h"
-#include "broadmark/recorded_drawing.h"
 #include "inspector/draw_gate.h"
 #include "inspector/footage.h"
 #include "inspector/lane.h"
+#include "inspector/pair_comparison.h"
+#include "inspector/second_run.h"
+#include "inspector/snapshot.h"
 
 namespace broadmark {
-
-/// Where what is looked at comes from.
-enum class FootageSource { simulation, recording, import, authored, results };
-inline constexpr NameTable kFootageSources{
-    {NamedValue{FootageSource::simulation, "live simulation"},
-     {FootageSource::recording, "recording"},
-     {FootageSource::import, "imported files"},
-     {FootageSource::authored, "authored scene"},
-     {FootageSource::results, "case of results"}}};
-
-/// What to look at. Compared by address: the same one is opened once.
-struct FootageRequest {
-  FootageOpener open;  ///< called on the run thread
-  FootageSource source = FootageSource::simulation;
-  std::string title;
-  /// Requests of the same number, unless 0, show the same scene, perhaps changed: the camera stays
-  /// where it is.
-  std::uint64_t scene = 0;
-  std::filesystem::path recording = {};  ///< "": something else
-  std::string scene_parameters = {};     ///< as formatSceneParameters() writes them; "": unknown
-};
 
 /// What the interface wants.
 struct Wish {
@@ -61,32 +41,7 @@ struct Wish {
   int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
   bool structure = false;              ///< whether its structure is looked at, too
   std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
-};
-
-/// A body's boxes up to the shown frame.
-struct Track {
-  std::uint32_t body = 0;
-  std::uint32_t first = 0;  ///< the frame of the first box
-  std::vector<Aabb> boxes;
-};
-
-/// Everything to be seen of one frame. Immutable.
-struct Snapshot {
-  std::shared_ptr<const FootageRequest> footage;
-  SceneInfo scene;
-  std::uint32_t frame = 0;
-  std::shared_ptr<const std::vector<Aabb>> boxes;
-  std::uint32_t present = 0;                              ///< bodies that are there
-  std::shared_ptr<const std::vector<Aabb>> boxes_before;  ///< null for frame 0
-  int lane = 0;                                           ///< whose answer this is; 0: the oracle's
-  std::vector<Pair> pairs;                                ///< the answer
-  std::vector<std::uint32_t> overlaps;  ///< per body, in how many pairs of the answer it is
-  bool checked = false;
-  std::uint64_t right_pairs = 0;              ///< that the oracle finds, if checked
-  std::vector<std::uint32_t> right_overlaps;  ///< likewise: as `overlaps`, of the oracle's pairs
-  FrameDifference difference;                 ///< from the right answer, if checked
-  std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
-  std::vector<Track> tracks;
+  std::optional<SecondWish> second = {};  ///< what the second view shows, if there is one
 };
 
 /// How far the thread has got.
@@ -104,6 +59,10 @@ struct RunProgress {
   FrameValues pairs;
   std::vector<LaneReport> lanes;
   std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
+  std::shared_ptr<const Snapshot> second;    ///< of the second view; null: there is none
+  std::string second_failure;                ///< why there is none
+  /// Of the answers in both views; null: there are not two.
+  std::shared_ptr<const PairComparison> comparison;
   /// The frame at which all stay, as the lane of this number is wrong there.
   struct Stop {
     std::uint32_t frame = 0;
@@ -143,16 +102,20 @@ class RunThread {
   bool reconcileLanes();
   bool advance();
   bool advanceLane(Lane& lane, const Frame& frame);
+  bool advanceSecond();
   Frame frameAt(std::uint32_t index);
+  void notePopulation(std::uint32_t index, std::span<const Aabb> boxes);
   void show();
   void tell(std::string doing, float fraction);
   void report(const Lane& lane);
   void fail(std::string reason);
   /// Whether to give up what a lane of this spec is at.
   [[nodiscard]] bool isUnwanted(const LaneSpec& spec);
+  /// Likewise what the second view's instance of it is at.
+  [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
   [[nodiscard]] Lane* shownLane() const;
-  [[nodiscard]] std::vector<Track> tracks(std::uint32_t frame);
+  [[nodiscard]] SecondRun::First firstView() const;
 
   const HostMaker make_host_;
   DrawGate gate_;
@@ -164,7 +127,8 @@ class RunThread {
   std::vector<std::unique_ptr<Lane>> lanes_;
   Oracle oracle_{std::size_t{256} << 20};
   std::optional<RunProgress::Stop> stop_;
-  bool shown_ = false;  ///< whether the snapshot is what current_ wants
+  SecondRun second_;
+  bool shown_ = false;  ///< whether the snapshots are what current_ wants
 
   // Guarded by mutex_.
   std::mutex mutex_;

@@ -12,6 +12,7 @@
 #include "export_case.h"
 #include "recordings.h"
 #include "sources/make_source.h"
+#include "sources/results.h"
 
 namespace broadmark {
 namespace {
@@ -22,6 +23,7 @@ bool sameWish(const Wish& a, const Wish& b) {
   return a.footage == b.footage && a.frame == b.frame && a.check == b.check &&
          a.stop_at_mismatch == b.stop_at_mismatch && a.known_mismatch == b.known_mismatch &&
          a.shown_lane == b.shown_lane && a.structure == b.structure && a.tracked == b.tracked &&
+         a.second == b.second &&
          std::ranges::equal(a.lanes, b.lanes,
                             [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
 }
@@ -51,6 +53,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   playback.on_show = [this] {
     selection.follow({});
     mismatches.reset();
+    if (second) second->frame.reset();
     noticed_failure_.clear();
     notices.status = {};  // it told of what was open before
   };
@@ -70,6 +73,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeBenchmark();
   noticeDuel();
   noticeExport();
+  noticeReport();
   if (!playback.follow(progress)) return;
   timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
@@ -98,7 +102,8 @@ Wish Session::wish() const {
             .known_mismatch = mismatches.known(),
             .shown_lane = lanes.shown(),
             .structure = view.structure,
-            .tracked = selection.bodies()};
+            .tracked = selection.bodies(),
+            .second = second};
   if (wish.tracked.size() > kMostTracked) wish.tracked.clear();
   return wish;
 }
@@ -149,6 +154,15 @@ void Session::noticeDuel() {
   if (!report.failure.empty()) notices.complain(report.failure);
 }
 
+void Session::noticeReport() {
+  if (!report_page.takeEnd()) return;
+  const BackgroundReport::Report report = report_page.report();
+  if (!report.failure.empty()) return notices.complain(report.failure);
+  if (report.state == TaskState::done) {
+    notices.say(fmt::format("report page: {}", fs::absolute(report.page).string()));
+  }
+}
+
 void Session::chooseScene(const std::string& scene, const std::string& engine) {
   ParameterValues values = parameterValues(*draft);
   draft = makeSimulation(scene, engine);
@@ -194,7 +208,7 @@ void Session::open(const fs::path& path) {
   notices.attempt([&] {
     OpenedSource opened = openSource(path.string(), {.algorithms = lanes.algorithms()});
     if (opened.results) {
-      offerCases(path, *opened.results);
+      listCases(path, std::move(*opened.results));
     } else {
       openEntry(std::move(opened.entries.at(0)), Opened::at_rest);
     }
@@ -202,19 +216,29 @@ void Session::open(const fs::path& path) {
   });
 }
 
-void Session::openCase(const fs::path& results, const std::string& id) {
+void Session::openCase(const fs::path& file, const std::string& id) {
   notices.attempt([&] {
     OpenedSource opened =
-        openSource(results.string(), {.case_id = id, .algorithms = lanes.algorithms()});
+        openSource(file.string(), {.case_id = id, .algorithms = lanes.algorithms()});
     openEntry(std::move(opened.entries.at(0)), Opened::in_motion);
   });
 }
 
+void Session::openCase(OpenedResults::Row& row) {
+  try {
+    openEntry(entryOf(row.result, results->file(), lanes.algorithms()), Opened::in_motion);
+    row.obstacle.clear();
+  } catch (const InputError& error) {
+    row.obstacle = error.what();
+    notices.say(row.obstacle, Message::Kind::error);
+  }
+}
+
 void Session::open(Plan plan) {
   for (const Case& run : plan.cases) lanes.add(run);
-  if (const auto& choice = plan.unchosen_case) {
-    offerCases(choice->file, choice->results);
-    tellOfFile(choice->file);
+  if (auto& unchosen = plan.unchosen_case) {
+    listCases(unchosen->file, std::move(unchosen->results));
+    tellOfFile(unchosen->file);
   }
   if (!plan.entries.empty()) openEntry(std::move(plan.entries.front()), Opened::in_motion);
 }
@@ -300,16 +324,9 @@ FootageRequest Session::importFootage(const RecordingReference& reference) const
           .title = fs::path(reference.path).filename().string()};
 }
 
-void Session::offerCases(const fs::path& file, const Results& results) {
-  CaseChoice choice{.file = file};
-  for (const CaseResult& result : results.cases) {
-    choice.cases.push_back({.id = result.id,
-                            .status = result.status,
-                            .reason = result.reason,
-                            .wrong = !result.differences.empty()});
-  }
-  choice.all = std::ranges::none_of(choice.cases, &CaseChoice::Item::wrong);
-  case_choice = std::move(choice);
+void Session::listCases(const fs::path& file, Results listed) {
+  results.emplace(file, std::move(listed), lanes.algorithms());
+  notices.bringUp("Cases");
 }
 
 void Session::play(bool on) {
@@ -358,6 +375,27 @@ void Session::startDuel(double most_seconds) {
     });
     if (!frames) throw InputError("duel: nothing is open");
     duel.start(cases, std::move(frames), most_seconds, make_host_);
+  });
+}
+
+void Session::showSecond(bool on) {
+  second.reset();
+  if (!on) return;
+  second.emplace();
+  const auto other = std::ranges::find_if(
+      lanes.list, [this](const LaneEdit& lane) { return lane.number != lanes.shown(); });
+  if (other != lanes.list.end()) second->lane = other->number;
+  // Without another algorithm's answer it is the same one's, and stays where it is.
+  if (other == lanes.list.end() && lanes.shown() == 0) second->frame = playback.frame();
+}
+
+void Session::showBeside(const fs::path& recording) {
+  notices.attempt([&] {
+    FootageRequest footage = recordingFootage(recording, {});
+    if (!second) showSecond(true);
+    second->footage = std::make_shared<const FootageRequest>(std::move(footage));
+    second->frame.reset();
+    second->lane = lanes.shown();
   });
 }
 

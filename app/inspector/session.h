@@ -14,6 +14,7 @@
 #include "inspector/background_bake.h"
 #include "inspector/background_benchmark.h"
 #include "inspector/background_duel.h"
+#include "inspector/background_report.h"
 #include "inspector/body_filter.h"
 #include "inspector/body_selection.h"
 #include "inspector/case_export.h"
@@ -21,6 +22,7 @@
 #include "inspector/lanes.h"
 #include "inspector/mismatches.h"
 #include "inspector/notices.h"
+#include "inspector/opened_results.h"
 #include "inspector/playback.h"
 #include "inspector/run_thread.h"
 #include "inspector/timeline.h"
@@ -46,19 +48,6 @@ struct ViewOptions {
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
 
-/// A results file that has been opened, one of whose cases is to be chosen.
-struct CaseChoice {
-  struct Item {
-    std::string id;
-    Status status = Status::ok;
-    std::string reason;
-    bool wrong = false;  ///< gave a wrong answer
-  };
-  std::filesystem::path file;
-  std::vector<Item> cases;  ///< as in the file
-  bool all = false;         ///< show also those that were right
-};
-
 class Session {
  public:
   /// Algorithms that can be chosen, and where they run.
@@ -78,7 +67,8 @@ class Session {
 
   /// Whether work goes on in the background that closing would end.
   [[nodiscard]] bool atWork() const {
-    return bake.running() || benchmark.running() || duel.running() || case_export.running();
+    return bake.running() || benchmark.running() || duel.running() || case_export.running() ||
+           report_page.running();
   }
   /// Calls `then`, which ends all; with unsaved changes or work in the background it waits until
   /// the user has decided.
@@ -94,12 +84,14 @@ class Session {
   void chooseScene(const std::string& scene, const std::string& engine = {});
 
   /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
-  /// file one case is to be chosen; of a file that names a case, that becomes the only lane.
+  /// file all cases are listed; of a file that names a case, that becomes the only lane.
   void open(const std::filesystem::path& path);
   /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
   /// error.
-  void openCase(const std::filesystem::path& results, const std::string& id);
-  /// Opens the first entry with its cases as lanes, or offers those of results; without either
+  void openCase(const std::filesystem::path& file, const std::string& id);
+  /// Likewise a row of the opened results. Why it cannot be opened is kept there, and said.
+  void openCase(OpenedResults::Row& row);
+  /// Opens the first entry with its cases as lanes, or lists those of results; without either
   /// there are only lanes. Throws InputError.
   void open(Plan plan);
 
@@ -113,14 +105,20 @@ class Session {
                   std::filesystem::path file);
   /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
   void startDuel(double most_seconds);
+  /// Shows a second view, of another algorithm's answer if there is one, or none.
+  void showSecond(bool on);
+  /// Shows this recording in the second view. A bad one becomes an error.
+  void showBeside(const std::filesystem::path& recording);
   /// Opens what has been exported, at the wrong frame.
   void openExport();
 
   std::unique_ptr<Simulation> draft;  ///< the scene that simulate() starts
   ViewOptions view;
-  double budget_ms = 16.7;                ///< that a frame may take; 0: any
-  std::optional<CaseChoice> case_choice;  ///< to be made by the user
-  std::function<void()> ending;           ///< waits for what goes on in the background
+  std::optional<SecondWish> second;      ///< what the second view shows, if there is one
+  bool linked = true;                    ///< one camera moves both views
+  double budget_ms = 16.7;               ///< that a frame may take; 0: any
+  std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
+  std::function<void()> ending;          ///< waits for what goes on in the background
   /// Called when a file has been opened or saved.
   std::function<void(const std::filesystem::path&)> on_file;
 
@@ -133,6 +131,7 @@ class Session {
   BackgroundBake bake;
   BackgroundBenchmark benchmark;
   BackgroundDuel duel;
+  BackgroundReport report_page;
   Document document{playback, selection, notices, bake};
   CaseExport case_export;
   RunThread runs;
@@ -144,6 +143,7 @@ class Session {
   void noticeBake();
   void noticeBenchmark();
   void noticeDuel();
+  void noticeReport();
   /// How an authored scene is shown first.
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);
@@ -156,7 +156,7 @@ class Session {
                                                 const std::string& hash) const;
   /// Throws InputError.
   [[nodiscard]] FootageRequest importFootage(const RecordingReference& reference) const;
-  void offerCases(const std::filesystem::path& file, const Results& results);
+  void listCases(const std::filesystem::path& file, Results results);
   void tellOfFile(const std::filesystem::path& path) const {
     if (on_file) on_file(path);
   }

@@ -372,6 +372,13 @@ bool Ui::cancel(float width) {
   return pressed || escaped();
 }
 
+void Ui::besideIfRoom(float width) {
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) {
+    ImGui::SameLine();
+  }
+}
+
 float Ui::roomBefore(std::string_view right) {
   return ImGui::GetContentRegionAvail().x -
          ImGui::CalcTextSize(right.data(), right.data() + right.size()).x -

@@ -114,6 +114,8 @@ class Ui {
   /// A dialog's button "Cancel", which Escape presses, too.
   bool cancel(float width = 0);
 
+  /// Puts what is `width` wide beside the last item, or, without room for it, into the next line.
+  static void besideIfRoom(float width);
   /// Words on the left, which are cut if need be, and on the right end of the line others.
   void line(std::string_view left, std::string_view right, Rgb right_colour);
   /// What remains of the line once there is room on its right for these words.

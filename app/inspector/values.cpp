@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
+#include <optional>
+#include <span>
 
 #include "duel_report.h"
 #include "inspector/answer_text.h"
@@ -62,6 +65,22 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
                             ? std::to_string(snapshot->structure->boxes().size() +
                                              snapshot->structure->lines().size())
                             : "0";
+}
+
+void addSecond(Values& values, const Session& session, const RunProgress& progress) {
+  const Snapshot* second = progress.second.get();
+  values["second"] = yes(session.second.has_value());
+  values["second.frame"] = second ? std::to_string(second->frame) : "";
+  values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
+  values["second.bodies"] = second ? std::to_string(second->present) : "";
+  const PairComparison* comparison = progress.comparison.get();
+  const auto count = [&](const std::vector<Pair> PairComparison::*pairs) {
+    return comparison ? std::to_string((comparison->*pairs).size()) : "";
+  };
+  values["compare.both"] = comparison ? std::to_string(comparison->both) : "";
+  values["compare.first_only"] = count(&PairComparison::first_only);
+  values["compare.second_only"] = count(&PairComparison::second_only);
+  values["second.failure"] = progress.second_failure;
 }
 
 /// "overlapping 12, free 28"
@@ -136,6 +155,16 @@ void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
   values["benchmark.cases"] = std::to_string(report.cases);
   values["benchmark.run"] = std::to_string(report.items.size());
   values["benchmark.failed"] = std::to_string(report.failed());
+}
+
+void addCases(Values& values, const std::optional<OpenedResults>& results) {
+  const auto rows = results ? std::span(results->rows()) : std::span<const OpenedResults::Row>();
+  values["cases"] = results ? std::to_string(rows.size()) : "";
+  values["cases.listed"] = results ? std::to_string(results->listed().size()) : "";
+  values["cases.marked"] = std::to_string(std::ranges::count_if(rows, &OpenedResults::Row::marked));
+  values["cases.wrong"] = results ? std::to_string(results->wrong()) : "";
+  const bool any = results && !results->listed().empty();
+  values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
 }
 
 void addDuel(Values& values, const BackgroundDuel& duel) {
@@ -219,14 +248,16 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   addBatch(values, session.bake);
   addBenchmark(values, session.benchmark);
   addDuel(values, session.duel);
+  values["report.state"] = kTaskStates.nameOf(session.report_page.report().state);
   addLanes(values, session, progress);
   addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
+  addSecond(values, session, progress);
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
   addExport(values, session.case_export.report());
   values["searching"] = yes(session.mismatches.searching());
-  values["cases"] = session.case_choice ? std::to_string(session.case_choice->cases.size()) : "";
+  addCases(values, session.results);
   return values;
 }
 
@@ -247,6 +278,13 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["view.oracle"] = view_.answer().beside;
   values["view.hands"] = view_.hands().text();
   values["view.pair"] = view_.answer().pair;
+  values["view.where"] = view_.answer().where;
+  values["second.where"] = second_view_.answer().where;
+  values["second.answer"] = second_view_.answer().answer;
+  values["second.oracle"] = second_view_.answer().beside;
+  values["second.pair"] = second_view_.answer().pair;
+  values["second.yaw"] = fmt::format("{:.4f}", second_view_.camera().yaw);
+  values["second.distance"] = fmt::format("{:.4f}", second_view_.camera().distance);
   values["hidden"] = std::to_string(view_.hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);

@@ -44,7 +44,7 @@ const std::array<FlyKey, 6> kFlyKeys = {{{GLFW_KEY_W, {1, 0, 0}, "forwards"},
                                          {GLFW_KEY_Q, {0, 0, -1}, "down"},
                                          {GLFW_KEY_E, {0, 0, 1}, "up"}}};
 
-View::View(const Gl& gl) : scene_(gl) {}
+View::View(const Gl& gl, Role role) : role_(role), scene_(gl) {}
 
 double View::aspect() const { return static_cast<double>(width_) / height_; }
 
@@ -89,31 +89,35 @@ void View::takeFlightRequest(Session& session) {
 }
 
 void View::update(Session& session, const RunProgress& progress, bool dark) {
-  if (!progress.snapshot) return;
+  const auto& snapshot = role_ == Role::first ? progress.snapshot : progress.second;
+  if (!snapshot) return;
   const ViewOptions& options = session.view;
   // What has just been added is selected already, but not to be seen yet.
   std::vector<std::uint32_t> selection = session.selection.bodies();
-  std::erase_if(selection, [&](std::uint32_t b) { return b >= progress.snapshot->boxes->size(); });
-  const bool same = progress.snapshot == shown_.snapshot && selection == shown_.selection &&
-                    options == shown_.options && dark == shown_.dark;
+  std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
+  const bool same = snapshot == shown_.snapshot && progress.comparison == shown_.comparison &&
+                    selection == shown_.selection && options == shown_.options &&
+                    dark == shown_.dark;
   if (same) return;
-  const auto seen = std::exchange(footage_, progress.snapshot->footage);
+  const auto seen = std::exchange(footage_, snapshot->footage);
   const bool new_scene =
       !seen || (seen != footage_ && (seen->scene == 0 || seen->scene != footage_->scene));
-  shown_ = {progress.snapshot, std::move(selection), options, dark};
+  shown_ = {snapshot, progress.comparison, std::move(selection), options, dark};
   if (new_scene) {
-    const Aabb all = shownBox(progress.snapshot->scene.world, *progress.snapshot->boxes);
+    const Aabb all = shownBox(snapshot->scene.world, *snapshot->boxes);
     content_.space = viewSpaceOf(all);
     camera_ = focusedOn(lookedFrom({}, Direction::figure), content_.space.toView(all), aspect());
     flight_.reset();
   }
-  content_.world = progress.snapshot->scene.world;
+  content_.world = snapshot->scene.world;
   content_.shows_world = options.world_box;
   content_.shows_grid = options.ground;
   content_.shows_axes = options.axes;
   content_.theme = dark ? kDarkScene : kLightScene;
   ++revision_;
-  answer_ = answerText(*progress.snapshot, progress.lanes, session.lanes.shown(), shown_.selection);
+  const int chosen =
+      role_ == Role::second && session.second ? session.second->lane : session.lanes.shown();
+  answer_ = answerText(*snapshot, progress.lanes, chosen, shown_.selection);
   updateBodies(session);
   updateLines(session, dark);
 }
@@ -129,7 +133,13 @@ void View::updateBodies(const Session& session) {
                        .layers = snapshot.scene.filter.layers(),
                        .missed = snapshot.difference.missed_pairs,
                        .false_pairs = snapshot.difference.false_pairs,
+                       .comparison = nullptr,
                        .dark = shown_.dark};
+  ColouringInput::Comparison comparison;
+  if (shown_.comparison) {
+    comparison = {shown_.comparison->first_only, shown_.comparison->second_only};
+    input.comparison = &comparison;
+  }
   oracle_legend_.clear();
   if (mode.of_answer && snapshot.checked) {
     input.overlaps = snapshot.right_overlaps;
@@ -244,31 +254,55 @@ void View::updateLines(const Session& session, bool dark) {
   content_.lines_revision = revision_;
 }
 
-void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
-  const auto scope = ui.scope("View");
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 room = ImGui::GetContentRegionAvail();
-  const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
-  width_ = static_cast<int>(size.x);
-  height_ = static_cast<int>(size.y);
-  update(session, progress, ui.theme.dark);
-  if (!shown_.snapshot) {
-    ImGui::InvisibleButton("scene", size);
-    ui.note("scene");
-    const char* hint = "Simulate a scene, or drop a recording here";
-    const ImVec2 text = ImGui::CalcTextSize(hint);
-    ImGui::GetWindowDrawList()->AddText(
-        {corner.x + (size.x - text.x) / 2, corner.y + (size.y - text.y) / 2},
-        colour(ui.theme.faint), hint);
-    return;
-  }
-  takeFlightRequest(session);
-  moveOn(ImGui::GetIO().DeltaTime);
+void View::follow(const View& leader) {
+  camera_ = leader.camera_;
+  content_.space = leader.content_.space;
+  flight_.reset();
+}
+
+void View::drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size) {
+  ImGui::InvisibleButton("scene", size);
+  ui.note("scene");
+  const std::string shown = fittingText(hint, size.x);
+  const ImVec2 text = ImGui::CalcTextSize(shown.c_str());
+  ImGui::GetWindowDrawList()->AddText(
+      {corner.x + (size.x - text.x) / 2, corner.y + (size.y - text.y) / 2}, colour(ui.theme.faint),
+      shown.c_str());
+}
+
+void View::drawScene(const Ui& ui, ImVec2 corner, ImVec2 size) {
   content_.scale = ui.scale;
   scene_.resize(width_, height_);
   scene_.draw(content_, camera_);
   ImGui::GetWindowDrawList()->AddImage(uiTexture(scene_.texture()), corner,
                                        {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
+}
+
+void View::draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader) {
+  const bool first = role_ == Role::first;
+  const auto scope = ui.scope(first ? "View" : "Second view");
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
+  width_ = static_cast<int>(size.x);
+  height_ = static_cast<int>(size.y);
+  moved_ = false;
+  update(session, progress, ui.theme.dark);
+  if (!shown_.snapshot || (!first && !progress.second)) {
+    const char* hint = first ? "Simulate a scene, or drop a recording here"
+                       : progress.second_failure.empty() ? "Nothing is shown yet"
+                                                         : progress.second_failure.c_str();
+    drawEmpty(ui, hint, corner, size);
+    return;
+  }
+  if (leader != nullptr) {
+    follow(*leader);
+  } else {
+    takeFlightRequest(session);
+  }
+  const OrbitCamera before = camera_;
+  moveOn(ImGui::GetIO().DeltaTime);
+  drawScene(ui, corner, size);
   ImGui::SetCursorScreenPos(corner);
   ImGui::InvisibleButton("scene", size,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
@@ -285,9 +319,11 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     seen.mouse = Pixel{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
   }
-  hands_.look(seen);
+  if (first) hands_.look(seen);
   handleMouse(ui, seen, corner, size);
-  hands_.draw(ui, seen, corner);
+  if (first) hands_.draw(ui, seen, corner);
+  moved_ = camera_ != before;
+  answer_.where = session.second ? whereText(*shown_.snapshot) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
   drawLegend(ui,
              {.legend = colouring_.legend,
@@ -296,17 +332,17 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress) {
               .left_out = left_out_},
              corner, size, taken);
   if (session.view.axes) drawAxisNames(corner);
-  if (session.document.shown()) drawTools(ui, session, corner, size);
+  if (first && session.document.shown()) drawTools(ui, session, corner, size);
 }
 
 void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
   const ImGuiIO& io = ImGui::GetIO();
   drag_from_ = mouse;
   dragged_ = false;
-  drag_ = !io.MouseDown[0]     ? Drag::pan
-          : io.KeyShift        ? Drag::rectangle
-          : hands_.press(seen) ? Drag::hands
-                               : Drag::orbit;
+  drag_ = !io.MouseDown[0]                             ? Drag::pan
+          : io.KeyShift                                ? Drag::rectangle
+          : role_ == Role::first && hands_.press(seen) ? Drag::hands
+                                                       : Drag::orbit;
   flight_.reset();
 }
 

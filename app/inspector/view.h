@@ -29,10 +29,16 @@ extern const std::array<FlyKey, 6> kFlyKeys;
 
 class View {
  public:
-  explicit View(const Gl& gl);
+  /// Whether it shows what is played, where the hands are, or what stands beside that.
+  enum class Role { first, second };
+  explicit View(const Gl& gl, Role role = Role::first);
 
-  /// Fills the current window.
-  void draw(Ui& ui, Session& session, const RunProgress& progress);
+  /// Fills the current window. `leader`: whose camera it takes over; null: it has its own.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader = nullptr);
+  /// Takes over the other one's camera.
+  void follow(const View& leader);
+  /// Whether the user has moved the camera in the last picture.
+  [[nodiscard]] bool moved() const { return moved_; }
   /// Whether it moves by itself.
   [[nodiscard]] bool lively() const { return flight_.has_value(); }
   /// What the colours of the present picture mean.
@@ -59,12 +65,15 @@ class View {
   /// What a picture of the bodies was made from.
   struct Shown {
     std::shared_ptr<const Snapshot> snapshot;
+    std::shared_ptr<const PairComparison> comparison;  ///< with the other view; null: none
     std::vector<std::uint32_t> selection;
     ViewOptions options;
     bool dark = false;
   };
 
   void update(Session& session, const RunProgress& progress, bool dark);
+  void drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size);
+  void drawScene(const Ui& ui, ImVec2 corner, ImVec2 size);
   void updateBodies(const Session& session);
   void updateVisible(const ViewOptions& options);
   void addXray(bool dark);
@@ -85,11 +94,13 @@ class View {
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
   [[nodiscard]] double aspect() const;
 
+  const Role role_;
   SceneView scene_;
   SceneViewContent content_;
   Shown shown_;
   OrbitCamera camera_;
   std::optional<Flight> flight_;
+  bool moved_ = false;
   std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
   Colouring colouring_;
   std::vector<LegendEntry> oracle_legend_;  ///< of the oracle's answer, if another one is shown

@@ -39,13 +39,21 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
     ImU32 colour;
   };
   std::vector<Line> lines;
+  // All of one size: large, if there is room for that.
+  const auto fits = [&](const std::string& text) {
+    return ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str()).x <= room;
+  };
+  ImFont* const normal = ImGui::GetFont();
+  ImFont* const large =
+      fits(answer.where) && fits(answer.answer) && fits(answer.beside) ? ui.large : normal;
   const auto add = [&](ImFont* font, const std::string& text, ImU32 rgb) {
     if (!text.empty()) lines.push_back({font, fittingText(text, room, font), rgb});
   };
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
-  add(ui.large, answer.answer, plain);
-  add(ui.large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
-  add(ImGui::GetFont(), answer.pair, plain);
+  add(large, answer.where, plain);
+  add(large, answer.answer, plain);
+  add(large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
+  add(normal, answer.pair, plain);
 
   float width = 0;
   float height = 0;

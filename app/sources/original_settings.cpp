@@ -22,7 +22,9 @@ SourceKind kind() {
   return {.what = "settings files of the original Broadmark (.json with m_inputScene)",
           .recognises =
               [](NamedSource& source) {
-                return source.isJson() && isOriginalSettings(source.text(), source.name());
+                // What has a schema is ours: JSON Lines, too, which are no JSON as a whole.
+                return source.isJson() && source.schema().empty() &&
+                       isOriginalSettings(source.text(), source.name());
               },
           .open = open};
 }

@@ -110,6 +110,31 @@ InputError missingCase(const Results& results, const fs::path& results_file) {
                                 results_file.string(), someIds(results)));
 }
 
+PlanEntry entryOf(const CaseResult& result, const fs::path& results_file,
+                  const std::vector<Algorithm>& algorithms) {
+  const Algorithm& algorithm = algorithmOf(result, algorithms);
+  const Case run = makeCase(algorithm, result.isa, result.threads, result.device,
+                            changedValues(result.parameters, *algorithm.create()), result.answer);
+  return {.source = sourceOf(result.recording, results_file),
+          .cases = {run},
+          .original = {},
+          .known = result};
+}
+
+std::string obstacleTo(const CaseResult& result, const fs::path& results_file,
+                       const std::vector<Algorithm>& algorithms) {
+  try {
+    algorithmOf(result, algorithms);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  const std::string& stated = result.recording.path;
+  if (stated.empty()) return "";
+  const std::string file = statedPath(results_file, stated).string();
+  if (fs::exists(file) || importOf(file)) return "";
+  return fmt::format("{}: no such recording any more", file);
+}
+
 namespace sources::results {
 namespace {
 
@@ -120,14 +145,8 @@ OpenedSource open(NamedSource& source, const OpeningOptions& options) {
     opened.results = std::move(results);
     return opened;
   }
-  const CaseResult& result = resultOf(results, options.case_id, source.name());
-  const Algorithm& algorithm = algorithmOf(result, options.algorithms);
-  const Case run = makeCase(algorithm, result.isa, result.threads, result.device,
-                            changedValues(result.parameters, *algorithm.create()), result.answer);
-  opened.entries.push_back({.source = sourceOf(result.recording, source.path()),
-                            .cases = {run},
-                            .original = {},
-                            .known = result});
+  opened.entries.push_back(entryOf(resultOf(results, options.case_id, source.name()), source.path(),
+                                   options.algorithms));
   return opened;
 }
 

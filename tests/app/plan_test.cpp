@@ -8,6 +8,8 @@
 #include <set>
 
 #include "app/session_files.h"
+#include "broadmark/files.h"
+#include "broadmark/results.h"
 #include "session_options.h"
 
 namespace broadmark::tests {
@@ -233,6 +235,19 @@ TEST_F(PlanOfResults, HasTheChosenCase) {
   const Plan plan = makePlan(asked_);
   EXPECT_THAT(caseIds(plan), testing::ElementsAre(wrong_.id));
   ASSERT_TRUE(plan.entries.front().known);
+}
+
+TEST_F(PlanOfResults, MayBeOfLines) {
+  const std::string text = readTextFile(directory_ / "results.json");
+  const Results results = parseResults(text, "results.json");
+  for (const ResultWriter& writer : resultWriters()) {
+    if (writer.name == "jsonl") {
+      writeTextFile(directory_ / "results.jsonl", writer.format(results));
+    }
+  }
+  asked_.sources = {(directory_ / "results.jsonl").string()};
+  asked_.case_id = wrong_.id;
+  EXPECT_THAT(caseIds(makePlan(asked_)), testing::ElementsAre(wrong_.id));
 }
 
 TEST_F(PlanOfResults, NeedsAChosenCase) {

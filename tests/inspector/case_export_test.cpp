@@ -185,7 +185,7 @@ TEST_F(CaseExportTest, TheSearchGoesOnFromMismatchToMismatch) {
   EXPECT_EQ(session.playback.frame(), first);
 }
 
-TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
+TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   const RunProgress seen = findMismatch("faulty");
   ASSERT_TRUE(seen.stop);
   const std::uint32_t wrong = seen.stop->frame;
@@ -214,12 +214,11 @@ TEST_F(CaseExportTest, AResultsFileOffersItsCases) {
   }
   session.open(directory / "r.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
-  ASSERT_TRUE(session.case_choice);
-  ASSERT_EQ(session.case_choice->cases.size(), 2U);
-  EXPECT_FALSE(session.case_choice->all);
-  EXPECT_FALSE(session.case_choice->cases[0].wrong);
-  EXPECT_TRUE(session.case_choice->cases[1].wrong);
-  EXPECT_EQ(session.case_choice->cases[1].status, Status::mismatch);
+  ASSERT_TRUE(session.results);
+  ASSERT_EQ(session.results->rows().size(), 2U);
+  EXPECT_EQ(session.results->rows()[0].mismatches, 0U);
+  EXPECT_EQ(session.results->rows()[1].mismatches, 1U);
+  EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
 
   session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = settle();

@@ -99,6 +99,22 @@ TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
               ElementsAre("missed", "missed", "missed", "false", "right", "free"));
 }
 
+TEST(Colouring, WhatOnlyOneOfTwoAnswersHas) {
+  const std::vector<Aabb> boxes = someBoxes(7);
+  const std::vector<std::uint32_t> overlaps = {1, 1, 1, 1, 1, 0, 0};
+  const std::vector<Pair> first_only = {{0, 1}, {1, 77}};
+  const std::vector<Pair> second_only = {{1, 2}, {5, 88}};
+  const ColouringInput::Comparison comparison{first_only, second_only};
+  ColouringInput input;
+  input.boxes = boxes;
+  input.overlaps = overlaps;
+  EXPECT_EQ(coloured("comparison", input).legend.size(), 1U);
+  input.comparison = &comparison;
+  EXPECT_THAT(labels(coloured("comparison", input)),
+              ElementsAre("first only", "first only", "second only", "both", "both", "second only",
+                          "free"));
+}
+
 TEST(Colouring, MotionIsSeenAgainstThePreviousFrame) {
   const std::vector<Aabb> boxes = someBoxes(3);
   std::vector<Aabb> previous = boxes;

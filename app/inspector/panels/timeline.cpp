@@ -62,29 +62,21 @@ class TimelinePanel final : public Panel {
     std::vector<std::string> names = {"pairs"};
     for (const std::string& phase : kPhases.names()) names.push_back(phase);
     ui.combo("##quantity", quantity_, names, "What of the algorithms is plotted", 150 * ui.scale);
-    besideIfRoom(110 * ui.scale);
+    Ui::besideIfRoom(110 * ui.scale);
     ui.checkbox("logarithmic", logarithmic_);
-    besideIfRoom(65 * ui.scale);
+    Ui::besideIfRoom(65 * ui.scale);
     ui.checkbox("pairs", shows_pairs_,
                 "How many pairs overlap, as a thin line whose scale stands at the right");
     if (context.progress.population.size() > 0) {
-      besideIfRoom(75 * ui.scale);
+      Ui::besideIfRoom(75 * ui.scale);
       ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
     }
-    besideIfRoom(90 * ui.scale);
+    Ui::besideIfRoom(90 * ui.scale);
     ImGui::BeginDisabled(!timeline.zoomed());
     if (ui.button("All frames", "Undoes zooming with the wheel")) timeline.showAll();
     ImGui::EndDisabled();
-    besideIfRoom(240 * ui.scale);
+    Ui::besideIfRoom(240 * ui.scale);
     drawBudget(context);
-  }
-
-  /// Puts what is `width` wide beside the last item, or, without room for it, into the next line.
-  static void besideIfRoom(float width) {
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-    if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) {
-      ImGui::SameLine();
-    }
   }
 
   static void drawBudget(PanelContext& context) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadmark/recording.h"
 #include "inspector/panel.h"
 #include "inspector/view.h"
 
@@ -33,6 +34,7 @@ class ViewPanel final : public Panel {
     ui.checkbox("axes", view.axes);
     ui.checkbox("selection through others", view.xray,
                 "Outlines the selected bodies over what stands before them");
+    drawSecond(context);
     drawFilter(context);
     drawStructure(context);
     drawDirections(context);
@@ -77,6 +79,73 @@ class ViewPanel final : public Panel {
     ImGui::BeginDisabled(!filter.hides());
     if (ui.button("Show all bodies")) filter = {};
     ImGui::EndDisabled();
+  }
+
+  /// What stands beside the view.
+  static void drawSecond(PanelContext& context) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    ui.heading("Beside");
+    bool on = session.second.has_value();
+    if (ui.checkbox("second view", on,
+                    "Another algorithm's answer, another frame or another recording beside the "
+                    "first view (V); selecting a body in one selects it in both")) {
+      session.showSecond(on);
+    }
+    if (!session.second) return;
+    const auto scope = ui.scope("second");
+    SecondWish& second = *session.second;
+    drawSecondAnswer(ui, session, second);
+    bool stays = second.frame.has_value();
+    if (ui.checkbox("at frame", stays, "Stays at a frame while the first view plays")) {
+      second.frame.reset();
+      if (stays) second.frame = session.playback.frame();
+    }
+    if (second.frame) {
+      std::int64_t frame = *second.frame;
+      if (ui.integer("frame", frame, 0, lastFrameOf(context), "That the second view shows")) {
+        second.frame = static_cast<std::uint32_t>(frame);
+      }
+    }
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (!second.footage) {
+      if (ui.button("Another recording…", "Opens it in the second view", width)) {
+        askRecording(context);
+      }
+    } else {
+      ui.faint(fittingText(second.footage->title, width));
+      ui.tooltip(second.footage->recording.string().c_str());
+      if (ui.button("The same recording", "As in the first view", width)) second.footage.reset();
+    }
+    ui.checkbox("cameras linked", session.linked, "One camera moves both views");
+  }
+
+  static void drawSecondAnswer(Ui& ui, Session& session, SecondWish& second) {
+    std::vector<std::string> names = {"oracle"};
+    std::size_t chosen = 0;
+    for (const LaneEdit& lane : session.lanes.list) {
+      if (lane.number == second.lane) chosen = names.size();
+      names.push_back(caseName(lane.spec().run));
+    }
+    if (!ui.combo("answer of", chosen, names, "Whose pairs the second view shows")) return;
+    second.lane = chosen == 0 ? 0 : session.lanes.list[chosen - 1].number;
+  }
+
+  static std::int64_t lastFrameOf(const PanelContext& context) {
+    const auto& shown = context.progress.second;
+    return shown ? shown->scene.frames : context.session.playback.lastFrame();
+  }
+
+  static void askRecording(PanelContext& context) {
+    context.files.ask({.title = "A recording for the second view",
+                       .purpose = FileDialog::Purpose::open,
+                       .extensions = recordingExtensions(),
+                       .suggestion = context.session.playback.footage()
+                                         ? context.session.playback.footage()->recording
+                                         : std::filesystem::path(),
+                       .chosen = [&session = context.session](const std::filesystem::path& path) {
+                         session.showBeside(path);
+                       }});
   }
 
   static void drawLayers(PanelContext& context) {

@@ -21,6 +21,12 @@ struct ColouringInput {
   std::span<const std::uint8_t> layers;     ///< as CollisionFilter::layers()
   std::span<const Pair> missed;
   std::span<const Pair> false_pairs;
+  /// What tells two answers apart; null: there is only one. `overlaps` is of either.
+  struct Comparison {
+    std::span<const Pair> first_only;
+    std::span<const Pair> second_only;
+  };
+  const Comparison* comparison = nullptr;
   bool dark = false;  ///< the background
 };
 

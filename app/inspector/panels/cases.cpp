@@ -1,0 +1,335 @@
+// The cases of a results file: their numbers, their times over the frames, and the way back to
+// each.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadmark/render/plot.h"
+#include "child_program.h"
+#include "inspector/curve_colours.h"
+#include "inspector/panel.h"
+#include "inspector/two_parts.h"
+#include "words.h"
+
+#include <imgui_stdlib.h>  // after imgui.h, which it lacks
+
+namespace broadmark::panels::cases {
+namespace {
+
+constexpr float kTableShare = 0.56F;     // of the width; the rest is the plot's
+constexpr float kRoomForBoth = 760;      // units: narrower, it is either the one or the other
+constexpr std::size_t kMostCurves = 24;  // more could not be told apart
+
+using Row = OpenedResults::Row;
+
+std::string timeText(const Row& row, double Summary::*which) {
+  return row.summary ? withPrefix((*row.summary).*which, "s") : "–";
+}
+
+std::string cellText(const Row& row, CaseColumn column) {
+  const CaseResult& result = row.result;
+  switch (column) {
+    case CaseColumn::algorithm:
+      return row.algorithm;
+    case CaseColumn::recording:
+      return row.recording;
+    case CaseColumn::isa:
+      return result.vectorised ? std::string(isaName(result.isa)) : "–";
+    case CaseColumn::threads:
+      return std::to_string(result.threads);
+    case CaseColumn::status:
+      return std::string(statusName(result.status));
+    case CaseColumn::mean:
+      return timeText(row, &Summary::seconds_per_frame);
+    case CaseColumn::median:
+      return timeText(row, &Summary::median);
+    case CaseColumn::p95:
+      return timeText(row, &Summary::p95);
+    case CaseColumn::pairs:
+      return fmt::format("{:.0f}", result.pairs_mean);
+    case CaseColumn::mismatches:
+      return result.checked ? std::to_string(row.mismatches) : "not checked";
+  }
+  return "";
+}
+
+class CasesPanel final : public Panel {
+ public:
+  CasesPanel()
+      : Panel("Cases", Place::bottom,
+              "The cases of a results file: their times, and each of them again") {}
+
+  void draw(PanelContext& context) override {
+    Ui& ui = context.ui;
+    if (!context.session.results) {
+      ui.paragraph(
+          "Open or drop a results file (.json or .jsonl, whole or not yet complete) to see its "
+          "cases, plot their times, and open each of them on what it ran on.");
+      return;
+    }
+    OpenedResults& results = *context.session.results;
+    const TwoParts parts{
+        .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
+    drawControls(context, results, parts.both());
+    parts.draw([&] { drawTable(context, results); }, [&] { drawTimes(context, results); });
+  }
+
+ private:
+  void drawControls(PanelContext& context, OpenedResults& results, bool both) {
+    Ui& ui = context.ui;
+    const std::string what = summaryText(results);
+    ui.faint(fittingText(what, ImGui::GetContentRegionAvail().x));
+    ui.tooltip(fmt::format("{}: {}", results.file().string(), what).c_str());
+    ImGui::SetNextItemWidth(110 * ui.scale);
+    ImGui::InputTextWithHint("##search", "search", &searched_);
+    ui.note("search");
+    ui.tooltip("Lists the cases whose id contains this");
+    ImGui::SameLine();
+    ui.checkbox("wrong only", only_wrong_, "Lists the cases that gave a wrong answer");
+    results.filter(searched_, only_wrong_);
+    if (!both) {
+      ImGui::SameLine();
+      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
+    }
+    Ui::besideIfRoom(105 * ui.scale);
+    drawReport(context, results);
+  }
+
+  /// Writes the report page of all cases, and opens it.
+  static void drawReport(PanelContext& context, const OpenedResults& results) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    const BackgroundReport::Report report = session.report_page.report();
+    if (report.state == TaskState::running) {
+      if (ui.button("Cancel report", "It is being written")) session.report_page.cancel();
+      return;
+    }
+    if (ui.button("Report page…",
+                  "Writes all cases as an HTML page, as python3 -m broadmark "
+                  "report does")) {
+      askPage(context, results);
+    }
+    static const bool opens = isProgramThere("xdg-open");
+    if (report.state != TaskState::done || !opens) return;
+    Ui::besideIfRoom(85 * ui.scale);
+    if (ui.button("Open page", report.page.string().c_str())) {
+      session.notices.attempt([&] { openByDesktop(report.page); });
+    }
+  }
+
+  static void askPage(PanelContext& context, const OpenedResults& results) {
+    std::filesystem::path page = results.file();
+    context.files.ask({.title = "Write the report page",
+                       .purpose = FileDialog::Purpose::save,
+                       .extensions = {".html"},
+                       .suggestion = page.replace_extension(".html"),
+                       .chosen = [&session = context.session,
+                                  file = results.file()](const std::filesystem::path& chosen) {
+                         session.notices.attempt([&] { session.report_page.start(file, chosen); });
+                       }});
+  }
+
+  static std::string summaryText(const OpenedResults& results) {
+    std::string text = fmt::format("{}: {}", results.file().filename().string(),
+                                   counted(results.rows().size(), "case"));
+    text += results.wrong() > 0 ? fmt::format(", {} wrong", results.wrong()) : ", none wrong";
+    return text + (results.complete() ? "" : ", not complete");
+  }
+
+  void drawTable(PanelContext& context, OpenedResults& results) const {
+    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
+                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
+                                       ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
+                                       ImGuiTableFlags_SortTristate;
+    if (results.listed().empty()) {
+      context.ui.faintParagraph(results.rows().empty() ? "The file has no cases."
+                                                       : "No case is like that.");
+      return;
+    }
+    const auto columns = static_cast<int>(kCaseColumns.entries.size()) + 1;
+    if (!ImGui::BeginTable("cases", columns, kFlags)) return;
+    ImGui::TableSetupScrollFreeze(2, 1);
+    ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
+    for (const auto& [column, name] : kCaseColumns.entries) {
+      ImGui::TableSetupColumn(std::string(name).c_str());
+    }
+    drawHeadings(context.ui);
+    sort(results);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(results.listed().size()));
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        drawRow(context, results, static_cast<std::size_t>(i));
+      }
+    }
+    ImGui::EndTable();
+  }
+
+  static void drawHeadings(Ui& ui) {
+    const auto scope = ui.scope("by");
+    ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+    for (int i = 0; i < ImGui::TableGetColumnCount(); ++i) {
+      if (!ImGui::TableSetColumnIndex(i)) continue;
+      ImGui::TableHeader(ImGui::TableGetColumnName(i));
+      ui.note(ImGui::TableGetColumnName(i));
+    }
+  }
+
+  static void sort(OpenedResults& results) {
+    ImGuiTableSortSpecs* const wanted = ImGui::TableGetSortSpecs();
+    if (wanted == nullptr || !wanted->SpecsDirty) return;
+    wanted->SpecsDirty = false;
+    if (wanted->SpecsCount == 0) {
+      results.sort({}, false);
+      return;
+    }
+    const ImGuiTableColumnSortSpecs& by = wanted->Specs[0];
+    results.sort(kCaseColumns.entries.at(static_cast<std::size_t>(by.ColumnIndex) - 1).value,
+                 by.SortDirection == ImGuiSortDirection_Descending);
+  }
+
+  void drawRow(PanelContext& context, OpenedResults& results, std::size_t place) const {
+    Ui& ui = context.ui;
+    const std::size_t index = results.listed()[place];
+    Row& row = results.rows()[index];
+    ImGui::PushID(static_cast<int>(index));
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {0, 0});
+    bool marked = row.marked;
+    if (ui.checkbox(fmt::format("##mark {}", row.result.id).c_str(), marked,
+                    "Plots its times over the frames")) {
+      results.mark(index, marked);
+    }
+    ImGui::PopStyleVar();
+    for (const auto& [column, name] : kCaseColumns.entries) {
+      ImGui::TableNextColumn();
+      if (column == CaseColumn::algorithm) {
+        const std::optional<Rgb> curve = curveColourOf(ui, results, index);
+        drawOpener(context, row, curve ? curve : colourOf(ui, row, column), place == 0);
+      } else {
+        const std::optional<Rgb> rgb = colourOf(ui, row, column);
+        rgb ? ui.coloured(*rgb, cellText(row, column)) : ui.plain(cellText(row, column));
+        if (column == CaseColumn::status) ui.tooltip(row.result.reason.c_str());
+      }
+    }
+    ImGui::PopID();
+  }
+
+  /// The cell that opens the case, across the whole row.
+  static void drawOpener(PanelContext& context, Row& row, std::optional<Rgb> rgb, bool first) {
+    Ui& ui = context.ui;
+    const FootageRequest* open = context.session.playback.footage().get();
+    const bool is_open =
+        open != nullptr && open->source == FootageSource::results && open->title == row.result.id;
+    ui.letters.need(row.algorithm);
+    ImGui::PushStyleColor(ImGuiCol_Text, rgb ? colour(*rgb) : ImGui::GetColorU32(ImGuiCol_Text));
+    const bool pressed =
+        ImGui::Selectable(row.algorithm.c_str(), is_open, ImGuiSelectableFlags_SpanAllColumns);
+    ImGui::PopStyleColor();
+    ui.note(row.result.id);
+    if (first) ui.note("first");
+    const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
+                                                 : "Cannot be opened: " + row.obstacle;
+    ui.tooltip(tip.c_str());
+    if (pressed) context.session.openCase(row);
+  }
+
+  /// Nothing: as all text.
+  static std::optional<Rgb> colourOf(const Ui& ui, const Row& row, CaseColumn column) {
+    if (column == CaseColumn::status) {
+      return row.result.status == Status::ok ? ui.theme.good : ui.theme.bad;
+    }
+    if (column == CaseColumn::mismatches && row.mismatches > 0) return ui.theme.bad;
+    if (!row.obstacle.empty()) return ui.theme.faint;
+    return {};
+  }
+
+  /// The colour of its curve, if it has one.
+  std::optional<Rgb> curveColourOf(const Ui& ui, OpenedResults& results, std::size_t index) const {
+    const auto& curves = results.curves(phase());
+    const auto found = std::ranges::find(curves, index, &OpenedResults::Curve::row);
+    if (found == curves.end()) return {};
+    return curveColour(static_cast<int>(found - curves.begin()) + 1, ui.theme.dark);
+  }
+
+  [[nodiscard]] Phase phase() const { return kPhases.entries.at(phase_).value; }
+
+  void drawTimes(PanelContext& context, OpenedResults& results) {
+    Ui& ui = context.ui;
+    ui.combo("##phase", phase_, kPhases.names(), "Which time is plotted", 150 * ui.scale);
+    ImGui::SameLine();
+    ui.checkbox("logarithmic", logarithmic_);
+    const auto& curves = results.curves(phase());
+    if (curves.empty()) {
+      ui.faintParagraph("Mark cases in the table to see their times over the frames.");
+      return;
+    }
+    if (curves.size() > kMostCurves) {
+      ImGui::SameLine();
+      ui.faint(fmt::format("the first {} of {} marked", kMostCurves, curves.size()));
+    }
+    drawPlotOf(context, results,
+               {curves.begin(), curves.begin() + static_cast<std::ptrdiff_t>(
+                                                     std::min(kMostCurves, curves.size()))});
+  }
+
+  void drawPlotOf(PanelContext& context, const OpenedResults& results,
+                  std::span<const OpenedResults::Curve> curves) {
+    const Theme& theme = context.ui.theme;
+    const FootageRequest* open = context.session.playback.footage().get();
+    const bool is_open = open != nullptr && open->source == FootageSource::results;
+    std::vector<PlotCurve> plotted;
+    PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
+    const auto& recording = results.rows()[curves.front().row].recording;
+    const bool one_recording = std::ranges::all_of(curves, [&](const OpenedResults::Curve& curve) {
+      return results.rows()[curve.row].recording == recording;
+    });
+    std::uint32_t last = 1;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      const Row& row = results.rows()[curves[i].row];
+      plotted.push_back({.label = one_recording ? row.algorithm : row.result.id,
+                         .colour = curveColour(static_cast<int>(i) + 1, theme.dark),
+                         .values = &curves[i].seconds,
+                         .circled = nullptr});
+      wrong.frames.push_back(&curves[i].mismatches);
+      last = std::max(last, curves[i].seconds.size() - 1);
+    }
+    zoom_.follow(nullptr, last, 0);
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const PlotResult done = drawPlot("plot", plotted,
+                                     {.logarithmic = logarithmic_,
+                                      .unit = "s",
+                                      .first = zoom_.first(),
+                                      .last = zoom_.last(),
+                                      .playhead = is_open ? context.session.playback.frame() : 0,
+                                      .span = {},
+                                      .marks = {wrong}},
+                                     room.x, room.y);
+    context.ui.note("plot");
+    if (done.zoom != 0) zoom_.zoom(done.zoom, done.zoom_at);
+    if (done.moved != 0) zoom_.move(done.moved);
+    if (done.clicked_frame && is_open) {
+      context.session.playback.goTo(std::llround(*done.clicked_frame));
+    }
+  }
+
+  std::string searched_;
+  bool only_wrong_ = false;
+  bool plot_alone_ = false;
+  std::size_t phase_ = kPhases.entries.size() - 1;  ///< the last: total
+  bool logarithmic_ = true;
+  Timeline zoom_;
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<CasesPanel>(); }
+
+}  // namespace broadmark::panels::cases

@@ -1,0 +1,180 @@
+// What the two views tell apart: who finds what, and who is slower where.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "broadmark/render/plot.h"
+#include "inspector/panel.h"
+#include "inspector/time_ratios.h"
+#include "inspector/two_parts.h"
+#include "inspector/wrong_pair.h"
+#include "words.h"
+
+namespace broadmark::panels::compare {
+namespace {
+
+constexpr float kPairsShare = 0.42F;        // of the width; the rest is the plot's
+constexpr float kRoomForBoth = 560;         // units: narrower, it is either the one or the other
+constexpr double kBetweenSummaries = 0.25;  // seconds
+
+class ComparePanel final : public Panel {
+ public:
+  ComparePanel()
+      : Panel("Compare", Place::bottom,
+              "The two views: which pairs only one of them shows, and who is slower where") {}
+
+  void draw(PanelContext& context) override {
+    Ui& ui = context.ui;
+    if (!context.session.second) {
+      ui.paragraph(
+          "A second view beside the first one shows another algorithm's answer, another frame or "
+          "another recording. Here stands then who finds what, and who is slower where.");
+      if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
+        context.session.showSecond(true);
+      }
+      return;
+    }
+    const TwoParts parts{
+        .share = kPairsShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = times_alone_};
+    if (!parts.both()) {
+      ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");
+    }
+    parts.draw([&] { drawPairs(context); }, [&] { drawTimes(context); });
+  }
+
+ private:
+  static void drawPairs(PanelContext& context) {
+    Ui& ui = context.ui;
+    const PairComparison* const comparison = context.progress.comparison.get();
+    if (comparison == nullptr) {
+      ui.faintParagraph("There are not two answers yet.");
+      return;
+    }
+    ui.plain(fmt::format("{} in both", counted(comparison->both, "pair")));
+    ui.coloured(ui.theme.bad, fmt::format("{} first only", comparison->first_only.size()));
+    ImGui::SameLine();
+    ui.coloured(ui.theme.accent, fmt::format("{} second only", comparison->second_only.size()));
+    ui.tooltip("Look colours the bodies of these pairs: First and second view");
+    ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
+    const std::size_t firsts = comparison->first_only.size();
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(firsts + comparison->second_only.size()));
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        const bool of_first = index < firsts;
+        drawPair(context,
+                 of_first ? comparison->first_only[index] : comparison->second_only[index - firsts],
+                 of_first);
+        if (i == 0) ui.note("first pair");
+      }
+    }
+    ImGui::EndChild();
+  }
+
+  static void drawPair(PanelContext& context, Pair pair, bool of_first) {
+    Ui& ui = context.ui;
+    const auto& selected = context.session.selection.bodies();
+    const bool is_selected = selected.size() == 2 && selected[0] == pair.a && selected[1] == pair.b;
+    ImGui::PushID(of_first ? 0 : 1);
+    if (ui.selectable(pairName(pair).c_str(), is_selected, of_first ? "first only" : "second only",
+                      of_first ? ui.theme.bad : ui.theme.accent,
+                      "Selects both bodies and flies to them")) {
+      context.session.selection.visit(pair);
+    }
+    ImGui::PopID();
+  }
+
+  /// The lane of this number, or null.
+  static const LaneReport* laneOf(const PanelContext& context, int number) {
+    const auto& lanes = context.progress.lanes;
+    const auto found = std::ranges::find_if(
+        lanes, [&](const LaneReport& lane) { return lane.spec.number == number; });
+    return found == lanes.end() ? nullptr : &*found;
+  }
+
+  void drawTimes(PanelContext& context) {
+    Ui& ui = context.ui;
+    const Session& session = context.session;
+    const LaneReport* const first = laneOf(context, session.lanes.shown());
+    const LaneReport* const second = laneOf(context, session.second->lane);
+    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
+      ui.faintParagraph(
+          "Times are compared where the views show two algorithms on the same recording.");
+      return;
+    }
+    summarise(*first, *second);
+    if (!ratios_.highest) {
+      ui.faintParagraph("Play some frames to see in which of them who is slower.");
+      return;
+    }
+    ui.plain(
+        fittingText(fmt::format("{} takes {:.3g} times as long as {} (median); slower in {} of {}",
+                                first->spec.run.algorithm.id, ratios_.median,
+                                second->spec.run.algorithm.id, ratios_.first_slower,
+                                counted(ratios_.first_slower + ratios_.second_slower, "frame")),
+                    ImGui::GetContentRegionAvail().x));
+    ui.note("median");
+    drawExtreme(context, "most", *ratios_.highest);
+    Ui::besideIfRoom(150 * ui.scale);
+    drawExtreme(context, "least", *ratios_.lowest);
+    drawRatios(context);
+  }
+
+  /// A button that goes to the frame.
+  static void drawExtreme(PanelContext& context, const char* name, TimeRatios::Extreme of) {
+    const std::string label =
+        fmt::format("{} {:.3g} in frame {}###{}", name, of.ratio, of.frame, name);
+    if (context.ui.button(label.c_str(), "Goes to this frame")) {
+      context.session.playback.goTo(of.frame);
+    }
+  }
+
+  void drawRatios(PanelContext& context) const {
+    const Timeline& timeline = context.session.timeline;
+    const PlotCurve curve{
+        .label = "ratio", .colour = context.ui.theme.accent, .values = &ratios_.ratios};
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const PlotResult done = drawPlot("ratios", {curve},
+                                     {.logarithmic = true,
+                                      .unit = "",
+                                      .first = timeline.first(),
+                                      .last = timeline.last(),
+                                      .playhead = context.session.playback.frame(),
+                                      .limit = 1,
+                                      .limit_colour = context.ui.theme.warning,
+                                      .span = {},
+                                      .marks = {}},
+                                     room.x, room.y);
+    context.ui.note("ratios");
+    if (done.clicked_frame) context.session.playback.goTo(std::llround(*done.clicked_frame));
+    if (done.zoom != 0) context.session.timeline.zoom(done.zoom, done.zoom_at);
+    if (done.moved != 0) context.session.timeline.move(done.moved);
+  }
+
+  /// Long recordings take a while: not for each picture.
+  void summarise(const LaneReport& first, const LaneReport& second) {
+    const std::array<int, 2> numbers = {first.spec.number, second.spec.number};
+    const double now = ImGui::GetTime();
+    if (numbers == summarised_ && now < summarise_next_) return;
+    summarised_ = numbers;
+    summarise_next_ = now + kBetweenSummaries;
+    ratios_ = ratiosOf(first, second);
+  }
+
+  bool times_alone_ = false;
+  TimeRatios ratios_;
+  std::array<int, 2> summarised_{};  ///< lanes, by number
+  double summarise_next_ = 0;        ///< seconds of the user interface
+};
+
+}  // namespace
+
+std::unique_ptr<Panel> makePanel() { return std::make_unique<ComparePanel>(); }
+
+}  // namespace broadmark::panels::compare

@@ -1,0 +1,77 @@
+#include "inspector/background_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "child_program.h"
+#include "engine/helpers.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+TEST(RunProgram, KeepsWhatIsPrintedAndTheStatus) {
+  const ProgramEnd end =
+      runProgram({"sh", "-c", "echo $ONE; echo to stderr >&2; exit 3"}, {{"ONE", "first"}});
+  EXPECT_EQ(end.status, 3);
+  EXPECT_EQ(end.printed, "first\nto stderr\n");
+  EXPECT_EQ(runProgram({"sh", "-c", "kill -9 $$"}).status, 128 + 9);
+}
+
+TEST(RunProgram, SaysThatThereIsNone) {
+  EXPECT_TRUE(isProgramThere("sh"));
+  EXPECT_FALSE(isProgramThere("no-such-program"));
+  try {
+    runProgram({"no-such-program"});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no-such-program: cannot be started"));
+  }
+}
+
+TEST(RunProgram, EndsWithAllThatItHasStarted) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_THROW(runProgram({"sh", "-c", "sleep 60 & sleep 60; :"}, {}, [] { return true; }),
+               Cancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+}
+
+TEST(PackageFolder, IsBesideTheSourceOrWhereItIsInstalled) {
+  const TemporaryDirectory directory;
+  const fs::path root = directory / "";
+  const auto place = [&](const char* folder) {
+    fs::create_directories(root / folder / "broadmark");
+    writeTextFile(root / folder / "broadmark/__main__.py", "");
+  };
+  const fs::path built = root / "source/build/release/broadmark";
+  const fs::path installed = root / "usr/bin/broadmark";
+  EXPECT_EQ(packageFolder(built), "");
+  place("source/python");
+  EXPECT_EQ(packageFolder(built), root / "source/python");
+  fs::create_directories(root / "usr/lib/python3/dist-packages");
+  place("usr/lib/python3.11/dist-packages");
+  EXPECT_EQ(packageFolder(installed), root / "usr/lib/python3.11/dist-packages");
+}
+
+TEST(BackgroundReport, SaysWhatIsWrong) {
+  const TemporaryDirectory directory;
+  BackgroundReport report;
+  EXPECT_THROW(report.start("results.json", directory / "none/page.html"), InputError);
+  report.start(directory / "none.json", directory / "page.html");
+  while (report.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  EXPECT_TRUE(report.takeEnd());
+  EXPECT_EQ(report.report().state, TaskState::failed);
+  EXPECT_THAT(report.report().failure, HasSubstr("no report page"));
+  EXPECT_FALSE(fs::exists(directory / "page.html"));
+}
+
+}  // namespace
+}  // namespace broadmark::tests

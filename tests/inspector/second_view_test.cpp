@@ -1,0 +1,172 @@
+// What two views show beside each other, and what they tell apart.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "inspector/helpers.h"
+#include "inspector/pair_comparison.h"
+#include "inspector/time_ratios.h"
+
+namespace broadmark::tests {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(ComparePairs, TellsWhoHasWhat) {
+  const std::vector<Pair> first = {{4, 5}, {1, 2}, {0, 3}, {1, 2}};
+  const std::vector<Pair> second = {{1, 2}, {4, 6}, {4, 5}, {2, 3}};
+  const PairComparison comparison = comparePairs(first, second);
+  EXPECT_THAT(comparison.first_only, ElementsAre(Pair{0, 3}));
+  EXPECT_THAT(comparison.second_only, ElementsAre(Pair{2, 3}, Pair{4, 6}));
+  EXPECT_EQ(comparison.both, 2U);
+  EXPECT_EQ(comparePairs(first, {}).both, 0U);
+}
+
+LaneReport laneOf(const std::vector<std::int64_t>& nanoseconds) {
+  LaneReport lane;
+  for (const std::int64_t ns : nanoseconds) {
+    FrameRecord& record = lane.frames.emplace_back();
+    record.run = ns > 0;
+    record.times[Phase::total] = ns;
+  }
+  return lane;
+}
+
+TEST(TimeRatios, AreOfFramesThatBothHaveRunUndisturbed) {
+  LaneReport first = laneOf({10, 30, 0, 40, 99, 7});
+  const LaneReport second = laneOf({20, 10, 50, 40, 1});
+  first.frames[4].disturbed = true;
+  const TimeRatios ratios = ratiosOf(first, second);
+  EXPECT_FLOAT_EQ(ratios.ratios.at(1), 0.5F);
+  EXPECT_FLOAT_EQ(ratios.ratios.at(2), 3);
+  EXPECT_TRUE(std::isnan(ratios.ratios.at(3)));
+  EXPECT_TRUE(std::isnan(ratios.ratios.at(5)));
+  EXPECT_EQ(ratios.first_slower, 1U);
+  EXPECT_EQ(ratios.second_slower, 1U);
+  EXPECT_DOUBLE_EQ(ratios.median, 1);
+  EXPECT_EQ(ratios.highest->frame, 2U);
+  EXPECT_EQ(ratios.lowest->frame, 1U);
+  EXPECT_FALSE(ratiosOf(first, laneOf({})).highest);
+}
+
+class SecondViewTest : public testing::Test {
+ protected:
+  SecondViewTest() : session(algorithmsAndFaultyOnes()) {
+    setParameters(*session.draft, {{"objects", "60"}, {"frames", "20"}, {"engine", "kinematic"}});
+    session.simulate();
+    faulty = session.lanes.add("faulty-extra").number;
+    sap = session.lanes.add("sap").number;
+    session.lanes.show(faulty);
+    session.mismatches.stop_at_mismatch = false;
+    session.playback.goTo(12);
+    settled(session);
+  }
+
+  std::vector<Pair> rightPairs(const Snapshot& snapshot) {
+    return sweptPairs(*snapshot.boxes, snapshot.scene.filter);
+  }
+
+  TemporaryDirectory directory;
+  Session session;
+  int faulty = 0;
+  int sap = 0;
+};
+
+TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
+  EXPECT_EQ(settled(session).second, nullptr);
+  session.showSecond(true);
+  const RunProgress seen = settled(session);
+  ASSERT_TRUE(seen.second);
+  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_EQ(seen.snapshot->lane, faulty);
+  EXPECT_EQ(seen.second->frame, 12U);
+  EXPECT_EQ(*seen.second->boxes, *seen.snapshot->boxes);
+  ASSERT_TRUE(seen.comparison);
+  EXPECT_EQ(seen.comparison->both, seen.second->pairs.size());
+  EXPECT_THAT(seen.comparison->second_only, IsEmpty());
+  EXPECT_EQ(seen.comparison->first_only.size(),
+            seen.snapshot->pairs.size() - seen.second->pairs.size());
+
+  // It follows the first one.
+  session.playback.goTo(15);
+  EXPECT_EQ(settled(session).second->frame, 15U);
+  session.lanes.remove(sap);
+  EXPECT_EQ(settled(session).second->lane, 0);
+  session.showSecond(false);
+  const RunProgress alone = settled(session);
+  EXPECT_EQ(alone.second, nullptr);
+  EXPECT_EQ(alone.comparison, nullptr);
+}
+
+TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
+  session.second = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
+  RunProgress seen = settled(session);
+  ASSERT_TRUE(seen.second);
+  EXPECT_EQ(seen.second->frame, 5U);
+  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_TRUE(seen.second->checked);
+  EXPECT_FALSE(seen.second->difference.isMismatch());
+  EXPECT_EQ(seen.second->right_pairs, rightPairs(*seen.second).size());
+  EXPECT_EQ(seen.snapshot->frame, 12U);
+  EXPECT_NE(*seen.second->boxes, *seen.snapshot->boxes);
+  // The lanes have not run anew for that.
+  for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.frame, 12U);
+
+  // Later than the first view's: it is simulated as far as that.
+  session.second->frame = 18;
+  seen = settled(session);
+  EXPECT_EQ(seen.second->frame, 18U);
+  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_EQ(seen.snapshot->frame, 12U);
+  // Back again, by a fresh instance; and where both are at the same frame.
+  for (const std::uint32_t frame : {3U, 12U, 0U, 99U}) {
+    session.second->frame = frame;
+    seen = settled(session);
+    EXPECT_EQ(seen.second->frame, std::min(frame, 20U));
+    EXPECT_EQ(seen.second->pairs.size(), rightPairs(*seen.second).size());
+  }
+}
+
+TEST_F(SecondViewTest, AnotherRecording) {
+  const std::filesystem::path other = vanishingBodies(directory, 40);
+  session.lanes.show(sap);  // it copes with bodies that vanish
+  session.showBeside(other);
+  RunProgress seen = settled(session);
+  ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
+  ASSERT_TRUE(seen.second);
+  EXPECT_EQ(seen.second->footage->title, other.filename());
+  EXPECT_EQ(seen.second->frame, 12U);
+  EXPECT_EQ(seen.second->present, 28U);
+  EXPECT_EQ(seen.second->lane, sap);
+  EXPECT_EQ(seen.snapshot->footage, session.playback.footage());
+
+  // It stays when something else is opened beside it.
+  session.simulate();
+  session.playback.goTo(2);
+  seen = settled(session);
+  ASSERT_TRUE(seen.second);
+  EXPECT_EQ(seen.second->frame, 2U);
+  EXPECT_EQ(seen.second->present, 38U);
+}
+
+TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
+  session.showBeside("none.aabbs");
+  ASSERT_EQ(session.notices.errors.size(), 1U);
+  EXPECT_FALSE(session.second);
+
+  // It vanishes before it is opened.
+  const std::filesystem::path other = vanishingBodies(directory, 40);
+  session.showBeside(other);
+  std::filesystem::remove(other);
+  const RunProgress seen = settled(session);
+  EXPECT_EQ(seen.second, nullptr);
+  EXPECT_THAT(seen.second_failure, HasSubstr("vanishing.broadmark"));
+  EXPECT_TRUE(seen.snapshot);
+  EXPECT_EQ(seen.failure, "");
+}
+
+}  // namespace
+}  // namespace broadmark::tests
