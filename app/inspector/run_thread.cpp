@@ -104,12 +104,7 @@ void RunThread::loop() {
       changed_.notify_all();
       continue;
     }
-    if (anew) {
-      if (!showSame(current_, wished_)) shown_ = false;
-      current_ = wished_;
-      taken_ = wishes_;
-      idle_ = false;
-    }
+    if (anew) takeWish();
     if (idle_) {
       changed_.wait(lock, [this] { return stopping_ || errand_ != nullptr || taken_ != wishes_; });
       continue;
@@ -131,6 +126,19 @@ void RunThread::loop() {
   }
 }
 
+/// With mutex_ held.
+void RunThread::takeWish() {
+  if (!showSame(current_, wished_)) shown_ = false;
+  looked_back_ = false;
+  // One that rests after the shown frame goes on from there only if it was checked up to there.
+  if (wished_.check && footage_) {
+    for (const auto& lane : lanes_) lane->requireChecked(target());
+  }
+  current_ = wished_;
+  taken_ = wishes_;
+  idle_ = false;
+}
+
 /// Does one piece of work; false when there is none left.
 bool RunThread::step() {
   if (current_.footage != opened_) {
@@ -139,6 +147,7 @@ bool RunThread::step() {
   }
   if (footage_ == nullptr) return false;
   if (reconcileLanes()) return true;
+  if (!std::exchange(looked_back_, true) && lookBack()) return true;
   if (advance()) return true;
   if (shown_) return false;
   show();
@@ -167,6 +176,7 @@ void RunThread::openFootage() {
   lanes_.clear();
   footage_.reset();
   oracle_ = Oracle(std::size_t{256} << 20);
+  seen_.clear();
   stop_.reset();
   shown_ = false;
   opened_ = current_.footage;
@@ -202,6 +212,9 @@ bool RunThread::reconcileLanes() {
                                          : std::make_unique<Lane>(spec, make_host_, [this, spec] {
                                              return isUnwanted(spec);
                                            }));
+  }
+  for (const auto& gone : kept) {
+    if (gone) seen_.forget(gone->spec().number);
   }
   kept.clear();
   shown_ = false;
@@ -252,7 +265,7 @@ bool RunThread::advance() {
   // The hindmost first: then all pass each frame before any goes on.
   Lane* hindmost = nullptr;
   for (const auto& lane : lanes_) {
-    if (lane->report().ended || lane->standsAt(target())) continue;
+    if (lane->report().ended || lane->standsAt(target()) || mayRest(*lane)) continue;
     const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
     if (restarts) {
       lane->restart(footage_->scene(), footage_->at(0));
@@ -273,7 +286,10 @@ bool RunThread::advance() {
     return false;
   }
   const std::uint32_t next = hindmost->report().frame + 1;
-  tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next),
+  const std::string& id = hindmost->spec().run.algorithm.id;
+  tell(hindmost->report().record(next) != nullptr
+           ? fmt::format("running {} again up to frame {}", id, target())
+           : fmt::format("{}: frame {}", id, next),
        fractionOf(next, target()));
   return advanceLane(*hindmost, frameAt(next));
 }
@@ -281,8 +297,9 @@ bool RunThread::advance() {
 bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
   shown_ = false;
   lane.advance(frame, gate_);
+  std::optional<FrameDifference> difference;
   if (current_.check && lane.standsAt(frame.index)) {
-    const std::optional<FrameDifference> difference = lane.check(frame, oracle_);
+    difference = lane.check(frame, oracle_);
     const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
     if (difference && difference->isMismatch() && !known && current_.stop_at_mismatch &&
         (!stop_ || frame.index < stop_->frame)) {
@@ -290,6 +307,12 @@ bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
       const std::lock_guard lock(mutex_);
       progress_.stop = stop_;
     }
+  }
+  // show() asks at the target.
+  if (&lane == shownLane() && frame.index != target() && lane.standsAt(frame.index) &&
+      !hasSeen(frame.index)) {
+    const SeenAnswer answer = answerOf(lane, frame, std::move(difference));
+    if (lane.standsAt(frame.index)) seen_.remember(lane.spec().number, frame.index, answer);
   }
   report(lane);
   return true;
@@ -329,9 +352,7 @@ void RunThread::report(const Lane& lane) {
 
 Lane* RunThread::shownLane() const {
   for (const auto& lane : lanes_) {
-    if (lane->spec().number == current_.shown_lane && lane->standsAt(target()) && target() > 0) {
-      return lane.get();
-    }
+    if (lane->spec().number == current_.shown_lane && target() > 0) return lane.get();
   }
   return nullptr;
 }
@@ -366,18 +387,11 @@ void RunThread::show() {
   snapshot->present = presentIn(*snapshot->boxes);
   const Frame frame{index, *snapshot->boxes};
   Lane* const lane = shownLane();
-  if (lane != nullptr) {
-    snapshot->lane = lane->spec().number;
-    snapshot->pairs = lane->answer();
-    if (current_.check && lane->standsAt(index)) {
-      if (std::optional<FrameDifference> difference = lane->check(frame, oracle_)) {
-        snapshot->checked = true;
-        snapshot->difference = std::move(*difference);
-        const PairRun right = oracle_.pairs(frame.boxes, snapshot->scene.filter);
-        snapshot->right_pairs = right.size();
-        snapshot->right_overlaps = overlapCounts(snapshot->boxes->size(), {&right, 1});
-      }
-    }
+  SeenAnswer answer;
+  if (lane != nullptr && lane->standsAt(index)) {
+    std::optional<FrameDifference> difference;
+    if (current_.check) difference = lane->check(frame, oracle_);
+    answer = answerOf(*lane, frame, std::move(difference));
     if (current_.structure && lane->standsAt(index)) {
       snapshot->structure = std::make_shared<RecordedDrawing>(lane->structure());
     }
@@ -385,15 +399,18 @@ void RunThread::show() {
       report(*lane);
       return;
     }
+    snapshot->lane = lane->spec().number;
+    seen_.remember(snapshot->lane, index, answer);
+  } else if (lane != nullptr && hasSeen(index)) {
+    snapshot->lane = lane->spec().number;
+    answer = *seen_.recall(snapshot->lane, index);
   } else {
-    const std::span<const Pair> pairs = oracle_.pairs(frame.boxes, snapshot->scene.filter);
-    snapshot->pairs.assign(pairs.begin(), pairs.end());
+    answer = oraclesAnswer(frame);
   }
-  const PairRun answer = snapshot->pairs;
-  snapshot->overlaps = overlapCounts(snapshot->boxes->size(), {&answer, 1});
+  snapshot->take(std::move(answer), current_.check);
   shown_ = true;
   const std::lock_guard lock(mutex_);
-  if (lane == nullptr) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
+  if (snapshot->lane == 0) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = std::move(snapshot);
 }
 

@@ -19,9 +19,10 @@ namespace {
 namespace fs = std::filesystem;
 
 bool sameWish(const Wish& a, const Wish& b) {
-  return a.footage == b.footage && a.frame == b.frame && a.check == b.check &&
-         a.stop_at_mismatch == b.stop_at_mismatch && a.known_mismatch == b.known_mismatch &&
-         a.shown_lane == b.shown_lane && a.structure == b.structure && a.tracked == b.tracked &&
+  return a.footage == b.footage && a.frame == b.frame && a.playing == b.playing &&
+         a.check == b.check && a.stop_at_mismatch == b.stop_at_mismatch &&
+         a.known_mismatch == b.known_mismatch && a.shown_lane == b.shown_lane &&
+         a.structure == b.structure && a.tracked == b.tracked &&
          std::ranges::equal(a.lanes, b.lanes,
                             [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
 }
@@ -96,6 +97,7 @@ Wish Session::wish() const {
             .check = mismatches.check,
             .stop_at_mismatch = mismatches.stop_at_mismatch,
             .known_mismatch = mismatches.known(),
+            .playing = playback.playing(),
             .shown_lane = lanes.shown(),
             .structure = view.structure,
             .tracked = selection.bodies()};

@@ -187,6 +187,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["last_frame"] = std::to_string(session.playback.lastFrame());
   values["known_frames"] = std::to_string(progress.known_frames);
   values["playing"] = yes(session.playback.playing());
+  values["doing"] = progress.doing;
   values["achieved"] =
       session.playback.achieved() ? fmt::format("{:.1f}", *session.playback.achieved()) : "";
   values["loop"] = yes(session.playback.loop);
