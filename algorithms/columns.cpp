@@ -421,8 +421,8 @@ void Columns::drawStructure(DebugDraw& draw) const {
   for (std::size_t i = 0; i < columns_.size(); ++i) {
     const Part& part = parts_[columns_[i].part];
     boxes[i] = part.layout.column(columns_[i].index, part.level == 0 ? bounds : boxes[part.parent]);
-    if (columns_[i].split == 0 && contents(i).size() > 0)
-      draw.box(boxes[i], kColumnColour, part.level);
+    if (columns_[i].split != 0 || contents(i).size() == 0) continue;
+    draw.cell(boxes[i], kColumnColour, part.level, static_cast<std::uint32_t>(contents(i).size()));
   }
 }
 

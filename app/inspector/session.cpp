@@ -60,6 +60,9 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   selection.body_count = [this] {
     return document.shown() ? document.desk.editor.scene().bodies.size() : playback.scene().objects;
   };
+  selection.companions = [this](BodySelection::Bodies bodies) {
+    return document.shown() ? document.desk.editor.withGroups(std::move(bodies)) : bodies;
+  };
   selection.on_select = [this](const BodySelection::Bodies& bodies) {
     if (document.shown()) document.desk.editor.select(bodies);
   };
@@ -94,10 +97,10 @@ Wish Session::wish() const {
   Wish wish{.footage = playback.footage(),
             .lanes = lanes.specs(),
             .frame = playback.frame(),
+            .playing = playback.playing(),
             .check = mismatches.check,
             .stop_at_mismatch = mismatches.stop_at_mismatch,
             .known_mismatch = mismatches.known(),
-            .playing = playback.playing(),
             .shown_lane = lanes.shown(),
             .structure = view.structure,
             .tracked = selection.bodies()};
