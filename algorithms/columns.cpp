@@ -138,7 +138,8 @@ class Draw final : public ColumnVisitor {
 
   void column(const Walk& walk, const Part&) override {
     constexpr Rgb kColumnColour = 0x4FA3D1;
-    draw_.box(walk.box(bounds_), kColumnColour, walk.level());
+    draw_.cell(walk.box(bounds_), kColumnColour, walk.level(),
+               static_cast<std::uint32_t>(walk.sorted().size));
   }
   void split(const Walk&, const CutWorld&, const Part&) override {}
 

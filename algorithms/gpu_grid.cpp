@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 
 #include "opencl/device_broad_phase.h"
 #include "opencl_kernels.h"
@@ -37,12 +38,13 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
     constexpr Rgb kCellColour = 0x40FF80;
     constexpr std::size_t kMostCells = 20'000;
     if (count() < 2) return;
-    std::vector<Cell> cells;
-    for (const Aabb& box : read<Aabb>(boxes(), count())) cells.push_back(cellOf(box));
-    std::ranges::sort(cells);
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    cells.resize(std::min(cells.size(), kMostCells));
-    for (const Cell& cell : cells) draw.box(boxOf(cell), kCellColour, cell.level);
+    std::map<Cell, std::uint32_t> populations;
+    for (const Aabb& box : read<Aabb>(boxes(), count())) ++populations[cellOf(box)];
+    std::size_t drawn = 0;
+    for (const auto& [cell, population] : populations) {
+      if (++drawn > kMostCells) return;
+      draw.cell(boxOf(cell), kCellColour, cell.level, population);
+    }
   }
 
  protected:

@@ -285,7 +285,9 @@ void Grid::drawStructure(DebugDraw& draw) const {
     std::ranges::nth_element(cells, cells.begin() + kMostDrawn, std::ranges::greater(), copies);
     cells.resize(kMostDrawn);
   }
-  for (const std::size_t cell : cells) draw.box(grid_.cell(cell - 1, bounds_), kCellColour, 0);
+  for (const std::size_t cell : cells) {
+    draw.cell(grid_.cell(cell - 1, bounds_), kCellColour, 0, copies(cell));
+  }
 }
 
 void Grid::visitCounters(const CounterVisitor& visit) const {

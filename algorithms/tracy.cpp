@@ -357,7 +357,7 @@ void Tracy::drawStructure(DebugDraw& draw) const {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (cells_[cell].size() == 0) continue;
     const Aabb bounds = grid_.bounds(grid_.position(cell));
-    draw.box(bounds, kCellColour, 0);
+    draw.cell(bounds, kCellColour, 0, cells_[cell].size());
     Aabb segment = bounds;
     cells_[cell].forEachSegment([&](float begin) {
       segment.max[0] = std::clamp(begin, bounds.min[0], bounds.max[0]);

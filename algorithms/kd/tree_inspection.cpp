@@ -31,7 +31,11 @@ void Tree::draw(DebugDraw& draw, const Aabb& world) const { drawNode(draw, root_
 void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const {
   constexpr Rgb kCellColour = 0x4FA3D1;
   constexpr Rgb kPlaneColour = 0xFFA500;
-  draw.box(region, kCellColour, level);
+  if (node.own > 0) {
+    draw.cell(region, kCellColour, level, node.own);
+  } else {
+    draw.box(region, kCellColour, level);
+  }
   if (node.isLeaf()) return;
   Aabb left = region;
   Aabb right = region;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <utility>
 
 namespace broadmark::tide {
@@ -419,7 +420,7 @@ void LooseGrid::boxes(std::vector<Aabb>& into) const {
 /// The cells that bodies are in, by level.
 void LooseGrid::draw(DebugDraw& draw) const {
   constexpr Rgb kCellColour = 0x3FA7A0;
-  std::vector<std::array<std::int32_t, 4>> drawn;
+  std::map<std::array<std::int32_t, 4>, std::uint32_t> populations;
   for (const Body& body : bodies_) {
     if (isEmpty(body.box)) continue;
     const Extent extent = extentOf(body.box);
@@ -427,19 +428,16 @@ void LooseGrid::draw(DebugDraw& draw) const {
     Steps cell = extent.min;
     for (int axis = 0; axis < 3; ++axis) cell[axis] >>= shiftOf(level);
     cell[3] = static_cast<std::int32_t>(level);
-    drawn.push_back(cell);
+    ++populations[cell];
   }
-  std::ranges::sort(drawn);
-  const auto [first, last] = std::ranges::unique(drawn);
-  drawn.erase(first, last);
-  for (const auto& cell : drawn) {
+  for (const auto& [cell, population] : populations) {
     Aabb box;
     const double edge = std::ldexp(1.0, shiftOf(static_cast<std::uint32_t>(cell[3]))) / factor_;
     for (int axis = 0; axis < 3; ++axis) {
       box.min[axis] = static_cast<float>(low_[axis] + edge * cell[axis]);
       box.max[axis] = static_cast<float>(low_[axis] + edge * (cell[axis] + 1));
     }
-    draw.box(box, kCellColour, cell[3]);
+    draw.cell(box, kCellColour, cell[3], population);
   }
 }
 

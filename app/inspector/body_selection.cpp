@@ -1,6 +1,7 @@
 #include "inspector/body_selection.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -40,14 +41,15 @@ void BodySelection::select(Bodies bodies) {
   on_select(bodies_);
 }
 
-void BodySelection::toggle(std::uint32_t body) {
-  Bodies bodies = bodies_;
-  if (contains(body)) {
-    std::erase(bodies, body);
+void BodySelection::toggle(const Bodies& bodies) {
+  Bodies toggled = bodies_;
+  if (std::ranges::all_of(bodies, [this](std::uint32_t body) { return contains(body); })) {
+    toggled.clear();
+    std::ranges::set_difference(bodies_, bodies, std::back_inserter(toggled));
   } else {
-    bodies.push_back(body);
+    toggled.insert(toggled.end(), bodies.begin(), bodies.end());
   }
-  select(std::move(bodies));
+  select(std::move(toggled));
 }
 
 void BodySelection::visit(Pair pair) {

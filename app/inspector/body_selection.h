@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadmark/pair.h"
@@ -26,8 +27,12 @@ class BodySelection {
 
   /// Selects these, given in any order; those that do not exist are left out.
   void select(Bodies bodies);
-  /// Adds a body, or takes it away if it is selected.
-  void toggle(std::uint32_t body);
+  /// Adds bodies (ascending), or takes them away if all of them are selected.
+  void toggle(const Bodies& bodies);
+  /// These and all that are selected with them.
+  [[nodiscard]] Bodies whole(Bodies bodies) const {
+    return companions ? companions(std::move(bodies)) : bodies;
+  }
   /// Selects the two bodies of a pair and flies there.
   void visit(Pair pair);
   void flyThere() { fly_to = bodies_; }
@@ -39,6 +44,8 @@ class BodySelection {
 
   // Set by the owner.
   std::function<std::size_t()> body_count;
+  std::function<Bodies(Bodies)>
+      companions;  ///< adds those that are selected with them; may be null
   std::function<void(const Bodies&)> on_select;
 
  private:

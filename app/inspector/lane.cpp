@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 #include "broadmark/frame_table.h"
 #include "broadmark/runner.h"
@@ -48,6 +49,7 @@ void Lane::attempt(Call&& call) {
 
 void Lane::restart(const SceneInfo& scene, const Frame& first) {
   report_.frame = 0;
+  outdated_ = false;
   attempt([&] {
     if (!run_) run_.emplace(spec().run, kPolicy, make_host_, cancelled_);
     if (run_->start(scene, first)) report_.setup = run_->setup();
@@ -88,6 +90,12 @@ std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
   record.invalid_count = difference->invalid_count;
   record.mismatch = difference->isMismatch();
   return difference;
+}
+
+void Lane::requireChecked(std::uint32_t after) {
+  if (!spec().run.algorithm.traits.finds_pairs || after >= report_.frame) return;
+  outdated_ = !std::ranges::all_of(std::span(report_.frames).subspan(after, report_.frame - after),
+                                   &FrameRecord::checked);
 }
 
 std::vector<Pair> Lane::answer() {

@@ -93,7 +93,7 @@ class Lane {
   /// Whether its instance is at this frame: it can be asked for its answer, and can run the next
   /// frame unless it has ended.
   [[nodiscard]] bool standsAt(std::uint32_t index) const {
-    return run_ && (run_->running() || run_->answered()) && report_.frame == index;
+    return run_ && !outdated_ && (run_->running() || run_->answered()) && report_.frame == index;
   }
 
   // These throw nothing but Cancelled: what goes wrong becomes the status.
@@ -104,6 +104,10 @@ class Lane {
   void advance(const Frame& frame, DrawGate& gate);
   /// Compares the present answer with the right one; nothing when the algorithm is not checked.
   std::optional<FrameDifference> check(const Frame& frame, Oracle& oracle);
+
+  /// Has it begin anew unless all frames that it has run after this one were checked, as far as it
+  /// can be.
+  void requireChecked(std::uint32_t after);
 
   // Only while standsAt() some frame.
   std::vector<Pair> answer();
@@ -119,6 +123,7 @@ class Lane {
   HostMaker make_host_;
   CancelQuery cancelled_;
   std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
+  bool outdated_ = false;       ///< it has to begin anew before it is used
 };
 
 /// Of each lane every frame that has been run, as FrameTable writes it.

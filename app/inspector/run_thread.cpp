@@ -96,12 +96,7 @@ void RunThread::loop() {
       changed_.notify_all();
       continue;
     }
-    if (anew) {
-      if (!showSame(current_, wished_)) shown_ = false;
-      current_ = wished_;
-      taken_ = wishes_;
-      idle_ = false;
-    }
+    if (anew) takeWish();
     if (idle_) {
       changed_.wait(lock, [this] { return stopping_ || errand_ != nullptr || taken_ != wishes_; });
       continue;
@@ -123,6 +118,19 @@ void RunThread::loop() {
   }
 }
 
+/// With mutex_ held.
+void RunThread::takeWish() {
+  if (!showSame(current_, wished_)) shown_ = false;
+  looked_back_ = false;
+  // One that rests after the shown frame goes on from there only if it was checked up to there.
+  if (wished_.check && footage_) {
+    for (const auto& lane : lanes_) lane->requireChecked(target());
+  }
+  current_ = wished_;
+  taken_ = wishes_;
+  idle_ = false;
+}
+
 /// Does one piece of work; false when there is none left.
 bool RunThread::step() {
   if (current_.footage != opened_) {
@@ -131,6 +139,7 @@ bool RunThread::step() {
   }
   if (footage_ == nullptr) return false;
   if (reconcileLanes()) return true;
+  if (!std::exchange(looked_back_, true) && lookBack()) return true;
   if (advance() || advanceSecond()) return true;
   if (shown_) return false;
   show();
@@ -167,6 +176,7 @@ void RunThread::openFootage() {
   second_.clear();
   footage_.reset();
   oracle_ = Oracle(std::size_t{256} << 20);
+  seen_.clear();
   stop_.reset();
   shown_ = false;
   opened_ = current_.footage;
@@ -202,6 +212,9 @@ bool RunThread::reconcileLanes() {
                                          : std::make_unique<Lane>(spec, make_host_, [this, spec] {
                                              return isUnwanted(spec);
                                            }));
+  }
+  for (const auto& gone : kept) {
+    if (gone) seen_.forget(gone->spec().number);
   }
   kept.clear();
   shown_ = false;
@@ -258,7 +271,7 @@ bool RunThread::advance() {
   // The hindmost first: then all pass each frame before any goes on.
   Lane* hindmost = nullptr;
   for (const auto& lane : lanes_) {
-    if (lane->report().ended || lane->standsAt(target())) continue;
+    if (lane->report().ended || lane->standsAt(target()) || mayRest(*lane)) continue;
     const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
     if (restarts) {
       lane->restart(footage_->scene(), footage_->at(0));
@@ -279,7 +292,10 @@ bool RunThread::advance() {
     return false;
   }
   const std::uint32_t next = hindmost->report().frame + 1;
-  tell(fmt::format("{}: frame {}", hindmost->spec().run.algorithm.id, next),
+  const std::string& id = hindmost->spec().run.algorithm.id;
+  tell(hindmost->report().record(next) != nullptr
+           ? fmt::format("running {} again up to frame {}", id, target())
+           : fmt::format("{}: frame {}", id, next),
        fractionOf(next, target()));
   return advanceLane(*hindmost, frameAt(next));
 }
@@ -287,8 +303,9 @@ bool RunThread::advance() {
 bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
   shown_ = false;
   lane.advance(frame, gate_);
+  std::optional<FrameDifference> difference;
   if (current_.check && lane.standsAt(frame.index)) {
-    const std::optional<FrameDifference> difference = lane.check(frame, oracle_);
+    difference = lane.check(frame, oracle_);
     const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
     if (difference && difference->isMismatch() && !known && current_.stop_at_mismatch &&
         (!stop_ || frame.index < stop_->frame)) {
@@ -296,6 +313,13 @@ bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
       const std::lock_guard lock(mutex_);
       progress_.stop = stop_;
     }
+  }
+  // show() asks at the target.
+  if (&lane == shownLane() && frame.index != target() && lane.standsAt(frame.index) &&
+      !hasSeen(frame.index)) {
+    const SeenAnswer answer = answerOf(lane, frame, current_.check, std::move(difference),
+                                       footage_->scene().filter, oracle_);
+    if (lane.standsAt(frame.index)) seen_.remember(lane.spec().number, frame.index, answer);
   }
   report(lane);
   return true;
@@ -335,9 +359,7 @@ void RunThread::report(const Lane& lane) {
 
 Lane* RunThread::shownLane() const {
   for (const auto& lane : lanes_) {
-    if (lane->spec().number == current_.shown_lane && lane->standsAt(target()) && target() > 0) {
-      return lane.get();
-    }
+    if (lane->spec().number == current_.shown_lane && target() > 0) return lane.get();
   }
   return nullptr;
 }
@@ -363,11 +385,11 @@ bool RunThread::advanceSecond() {
 
 void RunThread::show() {
   const std::uint32_t index = target();
-  Lane* const lane = shownLane();
   const auto snapshot = takeSnapshot({.request = opened_,
                                       .footage = *footage_,
                                       .frame = index,
-                                      .lane = lane,
+                                      .lane = shownLane(),
+                                      .seen = &seen_,
                                       .check = current_.check,
                                       .structure = current_.structure,
                                       .tracked = current_.tracked},
@@ -389,7 +411,7 @@ void RunThread::show() {
   }
   shown_ = true;
   const std::lock_guard lock(mutex_);
-  if (lane == nullptr) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
+  if (snapshot->lane == 0) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = snapshot;
   progress_.second = std::move(second);
   progress_.comparison = std::move(comparison);

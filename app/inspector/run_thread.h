@@ -3,7 +3,9 @@
 // The interface states a wish: what to look at, which algorithms, up to which frame. The thread
 // works towards it, one frame of one algorithm at a time, and takes up a changed wish in between.
 // Algorithms keep state from frame to frame, so each goes through all frames from the first: for an
-// earlier frame a fresh instance starts over.
+// earlier frame a fresh instance starts over. The answers of frames that have been seen are kept:
+// such a frame is shown at once, and algorithms are run again only where something else of them is
+// wanted.
 #pragma once
 
 #include <chrono>
@@ -24,6 +26,7 @@
 #include "inspector/lane.h"
 #include "inspector/pair_comparison.h"
 #include "inspector/second_run.h"
+#include "inspector/seen_answers.h"
 #include "inspector/snapshot.h"
 
 namespace broadmark {
@@ -33,7 +36,8 @@ struct Wish {
   std::shared_ptr<const FootageRequest> footage;
   std::vector<LaneSpec> lanes;
   std::uint32_t frame = 0;
-  bool check = true;  ///< compare every answer with the oracle's
+  bool playing = false;  ///< it goes on from there: what has been seen does not do
+  bool check = true;     ///< compare every answer with the oracle's
   /// Stop at the first frame in which an algorithm is wrong…
   bool stop_at_mismatch = true;
   /// …after this one, up to which mismatches are known.
@@ -75,6 +79,9 @@ struct RunProgress {
 
 class RunThread {
  public:
+  /// What the answers of seen frames may take.
+  static constexpr std::size_t kSeenBytes = std::size_t{512} << 20;
+
   /// `make_host`: where algorithms run.
   explicit RunThread(HostMaker make_host);
   /// Ends soon: waits for the frame that is being run only where its host cannot be cancelled.
@@ -97,6 +104,7 @@ class RunThread {
 
  private:
   void loop();
+  void takeWish();
   bool step();
   void openFootage();
   bool reconcileLanes();
@@ -116,6 +124,11 @@ class RunThread {
   [[nodiscard]] std::uint32_t target() const;
   [[nodiscard]] Lane* shownLane() const;
   [[nodiscard]] SecondRun::First firstView() const;
+  /// Whether the answer of the shown lane, or the oracle's, is kept for a frame.
+  [[nodiscard]] bool hasSeen(std::uint32_t frame) const;
+  /// Whether nothing is wanted of a lane at the target but what is kept.
+  [[nodiscard]] bool mayRest(const Lane& lane) const;
+  bool lookBack();
 
   const HostMaker make_host_;
   DrawGate gate_;
@@ -126,9 +139,11 @@ class RunThread {
   std::unique_ptr<Footage> footage_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   Oracle oracle_{std::size_t{256} << 20};
+  SeenAnswers seen_{kSeenBytes};
   std::optional<RunProgress::Stop> stop_;
   SecondRun second_;
-  bool shown_ = false;  ///< whether the snapshots are what current_ wants
+  bool shown_ = false;        ///< whether the snapshots are what current_ wants
+  bool looked_back_ = false;  ///< since that wish came: see lookBack()
 
   // Guarded by mutex_.
   std::mutex mutex_;

@@ -97,7 +97,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        "moves the mouse to a place in a widget, each from 0 to 1"},
       {"drag", "WIDGET X Y X Y [BUTTON [KEY]]", 5, 7, &P::drag,
        "drags from one place in a widget to another; with the left button (0) or the right one "
-       "(1), perhaps while Shift or Ctrl is down"},
+       "(1), perhaps while Shift, Ctrl or Alt is down"},
       {"wheel", "WIDGET TURNS", 2, 2, &P::wheel, "turns the wheel over a widget"},
       {"panel", "NAME", 1, 1, &P::panel, "brings a panel to the front"},
       {"open", "FILE", 1, 1, &P::open, "drops a file onto the window"},

@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 bool sameWish(const Wish& a, const Wish& b) {
-  return a.footage == b.footage && a.frame == b.frame && a.check == b.check &&
-         a.stop_at_mismatch == b.stop_at_mismatch && a.known_mismatch == b.known_mismatch &&
-         a.shown_lane == b.shown_lane && a.structure == b.structure && a.tracked == b.tracked &&
-         a.second == b.second &&
+  return a.footage == b.footage && a.frame == b.frame && a.playing == b.playing &&
+         a.check == b.check && a.stop_at_mismatch == b.stop_at_mismatch &&
+         a.known_mismatch == b.known_mismatch && a.shown_lane == b.shown_lane &&
+         a.structure == b.structure && a.tracked == b.tracked && a.second == b.second &&
          std::ranges::equal(a.lanes, b.lanes,
                             [](const LaneSpec& x, const LaneSpec& y) { return x.same(y); });
 }
@@ -62,6 +62,9 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   selection.body_count = [this] {
     return document.shown() ? document.desk.editor.scene().bodies.size() : playback.scene().objects;
   };
+  selection.companions = [this](BodySelection::Bodies bodies) {
+    return document.shown() ? document.desk.editor.withGroups(std::move(bodies)) : bodies;
+  };
   selection.on_select = [this](const BodySelection::Bodies& bodies) {
     if (document.shown()) document.desk.editor.select(bodies);
   };
@@ -97,6 +100,7 @@ Wish Session::wish() const {
   Wish wish{.footage = playback.footage(),
             .lanes = lanes.specs(),
             .frame = playback.frame(),
+            .playing = playback.playing(),
             .check = mismatches.check,
             .stop_at_mismatch = mismatches.stop_at_mismatch,
             .known_mismatch = mismatches.known(),

@@ -44,6 +44,8 @@ struct ViewOptions {
   bool structure = false;      ///< what the shown algorithm draws of itself
   bool structure_near = true;  ///< only around the selection, if there is one
   int structure_level = -1;    ///< only this depth; -1: all
+  /// Colours tell how many bodies its cells hold, where it says so.
+  bool structure_population = true;
 
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };

@@ -19,7 +19,8 @@ constexpr std::pair<const char*, const char*> kMouse[] = {
     {"Left drag", "turn the camera about the middle"},
     {"Right or middle drag", "move the camera sideways"},
     {"Wheel", "towards the pointer, or away"},
-    {"Click", "select a body (with Ctrl: add or remove it)"},
+    {"Click", "select a body or its group (with Ctrl: add or remove it)"},
+    {"Alt + click", "select a body of a group alone"},
     {"Drag a handle", "move, turn or scale the selected bodies (with Ctrl: by steps)"},
     {"Click, drag with brush", "paint bodies on the ground or on others"},
     {"Shift + drag", "select all bodies in a rectangle"},
@@ -96,6 +97,10 @@ void Inspector::makeShortcuts() {
            session_.document.edit([](scenes::SceneEditor& editor) { editor.duplicate({}); });
          }
        }},
+      {GLFW_KEY_G, true, false, "group the selected bodies: a click selects all of them",
+       [this] { editAuthored(&scenes::SceneEditor::group); }},
+      {GLFW_KEY_G, true, true, "ungroup them",
+       [this] { editAuthored(&scenes::SceneEditor::ungroup); }},
       {GLFW_KEY_DELETE, false, false, "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
       {GLFW_KEY_F6, false, false, kNextPlace, [this] { focusPlace(1); }},

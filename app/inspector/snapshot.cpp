@@ -30,15 +30,31 @@ std::shared_ptr<const std::vector<Aabb>> boxesOf(Footage& footage, std::uint32_t
   return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
 }
 
-/// Compares the answer with the oracle's.
-void checkAnswer(Lane& lane, const Frame& frame, Oracle& oracle, Snapshot& snapshot) {
-  std::optional<FrameDifference> difference = lane.check(frame, oracle);
-  if (!difference) return;
-  snapshot.checked = true;
-  snapshot.difference = std::move(*difference);
-  const PairRun right = oracle.pairs(frame.boxes, snapshot.scene.filter);
-  snapshot.right_pairs = right.size();
-  snapshot.right_overlaps = overlapCounts(snapshot.boxes->size(), {&right, 1});
+SeenAnswer oraclesAnswer(const SnapshotWish& wish, const Frame& frame, Oracle& oracle) {
+  if (wish.seen != nullptr) {
+    if (auto seen = wish.seen->recall(0, frame.index)) return std::move(*seen);
+  }
+  const std::span<const Pair> pairs = oracle.pairs(frame.boxes, wish.footage.scene().filter);
+  SeenAnswer answer{.pairs = {pairs.begin(), pairs.end()}, .judged = true};
+  if (wish.seen != nullptr) wish.seen->remember(0, frame.index, answer);
+  return answer;
+}
+
+/// What follows from an answer; the boxes are there already.
+void takeAnswer(SeenAnswer answer, bool check, Snapshot& snapshot) {
+  const auto overlapsIn = [&](const PairRun& found) {
+    return overlapCounts(snapshot.boxes->size(), {&found, 1});
+  };
+  snapshot.overlaps = overlapsIn(answer.pairs);
+  snapshot.checked = check && answer.difference.has_value();
+  if (snapshot.checked) {
+    const bool same = answer.agrees();
+    snapshot.right_pairs = same ? answer.pairs.size() : answer.right.size();
+    snapshot.right_overlaps = same ? snapshot.overlaps : overlapsIn(answer.right);
+    snapshot.difference = std::move(*answer.difference);
+  }
+  snapshot.pairs = std::move(answer.pairs);
+  snapshot.counters = std::move(answer.counters);
 }
 
 }  // namespace
@@ -46,6 +62,21 @@ void checkAnswer(Lane& lane, const Frame& frame, Oracle& oracle, Snapshot& snaps
 std::uint32_t presentIn(std::span<const Aabb> boxes) {
   return static_cast<std::uint32_t>(boxes.size()) -
          static_cast<std::uint32_t>(std::ranges::count_if(boxes, isEmpty));
+}
+
+SeenAnswer answerOf(Lane& lane, const Frame& frame, bool judged,
+                    std::optional<FrameDifference> difference, const CollisionFilter& filter,
+                    Oracle& oracle) {
+  SeenAnswer answer{.pairs = lane.answer(),
+                    .judged = judged,
+                    .difference = std::move(difference),
+                    .right = {},
+                    .counters = lane.report().counters};
+  if (answer.difference && !answer.agrees()) {
+    const std::span<const Pair> right = oracle.pairs(frame.boxes, filter);
+    answer.right.assign(right.begin(), right.end());
+  }
+  return answer;
 }
 
 std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& oracle) {
@@ -58,20 +89,28 @@ std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& o
   snapshot->boxes = boxesOf(wish.footage, wish.frame);
   snapshot->present = presentIn(*snapshot->boxes);
   const Frame frame{wish.frame, *snapshot->boxes};
-  if (Lane* const lane = wish.lane) {
-    snapshot->lane = lane->spec().number;
-    snapshot->pairs = lane->answer();
-    if (wish.check && lane->standsAt(wish.frame)) checkAnswer(*lane, frame, oracle, *snapshot);
+  Lane* const lane = wish.lane;
+  const int number = lane != nullptr ? lane->spec().number : 0;
+  SeenAnswer answer;
+  if (lane != nullptr && lane->standsAt(wish.frame)) {
+    std::optional<FrameDifference> difference;
+    if (wish.check) difference = lane->check(frame, oracle);
+    answer =
+        answerOf(*lane, frame, wish.check, std::move(difference), snapshot->scene.filter, oracle);
     if (wish.structure && lane->standsAt(wish.frame)) {
       snapshot->structure = std::make_shared<RecordedDrawing>(lane->structure());
     }
     if (!lane->standsAt(wish.frame)) return nullptr;
+    snapshot->lane = number;
+    if (wish.seen != nullptr) wish.seen->remember(number, wish.frame, answer);
+  } else if (lane != nullptr && wish.seen != nullptr &&
+             wish.seen->holds(number, wish.frame, wish.check)) {
+    snapshot->lane = number;
+    answer = *wish.seen->recall(number, wish.frame);
   } else {
-    const std::span<const Pair> pairs = oracle.pairs(frame.boxes, snapshot->scene.filter);
-    snapshot->pairs.assign(pairs.begin(), pairs.end());
+    answer = oraclesAnswer(wish, frame, oracle);
   }
-  const PairRun answer = snapshot->pairs;
-  snapshot->overlaps = overlapCounts(snapshot->boxes->size(), {&answer, 1});
+  takeAnswer(std::move(answer), wish.check, *snapshot);
   return snapshot;
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "broadmark/recorded_drawing.h"
 #include "inspector/footage.h"
 #include "inspector/lane.h"
+#include "inspector/seen_answers.h"
 
 namespace broadmark {
 
@@ -59,6 +61,7 @@ struct Snapshot {
   std::uint64_t right_pairs = 0;              ///< that the oracle finds, if checked
   std::vector<std::uint32_t> right_overlaps;  ///< likewise: as `overlaps`, of the oracle's pairs
   FrameDifference difference;                 ///< from the right answer, if checked
+  Counts counters;                            ///< of the lane's work
   std::shared_ptr<const RecordedDrawing> structure;  ///< null: not asked for
   std::vector<Track> tracks;
 };
@@ -68,13 +71,20 @@ struct SnapshotWish {
   const std::shared_ptr<const FootageRequest>& request;
   Footage& footage;
   std::uint32_t frame = 0;  ///< that the footage knows
-  Lane* lane = nullptr;     ///< whose answer; it stands at this frame; null: the oracle's
+  Lane* lane = nullptr;     ///< whose answer; null, or neither at this frame nor kept: the oracle's
+  SeenAnswers* seen = nullptr;  ///< answers that are kept, and where this one is kept; null: none
   bool check = true;
   bool structure = false;
   std::span<const std::uint32_t> tracked;  ///< bodies whose last frames are wanted
 };
 /// Null when the lane was lost on the way.
 std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& oracle);
+
+/// The answer of a lane that stands at this frame, with the difference from the right one, if it
+/// was compared (`judged`) and can be.
+SeenAnswer answerOf(Lane& lane, const Frame& frame, bool judged,
+                    std::optional<FrameDifference> difference, const CollisionFilter& filter,
+                    Oracle& oracle);
 
 /// How many bodies are there.
 std::uint32_t presentIn(std::span<const Aabb> boxes);

@@ -132,6 +132,7 @@ void addAuthored(Values& values, Session& session) {
   values["author.body.appears"] = std::to_string(body.appears);
   values["author.body.vanishes"] =
       body.vanishes == scenes::kNever ? "never" : std::to_string(body.vanishes);
+  values["author.body.group"] = std::to_string(body.group);
   const auto* box = std::get_if<scenes::BoxShape>(&body.shape);
   values["author.body.shape"] = box ? "box" : "sphere";
   values["author.body.size"] =
@@ -215,6 +216,7 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["frame"] = std::to_string(session.playback.frame());
   values["last_frame"] = std::to_string(session.playback.lastFrame());
   values["known_frames"] = std::to_string(progress.known_frames);
+  values["doing"] = progress.doing;
   values["playing"] = yes(session.playback.playing());
   values["achieved"] =
       session.playback.achieved() ? fmt::format("{:.1f}", *session.playback.achieved()) : "";
@@ -274,6 +276,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
   values["legend"] = legendText(view_.legend());
   values["legend.oracle"] = legendText(view_.oracleLegend());
+  values["legend.cells"] = legendText(view_.cellLegend());
   values["view.answer"] = view_.answer().answer;
   values["view.oracle"] = view_.answer().beside;
   values["view.hands"] = view_.hands().text();

@@ -35,6 +35,11 @@ Aabb enlargedBy(const Aabb& box, float factor) {
   return enlarged(box, (factor - 1) * longest / 2);
 }
 
+/// Whole groups, unless Alt is down.
+BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
+  return ImGui::GetIO().KeyAlt ? bodies : session.selection.whole(std::move(bodies));
+}
+
 }  // namespace
 
 const std::array<FlyKey, 6> kFlyKeys = {{{GLFW_KEY_W, {1, 0, 0}, "forwards"},
@@ -197,6 +202,7 @@ void View::add(Overlay overlay) {
   lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
   wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
   left_out_ += overlay.left_out;
+  if (!overlay.legend.empty()) cell_legend_ = std::move(overlay.legend);
 }
 
 void View::updateLines(const Session& session, bool dark) {
@@ -206,6 +212,7 @@ void View::updateLines(const Session& session, bool dark) {
   lines_.clear();
   wire_boxes_.clear();
   left_out_ = 0;
+  cell_legend_.clear();
   const std::optional<std::span<const std::uint32_t>> selected =
       options.lines_of_all ? std::nullopt
                            : std::optional<std::span<const std::uint32_t>>(shown_.selection);
@@ -218,13 +225,13 @@ void View::updateLines(const Session& session, bool dark) {
                   {.colour = kMissed, .width = 2.5F, .behind = Behind::shown}));
   }
   if (snapshot.structure) {
-    StructureFilter filter;
+    StructureLook look{.by_population = options.structure_population, .dark = dark};
     if (options.structure_level >= 0) {
-      filter.first_level = filter.last_level = options.structure_level;
+      look.first_level = look.last_level = options.structure_level;
     }
     const Aabb selected_box = boundsOf(shown_.selection);
-    if (options.structure_near && !isEmpty(selected_box)) filter.near = selected_box;
-    add(structureOverlay(*snapshot.structure, filter));
+    if (options.structure_near && !isEmpty(selected_box)) look.near = selected_box;
+    add(structureOverlay(*snapshot.structure, look));
   }
   for (const Track& track : snapshot.tracks) {
     for (std::size_t i = 1; i < track.boxes.size(); ++i) {
@@ -329,6 +336,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Vie
              {.legend = colouring_.legend,
               .oracle = oracle_legend_,
               .owner = answer_.owner,
+              .cells = cell_legend_,
               .left_out = left_out_},
              corner, size, taken);
   if (session.view.axes) drawAxisNames(corner);
@@ -421,17 +429,19 @@ void View::click(Session& session, ImVec2 at, bool fly_there) {
     if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
   }
+  const BodySelection::Bodies bodies = withGroups(session, {picked->body});
   if (ImGui::GetIO().KeyCtrl) {
-    session.selection.toggle(picked->body);
+    session.selection.toggle(bodies);
   } else {
-    session.selection.select({picked->body});
+    session.selection.select(bodies);
   }
   if (fly_there) session.selection.fly_to = std::vector<std::uint32_t>{picked->body};
 }
 
 void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
-  session.selection.select(bodiesWithin(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(),
-                                        {{from.x, from.y}, {to.x, to.y}}, visible_));
+  session.selection.select(
+      withGroups(session, bodiesWithin(*shown_.snapshot->boxes, content_.space, scene_.viewpoint(),
+                                       {{from.x, from.y}, {to.x, to.y}}, visible_)));
 }
 
 void View::drawAxisNames(ImVec2 corner) const {

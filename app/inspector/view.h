@@ -45,6 +45,8 @@ class View {
   [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
   /// The same of the oracle's answer, where the colours tell of another one.
   [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
+  /// What the colours of the shown structure mean, and how many of its cells have each.
+  [[nodiscard]] const std::vector<LegendEntry>& cellLegend() const { return cell_legend_; }
   /// How many bodies are not drawn because the user does not want to see them.
   [[nodiscard]] std::size_t hiddenBodies() const;
   /// Whose answer is seen.
@@ -104,6 +106,7 @@ class View {
   std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
   Colouring colouring_;
   std::vector<LegendEntry> oracle_legend_;  ///< of the oracle's answer, if another one is shown
+  std::vector<LegendEntry> cell_legend_;
   AnswerText answer_;
   std::vector<std::uint8_t> visible_;
   std::vector<SceneLine> lines_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +26,27 @@ Rgb verdictColour(const Theme& theme, AnswerText::Verdict verdict) {
       return theme.faint;
   }
   return theme.faint;
+}
+
+/// A row of the legend; columns: what it means, the count by the shown answer, by the oracle's.
+struct LegendRow {
+  std::optional<Rgb> swatch;  ///< nothing: a heading
+  std::array<std::string, 3> texts;
+};
+
+std::vector<LegendRow> legendRows(const ViewLegend& legend) {
+  std::vector<LegendRow> rows;
+  if (!legend.oracle.empty()) rows.push_back({{}, {"", legend.owner, "oracle"}});
+  for (std::size_t i = 0; i < legend.legend.size(); ++i) {
+    const LegendEntry& entry = legend.legend[i];
+    rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
+    if (!legend.oracle.empty()) rows.back().texts[2] = std::to_string(legend.oracle[i].count);
+  }
+  if (!legend.cells.empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
+  for (const LegendEntry& entry : legend.cells) {
+    rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
+  }
+  return rows;
 }
 
 }  // namespace
@@ -78,19 +101,13 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float pad = 0.5F * line;
-  // Columns: label, count by the shown answer, count by the oracle's.
-  std::vector<std::vector<std::string>> rows;
-  if (!legend.oracle.empty()) rows.push_back({"", legend.owner, "oracle"});
-  for (std::size_t i = 0; i < legend.legend.size(); ++i) {
-    std::vector<std::string>& row = rows.emplace_back();
-    row = {legend.legend[i].label, std::to_string(legend.legend[i].count)};
-    if (!legend.oracle.empty()) row.push_back(std::to_string(legend.oracle[i].count));
-  }
-  std::vector<float> widths(legend.oracle.empty() ? 2 : 3, 0);
+  const std::vector<LegendRow> rows = legendRows(legend);
+  std::array<float, 3> widths{};
+  const std::size_t columns = legend.oracle.empty() ? 2 : widths.size();
   float width = line;
-  for (std::size_t column = 0; column < widths.size(); ++column) {
-    for (const auto& row : rows) {
-      widths[column] = std::max(widths[column], ImGui::CalcTextSize(row[column].c_str()).x);
+  for (std::size_t column = 0; column < columns; ++column) {
+    for (const LegendRow& row : rows) {
+      widths[column] = std::max(widths[column], ImGui::CalcTextSize(row.texts[column].c_str()).x);
     }
     width += widths[column] + pad;
   }
@@ -105,22 +122,21 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
                      colour(ui.theme.background, kBackdrop), 4 * ui.scale);
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
   float y = at.y + pad / 2;
-  for (std::size_t i = 0; i < rows.size(); ++i, y += line) {
-    const std::size_t headings = rows.size() - legend.legend.size();
-    if (i >= headings) {
+  for (const LegendRow& row : rows) {
+    if (row.swatch) {
       draw.AddRectFilled({at.x + pad, y + 0.15F * line},
-                         {at.x + pad + 0.6F * line, y + 0.75F * line},
-                         colour(legend.legend[i - headings].swatch), 3 * ui.scale);
+                         {at.x + pad + 0.6F * line, y + 0.75F * line}, colour(*row.swatch),
+                         3 * ui.scale);
     }
     float x = at.x + pad + line;
-    for (std::size_t column = 0; column < widths.size(); ++column) {
+    for (std::size_t column = 0; column < columns; ++column) {
       // Numbers stand below each other by their last digits.
-      const float shift =
-          column == 0 ? 0 : widths[column] - ImGui::CalcTextSize(rows[i][column].c_str()).x;
-      draw.AddText({x + shift, y}, i < headings ? colour(ui.theme.faint) : plain,
-                   rows[i][column].c_str());
+      const char* text = row.texts[column].c_str();
+      const float shift = column == 0 ? 0 : widths[column] - ImGui::CalcTextSize(text).x;
+      draw.AddText({x + shift, y}, row.swatch ? plain : colour(ui.theme.faint), text);
       x += widths[column] + pad;
     }
+    y += line;
   }
   if (!left_out.empty()) {
     draw.AddText({at.x + pad, y}, colour(ui.theme.warning), left_out.c_str());

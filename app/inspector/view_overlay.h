@@ -19,6 +19,7 @@ struct ViewLegend {
   std::span<const LegendEntry> legend;
   std::span<const LegendEntry> oracle;  ///< the same classes by the oracle's answer; may be empty
   std::string owner;                    ///< of the other answer
+  std::span<const LegendEntry> cells;   ///< of the structure's cells by population; may be empty
   std::size_t left_out = 0;             ///< lines that were too many to be drawn
 };
 /// In the upper right corner, below what is `taken` by drawAnswer() if need be; left out where

@@ -1,7 +1,7 @@
 // What a process says to its worker process, and hears from it.
 //
 // A message is one JSON object in one packet. At first the worker says who it is:
-//   {"protocol": 3, "program": "0.1.0"}
+//   {"protocol": 4, "program": "0.1.0"}
 // Then it answers one call after the other, with what stands behind the arrow or with
 //   {"error": "…", "kind": "input" | "unsupported" | "error"}
 //
@@ -44,7 +44,7 @@
 
 namespace broadmark::worker {
 
-inline constexpr int kProtocolVersion = 3;
+inline constexpr int kProtocolVersion = 4;
 
 // The worker's descriptors.
 inline constexpr int kChannelDescriptor = 3;

@@ -70,7 +70,12 @@ std::string faultOfBody(const AuthoredBody& body) {
     return fmt::format("vanishes: a frame from {} to {} is expected: it appears in frame {}",
                        body.appears + 1, kMostFrames, body.appears);
   }
+  if (body.group > kMostBodies) return faultOfGroup();
   return {};
+}
+
+std::string faultOfGroup() {
+  return fmt::format("group: a whole number from 0 to {} is expected", kMostBodies);
 }
 
 std::string faultOfLayer(std::string_view key) {

@@ -28,7 +28,7 @@ struct BodyKey {
   std::string_view name;
   std::size_t numbers;  ///< length of its array of numbers; 0: its value is not an array
 };
-constexpr std::array<BodyKey, 11> kBodyKeys = {{{"box", 3},
+constexpr std::array<BodyKey, 12> kBodyKeys = {{{"box", 3},
                                                 {"sphere", 0},
                                                 {"position", 3},
                                                 {"rotation", 4},
@@ -38,7 +38,8 @@ constexpr std::array<BodyKey, 11> kBodyKeys = {{{"box", 3},
                                                 {"frozen", 0},
                                                 {"layer", 0},
                                                 {"appears", 0},
-                                                {"vanishes", 0}}};
+                                                {"vanishes", 0},
+                                                {"group", 0}}};
 
 std::vector<std::string> namesOfBodyKeys() {
   std::vector<std::string> names;
@@ -283,6 +284,8 @@ class SceneReader final : public JsonEvents {
       body_.appears = frame(exact);
     } else if (in_ == In::body && key_ == "vanishes") {
       body_.vanishes = frame(exact);
+    } else if (in_ == In::body && key_ == "group") {
+      body_.group = group(exact);
     } else if (in_ == In::body && key_ == "sphere") {
       body_.shape = SphereShape{value};
     } else if (in_ == In::body && key_ == "mass") {
@@ -305,6 +308,13 @@ class SceneReader final : public JsonEvents {
   [[nodiscard]] std::uint32_t frame(double number) const {
     if (!(number >= 0 && number <= kMostFrames) || number != std::floor(number)) {
       fail(fmt::format("{}: a frame from 0 to {} is expected", key_, kMostFrames));
+    }
+    return static_cast<std::uint32_t>(number);
+  }
+
+  [[nodiscard]] std::uint32_t group(double number) const {
+    if (!(number >= 0 && number <= kMostBodies) || number != std::floor(number)) {
+      fail(faultOfGroup());
     }
     return static_cast<std::uint32_t>(number);
   }

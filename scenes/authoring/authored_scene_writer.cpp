@@ -72,6 +72,7 @@ void append(std::string& text, const AuthoredBody& body) {
   append_unless(standard.layer, "layer", body.layer);
   append_unless(standard.appears, "appears", body.appears);
   append_unless(standard.vanishes, "vanishes", body.vanishes);
+  append_unless(standard.group, "group", body.group);
   text += '}';
 }
 

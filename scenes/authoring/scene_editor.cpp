@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "authoring/faults.h"
@@ -28,6 +30,30 @@ BodyIds idsFrom(std::size_t first, std::size_t end) {
 }
 
 SharedIds shared(BodyIds ids) { return std::make_shared<const BodyIds>(std::move(ids)); }
+
+/// Numbers of groups that no body has.
+class FreeGroups {
+ public:
+  explicit FreeGroups(const std::vector<AuthoredBody>& bodies) {
+    for (const AuthoredBody& body : bodies) {
+      if (body.group != 0) taken_.push_back(body.group);
+    }
+    std::ranges::sort(taken_);
+  }
+  /// The least one, each time another.
+  std::uint32_t next() {
+    ++last_;
+    for (; at_ < taken_.size() && taken_[at_] <= last_; ++at_) {
+      if (taken_[at_] == last_) ++last_;
+    }
+    return last_;
+  }
+
+ private:
+  std::vector<std::uint32_t> taken_;
+  std::size_t at_ = 0;
+  std::uint32_t last_ = 0;
+};
 
 std::string stepName(std::string_view verb, std::size_t bodies) {
   return fmt::format("{} {} {}", verb, bodies, bodies == 1 ? "body" : "bodies");
@@ -89,6 +115,23 @@ void SceneEditor::toggle(const BodyIds& bodies) {
   select(std::move(toggled));
 }
 
+BodyIds SceneEditor::withGroups(BodyIds bodies) const {
+  std::set<std::uint32_t> groups;
+  for (const std::uint32_t id : bodies) {
+    if (id < scene_.bodies.size() && scene_.bodies[id].group != 0) {
+      groups.insert(scene_.bodies[id].group);
+    }
+  }
+  if (!groups.empty()) {
+    for (std::uint32_t id = 0; id < scene_.bodies.size(); ++id) {
+      if (groups.contains(scene_.bodies[id].group)) bodies.push_back(id);
+    }
+  }
+  std::ranges::sort(bodies);
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
+}
+
 Vec3 SceneEditor::selectionCentre() const {
   std::array<double, 3> sum{};
   for (const std::uint32_t id : *selection_) {
@@ -113,9 +156,15 @@ void SceneEditor::erase() {
 void SceneEditor::duplicate(const Vec3& offset) {
   std::vector<AuthoredBody> copies;
   copies.reserve(selection_->size());
+  FreeGroups free(scene_.bodies);
+  std::map<std::uint32_t, std::uint32_t> groups = {{0, 0}};
   for (const std::uint32_t id : *selection_) {
     copies.push_back(scene_.bodies[id]);
-    copies.back().pose.position = plus(copies.back().pose.position, offset);
+    AuthoredBody& copy = copies.back();
+    copy.pose.position = plus(copy.pose.position, offset);
+    const auto [group, fresh] = groups.try_emplace(copy.group);
+    if (fresh) group->second = free.next();
+    copy.group = group->second;
   }
   addCopies("duplicate", std::move(copies));
 }
@@ -226,6 +275,16 @@ void SceneEditor::setAppears(std::uint32_t frame) {
 void SceneEditor::setVanishes(std::uint32_t frame) {
   changeBodies("set the last frame of", &AuthoredBody::vanishes,
                [&](const AuthoredBody&) { return frame; });
+}
+
+void SceneEditor::group() {
+  if (selection_->size() < 2) return;
+  changeBodies("group", &AuthoredBody::group,
+               [number = FreeGroups(scene_.bodies).next()](const AuthoredBody&) { return number; });
+}
+
+void SceneEditor::ungroup() {
+  changeBodies("ungroup", &AuthoredBody::group, [](const AuthoredBody&) { return 0U; });
 }
 
 void SceneEditor::setName(std::string name) {

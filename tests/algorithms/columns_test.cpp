@@ -385,6 +385,7 @@ TEST_P(ColumnsFamily, SplitCrowdedColumns) {
   const RecordedDrawing drawing = drawingOf(run.broadPhase());
   EXPECT_TRUE(std::ranges::any_of(drawing.boxes(), [](const auto& box) { return box.level == 1; }));
   EXPECT_LE(drawing.boxes().size(), counters.at("columns"));
+  EXPECT_GE(populationOf(drawing), boxes.size());
 }
 
 TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {

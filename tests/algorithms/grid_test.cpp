@@ -301,6 +301,7 @@ TEST_P(Grids, DrawCellsThatHoldSomething) {
   for (const RecordedDrawing::Box& drawn : two.boxes()) {
     EXPECT_EQ(merged(drawn.box, boundsOf(corners)), boundsOf(corners));
     EXPECT_NE(overlaps(drawn.box, corners.front()), overlaps(drawn.box, corners.back()));
+    EXPECT_EQ(drawn.population, 4U);
   }
 }
 

@@ -254,6 +254,7 @@ TEST(Kd, DividesBodiesInSpiteOfOutliers) {
       deepest = std::max(deepest, drawn.level);
     }
     EXPECT_GT(deepest, 4);
+    EXPECT_EQ(populationOf(drawing) + countersOf(broad_phase).at("bodies at rest"), 2000U);
   });
 }
 

@@ -153,6 +153,13 @@ inline RecordedDrawing drawingOf(const BroadPhase& algorithm) {
   return drawing;
 }
 
+/// How many bodies all cells together hold, as far as they tell.
+inline std::uint64_t populationOf(const RecordedDrawing& drawing) {
+  std::uint64_t sum = 0;
+  for (const RecordedDrawing::Box& box : drawing.boxes()) sum += box.population;
+  return sum;
+}
+
 /// An algorithm on boxes in memory, without limits or checks. Throws what it throws.
 class TestRun {
  public:

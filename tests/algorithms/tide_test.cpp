@@ -102,6 +102,19 @@ TEST(Tide, ChangesOverWhenManyMoveAndBack) {
   }
 }
 
+TEST(Tide, TellsHowManyBodiesItsCellsHold) {
+  constexpr std::size_t kBodies = 400;
+  for (TestRun& run : runsOf({{"from_scratch", "100"}})) {
+    inputs::Random random(3, 0);
+    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
+    run.start(sceneFor(kBodies), boxes);
+    boxes = after(boxes, 20, random);
+    run.step(boxes);
+    const auto present = kBodies - static_cast<std::size_t>(std::ranges::count_if(boxes, isEmpty));
+    EXPECT_EQ(populationOf(drawingOf(run.broadPhase())), present);
+  }
+}
+
 TEST(Tide, LooksAtNothingWhereNothingMoves) {
   const std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
   for (TestRun& run : runsOf({})) {

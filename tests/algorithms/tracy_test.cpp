@@ -288,6 +288,7 @@ TEST(Tracy, DrawsOccupiedCellsAndTheirSegments) {
   const RecordedDrawing drawing = drawingOf(run.broadPhase());
   for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
     levels[drawn.level].push_back(drawn.box);
+    EXPECT_EQ(drawn.population, drawn.level == 0 ? 50U : 0U);
   }
   ASSERT_EQ(levels[0].size(), 2U);
   EXPECT_EQ(levels[0][0].min, cubeFrom(0, 0).min);

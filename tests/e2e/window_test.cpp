@@ -89,8 +89,28 @@ class WindowTest : public EndToEnd {
 
   void click(const Screen& screen, const std::string& places, const std::string& widget) {
     const auto [x, y] = middleOf(places, widget);
-    screen.tool("mousemove " + std::to_string(x) + " " + std::to_string(y));
+    moveTo(screen, x, y);
     screen.tool("click 1");
+  }
+
+  /// With the left button down, in several steps, as a hand does.
+  void drag(const Screen& screen, const std::string& places, const std::string& widget, int right,
+            int down) {
+    constexpr int kSteps = 5;
+    const auto [x, y] = middleOf(places, widget);
+    moveTo(screen, x, y);
+    screen.tool("mousedown 1");
+    for (int step = 1; step <= kSteps; ++step) {
+      moveTo(screen, x + right * step / kSteps, y + down * step / kSteps);
+    }
+    screen.tool("mouseup 1");
+  }
+
+  static void moveTo(const Screen& screen, int x, int y) {
+    screen.tool("mousemove " + std::to_string(x) + " " + std::to_string(y));
+  }
+  static void press(const Screen& screen, const std::string& keys) {
+    screen.tool("key --delay 60 " + keys);
   }
 };
 
@@ -138,27 +158,119 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   click(screen, "chosen", "Scene");
   std::this_thread::sleep_for(500ms);
   click(screen, "opened", "Scene/objects");
-  screen.tool("key --delay 60 ctrl+a");
+  press(screen, "ctrl+a");
   screen.tool("type --delay 40 275");
-  screen.tool("key --delay 60 Return");
+  press(screen, "Return");
   middleOf("typed", "View/scene");
-  screen.tool("key --delay 60 ctrl+s");
+  press(screen, "ctrl+s");
   click(screen, "saving", "File/name");
-  screen.tool("key --delay 60 ctrl+a");
+  press(screen, "ctrl+a");
   screen.tool("type --delay 40 mine.aabbs");
-  screen.tool("key --delay 60 Return");
+  press(screen, "Return");
   const auto deadline = std::chrono::steady_clock::now() + 60s;
   while (!std::filesystem::exists(file("mine.aabbs")) &&
          std::chrono::steady_clock::now() < deadline) {
     std::this_thread::sleep_for(50ms);
   }
-  screen.tool("mousemove 640 300");
-  screen.tool("key --delay 60 ctrl+q");
+  moveTo(screen, 640, 300);
+  press(screen, "ctrl+q");
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(run({"verify", "mine.aabbs"}).status, 0);
   EXPECT_THAT(readFile(file("config/broadmark/inspector.json")),
               ::testing::HasSubstr("mine.aabbs"));
+}
+
+TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
+  const Screen screen;
+  ASSERT_FALSE(screen.name().empty()) << "Xvfb does not start";
+  writeFile(file("scene.json"), R"({
+"schema": "broadmark-scene/1",
+"name": "Hands",
+"world": {"min": [-10, -10, -10], "max": [10, 10, 10]},
+"bodies": [{"box": [4, 4, 4], "position": [0, 0, 0]}]
+})");
+  writeFile(file("script.txt"),
+            "patience 90\n"
+            "open scene.json\n"
+            "expect author.at_rest = yes\n"
+            "wait settled\n"
+            "places opened\n"
+            "expect selection = 1\n"
+            "expect author.tool = move\n"
+            "wait settled\n"
+            "places selected\n"
+            "expect author.undo ~ move\n"
+            "expect author.body.position != \"0 0 0\"\n"
+            "wait settled\n"
+            "places moved\n"
+            "expect author.modified = no\n"
+            "places saved\n"
+            // Text that is typed in a dialog, then the dialog.
+            "expect dialog = yes\n"
+            "wait 5\n"
+            "places opening\n"
+            "wait 150\n"
+            "expect dialog = yes\n"
+            "places typing\n"
+            "expect dialog = no\n"
+            "places left\n"
+            // A menu, then what is behind it.
+            "expect help = yes\n"
+            "places helped\n"
+            "expect popup = yes\n"
+            "wait 5\n"
+            "places listed\n"
+            "expect popup = no\n"
+            "expect help = yes\n"
+            "places unlisted\n"
+            "expect help = no\n"
+            "places unhelped\n"
+            "expect dialog = yes\n"
+            "wait 5\n"
+            "places again\n"
+            "expect author.path ~ before.json\n"
+            "expect dialog = no\n"
+            "places reopened\n");
+  Program program(file(""), {"--script", "script.txt"},
+                  {.environment = {{"DISPLAY", screen.name()},
+                                   {"XDG_CONFIG_HOME", (file("config")).string()}}});
+  fs::copy_file(file("scene.json"), file("before.json"));
+  click(screen, "opened", "View/scene");
+  drag(screen, "selected", "View/gizmo y", 0, -90);
+  middleOf("moved", "View/scene");
+  press(screen, "ctrl+s");
+  middleOf("saved", "View/scene");
+  const Json body = readJson(file("scene.json")).at("bodies").at(0);
+  EXPECT_EQ(body.at("position").at(0), 0);
+  EXPECT_GT(body.at("position").at(1), 0.5);
+  EXPECT_EQ(body.at("position").at(2), 0);
+
+  press(screen, "ctrl+o");
+  click(screen, "opening", "File/name");
+  screen.tool("type --delay 40 some");
+  press(screen, "Escape");
+  middleOf("typing", "File/name");
+  press(screen, "Escape");
+  middleOf("left", "View/scene");
+
+  press(screen, "F1");
+  click(screen, "helped", "View");
+  middleOf("listed", "View/scene");
+  press(screen, "Escape");
+  middleOf("unlisted", "View/scene");
+  press(screen, "Escape");
+  middleOf("unhelped", "View/scene");
+
+  press(screen, "ctrl+o");
+  click(screen, "again", "File/name");
+  press(screen, "ctrl+a");
+  screen.tool("type --delay 40 before.json");
+  press(screen, "Return");
+  middleOf("reopened", "View/scene");
+  press(screen, "ctrl+q");
+  const Ended ended = program.wait();
+  EXPECT_EQ(ended.status, 0) << ended.err;
 }
 
 TEST_F(WindowTest, WithoutADisplayOneLineSaysWhatToDo) {

@@ -78,9 +78,13 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   settle();
   session.selection.select({2, 0, 7});
   EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(0, 2));
-  session.selection.toggle(1);
-  session.selection.toggle(0);
+  session.selection.toggle({1});
+  session.selection.toggle({0});
   EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(1, 2));
+  session.selection.toggle({0, 1});
+  EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2)) << "not all of them were";
+  session.selection.toggle({0, 1});
+  EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(2));
   session.document.edit(&SceneEditor::selectAll);
   EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2));
   // What is selected elsewhere is none of the document's business.
@@ -89,6 +93,18 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   settle();
   session.selection.select({30});
   EXPECT_EQ(session.document.desk.editor.selection().size(), 3U);
+}
+
+TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
+  session.document.start(threeBodies());
+  settle();
+  session.selection.select({0, 2});
+  session.document.edit(&SceneEditor::group);
+  EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(0, 2));
+  EXPECT_THAT(session.selection.whole({1}), testing::ElementsAre(1));
+  session.simulate();
+  settle();
+  EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(2)) << "of another scene";
 }
 
 TEST_F(AuthoringTest, AnotherWorldIsAnotherSceneToLookAt) {

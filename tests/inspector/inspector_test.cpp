@@ -6,12 +6,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 #include <set>
 #include <sstream>
 #include <thread>
 
 #include "broadmark/algorithms.h"
+#include "broadmark/names.h"
 #include "broadmark/render/colouring.h"
 #include "broadmark/render/framebuffer.h"
 #include "engine/helpers.h"
@@ -369,22 +371,48 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   }
 }
 
+/// BROADMARK_RANDOM_EVENTS, or few.
+int randomEvents() {
+  const char* stated = std::getenv("BROADMARK_RANDOM_EVENTS");
+  return stated != nullptr ? static_cast<int>(parseInteger(stated, "events", 1, 1'000'000)) : 100;
+}
+
 class RandomEvents : public InspectorTest, public testing::WithParamInterface<unsigned> {};
 
 TEST_P(RandomEvents, DoNoHarm) {
+  const int events = randomEvents();
   std::mt19937 random(GetParam());
   const auto below = [&](int count) {
     return static_cast<int>(random() % static_cast<unsigned>(count));
   };
-  constexpr Key kKeys[] = {
-      GLFW_KEY_SPACE,        GLFW_KEY_LEFT,       GLFW_KEY_RIGHT,  GLFW_KEY_HOME,
-      GLFW_KEY_END,          GLFW_KEY_F,          GLFW_KEY_H,      GLFW_KEY_C,
-      GLFW_KEY_TAB,          GLFW_KEY_ENTER,      GLFW_KEY_ESCAPE, GLFW_KEY_F1,
-      GLFW_KEY_LEFT_CONTROL, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_DELETE, GLFW_KEY_Z};
+  constexpr Key kKeys[] = {GLFW_KEY_SPACE,
+                           GLFW_KEY_LEFT,
+                           GLFW_KEY_RIGHT,
+                           GLFW_KEY_HOME,
+                           GLFW_KEY_END,
+                           GLFW_KEY_F,
+                           GLFW_KEY_H,
+                           GLFW_KEY_C,
+                           GLFW_KEY_TAB,
+                           GLFW_KEY_ENTER,
+                           GLFW_KEY_ESCAPE,
+                           GLFW_KEY_F1,
+                           GLFW_KEY_LEFT_CONTROL,
+                           GLFW_KEY_LEFT_SHIFT,
+                           GLFW_KEY_DELETE,
+                           GLFW_KEY_Z,
+                           GLFW_KEY_LEFT_ALT,
+                           GLFW_KEY_G,
+                           GLFW_KEY_M,
+                           GLFW_KEY_B,
+                           GLFW_KEY_A,
+                           GLFW_KEY_D,
+                           GLFW_KEY_F6,
+                           GLFW_KEY_S};
   inspector.session().simulate();
   inspector.session().lanes.add("sap");
   settle();
-  for (int event = 0; event < 200; ++event) {
+  for (int event = 0; event < events; ++event) {
     switch (below(7)) {
       case 0:
       case 1: {
@@ -423,7 +451,7 @@ TEST_P(RandomEvents, DoNoHarm) {
   settle();
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomEvents, testing::Range(1U, 7U));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomEvents, testing::Range(1U, 21U));
 
 }  // namespace
 }  // namespace broadmark::tests

@@ -53,23 +53,6 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
               testing::UnorderedElementsAreArray(bruteForcePairs(*seen.snapshot->boxes)));
 }
 
-TEST_F(SessionTest, SeekingBackReplaysTheHistory) {
-  session.simulate();
-  const int lane = session.lanes.add("sap").number;
-  session.playback.seek(12);
-  settle();
-  session.playback.seek(3);
-  const RunProgress seen = settle();
-  ASSERT_EQ(seen.lanes.size(), 1U);
-  EXPECT_EQ(seen.lanes[0].frame, 3U);
-  EXPECT_EQ(seen.snapshot->lane, lane);
-  EXPECT_EQ(seen.lanes[0].status, Status::ok) << seen.lanes[0].reason;
-  EXPECT_THAT(seen.snapshot->pairs,
-              testing::UnorderedElementsAreArray(bruteForcePairs(*seen.snapshot->boxes)));
-  // What was measured of later frames is still there to be plotted.
-  EXPECT_NE(seen.lanes[0].record(12), nullptr);
-}
-
 TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
   session.simulate();
   for (const Algorithm& algorithm : builtinAlgorithms()) {

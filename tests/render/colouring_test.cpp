@@ -301,7 +301,7 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   drawing.line({90, 90, 90}, {50, 50, 50}, 6);
   EXPECT_EQ(deepestLevel(drawing), 2);
 
-  const auto shown = [&](const StructureFilter& filter) {
+  const auto shown = [&](const StructureLook& filter) {
     std::vector<Rgb> colours;
     const Overlay overlay = structureOverlay(drawing, filter);
     for (const SceneWireBox& box : overlay.boxes) colours.push_back(box.colour);
@@ -309,7 +309,7 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
     return colours;
   };
   EXPECT_THAT(shown({}), ElementsAre(1, 2, 3, 4, 5, 6));
-  StructureFilter filter;
+  StructureLook filter;
   filter.first_level = filter.last_level = 1;
   EXPECT_THAT(shown(filter), ElementsAre(2, 3, 5, 6));
   filter.near = boxOf(52, 1);
@@ -318,6 +318,83 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   filter.most = 1;
   EXPECT_THAT(shown(filter), ElementsAre(1, 5));
   EXPECT_EQ(structureOverlay(drawing, filter).left_out, 4U);
+}
+
+/// A cell of each of these populations.
+RecordedDrawing cellsOf(const std::vector<std::uint32_t>& populations) {
+  RecordedDrawing drawing;
+  for (std::size_t i = 0; i < populations.size(); ++i) {
+    drawing.cell(boxOf(static_cast<float>(i), 1), 0x123456, 0, populations[i]);
+  }
+  return drawing;
+}
+
+std::vector<std::string> texts(const std::vector<LegendEntry>& legend) {
+  std::vector<std::string> all;
+  for (const LegendEntry& entry : legend) {
+    all.push_back(entry.label + ": " + std::to_string(entry.count));
+  }
+  return all;
+}
+
+TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
+  RecordedDrawing drawing = cellsOf({3, 1, 64, 1, 8});
+  EXPECT_TRUE(tellsPopulations(drawing));
+  drawing.box(boxOf(0, 100), 0xABCDEF, 0);
+  const Overlay plain = structureOverlay(drawing, {});
+  EXPECT_TRUE(plain.legend.empty());
+  EXPECT_EQ(plain.boxes[0].colour, 0x123456U);
+  const Overlay overlay = structureOverlay(drawing, {.near = {}, .by_population = true});
+  EXPECT_THAT(texts(overlay.legend), ElementsAre("1: 2", "2 to 3: 1", "4 to 7: 0", "8 to 15: 1",
+                                                 "16 to 31: 0", "32 to 64: 1"));
+  ASSERT_EQ(overlay.boxes.size(), 6U);
+  EXPECT_EQ(overlay.boxes[0].colour, 0xABCDEFU) << "it does not tell, and keeps its own";
+  EXPECT_EQ(overlay.boxes[1].colour, overlay.legend[0].swatch);
+  EXPECT_EQ(overlay.boxes[5].colour, overlay.legend[5].swatch);
+  EXPECT_EQ(overlay.boxes[5].box, boxOf(2, 1));
+  const Overlay few = structureOverlay(drawing, {.near = {}, .most = 2, .by_population = true});
+  EXPECT_EQ(few.left_out, 4U);
+  EXPECT_EQ(few.boxes[1].box, boxOf(2, 1));
+  EXPECT_EQ(few.boxes[0].box, boxOf(4, 1));
+  EXPECT_FALSE(tellsPopulations(RecordedDrawing()));
+  RecordedDrawing untold;
+  untold.box(boxOf(0, 1), 1, 0);
+  EXPECT_FALSE(tellsPopulations(untold));
+  EXPECT_TRUE(structureOverlay(untold, {.near = {}, .by_population = true}).legend.empty());
+}
+
+TEST(StructureOverlay, FewPopulationsHaveAStepEach) {
+  const auto legend = [](const std::vector<std::uint32_t>& populations) {
+    return texts(
+        structureOverlay(cellsOf(populations), {.near = {}, .by_population = true}).legend);
+  };
+  EXPECT_THAT(legend({7}), ElementsAre("7: 1"));
+  EXPECT_THAT(legend({1, 2, 4}), ElementsAre("1: 1", "2: 1", "3: 0", "4: 1"));
+  const auto greatest = std::numeric_limits<std::uint32_t>::max();
+  EXPECT_THAT(legend({greatest - 1, greatest}), testing::SizeIs(2));
+  EXPECT_THAT(legend({1, greatest}), testing::SizeIs(6));
+}
+
+TEST(StructureOverlay, StepsOfPopulationAreToldApartByAllEyesAndFromTheBackground) {
+  const RecordedDrawing drawing = cellsOf({1, 2, 4, 8, 16, 32});
+  for (const bool dark : {false, true}) {
+    const std::vector<LegendEntry> legend =
+        structureOverlay(drawing, {.near = {}, .by_population = true, .dark = dark}).legend;
+    ASSERT_EQ(legend.size(), 6U);
+    for (std::size_t a = 0; a < legend.size(); ++a) {
+      EXPECT_GT(contrastOf(legend[a].swatch, (dark ? kDarkScene : kLightScene).background), 1.8);
+      for (std::size_t b = 0; b < a; ++b) {
+        for (const Eye& eye : kEyes) {
+          EXPECT_GT(differenceOf(legend[a].swatch, legend[b].swatch, eye), 9.9)
+              << legend[a].label << " and " << legend[b].label << ", " << eye.name;
+        }
+      }
+      if (a == 0) continue;
+      const double before = luminance(legend[a - 1].swatch) + 0.05;
+      const double step = luminance(legend[a].swatch) + 0.05;
+      EXPECT_GT(dark ? step / before : before / step, 1.15) << legend[a].label;
+    }
+  }
 }
 
 }  // namespace

@@ -79,6 +79,7 @@ AuthoredScene anyScene(unsigned seed, std::size_t bodies) {
     if (random() % 2 == 0) {
       body.vanishes = body.appears + 1 + static_cast<std::uint32_t>(random() % 1000);
     }
+    if (random() % 3 == 0) body.group = 1 + static_cast<std::uint32_t>(random() % 5);
     scene.bodies.push_back(body);
   }
   return scene;
@@ -154,6 +155,8 @@ TEST(AuthoredScene, WritesLayersAndWhenBodiesComeAndGo) {
 ]
 }
 )");
+  scene.bodies[0].group = 12;
+  EXPECT_THAT(formatAuthoredScene(scene), testing::HasSubstr("\"vanishes\": 8, \"group\": 12}"));
   scene.collide = {};
   EXPECT_EQ(parseAuthoredScene(formatAuthoredScene(scene), "again"), scene) << "none collides";
 }
@@ -196,6 +199,11 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
       {sceneText(R"("sphere": "1", )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("sphere": [1], )" + position), {"body 1", "sphere: a number"}},
       {sceneText(R"("box": 1, )" + position), {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("sphere": 1, "group": -1, )" + position),
+       {"body 1", "group: a whole number from 0 to 10000000"}},
+      {sceneText(R"("sphere": 1, "group": 0.5, )" + position), {"body 1", "group: a whole number"}},
+      {sceneText(R"("sphere": 1, "group": "a", )" + position), {"body 1", "group: a number"}},
+      {sceneText(R"("sphere": 1, "group": 1e300, )" + position), {"body 1", "group: a whole"}},
       {sceneText(R"("box": [[1, 1, 1]], )" + position),
        {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [1, null, 1])"), {"body 1", "box: an array of three numbers"}},

@@ -126,6 +126,64 @@ TEST(SceneEditor, DuplicatesAreSelected) {
   EXPECT_THAT(editor.selection(), ElementsAre(1));
 }
 
+/// The group of every body.
+std::vector<std::uint32_t> groups(const SceneEditor& editor) {
+  std::vector<std::uint32_t> groups;
+  for (const AuthoredBody& body : editor.scene().bodies) groups.push_back(body.group);
+  return groups;
+}
+
+TEST(SceneEditor, GroupsAreSelectedTogether) {
+  SceneEditor editor;
+  editor.add(row(6));
+  editor.select({1, 4});
+  editor.group();
+  EXPECT_EQ(editor.undoName(), "group 2 bodies");
+  editor.select({2, 3, 5});
+  editor.group();
+  EXPECT_THAT(groups(editor), ElementsAre(0, 1, 2, 2, 1, 2));
+  EXPECT_THAT(editor.withGroups({4}), ElementsAre(1, 4));
+  EXPECT_THAT(editor.withGroups({5, 0}), ElementsAre(0, 2, 3, 5));
+  EXPECT_THAT(editor.withGroups({0}), ElementsAre(0));
+  EXPECT_THAT(editor.withGroups({99}), ElementsAre(99)) << "it is only just to be added";
+  // One that joins another group leaves its own.
+  editor.select({3, 0});
+  editor.group();
+  EXPECT_THAT(groups(editor), ElementsAre(3, 1, 2, 3, 1, 2));
+  editor.select({1, 4});
+  editor.ungroup();
+  EXPECT_EQ(editor.undoName(), "ungroup 2 bodies");
+  EXPECT_THAT(groups(editor), ElementsAre(3, 0, 2, 3, 0, 2));
+  editor.group();
+  EXPECT_THAT(groups(editor), ElementsAre(3, 1, 2, 3, 1, 2)) << "the least free number";
+  for (int i = 0; i < 5; ++i) editor.undo();
+  EXPECT_THAT(groups(editor), ElementsAre(0, 0, 0, 0, 0, 0));
+}
+
+TEST(SceneEditor, OneBodyIsNoGroup) {
+  SceneEditor editor;
+  editor.add(row(2));
+  editor.select({1});
+  editor.group();
+  editor.select({});
+  editor.group();
+  EXPECT_EQ(editor.undoName(), "add 2 bodies");
+}
+
+TEST(SceneEditor, CopiesOfAGroupAreAGroupOfTheirOwn) {
+  SceneEditor editor;
+  editor.add(row(5));
+  editor.select({0, 1});
+  editor.group();
+  editor.select({2, 3});
+  editor.group();
+  editor.selectAll();
+  editor.duplicate({0, 1, 0});
+  EXPECT_THAT(groups(editor), ElementsAre(1, 1, 2, 2, 0, 3, 3, 4, 4, 0));
+  editor.undo();
+  EXPECT_THAT(groups(editor), ElementsAre(1, 1, 2, 2, 0));
+}
+
 TEST(SceneEditor, AGestureIsOneStepOfBoundedMemory) {
   SceneEditor editor;
   editor.add(row(100));
@@ -191,6 +249,7 @@ TEST(SceneEditor, ARefusedEditChangesNothing) {
   refuses([&] { editor.setParameters({{"frames", "0"}}); }, "frames");
   refuses([&] { editor.select({3}); }, "no body 3");
   refuses([&] { editor.add({AuthoredBody{.mass = -1}}); }, "body 3: mass");
+  refuses([&] { editor.add({AuthoredBody{.group = 10'000'001}}); }, "body 3: group");
 }
 
 TEST(SceneEditor, ParametersOfAnotherEngineAreDropped) {
@@ -268,7 +327,7 @@ class Monkey {
 
   void editOnce(SceneEditor& editor) {
     const std::size_t count = editor.scene().bodies.size();
-    switch (any(19)) {
+    switch (any(20)) {
       case 0:
       case 1:
         return editor.add(std::vector<AuthoredBody>(any(6), AuthoredBody{.mass = 1.0 + any(5)}));
@@ -305,6 +364,8 @@ class Monkey {
         return editor.setAppears(any(5));
       case 17:
         return editor.setVanishes(any(2) == 0 ? kNever : any(5));
+      case 18:
+        return any(2) == 0 ? editor.group() : editor.ungroup();
       default:
         return editor.move(vector());
     }

@@ -61,7 +61,8 @@ struct Inputs {
   Numbers spin{};
   double layer = 0;
   double appears = 0;
-  double vanishes = 0;  ///< 0: never
+  double vanishes = 0;   ///< 0: never
+  bool grouped = false;  ///< any of them
 };
 
 class AuthorPanel final : public Panel {
@@ -105,6 +106,8 @@ class AuthorPanel final : public Panel {
       inputs_.world_max[axis] = scene.world.max[axis];
     }
     if (selection_.empty()) return;
+    inputs_.grouped = std::ranges::any_of(
+        selection_, [&](std::uint32_t id) { return scene.bodies[id].group != 0; });
     const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
     if (const auto* sphere = std::get_if<scenes::SphereShape>(&body.shape)) {
       inputs_.sphere = true;
@@ -236,6 +239,14 @@ class AuthorPanel final : public Panel {
       edit([by = vec(by_)](SceneEditor& editor) { editor.duplicate(by); });
     }
     if (row.button("Delete", "Deletes the selected bodies (Delete)")) edit(&SceneEditor::erase);
+    const bool several = selection_.size() > 1;
+    if (row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
+                   several)) {
+      edit(&SceneEditor::group);
+    }
+    if (row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped)) {
+      edit(&SceneEditor::ungroup);
+    }
     if (row.button("Fly there", "Looks at the selected bodies (F)")) {
       session.selection.flyThere();
     }

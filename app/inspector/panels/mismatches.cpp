@@ -310,7 +310,10 @@ class MismatchesPanel final : public Panel {
     for (const LaneReport& lane : context.progress.lanes) {
       if (lane.spec.number != context.session.lanes.shown()) continue;
       if (lane.margin > 0) ui.fact("margin", fmt::format("{}", lane.margin));
-      for (const auto* counts : {&lane.setup, &lane.counters}) {
+      const auto& seen = context.progress.snapshot;
+      const Counts none;
+      const bool is_its = seen && seen->lane == lane.spec.number;
+      for (const auto* counts : {&lane.setup, is_its ? &seen->counters : &none}) {
         for (const auto& [name, count] : *counts) ui.fact(name.c_str(), std::to_string(count));
       }
     }

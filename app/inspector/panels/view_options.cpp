@@ -187,6 +187,11 @@ class ViewPanel final : public Panel {
       ui.slider("depth", view.structure_level, -1, deepest,
                 view.structure_level < 0 ? "all" : "%.0f");
     }
+    ImGui::BeginDisabled(snapshot == nullptr || !snapshot->structure ||
+                         !tellsPopulations(*snapshot->structure));
+    ui.checkbox("coloured by population", view.structure_population,
+                "Colours tell how many bodies a cell holds, where the algorithm says so");
+    ImGui::EndDisabled();
     if (snapshot != nullptr && snapshot->structure && snapshot->structure->boxes().empty() &&
         snapshot->structure->lines().empty()) {
       ui.faint("It has none to show.");

@@ -19,6 +19,11 @@ class DebugDraw {
   /// A cell or node. `level` is its depth (0 = root or only level), for filtering by depth.
   virtual void box(const Aabb&, Rgb, int level) = 0;
   virtual void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb) = 0;
+  /// Likewise one that holds so many bodies, more than none. What shows how crowded cells are gives
+  /// it the colour of a scale instead.
+  virtual void cell(const Aabb& bounds, Rgb colour, int level, std::uint32_t /*population*/) {
+    box(bounds, colour, level);
+  }
 };
 
 }  // namespace broadmark

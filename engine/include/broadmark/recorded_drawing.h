@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@ class RecordedDrawing final : public DebugDraw {
     Aabb box;
     Rgb colour = 0;
     int level = 0;
+    std::uint32_t population = 0;  ///< 0: not told
   };
   struct Line {
     std::array<float, 3> from{};
@@ -31,6 +33,9 @@ class RecordedDrawing final : public DebugDraw {
       : boxes_(std::move(boxes)), lines_(std::move(lines)), left_out_(left_out) {}
 
   void box(const Aabb& box, Rgb colour, int level) override { keep(boxes_, {box, colour, level}); }
+  void cell(const Aabb& box, Rgb colour, int level, std::uint32_t population) override {
+    keep(boxes_, {box, colour, level, population});
+  }
   void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
     keep(lines_, {from, to, colour});
   }

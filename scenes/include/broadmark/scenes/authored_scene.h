@@ -31,6 +31,7 @@ struct AuthoredBody {
   std::uint8_t layer = 0;
   std::uint32_t appears = 0;        ///< the first frame that it is in, as stated above
   std::uint32_t vanishes = kNever;  ///< the first frame after that which it is not in
+  std::uint32_t group = 0;  ///< whose bodies an editor selects together, 1 to kMostBodies; 0: none
 
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };

@@ -52,6 +52,8 @@ class SceneEditor {
   void selectNone() { select({}); }
   /// Selects those that are not selected, and deselects the others.
   void toggle(const BodyIds& bodies);
+  /// These bodies and all others of their groups, ascending.
+  [[nodiscard]] BodyIds withGroups(BodyIds bodies) const;
   /// The centre of the selected bodies' positions.
   [[nodiscard]] Vec3 selectionCentre() const;
 
@@ -60,7 +62,8 @@ class SceneEditor {
   /// Appends bodies and selects them.
   void add(std::vector<AuthoredBody> bodies);
   void erase();
-  /// Appends copies of the selected bodies, moved by `offset`, and selects them.
+  /// Appends copies of the selected bodies, moved by `offset`, and selects them. Copies of a group
+  /// are a group of their own.
   void duplicate(const Vec3& offset);
   /// `verb` names the step: "move".
   void transform(std::string_view verb, const Transformation& change);
@@ -87,6 +90,9 @@ class SceneEditor {
   /// The frames in which the bodies appear and vanish (kNever: they stay).
   void setAppears(std::uint32_t frame);
   void setVanishes(std::uint32_t frame);
+  /// Makes a group of the selected bodies, if they are several; they leave those that they were in.
+  void group();
+  void ungroup();
   // These change the scene as a whole.
   void setName(std::string name);
   void setWorld(const Aabb& world);
