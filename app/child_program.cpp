@@ -127,6 +127,9 @@ bool isProgramThere(const std::string& name) {
 }
 
 void openByDesktop(const fs::path& file) {
+  if (writingIsLimited()) {
+    throw InputError(fmt::format("{}: scripts open nothing by other programs", file.string()));
+  }
   // In a session of its own it outlives this program, and nobody waits for it.
   const FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));
   const pid_t pid = spawn({"setsid", "--fork", "xdg-open", fs::absolute(file).string()},

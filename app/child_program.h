@@ -27,7 +27,7 @@ ProgramEnd runProgram(std::vector<std::string> command,
 bool isProgramThere(const std::string& name);
 
 /// Opens a file with whatever the desktop opens such files with, and does not wait for its end.
-/// Throws InputError.
+/// Throws InputError, also while a script is played.
 void openByDesktop(const std::filesystem::path& file);
 
 }  // namespace broadmark

@@ -297,6 +297,11 @@ WritingBelow::~WritingBelow() {
   writingPlace().folder.reset();
 }
 
+bool writingIsLimited() {
+  const std::lock_guard guard(writingPlace().mutex);
+  return writingPlace().folder.has_value();
+}
+
 void requireAllowed(const std::filesystem::path& path) {
   const std::lock_guard guard(writingPlace().mutex);
   if (writingPlace().folder) requireBelow(*writingPlace().folder, path);

@@ -22,7 +22,9 @@ constexpr const char* kDebiansPython = "/usr/bin/python3";
 bool holdsPackage(const fs::path& folder) { return fs::exists(folder / "broadmark/__main__.py"); }
 
 std::vector<std::pair<std::string, std::string>> variables(const fs::path& program) {
-  std::vector<std::pair<std::string, std::string>> variables = {{"BROADMARK", program.string()}};
+  std::vector<std::pair<std::string, std::string>> variables = {
+      {"BROADMARK", program.string()},
+      {"PYTHONSAFEPATH", "1"}};  // nothing is imported from the current folder
   const fs::path folder = packageFolder(program);
   if (folder.empty()) return variables;
   const char* const others = std::getenv("PYTHONPATH");

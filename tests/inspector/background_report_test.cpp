@@ -73,5 +73,24 @@ TEST(BackgroundReport, SaysWhatIsWrong) {
   EXPECT_FALSE(fs::exists(directory / "page.html"));
 }
 
+// A stranger's folder may hold what Python would find there first.
+TEST(BackgroundReport, RunsNothingFromTheCurrentFolder) {
+  const TemporaryDirectory directory;
+  fs::create_directories(directory / "broadmark");
+  writeTextFile(directory / "broadmark/__main__.py", "open('ran', 'w')");
+  const fs::path before = fs::current_path();
+  fs::current_path(directory / "");
+  BackgroundReport report;
+  report.start(directory / "none.json", directory / "page.html");
+  while (report.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  fs::current_path(before);
+  EXPECT_FALSE(fs::exists(directory / "ran"));
+}
+
+TEST(OpenByDesktop, RefusesWhileAScriptIsPlayed) {
+  const WritingBelow limit(fs::current_path());
+  EXPECT_THROW(openByDesktop("page.html"), InputError);
+}
+
 }  // namespace
 }  // namespace broadmark::tests

@@ -118,6 +118,9 @@ class WritingBelow {
   WritingBelow& operator=(const WritingBelow&) = delete;
 };
 
+/// Whether there is one: a stranger's file decides what this process does.
+bool writingIsLimited();
+
 /// Throws InputError for a path that must not be written. AtomicFile and AppendedFile ask by
 /// themselves.
 void requireAllowed(const std::filesystem::path& path);
