@@ -244,6 +244,9 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
   previous[1].max[0] += 1;
   const std::vector<std::uint32_t> overlaps = {0, 1, 2, 4, 8, 16, 32, 64};
   const std::vector<std::uint8_t> layers = {0, 1, 2, 3, 4, 5, 6, 7};
+  const std::vector<Pair> first_only = {{1, 2}};
+  const std::vector<Pair> second_only = {{3, 4}};
+  const ColouringInput::Comparison comparison = {first_only, second_only};
   for (const bool dark : {false, true}) {
     const ColouringInput input{.boxes = boxes,
                                .previous = previous,
@@ -251,6 +254,7 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
                                .layers = layers,
                                .missed = {},
                                .false_pairs = {},
+                               .comparison = &comparison,
                                .dark = dark};
     for (const ColourMode& mode : colourModes()) {
       std::vector<LegendEntry> entries = coloured(mode.id, input).legend;
