@@ -8,8 +8,7 @@
 //     least as many buckets as there are copies: a window ends with the bucket in which its box
 //     ends (columns/walk.h).
 //  4. At once, while the column is in the caches, its windows are swept with vectors of bytes.
-//  Where
-//     bounds share a step, the boxes decide.
+//     Where bounds share a step, the boxes decide.
 //  5. A column that turns out to be crowded is cut into columns of its own instead, as if it were a
 //     world: steps 1 to 4 again.
 //
@@ -45,8 +44,6 @@
 namespace broadmark::columns {
 namespace {
 
-/// The world gets at most so many copies of each box on average.
-constexpr std::size_t kMostCopies = 4;
 constexpr std::size_t kBlock = BoxBlock::kBoxes;
 /// The boxes themselves are looked at rarely: so many of them should not take up the caches.
 constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
@@ -141,7 +138,6 @@ class Draw final : public ColumnVisitor {
     draw_.cell(walk.box(bounds_), kColumnColour, walk.level(),
                static_cast<std::uint32_t>(walk.sorted().size));
   }
-  void split(const Walk&, const CutWorld&, const Part&) override {}
 
  private:
   DebugDraw& draw_;
@@ -266,7 +262,7 @@ void Columns::updateObjects(const Frame& frame) {
 /// has misled.
 bool Columns::copyBoxes(const Frame& frame) {
   const Layout layout = layout_;
-  const std::size_t limit = kMostCopies * boxes_.size() + 4 * layout.size();
+  const std::size_t limit = Walk::kMostCopies * boxes_.size() + 4 * layout.size();
   const bool past_caches = boxesPastCaches();
   team().run([&](int worker) {
     Chains& chains = chains_[static_cast<std::size_t>(worker)];

@@ -17,20 +17,16 @@ namespace broadmark {
 /// the size of the team alone. Workers get whole chunks of rows, also in crowded parts.
 class RowShares {
  public:
-  static constexpr std::size_t kSmallChunk = 64;
-
-  void measure(std::span<const std::uint32_t> ends, ThreadTeam& team,
-               std::size_t chunk_rows = kSmallChunk) {
+  void measure(std::span<const std::uint32_t> ends, ThreadTeam& team) {
     rows_ = ends.size();
-    chunk_rows_ = chunk_rows;
     workers_ = team.size();
-    work_.resize((rows_ + chunk_rows - 1) / chunk_rows);
+    work_.resize((rows_ + kChunk - 1) / kChunk);
     team.run([&](int worker) {
       const auto [begin, end] = share(work_.size(), workers_, worker);
       for (std::size_t chunk = begin; chunk < end; ++chunk) {
-        const std::size_t rows_end = std::min(rows_, (chunk + 1) * chunk_rows);
+        const std::size_t rows_end = std::min(rows_, (chunk + 1) * kChunk);
         std::uint64_t work = 0;
-        for (std::size_t i = chunk * chunk_rows; i < rows_end; ++i) work += ends[i] - i;
+        for (std::size_t i = chunk * kChunk; i < rows_end; ++i) work += ends[i] - i;
         work_[chunk] = work;
       }
     });
@@ -43,16 +39,17 @@ class RowShares {
   }
 
  private:
+  static constexpr std::size_t kChunk = 64;  ///< rows whose work is summed up together
+
   [[nodiscard]] std::size_t firstRow(int worker) const {
     const std::uint64_t total = work_.empty() ? 0 : work_.back();
     const std::uint64_t before =
         total / static_cast<std::uint64_t>(workers_) * static_cast<std::uint64_t>(worker);
     const auto chunk = std::ranges::upper_bound(work_, before) - work_.begin();
-    return std::min(static_cast<std::size_t>(chunk) * chunk_rows_, rows_);
+    return std::min(static_cast<std::size_t>(chunk) * kChunk, rows_);
   }
 
   std::size_t rows_ = 0;
-  std::size_t chunk_rows_ = kSmallChunk;  ///< whose work is summed up together
   int workers_ = 1;
   std::vector<std::uint64_t> work_;  ///< tests up to and with each chunk
 };

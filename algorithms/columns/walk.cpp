@@ -12,8 +12,6 @@
 namespace broadmark::columns {
 namespace {
 
-/// What is cut gets at most so many copies of each of its own on average.
-constexpr std::size_t kMostCopies = 4;
 /// A column has as many buckets as copies, or up to twice as many, but no more than this.
 constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
 /// What it costs to put a copy in order and to test it at all, in tests.

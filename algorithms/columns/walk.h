@@ -52,7 +52,7 @@ class ColumnVisitor {
   virtual void column(const Walk& walk, const Part& part) = 0;
   /// A part of a column that is cut, `inside`, and will be gone through. walk.sorted() is the
   /// whole.
-  virtual void split(const Walk& walk, const CutWorld& inside, const Part& part) = 0;
+  virtual void split(const Walk& /*walk*/, const CutWorld& /*inside*/, const Part& /*part*/) {}
 };
 
 /// Goes through columns. It keeps its memory; each worker has one.
@@ -60,6 +60,8 @@ class Walk {
  public:
   /// Columns are cut, and cut again, at most so often.
   static constexpr int kMostLevels = 8;
+  /// What is cut, the world included, gets at most so many copies of each box on average.
+  static constexpr std::size_t kMostCopies = 4;
 
   /// What it goes through the columns of. All is borrowed.
   struct Boxes {
