@@ -43,8 +43,17 @@ void forEachTile(int worker, int workers, std::size_t count, Test test) {
   }
 }
 
+/// Every body was tested against every other.
+void tellTests(std::size_t bodies, DebugDraw& draw) {
+  for (std::uint32_t body = 0; body < bodies; ++body) {
+    draw.tests(body, static_cast<std::uint32_t>(bodies - 1));
+  }
+}
+
 class Plain final : public BoxBroadPhase {
  public:
+  void drawStructure(DebugDraw& draw) const override { tellTests(boxes().size(), draw); }
+
  private:
   void findPairs() override {
     team().run([this](int worker) {
@@ -76,6 +85,8 @@ class Simd final : public SimdBroadPhase {
     SimdBroadPhase::initialize(scene, first, execution);
     kernels_ = &overlapKernels(execution.isa());
   }
+
+  void drawStructure(DebugDraw& draw) const override { tellTests(arrays().size(), draw); }
 
  private:
   void findPairs() override {

@@ -82,7 +82,8 @@ class CellGrid {
   [[nodiscard]] std::array<std::int32_t, 4> cellsOf(const std::array<float, 4>& corner) const {
     const Corner cell = (cornerOf(corner) - cornerOf(low_)) * cornerOf(scale_);
     // What overflows ends in an outermost cell, and NaN (infinity · 0), the first operand, in 0.
-    return truncated(smaller(larger(cell, Corner{}), cornerOf(last_)));
+    return std::bit_cast<std::array<std::int32_t, 4>>(
+        truncated(smaller(larger(cell, Corner{}), cornerOf(last_))));
   }
 
   alignas(16) std::array<float, 4> low_{};

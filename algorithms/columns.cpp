@@ -10,7 +10,8 @@
 //  4. At once, while the column is in the caches, its windows are swept with vectors of bytes.
 //     Where bounds share a step, the boxes decide.
 //  5. A column that turns out to be crowded is cut into columns of its own instead, as if it were a
-//     world: steps 1 to 4 again.
+//     world: steps 1 to 4 again. Where that does not help and many of its boxes overlap, these are
+//     swept themselves (columns/dense_sweep.h).
 //
 // A pair that shares several columns is reported in one of them: see MarkedBody, whose argument
 // holds for any columns that tile the plane, split ones, too. A mark says that the body begins
@@ -35,10 +36,13 @@
 #include <string>
 #include <vector>
 
+#include "columns/dense_sweep.h"
 #include "columns/hits.h"
 #include "columns/walk.h"
 #include "past_caches.h"
+#include "prefetch.h"
 #include "sample.h"
+#include "test_counts.h"
 #include "variants.h"
 
 namespace broadmark::columns {
@@ -82,26 +86,34 @@ std::size_t rowAt(const Sorted& sorted, double part, std::size_t look) {
   return row;
 }
 
+/// What finds pairs needs to know. All is borrowed.
+struct Search {
+  const Kernels& kernels;
+  const OverlapKernels& dense_kernels;
+  const Aabb* boxes;
+  std::size_t rows_per_look;
+};
+
 /// Finds the pairs in columns.
 class Sweep final : public ColumnVisitor {
  public:
-  Sweep(const Kernels& kernels, const Sorted& sorted, const Aabb* boxes, std::size_t rows_per_look,
-        PairBuffer& pairs)
-      : kernels_(kernels), rows_per_look_(rows_per_look), sink_(kernels, sorted, boxes, pairs) {}
+  Sweep(const Search& search, const Sorted& sorted, DenseSweep& dense, PairBuffer& pairs)
+      : search_(search),
+        dense_(dense),
+        pairs_(pairs),
+        sink_(search.kernels, sorted, search.boxes, pairs) {}
 
-  void column(const Walk& walk, const Part& part) override {
-    constexpr std::size_t kRows = Kernels::kSweptRows;
+  void column(Walk& walk, const Part& part) override {
     const Sorted& sorted = walk.sorted();
-    const std::size_t begin = rowAt(sorted, part.from, rows_per_look_);
-    const std::size_t end = rowAt(sorted, part.to, rows_per_look_);
-    for (std::size_t row = begin; row < end; row += kRows) {
-      const Range rows = {row, std::min(row + kRows, end)};
-      kernels_.sweep(sorted.keys.data(), sorted.ends.data(), rows, sink_);
-      // At certain rows, so that the order of the pairs follows from the rows alone.
-      if (rows.end % rows_per_look_ == 0) sink_.flush();
+    const Range rows = {rowAt(sorted, part.from, search_.rows_per_look),
+                        rowAt(sorted, part.to, search_.rows_per_look)};
+    // It is crowded, and cutting it would not help.
+    if (walk.crowded() && DenseSweep::pays(sorted)) {
+      sweepBoxes(sorted, rows);
+    } else {
+      sweepKeys(walk, rows);
     }
-    sink_.flush();
-    if (begin == 0) count(sorted);
+    if (rows.begin == 0) count(sorted);
   }
 
   void split(const Walk&, const CutWorld& inside, const Part& part) override {
@@ -112,31 +124,57 @@ class Sweep final : public ColumnVisitor {
 
   [[nodiscard]] Done done() const {
     Done done = done_;
-    done.compared_boxes = sink_.comparedBoxes();
+    done.compared_boxes += sink_.comparedBoxes();
     return done;
   }
 
  private:
+  void sweepKeys(Walk& walk, Range all) {
+    constexpr std::size_t kRows = Kernels::kSweptRows;
+    const Sorted& sorted = walk.sorted();
+    for (std::size_t row = all.begin; row < all.end; row += kRows) {
+      const Range rows = {row, std::min(row + kRows, all.end)};
+      walk.sendForMore();
+      search_.kernels.sweep(sorted.keys.data(), sorted.ends.data(), rows, sink_);
+      // At certain rows, so that the order of the pairs follows from the rows alone.
+      if (rows.end % search_.rows_per_look == 0) sink_.flush();
+    }
+    sink_.flush();
+  }
+
+  void sweepBoxes(const Sorted& sorted, Range rows) {
+    dense_.begin(sorted, search_.boxes);
+    dense_.sweep(search_.dense_kernels, rows, pairs_);
+    for (std::size_t i = rows.begin; i < rows.end; ++i) {
+      done_.compared_boxes += sorted.ends[i] - i - 1;
+    }
+  }
+
   void count(const Sorted& sorted) {
     done_.copies += sorted.size;
     done_.tests += sorted.tests - sorted.size;
   }
 
-  const Kernels& kernels_;
-  std::size_t rows_per_look_;
+  Search search_;
+  DenseSweep& dense_;
+  PairBuffer& pairs_;
   HitSink sink_;
   Done done_;
 };
 
-/// Draws columns.
+/// Draws columns, and tells the tests in them.
 class Draw final : public ColumnVisitor {
  public:
   Draw(DebugDraw& draw, const Aabb& bounds) : draw_(draw), bounds_(bounds) {}
 
-  void column(const Walk& walk, const Part&) override {
+  void column(Walk& walk, const Part&) override {
     constexpr Rgb kColumnColour = 0x4FA3D1;
+    const Sorted& sorted = walk.sorted();
     draw_.cell(walk.box(bounds_), kColumnColour, walk.level(),
-               static_cast<std::uint32_t>(walk.sorted().size));
+               static_cast<std::uint32_t>(sorted.size));
+    TestCounts tests(sorted.size);
+    tests.addWindows({sorted.ends.data(), sorted.size});
+    tests.tell(draw_, [&](std::size_t i) { return bodyNumber(sorted.copies[i].body); });
   }
 
  private:
@@ -169,7 +207,7 @@ class Check final : public ColumnVisitor {
     }
   }
 
-  void column(const Walk& walk, const Part&) override {
+  void column(Walk& walk, const Part&) override {
     const Sorted& sorted = walk.sorted();
     for (std::size_t i = 0; i < sorted.size; ++i) {
       if (sorted.ends[i] <= i || sorted.ends[i] > sorted.size) fault_ = "window out of range";
@@ -210,6 +248,7 @@ class Columns final : public PairBroadPhase {
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     PairBroadPhase::initialize(scene, first, execution);
     kernels_ = &kernels(execution.isa());
+    dense_kernels_ = &overlapKernels(execution.isa());
     chains_.resize(static_cast<std::size_t>(team().size()));
     workers_.resize(static_cast<std::size_t>(team().size()));
     updateObjects(first);
@@ -225,6 +264,7 @@ class Columns final : public PairBroadPhase {
   /// One worker's own data, on cache lines of their own.
   struct alignas(64) Worker {
     Walk walk;
+    DenseSweep dense;
     Done done;
   };
 
@@ -242,6 +282,7 @@ class Columns final : public PairBroadPhase {
   std::int64_t copy_cost_ = 150;
   std::int64_t crowded_ = 100;
   const Kernels* kernels_ = nullptr;
+  const OverlapKernels* dense_kernels_ = nullptr;
 
   LargeArray<Aabb> boxes_;
   std::vector<Aabb> sample_;
@@ -282,6 +323,9 @@ bool Columns::copyBoxes(const Frame& frame) {
       } else {
         std::copy_n(boxes, count, boxes_.data() + first);
       }
+      // While the copies wait for memory, the next boxes come.
+      const auto next = frame.boxes.subspan(first + count);
+      prefetch(next.data(), next.data() + std::min(kBlock, next.size()));
       forEachCopy(layout, block, count,
                   [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
     }
@@ -295,8 +339,9 @@ bool Columns::copyBoxes(const Frame& frame) {
 void Columns::findPairs() {
   team().run([&](int worker) {
     Worker& mine = workers_[static_cast<std::size_t>(worker)];
-    Sweep sweep(*kernels_, mine.walk.sorted(), boxes_.data(),
-                boxesPastCaches() ? kRowsPerLookPastCaches : kRowsPerLook, pairs(worker));
+    const Search search = {*kernels_, *dense_kernels_, boxes_.data(),
+                           boxesPastCaches() ? kRowsPerLookPastCaches : kRowsPerLook};
+    Sweep sweep(search, mine.walk.sorted(), mine.dense, pairs(worker));
     const double size = team().size();
     mine.walk.go(allBoxes(), world(), {worker / size, (worker + 1) / size}, sweep);
     mine.done = sweep.done();

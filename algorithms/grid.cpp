@@ -34,6 +34,7 @@
 #include "prefetch.h"
 #include "row_shares.h"
 #include "simd/overlap_kernels.h"
+#include "test_counts.h"
 
 namespace broadmark::grid {
 namespace {
@@ -119,7 +120,11 @@ class Grid final : public PairBroadPhase {
       kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
                             pairs(worker));
       const auto [begin, end] = share(large.end, team().size(), worker);
-      for (std::size_t i = begin; i < end; ++i) testLarge(i, pairs(worker));
+      for (std::size_t i = begin; i < end; ++i) {
+        forEachRowOfCells(i, [&](Range copies, MarkedBody marks) {
+          kernels_->test_row(arrays_, i, bodies_[i] | marks, copies, bodies_.data(), pairs(worker));
+        });
+      }
     });
   }
 
@@ -235,13 +240,13 @@ class Grid final : public PairBroadPhase {
     }
   }
 
-  /// Tests the large box at i against all copies in the cells that it touches, a row of cells
-  /// (whose copies are contiguous) at a time.
-  void testLarge(std::size_t i, PairBuffer& found) const {
+  /// Calls visit(copies, marks) for the copies that the large box at i is tested against: all in
+  /// the cells that it touches, a row of cells (whose copies are contiguous) at a time.
+  template <class Visit>
+  void forEachRowOfCells(std::size_t i, Visit visit) const {
     const CellRange range = grid_.touched(arrays_.box(i));
-    const auto test = [&](std::size_t first_cell, std::size_t last_cell, MarkedBody marks) {
-      kernels_->test_row(arrays_, i, bodies_[i] | marks,
-                         {starts_[first_cell + 1], starts_[last_cell + 2]}, bodies_.data(), found);
+    const auto visit_cells = [&](std::size_t first_cell, std::size_t last_cell, MarkedBody marks) {
+      visit(Range{starts_[first_cell + 1], starts_[last_cell + 2]}, marks);
     };
     for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
       for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
@@ -249,8 +254,8 @@ class Grid final : public PairBroadPhase {
         const std::size_t last = grid_.indexOf(range.last[0], y, z);
         const bool later_y = y != range.first[1];
         const bool later_z = z != range.first[2];
-        test(first, first, cellMarks(false, later_y, later_z));
-        if (first < last) test(first + 1, last, cellMarks(true, later_y, later_z));
+        visit_cells(first, first, cellMarks(false, later_y, later_z));
+        if (first < last) visit_cells(first + 1, last, cellMarks(true, later_y, later_z));
       }
     }
   }
@@ -288,6 +293,12 @@ void Grid::drawStructure(DebugDraw& draw) const {
   for (const std::size_t cell : cells) {
     draw.cell(grid_.cell(cell - 1, bounds_), kCellColour, 0, copies(cell));
   }
+  TestCounts tests(ends_.size());
+  tests.addWindows(ends_);
+  for (std::size_t i = 0; i < contents(kLarge).end; ++i) {
+    forEachRowOfCells(i, [&](Range others, MarkedBody) { tests.add(i, others); });
+  }
+  tests.tell(draw, [this](std::size_t i) { return bodyNumber(bodies_[i]); });
 }
 
 void Grid::visitCounters(const CounterVisitor& visit) const {

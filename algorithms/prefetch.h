@@ -14,4 +14,14 @@ inline void prefetch(const void* address) {
   asm volatile("");
 }
 
+/// Sends for all of an array, from `begin` up to `end`.
+template <class T>
+void prefetch(const T* begin, const T* end) {
+  constexpr std::size_t kCacheLine = 64;
+  const auto* const stop = reinterpret_cast<const char*>(end);
+  for (const auto* line = reinterpret_cast<const char*>(begin); line < stop; line += kCacheLine) {
+    prefetch(line);
+  }
+}
+
 }  // namespace broadmark

@@ -24,6 +24,7 @@
 #include "radix_sort.h"
 #include "row_shares.h"
 #include "simd/overlap_kernels.h"
+#include "test_counts.h"
 #include "variants.h"
 
 namespace broadmark::sweep_and_prune {
@@ -122,6 +123,9 @@ class SweepAndPrune final : public PairBroadPhase {
     from[axes_[0]] = world_.min[axes_[0]];
     to[axes_[0]] = world_.max[axes_[0]];
     draw.line(from, to, kAxisColour);
+    TestCounts tests(ends_.size());
+    tests.addWindows(ends_);
+    tests.tell(draw, [this](std::size_t i) { return bodies_[i]; });
   }
 
   [[nodiscard]] std::string validate() const override {

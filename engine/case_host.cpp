@@ -106,6 +106,7 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
   if (pin_) pinThreads();
   instance_ = makeInstanceFor(scene);
+  bodies_ = scene.objects;
   const auto start = Clock::now();
   instance_->initialize(scene, first, *execution_);
   const auto end = Clock::now();
@@ -182,7 +183,7 @@ Counts LocalHost::setup() {
 }
 
 RecordedDrawing LocalHost::structure() {
-  RecordedDrawing drawing;
+  RecordedDrawing drawing(bodies_);
   instance_->drawStructure(drawing);
   return drawing;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "broadmark/adapters.h"
+#include "renamed_bodies.h"
 
 namespace broadmark {
 
@@ -194,6 +195,11 @@ bool CompactedWorld::isWanted(Pair places, Pair bodies) const {
 void CompactedWorld::visitCounters(const CounterVisitor& visit) const {
   visit("bodies taking part", boxes_.size());
   algorithm_->visitCounters(visit);
+}
+
+void CompactedWorld::drawStructure(DebugDraw& draw) const {
+  RenamedBodies renamed(draw, bodies_);
+  algorithm_->drawStructure(renamed);
 }
 
 std::string CompactedWorld::validate() const {

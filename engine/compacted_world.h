@@ -39,7 +39,7 @@ class CompactedWorld final : public BroadPhase {
   void searchOverlaps() override;
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
   [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
-  void drawStructure(DebugDraw& draw) const override { algorithm_->drawStructure(draw); }
+  void drawStructure(DebugDraw& draw) const override;
   void visitCounters(const CounterVisitor& visit) const override;
   void visitSetup(const CounterVisitor& visit) const override { algorithm_->visitSetup(visit); }
   [[nodiscard]] std::string validate() const override;

@@ -18,6 +18,8 @@
 #include <numeric>
 #include <utility>
 
+#include "broadmark/error.h"
+
 namespace broadmark {
 namespace {
 
@@ -138,7 +140,8 @@ std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFi
   return pairs;
 }
 
-std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                             std::size_t most) {
   std::vector<Pair> pairs;
   if (std::ranges::all_of(boxes, isEmpty)) return pairs;
   const std::array<int, 3> axes = axesByExtent(boxes);
@@ -161,6 +164,10 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
            ++j) {
         if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&
             filter.wanted(*i, *j)) {
+          if (pairs.size() == most) {
+            throw InputError(
+                fmt::format("more than {} pairs overlap: too many to be looked at", most));
+          }
           pairs.push_back(orderedPair(*i, *j));
         }
       }
@@ -173,12 +180,12 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
 Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
                              bool with_pairs) {
   // An answer keeps its filter, so no other can get the same address.
-  const auto [place, is_new] = answers_.try_emplace(
-      std::pair(hashOf(std::as_bytes(boxes)), filter.address()), Answer{.filter = filter});
-  Answer& answer = place->second;
-  if (!is_new && (answer.pairs || !with_pairs)) return answer;
-  scratch_ =
-      boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter) : sweptPairs(boxes, filter);
+  const std::pair key(hashOf(std::as_bytes(boxes)), filter.address());
+  const auto known = answers_.find(key);
+  if (known != answers_.end() && (known->second.pairs || !with_pairs)) return known->second;
+  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
+                                              : sweptPairs(boxes, filter, most_pairs_);
+  Answer& answer = answers_.try_emplace(key, Answer{.filter = filter}).first->second;
   const PairRun run = scratch_;
   answer.digest = digest({&run, 1});
   const std::size_t bytes = scratch_.size() * sizeof(Pair);

@@ -152,7 +152,8 @@ const RecordingOrigin& Recording::origin() const {
 const std::string& Recording::hash() {
   if (!hash_.empty()) return hash_;
   Hasher hasher;
-  std::vector<std::byte> chunk(1 << 20);
+  constexpr std::uint64_t kMostAtOnce = 1 << 20;
+  std::vector<std::byte> chunk(std::min(size_, kMostAtOnce));
   for (std::uint64_t offset = 0; offset < size_; offset += chunk.size()) {
     const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size_ - offset));
     read(offset, part);

@@ -12,6 +12,8 @@
 #include <span>
 #include <utility>
 
+#include "renamed_bodies.h"
+
 namespace broadmark {
 namespace {
 
@@ -208,7 +210,10 @@ TransferTimes WorldsApart::transfers() const {
 }
 
 void WorldsApart::drawStructure(DebugDraw& draw) const {
-  for (const World& world : worlds_) world.instance->drawStructure(draw);
+  for (const World& world : worlds_) {
+    RenamedBodies renamed(draw, world.bodies);
+    world.instance->drawStructure(renamed);
+  }
 }
 
 void WorldsApart::visitCounters(const CounterVisitor& visit) const {

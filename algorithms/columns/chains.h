@@ -7,10 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
+#include "broadmark/large_array.h"
 #include "columns/copies.h"
-#include "large_array.h"
 #include "prefetch.h"
 
 namespace broadmark::columns {
@@ -31,6 +32,7 @@ class alignas(64) Chains {
     if (reinterpret_cast<std::uintptr_t>(end) % kChunkBytes == 0) [[unlikely]]
       lengthen(column);
     *end++ = copy;
+    prefetch(end + kCopiesInLine);  // by the time that it is written to, it is there
   }
 
   [[nodiscard]] std::size_t count(std::size_t column) const {
@@ -56,7 +58,7 @@ class alignas(64) Chains {
     std::size_t place = firstPlace(column);
     for (std::size_t left = chains_[column].before; left > 0; left -= kCopies) {
       // Only processors know how far ahead of a loop they look; no further than a chunk, here.
-      for (const Copy& copy : chunk->next->copies) prefetch(&copy);
+      prefetch(chunk->next, chunk->next + 1);
       for (; place < kCopies; ++place) visit(chunk->copies[place]);
       place = 0;
       chunk = chunk->next;
@@ -66,6 +68,9 @@ class alignas(64) Chains {
   }
 
  private:
+  friend class ChainsAhead;
+
+  static constexpr std::size_t kCopiesInLine = 64 / sizeof(Copy);  ///< in a cache line
   static constexpr std::size_t kChunkBytes = 2048;
   static constexpr std::size_t kCopies = kChunkBytes / sizeof(Copy) - 1;
   /// Aligned to its size: from the address of a place follows how full the chunk is.
@@ -134,6 +139,34 @@ class alignas(64) Chains {
   std::size_t slab_ = 0;          ///< the one that chunks are taken from
   std::size_t used_in_slab_ = 0;  ///< chunks
   std::size_t used_before_ = 0;   ///< in the slabs before it
+};
+
+/// Sends for the copies of a column, a chunk at a time, while something else is computed.
+class ChainsAhead {
+ public:
+  /// Nothing to send for.
+  ChainsAhead() = default;
+  /// All is borrowed.
+  ChainsAhead(std::span<const Chains> chains, std::size_t column)
+      : chains_(chains), column_(column) {}
+
+  /// Sends for the next chunk, if there is one left.
+  void more() {
+    if (chains_.empty()) return;
+    const Chains::Chain& chain = chains_.front().chains_[column_];
+    // That the chunk before knows the next one is looked at only now, as it had to come, too.
+    chunk_ = chunk_ == nullptr ? chain.first : chunk_->next;
+    if (chunk_ != nullptr) prefetch(chunk_, chunk_ + 1);
+    if (chunk_ == chain.last) {
+      chunk_ = nullptr;
+      chains_ = chains_.subspan(1);
+    }
+  }
+
+ private:
+  std::span<const Chains> chains_;
+  std::size_t column_ = 0;
+  const Chains::Chunk* chunk_ = nullptr;  ///< the last one that was sent for
 };
 
 }  // namespace broadmark::columns

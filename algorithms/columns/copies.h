@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "large_array.h"
+#include "broadmark/large_array.h"
 #include "marked_body.h"
 
 namespace broadmark::columns {
@@ -39,6 +39,15 @@ struct alignas(16) Copy {
   std::uint32_t key;
   MarkedBody body;
 };
+
+/// Whether two copies in a column overlap in steps.
+constexpr bool overlapInSteps(const Copy& a, const Copy& b) {
+  const std::uint32_t limits = limitsOf(a.key);
+  for (int shift = 0; shift < 32; shift += 8) {
+    if ((b.key >> shift & 255) > (limits >> shift & 255)) return false;
+  }
+  return a.first <= b.last && b.first <= a.last;
+}
 
 /// The copies of a column in the order of their lower bounds, roughly. Behind the last one there is
 /// padding for whole vectors and groups of rows.

@@ -12,6 +12,15 @@
 
 namespace broadmark::columns {
 
+/// Which columns a box touches beside its first one.
+enum Crossing : std::uint32_t {
+  kNone,
+  kFirstAxis,   ///< the next one on the first axis that is cut
+  kSecondAxis,  ///< the next one on the second
+  kOtherwise,
+  kCrossings
+};
+
 /// A few boxes among the columns, in one array for each number.
 struct BoxBlock {
   static constexpr std::size_t kBoxes = 128;
@@ -26,7 +35,7 @@ struct BoxBlock {
   std::uint32_t columns[kBoxes];
   std::uint32_t keys[kBoxes];
   Copy copies[kBoxes];
-  std::uint32_t crossing[kBoxes];  ///< not 0: the box touches other columns, too
+  std::uint32_t crossing[kBoxes];  ///< Crossing of each
 };
 
 /// Pairs of copies whose keys overlap: which ones follows from the bits, see Kernels.

@@ -48,13 +48,17 @@ void findSteps(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
     const std::uint32_t low_b = block.low[1][k];
     const std::uint32_t high_a = block.high[0][k];
     const std::uint32_t high_b = block.high[1][k];
-    // Where the box goes on, its last step in the column is the last one there is.
-    const std::uint32_t goes_on_a = high_a >> kBits != low_a >> kBits ? kLast : 0;
-    const std::uint32_t goes_on_b = high_b >> kBits != low_b >> kBits ? kLast : 0;
+    // How many columns it goes on for. Then its last step in this one is the last one there is.
+    const std::uint32_t more_a = (high_a >> kBits) - (low_a >> kBits);
+    const std::uint32_t more_b = (high_b >> kBits) - (low_b >> kBits);
+    const std::uint32_t goes_on_a = more_a != 0 ? kLast : 0;
+    const std::uint32_t goes_on_b = more_b != 0 ? kLast : 0;
     block.keys[k] = columns::keyOf(low_a & kLast, low_b & kLast, (high_a & kLast) | goes_on_a,
                                    (high_b & kLast) | goes_on_b);
     block.columns[k] = (low_b >> kBits) * columns_in_row + (low_a >> kBits);
-    block.crossing[k] = goes_on_a | goes_on_b;
+    static_assert(columns::kFirstAxis == 1 && columns::kSecondAxis == 2);
+    const bool simple = more_a + more_b <= 1;
+    block.crossing[k] = simple ? more_a + 2 * more_b : columns::kOtherwise;
   }
   for (std::size_t k = 0; k < count; ++k) {
     block.copies[k] = {block.first[k], block.last[k], block.keys[k], bodies[k]};

@@ -46,6 +46,7 @@ void Walk::goThrough(const CutWorld& world, const Part& part) {
     const double work = workOf(world.layout, count);
     if (count > 0 && before + work > begin) {
       order(world, column, count);
+      ahead_ = column + 1 < columns ? ChainsAhead(world.chains, column + 1) : ChainsAhead();
       path_[static_cast<std::size_t>(level_)] = {&world.layout, column};
       const Part of_column = {std::max(0.0, (begin - before) / work),
                               std::min(1.0, (end - before) / work)};
@@ -81,7 +82,7 @@ void Walk::order(const CutWorld& world, std::size_t column, std::size_t count) {
 /// worth it.
 bool Walk::split(const Part& part) {
   const std::size_t count = sorted_.size;
-  if (sorted_.tests <= boxes_.crowded * count || level_ + 1 == kMostLevels) return false;
+  if (!crowded() || level_ + 1 == kMostLevels) return false;
   takeSample(
       count, [&](std::size_t i) { return boxes_.boxes[bodyNumber(sorted_.copies[i].body)]; },
       sample_);

@@ -49,7 +49,7 @@ class ColumnVisitor {
  public:
   virtual ~ColumnVisitor() = default;
   /// A part of a column: walk.sorted() is what is in it.
-  virtual void column(const Walk& walk, const Part& part) = 0;
+  virtual void column(Walk& walk, const Part& part) = 0;
   /// A part of a column that is cut, `inside`, and will be gone through. walk.sorted() is the
   /// whole.
   virtual void split(const Walk& /*walk*/, const CutWorld& /*inside*/, const Part& /*part*/) {}
@@ -77,6 +77,10 @@ class Walk {
 
   /// The column at hand.
   [[nodiscard]] const Sorted& sorted() const { return sorted_; }
+  /// Whether it has more tests per copy than it should.
+  [[nodiscard]] bool crowded() const { return sorted_.tests > boxes_.crowded * sorted_.size; }
+  /// Sends for some of the next one, which takes its time. To be called now and then.
+  void sendForMore() { ahead_.more(); }
   /// In how many columns that are cut it lies.
   [[nodiscard]] int level() const { return level_; }
   /// The box of the column at hand, in the world's bounds.
@@ -99,6 +103,7 @@ class Walk {
   Boxes boxes_;
   ColumnVisitor* visitor_ = nullptr;
   Sorted sorted_;
+  ChainsAhead ahead_;                  ///< of the next column
   std::vector<std::uint32_t> places_;  ///< per bucket of the column at hand
   std::vector<Aabb> sample_;
   int level_ = 0;
@@ -108,7 +113,9 @@ class Walk {
 
 /// Calls visit(column, copy) for every column that the boxes of a block touch.
 ///
-/// First come all boxes' first columns, without a branch; few boxes touch others.
+/// First come all boxes' first columns, without a branch. Few boxes touch others; most of those
+/// that do touch one, the next on the first axis or on the second. Which of all these a box is
+/// nobody can tell, so boxes are sorted by it, and each kind has a loop of its own.
 template <class Visit>
 inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t count,
                         Visit visit) {
@@ -117,15 +124,31 @@ inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t
   // Marks are by axis: columns within a column may be cut on other axes than it.
   const MarkedBody mark_a = axisMark(layout.scales().of[0].axis);
   const MarkedBody mark_b = axisMark(layout.scales().of[1].axis);
-  std::array<std::uint32_t, BoxBlock::kBoxes> crossing;
-  std::size_t crossings = 0;
+  std::array<std::array<std::uint16_t, BoxBlock::kBoxes>, kCrossings> boxes;
+  std::array<std::size_t, kCrossings> sizes{};
   for (std::size_t k = 0; k < count; ++k) {
     visit(block.columns[k], block.copies[k]);
-    crossing[crossings] = static_cast<std::uint32_t>(k);
-    crossings += block.crossing[k] != 0 ? 1 : 0;
+    const std::uint32_t crossing = block.crossing[k];
+    boxes[crossing][sizes[crossing]++] = static_cast<std::uint16_t>(k);
   }
-  for (std::size_t c = 0; c < crossings; ++c) {
-    const std::uint32_t k = crossing[c];
+  const auto of = [&](Crossing crossing) {
+    return std::span(boxes[crossing].data(), sizes[crossing]);
+  };
+  for (const std::uint32_t k : of(kFirstAxis)) {
+    Copy copy = block.copies[k];
+    copy.key =
+        keyOf(0, block.low[1][k] & kLast, block.high[0][k] & kLast, block.high[1][k] & kLast);
+    copy.body |= mark_a;
+    visit(block.columns[k] + 1, copy);
+  }
+  for (const std::uint32_t k : of(kSecondAxis)) {
+    Copy copy = block.copies[k];
+    copy.key =
+        keyOf(block.low[0][k] & kLast, 0, block.high[0][k] & kLast, block.high[1][k] & kLast);
+    copy.body |= mark_b;
+    visit(block.columns[k] + layout.scales().columns_in_row, copy);
+  }
+  for (const std::uint32_t k : of(kOtherwise)) {
     Copy copy = block.copies[k];
     const MarkedBody body = copy.body;
     const std::uint32_t low_a = block.low[0][k];

@@ -119,6 +119,7 @@ void LooseGrid::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> s
 /// As many as it takes to cover the bulk, but not many more than bodies.
 void LooseGrid::chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk) {
   levels_ = {};
+  used_levels_ = 0;
   std::array<std::uint32_t, kLevels> bodies{};
   for (const Aabb& box : boxes) {
     if (isEmpty(box)) continue;
@@ -141,14 +142,17 @@ void LooseGrid::chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 
       at.first[axis] = low[axis] >> shiftOf(level);
       at.counts[axis] = (high[axis] >> shiftOf(level)) - at.first[axis] + 1;
     }
-    const auto size = [&] {
-      double product = 1;
-      for (const std::int32_t count : at.counts) product *= count;
-      return product;
-    };
+    const auto size = [&] { return 1.0 * at.counts[0] * at.counts[1] * at.counts[2]; };
     while (size() > 2.0 * bodies[level] + 1) {
-      std::int32_t& most = *std::ranges::max_element(at.counts);
-      most = (most + 1) / 2;
+      int most = 0;
+      for (const int axis : {1, 2}) {
+        if (at.counts[axis] > at.counts[most]) most = axis;
+      }
+      at.counts[most] = (at.counts[most] + 1) / 2;
+    }
+    at.strides[0] = 1;
+    for (const int axis : {1, 2}) {
+      at.strides[axis] = at.strides[axis - 1] * static_cast<std::uint32_t>(at.counts[axis - 1]);
     }
     at.first_cell = cell_count_;
     cell_count_ += static_cast<std::uint32_t>(size());
@@ -176,7 +180,8 @@ void LooseGrid::putInto(std::span<const Aabb> boxes) {
 }
 
 std::uint32_t LooseGrid::levelOf(const Extent& extent) {
-  const std::int32_t longest = std::max({extent.edge(0), extent.edge(1), extent.edge(2)});
+  const Steps edges = extent.edges();
+  const std::int32_t longest = std::max({edges[0], edges[1], edges[2]});
   std::uint32_t level = 0;
   while (level + 1 < kLevels && longest > 1 << shiftOf(level)) ++level;
   return level;
@@ -196,17 +201,15 @@ inline LooseGrid::Steps LooseGrid::stepsOf(const std::array<float, 4>& corner) c
   return truncated(smaller(larger(steps, Corner{} - kLastStep), Corner{} + kLastStep));
 }
 
-std::uint32_t LooseGrid::cellOf(const Aabb& box) const {
-  if (isEmpty(box)) return kNowhere;
-  const Extent extent = extentOf(box);
+std::uint32_t LooseGrid::cellOf(const Extent& extent) const {
   const std::uint32_t level = levelOf(extent);
   const Level& at = levels_[level];
-  std::uint32_t cell = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    cell = cell * static_cast<std::uint32_t>(at.counts[axis]) +
-           wrapped(extent.min[axis] >> shiftOf(level), at.first[axis], at.counts[axis]);
+  const Steps cells = extent.min >> shiftOf(level);
+  std::uint32_t cell = at.first_cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    cell += wrapped(cells[axis], at.first[axis], at.counts[axis]) * at.strides[axis];
   }
-  return at.first_cell + cell;
+  return cell;
 }
 
 /// The two bytes of an axis; what is lower or higher than they can tell counts as their limit.
@@ -222,27 +225,23 @@ LooseGrid::Bounds LooseGrid::boundsOf(const Extent& extent, const Extent& body) 
   const std::uint32_t level = levelOf(body);
   const Level& at = levels_[level];
   const int to_level = shiftOf(level) - kCellBits;
+  const Steps cell = body.min >> shiftOf(level);
+  const Steps begin = cell << kCellBits;
+  // Who looks into a cell takes it for one in the bulk.
+  const Steps from_first = cell - at.first;
+  const Steps in_bulk =
+      (from_first >= 0) & (from_first < at.counts) & (extent.min >> shiftOf(level) == cell);
+  const Steps low = in_bulk & ((extent.min >> to_level) - begin);
+  const Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kLastInCell;
   Bounds bounds = kNobody | kSomebody;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t cell = body.min[axis] >> shiftOf(level);
-    const std::int32_t begin = cell << kCellBits;
-    const std::int64_t from_first = std::int64_t{cell} - at.first[axis];
-    // Who looks into a cell takes it for one in the bulk.
-    const bool in_bulk = 0 <= from_first && from_first < at.counts[axis] &&
-                         extent.min[axis] >> shiftOf(level) == cell;
-    bounds |= in_bulk ? boundsOnAxis(axis, (extent.min[axis] >> to_level) - begin,
-                                     (extent.max[axis] >> to_level) - begin)
-                      : boundsOnAxis(axis, 0, kLastInCell);
-  }
+  for (int axis = 0; axis < 3; ++axis) bounds |= boundsOnAxis(axis, low[axis], high[axis]);
   return bounds;
 }
 
 void LooseGrid::reach(const Extent& extent) {
-  Level& level = levels_[levelOf(extent)];
-  level.is_used = true;
-  for (int axis = 0; axis < 3; ++axis) {
-    level.reach[axis] = std::max(level.reach[axis], extent.edge(axis));
-  }
+  const std::uint32_t level = levelOf(extent);
+  used_levels_ |= 1U << level;
+  levels_[level].reach = larger(levels_[level].reach, extent.edges());
 }
 
 std::uint32_t LooseGrid::newLine() {
@@ -300,12 +299,16 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
     }
     const std::uint32_t body = bodies[i];
     const Aabb& box = boxes[body];
-    const std::uint32_t cell_before = bodies_[body].cell();
-    bodies_[body].move(box, cellOf(box), frame_);
-    if (bodies_[body].cell() != kNowhere) reach(extentOf(box));
-    if (bodies_[body].cell() != kNowhere || cell_before != kNowhere) {
-      to_move_[body / 64] |= std::uint64_t{1} << body % 64;
+    const bool was = bodies_[body].cell() != kNowhere;
+    const bool is = !isEmpty(box);
+    std::uint32_t cell = kNowhere;
+    if (is) {
+      const Extent extent = extentOf(box);
+      cell = cellOf(extent);
+      reach(extent);
     }
+    bodies_[body].move(box, cell, frame_);
+    if (was || is) to_move_[body / 64] |= std::uint64_t{1} << body % 64;
   }
 }
 
@@ -330,15 +333,12 @@ void LooseGrid::prepare(std::uint32_t index) {
   const Extent before = extentOf(body.before);
   const Extent now = extentOf(body.box);
   // Around both places at once, unless it has moved far.
-  bool near = true;
-  Extent both;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t far = 1 << kCellBits | now.edge(axis);
-    near = near && std::abs(now.min[axis] - before.min[axis]) <= far &&
-           std::abs(now.max[axis] - before.max[axis]) <= far;
-    both.min[axis] = std::min(before.min[axis], now.min[axis]);
-    both.max[axis] = std::max(before.max[axis], now.max[axis]);
-  }
+  const Steps far = 1 << kCellBits | now.edges();
+  const auto is_near = [&](Steps from, Steps to) {
+    return isEveryAxis((to - from <= far) & (from - to <= far));
+  };
+  const bool near = is_near(before.min, now.min) && is_near(before.max, now.max);
+  const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
   // In a cell that it does not leave it is found at both places.
   const Extent& found = body.cell() == body.cellBefore() ? both : now;
   next_batch_.steps.push_back({index, boundsOf(found, now)});
@@ -349,42 +349,54 @@ void LooseGrid::prepare(std::uint32_t index) {
 
 /// Adds looks into the cells where somebody may overlap the extent.
 void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, unsigned wanted) {
-  constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
-  for (std::uint32_t level = 0; level < kLevels; ++level) {
-    const Level& at = levels_[level];
-    if (!at.is_used) continue;
-    // Calls with each cell on an axis, and with what bounds must reach there.
-    const auto for_each_on = [&](int axis, auto visit) {
-      const std::int32_t first = (extent.min[axis] - at.reach[axis]) >> shiftOf(level);
-      const std::int32_t last = extent.max[axis] >> shiftOf(level);
-      // Beyond the bulk bounds tell nothing.
-      const bool in_bulk =
-          first >= at.first[axis] && std::int64_t{last} - at.first[axis] < at.counts[axis];
-      const int to_level = shiftOf(level) - kCellBits;
-      const std::int32_t begin = first << kCellBits;
-      std::int32_t low = in_bulk ? (extent.min[axis] >> to_level) - begin : 0;
-      std::int32_t high = in_bulk ? (extent.max[axis] >> to_level) - begin : kFarOff;
-      std::uint32_t cell = wrapped(first, at.first[axis], at.counts[axis]);
-      // Where that is all there are, each once.
-      for (std::int32_t rest = std::min(last - first + 1, at.counts[axis]); rest > 0; --rest) {
-        visit(cell, boundsOnAxis(axis, high, low));
-        low -= 1 << kCellBits;
-        high -= 1 << kCellBits;
-        cell = cell + 1 == static_cast<std::uint32_t>(at.counts[axis]) ? 0 : cell + 1;
+  LargeArray<Look>& looks = next_batch_.looks;
+  for (std::uint32_t levels = used_levels_; levels != 0; levels &= levels - 1) {
+    const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
+    lookAlongAxes(level, extent);
+    const auto& [columns, rows, slices] = looks_on_axes_;
+    std::size_t look = looks.size();
+    looks.resize(look + columns.size() * rows.size() * slices.size());
+    for (const LookOnAxis& slice : slices) {
+      for (const LookOnAxis& row : rows) {
+        const std::uint32_t first = levels_[level].first_cell + slice.cell + row.cell;
+        const Bounds least = kSomebody | slice.least | row.least;
+        for (const LookOnAxis& column : columns) {
+          prefetch(&lines_[first + column.cell]);
+          looks[look++] = {least | column.least, first + column.cell};
+        }
       }
-    };
-    const auto [in_row, rows, slices] = at.counts;
-    for_each_on(2, [&](std::uint32_t z, Bounds on_z) {
-      for_each_on(1, [&](std::uint32_t y, Bounds on_y) {
-        const std::uint32_t row = at.first_cell + (z * rows + y) * in_row;
-        for_each_on(0, [&](std::uint32_t x, Bounds on_x) {
-          prefetch(&lines_[row + x]);
-          next_batch_.looks.push_back({kSomebody | on_z | on_y | on_x, row + x});
-        });
-      });
-    });
+    }
   }
-  next_batch_.searches.push_back({body, wanted, next_batch_.looks.size(), 0});
+  next_batch_.searches.push_back({body, wanted, looks.size(), 0});
+}
+
+/// Finds the cells on each axis where somebody may overlap the extent, and what bounds must reach
+/// there.
+void LooseGrid::lookAlongAxes(std::uint32_t level, const Extent& extent) {
+  constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
+  const Level& at = levels_[level];
+  const Steps first = (extent.min - at.reach) >> shiftOf(level);
+  const Steps last = extent.max >> shiftOf(level);
+  const int to_level = shiftOf(level) - kCellBits;
+  const Steps begin = first << kCellBits;
+  // Beyond the bulk bounds tell nothing.
+  const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
+  const Steps low = in_bulk & ((extent.min >> to_level) - begin);
+  const Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff;
+  // Where that is all there are, each once.
+  const Steps counts = smaller(last - first + 1, at.counts);
+  for (int axis = 0; axis < 3; ++axis) {
+    LargeArray<LookOnAxis>& looks = looks_on_axes_[axis];
+    looks.resize(static_cast<std::size_t>(counts[axis]));
+    const auto end = static_cast<std::uint32_t>(at.counts[axis]);
+    std::uint32_t cell = wrapped(first[axis], at.first[axis], at.counts[axis]);
+    std::int32_t before = 0;  // from the beginning of the first cell to that of this one
+    for (LookOnAxis& look : looks) {
+      look = {boundsOnAxis(axis, high[axis] - before, low[axis] - before), cell * at.strides[axis]};
+      before += 1 << kCellBits;
+      cell = cell + 1 == end ? 0 : cell + 1;
+    }
+  }
 }
 
 /// Lists who is there and reaches what was wanted, and sends for them.
@@ -425,10 +437,9 @@ void LooseGrid::draw(DebugDraw& draw) const {
     if (isEmpty(body.box)) continue;
     const Extent extent = extentOf(body.box);
     const std::uint32_t level = levelOf(extent);
-    Steps cell = extent.min;
-    for (int axis = 0; axis < 3; ++axis) cell[axis] >>= shiftOf(level);
+    Steps cell = extent.min >> shiftOf(level);
     cell[3] = static_cast<std::int32_t>(level);
-    ++populations[cell];
+    ++populations[std::bit_cast<std::array<std::int32_t, 4>>(cell)];
   }
   for (const auto& [cell, population] : populations) {
     Aabb box;
@@ -449,11 +460,8 @@ std::string LooseGrid::validate() const {
     if (isEmpty(of.box)) continue;
     ++present;
     const Extent extent = extentOf(of.box);
-    const Counts& reach = levels_[levelOf(extent)].reach;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (extent.edge(axis) > reach[axis]) {
-        return fmt::format("body {} reaches farther than its level", body);
-      }
+    if (!isEveryAxis(extent.edges() <= levels_[levelOf(extent)].reach)) {
+      return fmt::format("body {} reaches farther than its level", body);
     }
     const Bounds bounds = boundsOf(extent, extent) & ~kNobody;
     bool is_there = false;

@@ -32,8 +32,8 @@
 
 #include "broadmark/aabb.h"
 #include "broadmark/debug_draw.h"
+#include "broadmark/large_array.h"
 #include "corner.h"
-#include "large_array.h"
 #include "prefetch.h"
 #include "sample.h"
 
@@ -86,14 +86,13 @@ class LooseGrid {
   static constexpr float kLastStep = static_cast<float>(1 << 29);
 
   /// Where a coordinate lies, on three axes; the fourth number means nothing.
-  using Steps = std::array<std::int32_t, 4>;
-  using Counts = std::array<std::int32_t, 3>;
+  using Steps = WholeCorner;
 
   /// A box in steps.
   struct Extent {
     Steps min;
     Steps max;
-    [[nodiscard]] std::int32_t edge(int axis) const { return max[axis] - min[axis]; }
+    [[nodiscard]] Steps edges() const { return max - min; }
   };
 
   /// Of a box in a cell: on each axis a byte for its upper bound, counted from the cell's
@@ -147,11 +146,11 @@ class LooseGrid {
   };
 
   struct Level {
-    Counts first{};   ///< the cell at which the bulk begins
-    Counts counts{};  ///< cells
-    Counts reach{};   ///< the longest edges of bodies there were, in steps
+    Steps first{};                           ///< the cell at which the bulk begins
+    Steps counts{};                          ///< cells
+    Steps reach{};                           ///< the longest edges of bodies there were, in steps
+    std::array<std::uint32_t, 3> strides{};  ///< from one cell to the next
     std::uint32_t first_cell = 0;
-    bool is_used = false;  ///< there has been somebody
   };
 
   static constexpr unsigned kBeginnings = 1;
@@ -174,15 +173,20 @@ class LooseGrid {
     Bounds least;
     std::uint32_t cell;
   };
+  /// The part of one axis in Look; cells are counted from those at the level's beginning.
+  struct LookOnAxis {
+    Bounds least;
+    std::uint32_t cell;
+  };
   /// What is to be done for a few moves.
   struct Batch {
     std::vector<Step> steps;
     std::vector<Search> searches;
-    std::vector<Look> looks;
+    LargeArray<Look> looks;
     void clear() {
       steps.clear();
       searches.clear();
-      looks.clear();
+      looks.resize(0);
     }
   };
   /// Somebody who may overlap a body that moves.
@@ -196,6 +200,9 @@ class LooseGrid {
     std::uint32_t cell;
   };
 
+  static bool isEveryAxis(Steps condition) {
+    return (condition[0] & condition[1] & condition[2]) != 0;
+  }
   static int shiftOf(std::uint32_t level) {
     return kCellBits + kLevelBits * static_cast<int>(level);
   }
@@ -207,8 +214,11 @@ class LooseGrid {
     return {stepsOf(box.min), stepsOf(box.max)};
   }
   static std::uint32_t levelOf(const Extent& extent);
+  [[nodiscard]] std::uint32_t cellOf(const Extent& extent) const;
   /// kNowhere if the box is empty.
-  [[nodiscard]] std::uint32_t cellOf(const Aabb& box) const;
+  [[nodiscard]] std::uint32_t cellOf(const Aabb& box) const {
+    return isEmpty(box) ? kNowhere : cellOf(extentOf(box));
+  }
   [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& body) const;
   void reach(const Extent& extent);
 
@@ -225,6 +235,7 @@ class LooseGrid {
   void makeMove(const Step& step);
   void prepare(std::uint32_t body);
   void lookAround(std::uint32_t body, const Extent& extent, unsigned wanted);
+  void lookAlongAxes(std::uint32_t level, const Extent& extent);
   void lookInto(const Look& look);
   /// Whether it moves in this frame, and search() has yet to come to it.
   [[nodiscard]] bool isToMove(std::uint32_t body) const {
@@ -236,6 +247,7 @@ class LooseGrid {
   std::array<float, 4> low_{};
   float factor_ = 1;  ///< steps to a unit of length
   std::array<Level, kLevels> levels_;
+  std::uint32_t used_levels_ = 0;  ///< a bit for each level where there has been somebody
   std::uint32_t cell_count_ = 0;
   LargeArray<Line> lines_;                 ///< of the cells, then those behind them
   std::vector<std::uint32_t> free_lines_;  ///< of these, nobody's
@@ -244,6 +256,7 @@ class LooseGrid {
   std::vector<std::uint64_t> to_move_;  ///< a bit for each body
   Batch batch_;
   Batch next_batch_;
+  std::array<LargeArray<LookOnAxis>, 3> looks_on_axes_;
   std::vector<Candidate> candidates_;
   std::vector<Left> left_;
   std::uint32_t frame_ = 1;

@@ -21,7 +21,7 @@
 //   events                                                        began, then ended: so many pairs
 //                                                                 are shared
 //   counters, setup                                               counts {}
-//   structure                                                     boxes, lines: so many are
+//   structure                                                     boxes, lines, tests: so many are
 //                                                                 shared; left_out
 //   validate                                                      broken ("": nothing)
 //   stop                                                          peak_bytes (null: not known),

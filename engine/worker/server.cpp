@@ -163,10 +163,12 @@ class Server {
 
   Json structure(const Json& /*message*/) {
     const RecordedDrawing drawing = startedHost().structure();
-    const std::uint64_t end = answers_.write(std::span(drawing.boxes()));
-    answers_.write(std::span(drawing.lines()), end);
+    std::uint64_t end = answers_.write(std::span(drawing.boxes()));
+    end = answers_.write(std::span(drawing.lines()), end);
+    answers_.write(std::span(drawing.tests()), end);
     return {{"boxes", drawing.boxes().size()},
             {"lines", drawing.lines().size()},
+            {"tests", drawing.tests().size()},
             {"left_out", drawing.leftOut()}};
   }
 

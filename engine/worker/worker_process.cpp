@@ -219,10 +219,15 @@ RecordedDrawing WorkerProcess::structure() {
   const Json drawn = talk(calling("structure"));
   std::vector<RecordedDrawing::Box> boxes;
   std::vector<RecordedDrawing::Line> lines;
+  std::vector<std::uint32_t> tests;
   link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
   link_->answers.read(lines, drawn.at("lines").get<std::size_t>(),
                       boxes.size() * sizeof(RecordedDrawing::Box));
-  return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>()};
+  const std::uint64_t end =
+      boxes.size() * sizeof(RecordedDrawing::Box) + lines.size() * sizeof(RecordedDrawing::Line);
+  link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
+  return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
+          std::move(tests)};
 }
 
 }  // namespace broadmark

@@ -175,7 +175,7 @@ def read(path: pathlib.Path, content: npt.NDArray[np.uint8]) -> ChangingRecordin
             require(0 <= length <= size - at, f"is too short for the {group} of its bodies")
             numbers[group] = content[at : at + length].view(kind).reshape(bodies, *shape)
             at += _aligned(length)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
         raise InputError(f"{path}: its header is none of a recording: {error}") from None
     index_at = int(end["index_offset"])
     index_end = size - END.itemsize

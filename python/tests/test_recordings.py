@@ -193,6 +193,7 @@ def test_bad_changing_files_are_refused(tmp_path: pathlib.Path) -> None:
     changing_recording(path)
     whole = path.read_bytes()
     index = int.from_bytes(whole[-32:-24], "little")
+    nested = b"[" * (64 * 2000 - 16)
     for content in (
         b"",
         whole[:40],
@@ -201,9 +202,11 @@ def test_bad_changing_files_are_refused(tmp_path: pathlib.Path) -> None:
         whole + bytes(32),
         b"X" + whole[1:],
         whole[:8] + b"\xff" * 8 + whole[16:],
+        whole[:8] + len(nested).to_bytes(8, "little") + nested + whole[16:],
         whole.replace(b"recording/2", b"recording/3"),
         whole.replace(b'"objects": 60', b'"objects": 61'),
         whole.replace(b'"frames": 39', b'"frames": 38'),
+        whole.replace(b'"objects": 60', b'"objects": 1e999'),
         whole.replace(b'"layers"', b'"liars"'),
         whole[: index + 40] + b"\xff" * 4 + whole[index + 44 :],
         whole[: index + 32] + b"\xff" * 8 + whole[index + 40 :],

@@ -35,6 +35,17 @@ std::uint32_t stepOf(const StepScale& scale, float coordinate) {
       static_cast<std::int32_t>(at_least < scale.last ? at_least : scale.last));
 }
 
+/// By how many columns a box goes on, on each axis.
+columns::Crossing crossingOf(const BoxBlock& block, std::size_t k) {
+  const auto more = [&](int which) {
+    return (block.high[which][k] >> Layout::kStepBits) - (block.low[which][k] >> Layout::kStepBits);
+  };
+  if (more(0) == 0 && more(1) == 0) return columns::kNone;
+  if (more(0) == 1 && more(1) == 0) return columns::kFirstAxis;
+  if (more(0) == 0 && more(1) == 1) return columns::kSecondAxis;
+  return columns::kOtherwise;
+}
+
 /// First and last steps on both axes.
 struct StepBox {
   std::uint32_t first[2];
@@ -68,6 +79,8 @@ TEST(ColumnKeys, TellSharedSteps) {
   for (int i = 0; i < 5000; ++i) {
     const StepBox a = randomSteps(random);
     const StepBox b = randomSteps(random);
+    ASSERT_EQ(columns::overlapInSteps({0, 1, a.key(), 0}, {1, 2, b.key(), 1}),
+              overlapInSteps(a, b));
     if (!overlapInSteps(a, b)) continue;
     const bool expected = a.first[0] == b.last[0] || b.first[0] == a.last[0] ||
                           a.first[1] == b.last[1] || b.first[1] == a.last[1];
@@ -114,7 +127,6 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
   }
 }
 
-// A lower coordinate never gets a higher step, and all instruction sets agree.
 TEST(CopyPastCaches, CopiesNoMoreAndNoLess) {
   constexpr std::size_t kMost = 40;
   const std::vector<Aabb> boxes = inputs::uniform(kMost, 0, 1);
@@ -129,6 +141,7 @@ TEST(CopyPastCaches, CopiesNoMoreAndNoLess) {
   }
 }
 
+// A lower coordinate never gets a higher step, and all instruction sets agree.
 TEST(ColumnKernels, FindTheSameSteps) {
   std::array<MarkedBody, BoxBlock::kBoxes> bodies;
   std::iota(bodies.begin(), bodies.end(), 1000);
@@ -154,6 +167,7 @@ TEST(ColumnKernels, FindTheSameSteps) {
           ASSERT_EQ(copy.key, block.keys[k]);
           ASSERT_EQ(copy.body, bodies[k]);
           ASSERT_LT(block.columns[k], layout.size());
+          ASSERT_EQ(block.crossing[k], crossingOf(block, k)) << isaName(isa);
         }
       }
     }
@@ -237,6 +251,18 @@ TEST(ColumnChains, KeepCopiesInTheirOrder) {
   }
 }
 
+// However often more is asked for, and of as many workers as there are.
+TEST(ColumnChains, AreSentForToTheirEnds) {
+  std::array<Chains, 3> chains;
+  for (Chains& each : chains) each.clear(2);
+  for (std::uint32_t i = 0; i < 1000; ++i) chains[i < 900 ? 0 : 2].append(1, {0, 0, 0, i});
+  for (const std::size_t column : {0U, 1U}) {
+    columns::ChainsAhead ahead(chains, column);
+    for (int chunk = 0; chunk < 30; ++chunk) ahead.more();
+  }
+  columns::ChainsAhead().more();
+}
+
 /// Edges from 0.02 to 200: the largest boxes are over all.
 std::vector<Aabb> allSizes(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return inputs::generate(n, frame, seed, [](inputs::Random& random, std::size_t) {
@@ -299,6 +325,25 @@ TEST_P(ColumnsFamily, CopeWithBoxesOfAllSizesAndPlaces) {
   }
   check({});
   check({inputs::boxAt({0, 0, 0}, {1, 1, 1})});
+}
+
+// Where all is in one spot, and in one of two clusters: cutting does not help.
+TEST_P(ColumnsFamily, SweepBoxesWhereManyOverlap) {
+  const auto spot = [](std::size_t n, float apart) {
+    return inputs::generate(n, 0, 1, [apart](inputs::Random& random, std::size_t i) {
+      inputs::Vec3 corner = random.inCube(0.5F);
+      for (float& x : corner) x += i % 2 == 0 ? 0 : apart;
+      return inputs::boxAt(corner, {1, 1, 1});
+    });
+  };
+  check(spot(601, 0));
+  check(spot(900, 50));
+  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1});
+  run.start(spot(601, 0));
+  run.step(spot(601, 0));
+  const auto counters = countersOf(run.broadPhase());
+  EXPECT_EQ(counters.at("pairs decided by their boxes"), counters.at("tests"));
+  EXPECT_EQ(counters.at("tests"), 601U * 600U / 2);
 }
 
 TEST_P(ColumnsFamily, CopeWithEveryNumberOfBodies) {

@@ -146,9 +146,9 @@ inline Counters countersOf(const BroadPhase& algorithm) {
   return counters;
 }
 
-/// What the algorithm draws now.
-inline RecordedDrawing drawingOf(const BroadPhase& algorithm) {
-  RecordedDrawing drawing;
+/// What the algorithm draws now, and tells of so many bodies.
+inline RecordedDrawing drawingOf(const BroadPhase& algorithm, std::size_t bodies = 0) {
+  RecordedDrawing drawing(bodies);
   algorithm.drawStructure(drawing);
   return drawing;
 }

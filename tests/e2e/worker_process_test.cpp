@@ -76,6 +76,7 @@ void expectSameAnswers(const Case& run) {
     const RecordedDrawing drawn = there.structure();
     const RecordedDrawing expected = here.structure();
     EXPECT_EQ(drawn.leftOut(), expected.leftOut());
+    EXPECT_EQ(drawn.tests(), expected.tests());
     ASSERT_EQ(drawn.boxes().size(), expected.boxes().size());
     ASSERT_EQ(drawn.lines().size(), expected.lines().size());
     for (std::size_t i = 0; i < drawn.boxes().size(); ++i) {

@@ -35,7 +35,7 @@ class TimedHost final : public CaseHost {
   PairEvents events() override { return {}; }
   Counts counters() override { return {}; }
   Counts setup() override { return {}; }
-  RecordedDrawing structure() override { return {}; }
+  RecordedDrawing structure() override { return RecordedDrawing(); }
   std::string validate() override { return {}; }
 
  private:

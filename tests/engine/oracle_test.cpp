@@ -58,6 +58,18 @@ TEST(Sweep, EqualsBruteForceOnRandomSizes) {
   }
 }
 
+TEST(Sweep, FindsNoMorePairsThanAskedFor) {
+  const std::vector<Aabb> boxes = inputs::identical(400, 0, 1);
+  constexpr std::size_t kPairs = 400 * 399 / 2;
+  EXPECT_EQ(sweptPairs(boxes, {}, kPairs).size(), kPairs);
+  EXPECT_THROW(sweptPairs(boxes, {}, kPairs - 1), InputError);
+  Oracle oracle(std::size_t{1} << 30, kPairs - 1);
+  for (int time = 0; time < 2; ++time) {  // nothing half found is kept
+    EXPECT_THROW(oracle.pairDigest(boxes), InputError);
+  }
+  EXPECT_EQ(oracle.pairs(inputs::identical(399, 0, 1)).size(), 399 * 398 / 2);
+}
+
 TEST(Sweep, CopesWithTheLargestFloats) {
   for (const std::size_t n : {2, 40, 400}) {
     const std::vector<Aabb> boxes = inputs::limits(n, 1, 3);

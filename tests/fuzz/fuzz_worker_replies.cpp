@@ -2,20 +2,18 @@
 // memory that it shares: each call returns what can be used, or throws.
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
-#include <span>
 #include <vector>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/case.h"
 #include "broadmark/error.h"
-#include "broadmark/files.h"
 #include "broadmark/worker_process.h"
+#include "fuzzed_file.h"
 
 namespace broadmark {
 namespace {
@@ -68,8 +66,7 @@ void callEverything(CaseHost& host) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;
-  const FileDescriptor file(::memfd_create("fuzz", 0));
-  writeAll(file.get(), std::as_bytes(std::span(data, size)), "fuzz");
+  const FileDescriptor file = fuzz::fuzzedFile(data, size);
   WorkerOptions options;
   options.command = {WORKER_PARROT, fmt::format("/proc/{}/fd/{}", ::getpid(), file.get())};
   options.hard_limit = options.begin_limit = std::chrono::seconds(5);

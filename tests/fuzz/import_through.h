@@ -3,16 +3,14 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <span>
 
 #include "broadmark/error.h"
-#include "broadmark/files.h"
+#include "fuzzed_file.h"
 #include "sources/source.h"
 
 namespace broadmark::fuzz {
@@ -20,8 +18,7 @@ namespace broadmark::fuzz {
 /// Calls act(path) with a file of these bytes.
 template <class Act>
 void withFile(const std::uint8_t* data, std::size_t size, Act&& act) {
-  const FileDescriptor file(::memfd_create("fuzz", 0));
-  writeAll(file.get(), std::as_bytes(std::span(data, size)), "fuzz");
+  const FileDescriptor file = fuzzedFile(data, size);
   try {
     act(std::filesystem::path(fmt::format("/proc/self/fd/{}", file.get())));
   } catch (const InputError&) {

@@ -2,18 +2,16 @@
 // its end, or an InputError.
 #pragma once
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
+#include "fuzzed_file.h"
 
 namespace broadmark::fuzz {
 
@@ -35,10 +33,8 @@ inline void requireSound(const Frame& frame, const SceneInfo& scene, std::span<c
 /// Reads the bytes as the recording of a Reader, made from an open descriptor and a name.
 template <class Reader>
 void readThrough(const std::uint8_t* data, std::size_t size) {
-  FileDescriptor file(::memfd_create("fuzz", 0));
-  writeAll(file.get(), std::as_bytes(std::span(data, size)), "fuzz");
   try {
-    Reader recording(std::move(file), "fuzz");
+    Reader recording(fuzzedFile(data, size), "fuzz");
     Frame frame = recording.rewind();
     std::vector<Aabb> before(frame.boxes.begin(), frame.boxes.end());
     // Frames without bodies take no bytes: a short file may state any number of them.

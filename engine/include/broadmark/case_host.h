@@ -117,6 +117,7 @@ class LocalHost final : public CaseHost {
   std::optional<Execution> execution_;
   ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
+  std::uint32_t bodies_ = 0;  ///< of its scene
   PairRuns answer_;
   PairEvents events_;
 };

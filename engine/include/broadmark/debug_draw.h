@@ -24,6 +24,10 @@ class DebugDraw {
   virtual void cell(const Aabb& bounds, Rgb colour, int level, std::uint32_t /*population*/) {
     box(bounds, colour, level);
   }
+  /// In how many tests of two boxes a body took part in the last frame; calls for a body add up. An
+  /// algorithm that tells it of one body tells it of all, also of those with none, and counts as it
+  /// draws: nothing that is timed should take longer for it.
+  virtual void tests(std::uint32_t /*body*/, std::uint32_t /*count*/) {}
 };
 
 }  // namespace broadmark

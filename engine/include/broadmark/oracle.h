@@ -1,7 +1,9 @@
 // What the right answer is, and how a given one differs from it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -29,16 +31,25 @@ PairDigest digest(PairRuns);
 /// definition.
 std::vector<Pair> bruteForcePairs(std::span<const Aabb>, const CollisionFilter& = {});
 
+/// As many pairs as memory holds.
+inline constexpr std::size_t kAnyNumberOfPairs = std::numeric_limits<std::size_t>::max();
+
 /// The same by an exact sweep within strips of the second axis: O(n log n + candidates). Tested
-/// against bruteForcePairs.
-std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {});
+/// against bruteForcePairs. Throws InputError if there are more than `most`.
+std::vector<Pair> sweptPairs(std::span<const Aabb>, const CollisionFilter& = {},
+                             std::size_t most = kAnyNumberOfPairs);
 
 /// The right answer for any boxes, computed once and kept while it fits in a budget. An answer is
 /// found again by the boxes' hash and the filter: two scenes may share an oracle, and equal frames
 /// share an answer.
 class Oracle {
  public:
-  explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30) : budget_bytes_(budget_bytes) {}
+  /// It finds at most so many pairs in a frame.
+  explicit Oracle(std::size_t budget_bytes = std::size_t{1} << 30,
+                  std::size_t most_pairs = kAnyNumberOfPairs)
+      : budget_bytes_(budget_bytes), most_pairs_(most_pairs) {}
+
+  // Both throw InputError if there are more than it may find.
 
   /// The overlapping pairs of these boxes that are wanted, ascending; valid until the next call.
   std::span<const Pair> pairs(std::span<const Aabb> boxes, const CollisionFilter& filter = {});
@@ -56,6 +67,7 @@ class Oracle {
   std::map<std::pair<HashValue, const void*>, Answer> answers_;
   std::vector<Pair> scratch_;
   std::size_t budget_bytes_;
+  std::size_t most_pairs_;
 };
 
 /// How an answer differs from the right one in one frame.

@@ -5,9 +5,10 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
+
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -58,7 +59,7 @@ class alignas(64) PairBuffer {
  public:
   void clear() { size_ = 0; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  [[nodiscard]] PairRun run() const { return {pairs_.get(), size_}; }
+  [[nodiscard]] PairRun run() const { return {pairs_.data(), size_}; }
 
   /// Adds the pair of i and j, in whichever order they come.
   void add(std::uint32_t i, std::uint32_t j) {
@@ -69,8 +70,8 @@ class alignas(64) PairBuffer {
   /// Room for `count` more pairs behind the present ones; valid until the next call. What is
   /// written there counts only after advance().
   Pair* room(std::size_t count) {
-    if (size_ + count > capacity_) grow(size_ + count);
-    return pairs_.get() + size_;
+    if (size_ + count > pairs_.size()) grow(size_ + count);
+    return pairs_.data() + size_;
   }
   void advance(std::size_t count) { size_ += count; }
 
@@ -89,16 +90,12 @@ class alignas(64) PairBuffer {
 
  private:
   void grow(std::size_t wanted) {
-    const std::size_t capacity = std::max<std::size_t>({wanted, capacity_ + capacity_ / 2, 1024});
-    auto bigger = std::make_unique_for_overwrite<Pair[]>(capacity);
-    std::copy_n(pairs_.get(), size_, bigger.get());
-    pairs_ = std::move(bigger);
-    capacity_ = capacity;
+    const std::size_t capacity = pairs_.size();
+    pairs_.resize(std::max<std::size_t>({wanted, capacity + capacity / 2, 1024}));
   }
 
-  std::unique_ptr<Pair[]> pairs_;
+  LargeArray<Pair> pairs_;  ///< as large as there is room
   std::size_t size_ = 0;
-  std::size_t capacity_ = 0;
 };
 
 }  // namespace broadmark

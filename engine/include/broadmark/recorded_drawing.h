@@ -10,7 +10,8 @@
 
 namespace broadmark {
 
-/// Keeps what an algorithm draws, up to `kMost` boxes and as many lines.
+/// Keeps what an algorithm draws, up to `kMost` boxes and as many lines, and what it tells of
+/// bodies.
 class RecordedDrawing final : public DebugDraw {
  public:
   static constexpr std::size_t kMost = 500'000;
@@ -27,10 +28,16 @@ class RecordedDrawing final : public DebugDraw {
     Rgb colour = 0;
   };
 
-  RecordedDrawing() = default;
+  /// Of a scene of so many bodies; what is told of others is not kept.
+  explicit RecordedDrawing(std::size_t bodies = 0) : bodies_(bodies) {}
   /// One that was kept elsewhere.
-  RecordedDrawing(std::vector<Box> boxes, std::vector<Line> lines, std::size_t left_out)
-      : boxes_(std::move(boxes)), lines_(std::move(lines)), left_out_(left_out) {}
+  RecordedDrawing(std::vector<Box> boxes, std::vector<Line> lines, std::size_t left_out,
+                  std::vector<std::uint32_t> tests)
+      : bodies_(tests.size()),
+        boxes_(std::move(boxes)),
+        lines_(std::move(lines)),
+        left_out_(left_out),
+        tests_(std::move(tests)) {}
 
   void box(const Aabb& box, Rgb colour, int level) override { keep(boxes_, {box, colour, level}); }
   void cell(const Aabb& box, Rgb colour, int level, std::uint32_t population) override {
@@ -39,11 +46,18 @@ class RecordedDrawing final : public DebugDraw {
   void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
     keep(lines_, {from, to, colour});
   }
+  void tests(std::uint32_t body, std::uint32_t count) override {
+    if (body >= bodies_) return;
+    tests_.resize(bodies_);
+    tests_[body] += count;
+  }
 
   [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
   [[nodiscard]] const std::vector<Line>& lines() const { return lines_; }
   /// How many boxes and lines were too many.
   [[nodiscard]] std::size_t leftOut() const { return left_out_; }
+  /// By body; empty: not told.
+  [[nodiscard]] const std::vector<std::uint32_t>& tests() const { return tests_; }
 
  private:
   template <class Item>
@@ -55,9 +69,11 @@ class RecordedDrawing final : public DebugDraw {
     }
   }
 
+  std::size_t bodies_;
   std::vector<Box> boxes_;
   std::vector<Line> lines_;
   std::size_t left_out_ = 0;
+  std::vector<std::uint32_t> tests_;
 };
 
 }  // namespace broadmark

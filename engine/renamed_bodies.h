@@ -1,0 +1,35 @@
+// A drawing by an algorithm that knows its bodies by other numbers.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "broadmark/debug_draw.h"
+
+namespace broadmark {
+
+/// Passes a drawing on, and what is told of bodies under the scene's own numbers.
+class RenamedBodies final : public DebugDraw {
+ public:
+  /// `bodies`: the scene's numbers, by those of the algorithm; borrowed.
+  RenamedBodies(DebugDraw& draw, std::span<const std::uint32_t> bodies)
+      : draw_(draw), bodies_(bodies) {}
+
+  void box(const Aabb& box, Rgb colour, int level) override { draw_.box(box, colour, level); }
+  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
+    draw_.line(from, to, colour);
+  }
+  void cell(const Aabb& bounds, Rgb colour, int level, std::uint32_t population) override {
+    draw_.cell(bounds, colour, level, population);
+  }
+  void tests(std::uint32_t body, std::uint32_t count) override {
+    if (body < bodies_.size()) draw_.tests(bodies_[body], count);
+  }
+
+ private:
+  DebugDraw& draw_;
+  std::span<const std::uint32_t> bodies_;
+};
+
+}  // namespace broadmark

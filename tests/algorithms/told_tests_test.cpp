@@ -1,0 +1,131 @@
+// What algorithms tell of the tests that each body took part in. Nobody reports a pair that it did
+// not test, and each test is one of two bodies.
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "algorithms/runs.h"
+#include "support/changing_worlds.h"
+
+namespace broadmark::tests {
+namespace {
+
+/// Tide finds all pairs by columns where all bodies move, as they do here.
+const std::set<std::string> kTelling = {"BF", "SAP", "Grid BF", "Grid SAP", "Columns", "Tide"};
+
+std::uint64_t sumOf(const std::vector<std::uint32_t>& counts) {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+class ToldTests : public testing::TestWithParam<Algorithm> {
+ protected:
+  /// In every way to run it, once it stands at the last frame.
+  void check(const SceneInfo& scene, const std::vector<std::vector<Aabb>>& frames) {
+    for (const Configuration& way : configurations(GetParam(), {1, 3})) {
+      SCOPED_TRACE(describe(GetParam(), way));
+      TestRun run(GetParam(), way);
+      run.start(scene, frames.front());
+      PairRuns answer;
+      for (std::size_t i = 1; i < frames.size(); ++i) answer = run.step(frames[i]);
+      const std::vector<std::uint32_t> tests = drawingOf(run.broadPhase(), scene.objects).tests();
+      if (tests.empty() && pairCount(answer) == 0) continue;  // there was nobody to test
+      ASSERT_EQ(tests.size(), scene.objects);
+      EXPECT_EQ(sumOf(tests) % 2, 0U);
+      EXPECT_GE(sumOf(tests), 2 * pairCount(answer));
+      const std::vector<std::uint32_t> pairs = overlapCounts(scene.objects, answer);
+      for (std::uint32_t body = 0; body < scene.objects; ++body) {
+        ASSERT_GE(tests[body], pairs[body]) << "body " << body;
+        if (isEmpty(frames.back()[body])) {
+          ASSERT_EQ(tests[body], 0U) << "of an absent body";
+        }
+      }
+    }
+  }
+};
+
+TEST_P(ToldTests, AreAsManyAsThePairsOrMore) {
+  for (const inputs::Input& input : {inputs::Input{"drifting", inputs::drifting},
+                                     {"assorted", inputs::assorted},
+                                     {"clustered", inputs::clustered}}) {
+    SCOPED_TRACE(input.name);
+    const auto frames = framesOf(input, 3000, 4);
+    check(sceneOf(frames), frames);
+  }
+}
+
+TEST_P(ToldTests, AreOfTheSceneWhereBodiesComeAndGo) {
+  for (const NamedFilter& filter : filters(400)) {
+    SCOPED_TRACE(filter.name);
+    const auto frames =
+        framesWith({"drifting", inputs::drifting}, 400, 4,
+                   [](std::uint32_t body, std::uint32_t frame) { return (body + frame) % 5 != 0; });
+    SceneInfo scene = sceneOf(frames);
+    scene.all_present = false;
+    scene.filter = filter.filter;
+    check(scene, frames);
+  }
+}
+
+std::vector<Algorithm> tellingAlgorithms() {
+  std::vector<Algorithm> all = pairFinders();
+  std::erase_if(all, [](const Algorithm& each) { return !kTelling.contains(each.family); });
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Listed, ToldTests, testing::ValuesIn(tellingAlgorithms()),
+                         [](const auto& each) { return testName(each.param); });
+
+/// What is told of one frame.
+std::vector<std::uint32_t> toldOf(const std::string& id, const std::vector<Aabb>& boxes,
+                                  const ParameterValues& parameters = {},
+                                  Counters* counters = nullptr) {
+  TestRun run(algorithmOf(id), {bestIsa(), 1}, parameters);
+  run.start(boxes);
+  run.step(boxes);
+  if (counters != nullptr) *counters = countersOf(run.broadPhase());
+  return drawingOf(run.broadPhase(), boxes.size()).tests();
+}
+
+TEST(ToldTestsOf, BruteForceAreOfEveryOtherBody) {
+  const std::vector<std::uint32_t> all_others(100, 99);
+  const std::vector<Aabb> boxes = inputs::uniform(100, 1, 1);
+  for (const char* id : {"bf", "bf-simd"}) EXPECT_EQ(toldOf(id, boxes), all_others) << id;
+  // So it is in a single cell.
+  EXPECT_EQ(toldOf("grid-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
+  EXPECT_EQ(toldOf("grid2d-bf", boxes, {{"objects_per_cell", "1000"}}), all_others);
+}
+
+TEST(ToldTestsOf, ASweepAreOfWhatOverlapsOnItsAxis) {
+  std::vector<Aabb> boxes = inputs::uniform(300, 1, 1);
+  for (Aabb& box : boxes) {  // the z axis is by far the longest
+    box.min[2] *= 10;
+    box.max[2] *= 10;
+  }
+  std::vector<std::uint32_t> expected(boxes.size());
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+      const bool overlap = boxes[a].min[2] <= boxes[b].max[2] && boxes[b].min[2] <= boxes[a].max[2];
+      expected[a] += a != b && overlap ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(toldOf("sap", boxes), expected);
+  EXPECT_EQ(toldOf("sap-simd", boxes), expected);
+}
+
+TEST(ToldTestsOf, ColumnsAreThoseThatTheFrameCounted) {
+  Counters counters;
+  const auto tests = toldOf("columns", inputs::clustered(5000, 1, 1), {}, &counters);
+  EXPECT_EQ(sumOf(tests), 2 * counters.at("tests"));
+}
+
+TEST(ToldTestsOf, OthersAreNotKnown) {
+  for (const char* id : {"kd", "tracy", "none"}) {
+    EXPECT_TRUE(toldOf(id, inputs::uniform(100, 1, 1)).empty()) << id;
+  }
+}
+
+}  // namespace
+}  // namespace broadmark::tests
