@@ -1,10 +1,8 @@
-// Boxes and lines: from world coordinates to primitives, and by OpenGL to the screen.
+// Boxes and lines, drawn by OpenGL.
 #pragma once
 
-#include <span>
-#include <vector>
+#include <limits>
 
-#include "box_look.h"
 #include "primitive_renderer.h"
 
 namespace broadmark {
@@ -22,15 +20,5 @@ class LineRenderer : public PrimitiveRenderer {
  public:
   explicit LineRenderer(const Gl& gl);
 };
-
-/// A box that is drawn at least `width` pixels wide.
-Primitive boxPrimitive(const Aabb& box, Rgb colour, const ViewSpace& space,
-                       float width = kBoxLook.smallest_pixels);
-
-/// The twelve edges of a box.
-std::vector<Primitive> wireframe(const Aabb& box, Rgb colour, float width, const ViewSpace& space);
-
-/// A grid on the floor (lowest y) of a box, in squares of a tenth of its longer side.
-std::vector<Primitive> floorGrid(const Aabb& box, Rgb colour, float width, const ViewSpace& space);
 
 }  // namespace broadmark

@@ -11,12 +11,13 @@
 #include <cmath>
 #include <limits>
 
+#include "count_steps.h"
 #include "draw_frame.h"
 
 namespace broadmark {
 namespace {
 
-using Scale = std::array<Rgb, 6>;
+using Scale = std::array<Rgb, CountSteps::kMost>;
 using Hues = std::array<Rgb, 8>;
 
 /// The colours for one background.
@@ -124,6 +125,29 @@ void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
 void colourAlike(const ColouringInput& input, const std::string& label, Rgb colour,
                  Colouring& colouring) {
   colourByClass(input.boxes, {{label, colour}}, colouring, [](std::size_t) { return 0U; });
+}
+
+void colourByTests(const ColouringInput& input, Colouring& colouring) {
+  const Palette palette = paletteOf(input);
+  if (input.tests.size() != input.boxes.size()) {
+    colourAlike(input, "not told", palette.quiet, colouring);
+    return;
+  }
+  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t most = 0;
+  for (const std::uint32_t count : input.tests) {
+    if (count > 0) least = std::min(least, count);
+    most = std::max(most, count);
+  }
+  std::vector<LegendEntry> legend = {{"0", palette.quiet}};
+  const CountSteps steps(std::min(least, most), most);
+  for (std::size_t step = 0; step < steps.size() && most > 0; ++step) {
+    legend.push_back({steps.text(step), palette.heat[steps.place(step)]});
+  }
+  colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
+    const std::uint32_t count = input.tests[body];
+    return count > 0 ? steps.stepOf(count) + 1 : 0;
+  });
 }
 
 void colourByComparison(const ColouringInput& input, Colouring& colouring) {
@@ -234,6 +258,11 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
 constexpr ColourMode kModes[] = {
     {"overlapping", "Overlapping", "bodies that overlap another", colourOverlapping, true},
     {"overlaps", "Number of overlaps", "number of pairs of each body", colourByCount, true},
+    {.id = "tests",
+     .title = "Tests of boxes",
+     .help = "in how many tests of two boxes each body took part, where the shown algorithm tells",
+     .colour = colourByTests,
+     .of_tests = true},
     {"correctness", "Missed and false", "bodies of missed pairs and of false pairs",
      colourByCorrectness},
     {"motion", "Moving and static", "bodies whose box has changed since the previous frame",

@@ -37,12 +37,6 @@ GlObject makeTexture(const Gl& gl, const PixelFormat& format, int width, int hei
   return texture;
 }
 
-void fillTexture(const Gl& gl, const GlObject& texture, const PixelFormat& format, int width,
-                 int height, const void* pixels) {
-  gl.BindTexture(GL_TEXTURE_2D, texture.get());
-  gl.TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, format.outside, format.type, pixels);
-}
-
 }  // namespace
 
 Framebuffer::Target Framebuffer::whereComplete(Target target) const {
@@ -97,10 +91,11 @@ void Framebuffer::bind() const {
   gl_->Viewport(0, 0, width_, height_);
 }
 
-void Framebuffer::write(std::span<const std::uint32_t> rgba, std::span<const float> depths) const {
+void Framebuffer::write(std::span<const std::uint32_t> rgba) const {
   gl_->PixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  fillTexture(*gl_, resolved_.colour, kColour, width_, height_, rgba.data());
-  fillTexture(*gl_, resolved_.depth, kDepth, width_, height_, depths.data());
+  gl_->BindTexture(GL_TEXTURE_2D, resolved_.colour.get());
+  gl_->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width_, height_, kColour.outside, kColour.type,
+                     rgba.data());
   gl_->check("handing a picture to OpenGL");
 }
 

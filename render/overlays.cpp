@@ -1,14 +1,12 @@
 #include "broadmark/render/overlays.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <functional>
 #include <span>
-#include <string>
 #include <tuple>
+
+#include "count_steps.h"
 
 namespace broadmark {
 namespace {
@@ -42,37 +40,12 @@ Aabb boundsOf(const RecordedDrawing::Line& line) {
   return bounds;
 }
 
-constexpr std::size_t kSteps = 6;
-
 /// Of viridis' kind: lightness alone tells the steps apart, and so do colour-blind eyes. Lines are
 /// thin: the steps nearest to the background stand out from it, too.
-constexpr std::array<Rgb, kSteps> kOnLight = {0x7AC74F, 0x2DAA7B, 0x1F8A8C,
-                                              0x2F678E, 0x3F4788, 0x440154};
-constexpr std::array<Rgb, kSteps> kOnDark = {0x3F4F96, 0x2F7494, 0x21968B,
-                                             0x3DB875, 0x93D741, 0xFDE725};
-
-/// The least population of each step: steps of about equal ratio, in whole numbers.
-std::vector<std::uint32_t> stepsBetween(std::uint32_t least, std::uint32_t most) {
-  constexpr double kAlmost = 1 - 1e-9;  // a power that is a whole number may be rounded up
-  std::vector<std::uint32_t> begins = {least};
-  for (std::size_t step = 1; step < kSteps && begins.back() < most; ++step) {
-    const double part = static_cast<double>(step) / kSteps;
-    const double begin = least * std::pow(static_cast<double>(most) / least, part);
-    begins.push_back(
-        std::max(static_cast<std::uint32_t>(std::ceil(kAlmost * begin)), begins.back() + 1));
-  }
-  return begins;
-}
-
-std::string rangeText(std::uint32_t first, std::uint32_t last) {
-  return first == last ? fmt::format("{}", first) : fmt::format("{} to {}", first, last);
-}
-
-/// The colour of a step of so many: the whole scale for few, too.
-Rgb stepColour(std::size_t step, std::size_t steps, bool dark) {
-  const std::size_t at = steps == 1 ? kSteps - 1 : step * (kSteps - 1) / (steps - 1);
-  return dark ? kOnDark[at] : kOnLight[at];
-}
+constexpr std::array<Rgb, CountSteps::kMost> kOnLight = {0x7AC74F, 0x2DAA7B, 0x1F8A8C,
+                                                         0x2F678E, 0x3F4788, 0x440154};
+constexpr std::array<Rgb, CountSteps::kMost> kOnDark = {0x3F4F96, 0x2F7494, 0x21968B,
+                                                        0x3DB875, 0x93D741, 0xFDE725};
 
 /// Colours the boxes that tell their populations, and puts the fullest first. Returns what the
 /// colours mean.
@@ -81,16 +54,13 @@ std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& b
   const auto told = static_cast<std::size_t>(
       std::ranges::count_if(boxes, [](const auto& box) { return box.population > 0; }));
   if (told == 0) return {};
-  const std::uint32_t most = boxes.front().population;
-  const std::vector<std::uint32_t> begins = stepsBetween(boxes[told - 1].population, most);
+  const CountSteps steps(boxes[told - 1].population, boxes.front().population);
   std::vector<LegendEntry> legend;
-  for (std::size_t step = 0; step < begins.size(); ++step) {
-    const std::uint32_t last = step + 1 < begins.size() ? begins[step + 1] - 1 : most;
-    legend.push_back({rangeText(begins[step], last), stepColour(step, begins.size(), dark)});
+  for (std::size_t step = 0; step < steps.size(); ++step) {
+    legend.push_back({steps.text(step), (dark ? kOnDark : kOnLight)[steps.place(step)]});
   }
   for (RecordedDrawing::Box& box : std::span(boxes).first(told)) {
-    const auto after = std::ranges::upper_bound(begins, box.population);
-    LegendEntry& entry = legend[static_cast<std::size_t>(after - begins.begin()) - 1];
+    LegendEntry& entry = legend[steps.stepOf(box.population)];
     box.colour = entry.swatch;
     ++entry.count;
   }

@@ -9,37 +9,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plot_parts.h"
+
 namespace broadmark {
 namespace {
 
-constexpr float kLineWidth = 1.6F;
 constexpr float kThinLineWidth = 1;
 constexpr float kMarkRow = 0.45F;   // of a line of text
 constexpr float kClickPixels = 3;   // a press that moves less is a click
 constexpr float kMarkedPixels = 4;  // so near a click is meant for a mark
-
-ImU32 packed(Rgb rgb, unsigned alpha = 255) {
-  return IM_COL32((rgb >> 16) & 255U, (rgb >> 8) & 255U, rgb & 255U, alpha);
-}
 
 /// The plotted area, and how values become pixels.
 struct Axes {
   ImVec2 min;
   ImVec2 max;
   double first, last;  ///< frames
-  double low, high;    ///< values
-  bool logarithmic;
+  PlotScale vertical;
 
-  [[nodiscard]] double scaled(double value) const {
-    return logarithmic ? std::log10(std::max(value, std::numeric_limits<double>::min())) : value;
-  }
   [[nodiscard]] float x(double frame) const {
     return min.x + static_cast<float>((frame - first) / (last - first)) * (max.x - min.x);
   }
-  [[nodiscard]] float y(double value) const {
-    const double at = (scaled(value) - scaled(low)) / (scaled(high) - scaled(low));
-    return max.y - static_cast<float>(at) * (max.y - min.y);
-  }
+  [[nodiscard]] float y(double value) const { return vertical.pixelOf(value); }
   [[nodiscard]] double frameAt(float pixel) const {
     return first + static_cast<double>((pixel - min.x) / (max.x - min.x)) * (last - first);
   }
@@ -83,18 +73,7 @@ void fitScale(Axes& axes, const std::vector<const PlotCurve*>& curves) {
     const FrameValues::Range shown = axes.valuesOf(*curve->values);
     range = {std::fmin(range.low, shown.low), std::fmax(range.high, shown.high)};
   }
-  if (!range.known()) range = {axes.logarithmic ? 1e-6F : 0.0F, 1e-3F};
-  axes.low = range.low;
-  axes.high = range.high;
-  if (axes.logarithmic) {
-    if (axes.high <= 0) axes.high = 1;
-    if (axes.low <= 0) axes.low = 1e-3 * axes.high;
-    axes.low *= 0.8;
-    axes.high *= 1.25;
-    return;
-  }
-  axes.low = std::min(axes.low, 0.0);
-  axes.high = axes.high > axes.low ? axes.low + (axes.high - axes.low) * 1.08 : axes.low + 1;
+  axes.vertical.fit(range);
 }
 
 void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float width) {
@@ -119,7 +98,8 @@ void drawCurve(ImDrawList& draw, const PlotCurve& curve, const Axes& axes, float
   axes.eachBlock(*curve.circled, [&](double frame, double, FrameValues::Range mark) {
     if (!mark.known()) return;
     const float value = curve.values->at(static_cast<std::uint32_t>(frame));
-    draw.AddCircle({axes.x(frame), axes.y(value)}, 2.2F * width, colour, 10, width / kLineWidth);
+    draw.AddCircle({axes.x(frame), axes.y(value)}, 2.2F * width, colour, 10,
+                   width / kPlotLineWidth);
   });
 }
 
@@ -134,21 +114,6 @@ void drawArea(ImDrawList& draw, const PlotCurve& curve, const Axes& axes) {
     draw.AddRectFilled({left, top}, {right, axes.max.y}, packed(curve.colour, 38));
     draw.AddRectFilled({left, top - 1}, {right, top + 1}, packed(curve.colour, 120));
   });
-}
-
-/// What the style of Dear ImGui gives to the parts of a plot.
-struct PlotColours {
-  ImU32 background = ImGui::GetColorU32(ImGuiCol_WindowBg);
-  ImU32 frame = ImGui::GetColorU32(ImGuiCol_Border);
-  ImU32 grid = ImGui::GetColorU32(ImGuiCol_TextDisabled, 0.2F);
-  ImU32 text = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-  ImU32 playhead = ImGui::GetColorU32(ImGuiCol_CheckMark);
-  ImU32 span = ImGui::GetColorU32(ImGuiCol_CheckMark, 0.15F);
-};
-
-int fittingRows(const Axes& axes) {
-  return std::max(
-      2, static_cast<int>((axes.max.y - axes.min.y) / (2.2F * ImGui::GetTextLineHeight())));
 }
 
 /// Below the playhead, with its frame; at the border where it lies beyond it.
@@ -170,13 +135,7 @@ struct Flag {
 void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, const Flag& flag,
               const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
-  for (const double value : axisTicks(axes.low, axes.high, fittingRows(axes), axes.logarithmic)) {
-    const float y = axes.y(value);
-    draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colours.grid);
-    const std::string text = withPrefix(value, options.unit);
-    draw.AddText({axes.min.x - ImGui::CalcTextSize(text.c_str()).x - 5, y - line / 2}, colours.text,
-                 text.c_str());
-  }
+  drawValueLines(draw, axes.vertical, axes.min.x, axes.max.x, options.unit, colours);
   const int columns = std::max(2, static_cast<int>((axes.max.x - axes.min.x) / (6 * line)));
   for (const double frame : axisTicks(axes.first, axes.last, columns, false)) {
     if (frame != std::floor(frame)) continue;
@@ -193,62 +152,35 @@ void drawAxes(ImDrawList& draw, const Axes& axes, const PlotOptions& options, co
 void drawThin(ImDrawList& draw, const PlotCurve& curve, const Axes& shown) {
   const float line = ImGui::GetTextLineHeight();
   Axes axes = shown;
-  axes.logarithmic = false;
+  axes.vertical.logarithmic = false;
   fitScale(axes, {&curve});
   drawCurve(draw, curve, axes, kThinLineWidth * line / 15);
   draw.PushClipRectFullScreen();
-  for (const double value : axisTicks(axes.low, axes.high, fittingRows(axes), false)) {
+  for (const double value : valueTicks(axes.vertical)) {
     draw.AddText({axes.max.x + 4, axes.y(value) - line / 2}, packed(curve.colour),
                  withPrefix(value, "").c_str());
   }
   draw.PopClipRect();
 }
 
-/// Width of the legend beside the curves; at most a third of the plot.
-float legendWidth(const std::vector<const PlotCurve*>& curves, float plot_width) {
-  if (curves.empty()) return 0;
-  float width = 0;
-  for (const PlotCurve* curve : curves) {
-    width = std::max(width, ImGui::CalcTextSize(curve->label.c_str()).x);
-  }
-  return std::min(width + 1.8F * ImGui::GetTextLineHeightWithSpacing(), plot_width / 3);
-}
-
-/// Draws the legend into the area at the right of the axes. Returns the entry under the mouse.
-std::optional<std::size_t> drawLegend(ImDrawList& draw, const std::vector<const PlotCurve*>& curves,
-                                      ImVec2 min, ImVec2 max, const PlotColours& colours) {
-  const float line = ImGui::GetTextLineHeightWithSpacing();
-  const std::size_t fitting = static_cast<std::size_t>(std::max(0.0F, (max.y - min.y) / line));
-  std::optional<std::size_t> hovered;
-  ImVec2 at{min.x + line / 4, min.y};
-  draw.PushClipRect(min, max, true);
-  for (std::size_t i = 0; i < std::min(curves.size(), fitting); ++i, at.y += line) {
-    const PlotCurve& curve = *curves[i];
-    if (ImGui::IsMouseHoveringRect(at, {max.x, at.y + line})) hovered = i;
-    const unsigned alpha = curve.hidden ? 70 : 255;
-    draw.AddRectFilled({at.x + line * 0.3F, at.y + line * 0.25F},
-                       {at.x + line * 0.8F, at.y + line * 0.75F}, packed(curve.colour, alpha), 3);
-    draw.AddText({at.x + line, at.y},
-                 (colours.text & ~IM_COL32_A_MASK) | (ImU32{alpha} << IM_COL32_A_SHIFT),
-                 curve.label.c_str());
-  }
-  draw.PopClipRect();
-  return hovered;
-}
-
 /// At the border that it lies beyond, if it is out of range.
-void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options) {
+void drawLimit(ImDrawList& draw, const Axes& axes, const PlotOptions& options,
+               const PlotColours& colours) {
   const float line = ImGui::GetTextLineHeight();
   const float y = std::clamp(axes.y(options.limit), axes.min.y, axes.max.y);
-  const bool within = options.limit >= axes.low && options.limit <= axes.high;
+  const bool within = options.limit >= axes.vertical.low && options.limit <= axes.vertical.high;
   const ImU32 colour = packed(options.limit_colour);
   if (within) draw.AddLine({axes.min.x, y}, {axes.max.x, y}, colour, line / 10);
   const std::string text = fmt::format("{}{}",
-                                       within                      ? ""
-                                       : options.limit > axes.high ? "↑ "
-                                                                   : "↓ ",
+                                       within                               ? ""
+                                       : options.limit > axes.vertical.high ? "↑ "
+                                                                            : "↓ ",
                                        withPrefix(options.limit, options.unit));
-  draw.AddText({axes.min.x + line / 3, y - axes.min.y < line ? y : y - line}, colour, text.c_str());
+  const ImVec2 at{axes.min.x + line / 3, y - axes.min.y < line ? y : y - line};
+  const ImVec2 extent = ImGui::CalcTextSize(text.c_str());
+  draw.AddRectFilled({at.x - 2, at.y + 1}, {at.x + extent.x + 2, at.y + extent.y - 1},
+                     colours.background, 2);
+  draw.AddText(at, colour, text.c_str());
 }
 
 /// The rows of marks stand above the axes, the first on top.
@@ -345,6 +277,18 @@ void drawCrosshair(ImDrawList& draw, const std::vector<PlotCurve>& curves, const
   ImGui::EndTooltip();
 }
 
+/// Of the legend: the curves, then what is drawn behind them.
+std::vector<PlotEntry> entriesOf(const std::vector<PlotCurve>& curves, const PlotOptions& options) {
+  std::vector<PlotEntry> entries;
+  const auto add = [&](const PlotCurve& curve) {
+    entries.push_back({.label = curve.label, .colour = curve.colour, .hidden = curve.hidden});
+  };
+  std::ranges::for_each(curves, add);
+  if (options.thin != nullptr) add(*options.thin);
+  if (options.area != nullptr) add(*options.area);
+  return entries;
+}
+
 /// What the mouse does with the plot, which is the last item.
 void takeMouse(const Axes& axes, const PlotOptions& options, PlotResult& result) {
   const ImGuiIO& io = ImGui::GetIO();
@@ -431,21 +375,17 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   const float line = ImGui::GetTextLineHeight();
-  std::vector<const PlotCurve*> all;
-  for (const PlotCurve& curve : curves) all.push_back(&curve);
-  for (const PlotCurve* behind : {options.thin, options.area}) {
-    if (behind != nullptr) all.push_back(behind);
-  }
-  const float legend = legendWidth(all, width);
+  const std::vector<PlotEntry> entries = entriesOf(curves, options);
+  const float legend = legendWidth(entries, width);
   const float right_scale = options.thin != nullptr ? 3.2F * line : 1.4F * line;
   const float marks = kMarkRow * line * static_cast<float>(options.marks.size());
   Axes axes{.min = {corner.x + 4.8F * line, corner.y + std::max(line / 2, marks)},
             .max = {corner.x + width - right_scale - legend, corner.y + height - 1.4F * line},
             .first = options.first,
             .last = std::max(options.last, options.first + 1),
-            .low = 0,
-            .high = 1,
-            .logarithmic = options.logarithmic};
+            .vertical = {.logarithmic = options.logarithmic}};
+  axes.vertical.low_pixel = axes.max.y;
+  axes.vertical.high_pixel = axes.min.y;
   if (axes.max.x < axes.min.x + line || axes.max.y < axes.min.y + line) return result;
   std::vector<const PlotCurve*> shown;
   for (const PlotCurve& curve : curves) {
@@ -462,14 +402,16 @@ PlotResult drawPlot(const char* id, const std::vector<PlotCurve>& curves,
   if (options.area != nullptr) drawArea(draw, *options.area, axes);
   if (options.span) drawSpan(draw, axes, options, colours);
   if (options.thin != nullptr) drawThin(draw, *options.thin, axes);
-  for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kLineWidth * line / 15);
-  if (options.limit > 0) drawLimit(draw, axes, options);
+  for (const PlotCurve* curve : shown) drawCurve(draw, *curve, axes, kPlotLineWidth * line / 15);
   draw.PopClipRect();
   draw.AddRect(axes.min, axes.max, colours.frame, 3);
   drawMarks(draw, axes, options);
   drawPlayhead(draw, axes, options, flag, colours);
+  draw.PushClipRect(axes.min, axes.max, true);
+  if (options.limit > 0) drawLimit(draw, axes, options, colours);
+  draw.PopClipRect();
   const ImVec2 legend_min{corner.x + width - legend, axes.min.y};
-  result.hovered = drawLegend(draw, all, legend_min, {corner.x + width, axes.max.y}, colours);
+  result.hovered = drawLegend(draw, entries, legend_min, {corner.x + width, axes.max.y}, colours);
 
   const bool hovered = ImGui::IsItemHovered();
   if (!hovered && !ImGui::IsItemActive()) result.hovered.reset();

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "box_look.h"
 #include "colour.h"
+#include "look.h"
 
 namespace broadmark {
 namespace {

@@ -1,16 +1,17 @@
 // Draws the content of a SceneView into the current target.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "box_renderer.h"
-#include "box_splatter.h"
 #include "broadmark/execution.h"
 #include "broadmark/render/framebuffer.h"
 #include "broadmark/render/scene_view.h"
+#include "scene_primitives.h"
+#include "splatter.h"
 
 namespace broadmark {
 
@@ -27,15 +28,10 @@ class ScenePainter {
 
   /// Bounds of bodies and world, in view space.
   [[nodiscard]] const Aabb& bounds() const { return bounds_; }
-  /// Whether our own renderer draws the boxes.
+  /// Whether our own renderer draws the scene.
   [[nodiscard]] bool isSplatting() const { return splatter_ != nullptr; }
 
  private:
-  /// The lines of one kind of visibility.
-  struct LineLayer {
-    Behind behind = Behind::hidden;
-    PrimitiveBuffer lines;
-  };
   /// Everything that changes a picture, except its size and the camera.
   struct Drawn {
     std::uint64_t bodies_revision = 0;
@@ -50,30 +46,27 @@ class ScenePainter {
 
     friend bool operator==(const Drawn&, const Drawn&) = default;
   };
-  void updateBodies(const SceneViewContent& content);
-  void updateOutlines(const SceneViewContent& content);
-  void updateLines(const SceneViewContent& content);
-  void updateSurroundings(const SceneViewContent& content);
-  void drawBoxes(const Viewpoint& viewpoint, const Framebuffer& target);
-  void drawFloor(const Viewpoint& viewpoint) const;
-  void drawLines(const LineLayer& layer, const Viewpoint& viewpoint) const;
+  /// The scene on the GPU.
+  struct Uploaded {
+    PrimitiveBuffer boxes;
+    PrimitiveBuffer floor;
+    std::array<PrimitiveBuffer, ScenePrimitives::layers> lines;
+  };
+  void upload(bool bodies, bool lines);
+  void drawByGl(const Viewpoint& viewpoint) const;
+  void drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const;
   void drawAxes(const Viewpoint& viewpoint) const;
 
   const Gl* gl_;
   ThreadTeam team_;
-  std::unique_ptr<BoxSplatter> splatter_;  ///< null: OpenGL draws the boxes
+  std::unique_ptr<Splatter> splatter_;  ///< null: OpenGL draws the scene
   BoxRenderer box_renderer_;
   LineRenderer line_renderer_;
 
   std::optional<Drawn> drawn_;
-  std::vector<Primitive> boxes_;
+  ScenePrimitives scene_;
+  Uploaded uploaded_;  ///< empty if the splatter draws
   Aabb bounds_;
-  PrimitiveBuffer box_buffer_;
-  PrimitiveBuffer floor_;
-  PrimitiveBuffer grid_;
-  LineLayer world_;
-  LineLayer outlines_{Behind::faint, {}};
-  LineLayer lines_[3] = {{Behind::hidden, {}}, {Behind::faint, {}}, {Behind::shown, {}}};
 };
 
 }  // namespace broadmark

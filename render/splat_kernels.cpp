@@ -1,6 +1,6 @@
 #include "splat_kernels.h"
 
-#include "box_look.h"
+#include "look.h"
 
 namespace broadmark {
 namespace {

@@ -18,6 +18,24 @@ struct SplatBox {
   float width = 0;  ///< the least width it is drawn with, in pixels
 };
 
+/// A line in view space, laid out like a Primitive.
+struct SplatLine {
+  float from[3]{};
+  float colour = 0;  ///< 0xRRGGBB as a number
+  float to[3]{};
+  float width = 0;  ///< pixels
+};
+
+/// A line in the picture. In pixels, but for the depths in the window.
+struct SplatStrip {
+  float start[2]{};
+  float direction[2]{};  ///< of length 1
+  float length = 0;
+  float half_width = 0;
+  float depth = 0;       ///< at the start
+  float depth_step = 0;  ///< by pixel of length
+};
+
 /// A viewpoint as the kernels need it. Points are relative to the eye; pixel columns run from left
 /// to right, rows from bottom to top as in OpenGL.
 struct SplatView {
@@ -37,11 +55,10 @@ struct SplatView {
   float edge_pixels = 0;
   float haze_begin = 0;  ///< depth
   float haze_end = 0;
-  float haze[3]{};               ///< 0 to 1
-  std::uint32_t background = 0;  ///< RGBA8, in memory order
+  float haze[3]{};  ///< 0 to 1
 };
 
-/// The pixels that a box may cover, borders included; none if left > right.
+/// The pixels that a box or a line may cover, borders included; none if left > right.
 struct PixelRectangle {
   std::int16_t left = 0;
   std::int16_t right = -1;
@@ -54,25 +71,44 @@ inline constexpr int kSplatPadding = 8;
 /// Stands for the box in a pixel that no box covers.
 inline constexpr std::uint32_t kNoBox = 0xFFFFFFFF;
 
-/// Some rows of the picture, while boxes are drawn into them.
+/// Some rows of the picture, while they are drawn.
 struct SplatBand {
   int begin = 0;  ///< rows [begin, end)
   int end = 0;
-  int stride = 0;                  ///< pixels from row to row: width + kSplatPadding
-  float* depths = nullptr;         ///< along the view axis
-  std::uint32_t* boxes = nullptr;  ///< which box is foremost
+  int stride = 0;  ///< pixels from row to row: width + kSplatPadding
+  /// Of boxes that are being drawn, along the view axis; after shading in the window, 0 to 1.
+  float* depths = nullptr;
+  std::uint32_t* boxes = nullptr;    ///< which box is foremost
+  std::uint32_t* colours = nullptr;  ///< RGBA8, in memory order
+};
+
+/// Which parts of lines to draw.
+struct LinePass {
+  bool behind = false;  ///< those behind the boxes, else those before them
+  float opacity = 1;
 };
 
 struct SplatKernels {
   /// Fills rectangles[i] for the boxes [begin, end).
-  void (*project)(const SplatView& view, const SplatBox* boxes, std::size_t begin, std::size_t end,
-                  PixelRectangle* rectangles);
-  /// Draws boxes, given by their positions, into a band. Of equally near boxes the first wins.
-  void (*splat)(const SplatView& view, const SplatBox* boxes, const PixelRectangle* rectangles,
-                const std::uint32_t* which, std::size_t count, const SplatBand& band);
-  /// Writes colours (RGBA8) and window depths (0 to 1) of a band's pixels; rows of `view.width`.
-  void (*shade)(const SplatView& view, const SplatBox* boxes, const SplatBand& band,
-                std::uint32_t* colours, float* depths);
+  void (*project_boxes)(const SplatView& view, const SplatBox* boxes, std::size_t begin,
+                        std::size_t end, PixelRectangle* rectangles);
+  /// Draws boxes, given by their positions, into a band: depths, and which is foremost. Of equally
+  /// near boxes the first wins.
+  void (*splat_boxes)(const SplatView& view, const SplatBox* boxes,
+                      const PixelRectangle* rectangles, const std::uint32_t* which,
+                      std::size_t count, const SplatBand& band);
+  /// Colours the pixels that boxes cover, and turns the band's depths into those of the window, 1
+  /// where there is no box.
+  void (*shade_boxes)(const SplatView& view, const SplatBox* boxes, const SplatBand& band);
+  /// Fills strips[i] and rectangles[i] for the lines [begin, end). `at_far_end`: their depth in the
+  /// window is 1.
+  void (*project_lines)(const SplatView& view, const SplatLine* lines, std::size_t begin,
+                        std::size_t end, bool at_far_end, SplatStrip* strips,
+                        PixelRectangle* rectangles);
+  /// Blends lines, given by their positions, into the colours of a band that is shaded.
+  void (*draw_lines)(const SplatLine* lines, const SplatStrip* strips,
+                     const PixelRectangle* rectangles, const std::uint32_t* which,
+                     std::size_t count, const LinePass& pass, const SplatBand& band);
 };
 
 /// The best kernels that `isa` allows, which this processor must support.

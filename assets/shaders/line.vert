@@ -4,15 +4,13 @@ uniform samplerBuffer primitives;
 uniform mat4 view_projection;
 uniform vec3 eye;
 uniform vec2 viewport;  // pixels
+uniform float lift;     // part of the way to the eye, from look.h
 
 noperspective out float across;  // pixels from the middle of the line
 flat out float half_width;       // pixels
 flat out vec3 line_colour;
 
 const float kNearest = 1e-3;  // clip w: what lies nearer, or behind the eye, is cut off
-
-// Lines lie so much nearer to the eye than they are, or the edges of boxes would cover half of them.
-const float kLift = 0.001;
 
 const vec2 kCorners[6] =
     vec2[](vec2(0, -1), vec2(1, -1), vec2(1, 1), vec2(0, -1), vec2(1, 1), vec2(0, 1));
@@ -24,8 +22,8 @@ void main() {
   int rgb = int(from.w);
   line_colour = vec3(rgb >> 16, (rgb >> 8) & 255, rgb & 255) / 255.0;
 
-  vec4 a = view_projection * vec4(mix(from.xyz, eye, kLift), 1);
-  vec4 b = view_projection * vec4(mix(to.xyz, eye, kLift), 1);
+  vec4 a = view_projection * vec4(mix(from.xyz, eye, lift), 1);
+  vec4 b = view_projection * vec4(mix(to.xyz, eye, lift), 1);
   if (a.w < kNearest && b.w < kNearest) {
     gl_Position = vec4(0, 0, 2, 1);  // wholly behind the eye: outside the clip volume
     return;

@@ -85,6 +85,24 @@ TEST(Colouring, CountsAreShownInDoublingSteps) {
                           "16 to 31", "16 to 31", "32 or more", "32 or more"));
 }
 
+TEST(Colouring, TestsAreShownInStepsOfEqualRatio) {
+  const std::vector<std::uint32_t> tests = {0, 3, 5, 6, 1000, 48, 3000};
+  const std::vector<Aabb> boxes = someBoxes(tests.size());
+  ColouringInput input;
+  input.boxes = boxes;
+  EXPECT_THAT(coloured("tests", input).legend.front().label, "not told");
+  input.tests = std::span(tests).first(3);
+  EXPECT_THAT(coloured("tests", input).legend.front().label, "not told");
+  input.tests = tests;
+  EXPECT_THAT(
+      labels(coloured("tests", input)),
+      ElementsAre("0", "3 to 9", "3 to 9", "3 to 9", "949 to 3000", "30 to 94", "949 to 3000"));
+  const std::vector<std::uint32_t> none(boxes.size(), 0);
+  input.tests = none;
+  ASSERT_EQ(coloured("tests", input).legend.size(), 1U);
+  EXPECT_EQ(coloured("tests", input).legend.front().count, 7U);
+}
+
 TEST(Colouring, MissedPairsAreShownBeforeFalseOnes) {
   const std::vector<Aabb> boxes = someBoxes(6);
   const std::vector<std::uint32_t> overlaps = {0, 1, 1, 1, 1, 0};
@@ -243,6 +261,7 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
   previous[0] = kEmptyBox;
   previous[1].max[0] += 1;
   const std::vector<std::uint32_t> overlaps = {0, 1, 2, 4, 8, 16, 32, 64};
+  const std::vector<std::uint32_t> tests = {0, 1, 10, 20, 40, 80, 160, 320};
   const std::vector<std::uint8_t> layers = {0, 1, 2, 3, 4, 5, 6, 7};
   const std::vector<Pair> first_only = {{1, 2}};
   const std::vector<Pair> second_only = {{3, 4}};
@@ -251,6 +270,7 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
     const ColouringInput input{.boxes = boxes,
                                .previous = previous,
                                .overlaps = overlaps,
+                               .tests = tests,
                                .layers = layers,
                                .missed = {},
                                .false_pairs = {},

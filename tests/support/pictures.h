@@ -12,11 +12,14 @@
 
 namespace broadmark::tests {
 
-/// Whether two pictures look the same: at most 0.1 % of the pixels differ by more than 8/255 in any
-/// channel. Otherwise a picture of the differences (red on the faded first one) is written to the
-/// tests' temporary directory, as NAME-difference.png.
+/// How many of a thousand pixels may differ in a picture of a scene.
+inline constexpr double kMostOfScene = 1;
+
+/// Whether two pictures look the same: at most `most` of a thousand pixels differ by more than
+/// 8/255 in any channel. Otherwise a picture of the differences (red on the faded first one) is
+/// written to the tests' temporary directory, as NAME-difference.png.
 inline testing::AssertionResult looksLike(const Picture& actual, const Picture& expected,
-                                          const std::string& name) {
+                                          const std::string& name, double most = kMostOfScene) {
   constexpr int kTolerance = 8;
   if (actual.width != expected.width || actual.height != expected.height) {
     return testing::AssertionFailure()
@@ -37,7 +40,8 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
     difference.rgba[pixel + 1] = difference.rgba[pixel + 2] = 0;
   }
   const std::size_t pixels = actual.rgba.size() / 4;
-  if (1000 * wrong <= pixels) return testing::AssertionSuccess();
+  if (1000 * static_cast<double>(wrong) <= most * static_cast<double>(pixels))
+    return testing::AssertionSuccess();
   const auto path = std::filesystem::path(testing::TempDir()) / (name + "-difference.png");
   writePng(path, difference);
   return testing::AssertionFailure()
@@ -47,13 +51,14 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
 /// The same against a picture kept in the source tree. With BROADMARK_UPDATE_GOLDEN=1 in the
 /// environment that picture is written instead.
 inline testing::AssertionResult looksLikeGolden(const Picture& actual,
-                                                const std::filesystem::path& golden) {
+                                                const std::filesystem::path& golden,
+                                                double most = kMostOfScene) {
   const char* update = std::getenv("BROADMARK_UPDATE_GOLDEN");
   if (update != nullptr && std::string(update) == "1") {
     writePng(golden, actual);
     return testing::AssertionSuccess();
   }
-  return looksLike(actual, readPng(golden), golden.stem().string());
+  return looksLike(actual, readPng(golden), golden.stem().string(), most);
 }
 
 }  // namespace broadmark::tests

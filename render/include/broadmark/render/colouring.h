@@ -18,7 +18,9 @@ struct ColouringInput {
   std::span<const Aabb> boxes;              ///< empty: absent
   std::span<const Aabb> previous;           ///< of the previous frame; empty without one
   std::span<const std::uint32_t> overlaps;  ///< of each body: see overlapCounts()
-  std::span<const std::uint8_t> layers;     ///< as CollisionFilter::layers()
+  /// Of each body: as DebugDraw::tests(); empty: not told.
+  std::span<const std::uint32_t> tests;
+  std::span<const std::uint8_t> layers;  ///< as CollisionFilter::layers()
   std::span<const Pair> missed;
   std::span<const Pair> false_pairs;
   /// What tells two answers apart; null: there is only one. `overlaps` is of either.
@@ -51,6 +53,7 @@ struct ColourMode {
   /// Replaces the content of `colouring`; its memory is reused. O(boxes + pairs).
   void (*colour)(const ColouringInput& input, Colouring& colouring);
   bool of_answer = false;  ///< whether the classes follow from the pairs of an answer alone
+  bool of_tests = false;   ///< whether `tests` are read
 };
 
 /// All modes; the first is the default.

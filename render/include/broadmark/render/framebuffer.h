@@ -23,9 +23,9 @@ class Framebuffer {
 
   /// Makes it the target of drawing and sets the viewport.
   void bind() const;
-  /// Replaces picture and depths (0 to 1): RGBA8 in memory order, rows from bottom to top. Only
-  /// with one sample a pixel. Throws RenderError.
-  void write(std::span<const std::uint32_t> rgba, std::span<const float> depths) const;
+  /// Replaces the picture: RGBA8 in memory order, rows from bottom to top. Only with one sample a
+  /// pixel. Throws RenderError.
+  void write(std::span<const std::uint32_t> rgba) const;
   /// Brings texture() up to date with what has been drawn.
   void resolve() const;
   /// The picture as a GL texture, its first row at the bottom.

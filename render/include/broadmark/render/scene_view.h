@@ -81,8 +81,8 @@ struct SceneViewContent {
   float scale = 1;          ///< of all widths and of the axes
 };
 
-/// How boxes are drawn: by OpenGL, or by our own renderer on the processor. `automatic`: by our own
-/// if OpenGL runs on the processor, too.
+/// How the scene is drawn: by OpenGL, or by our own renderer on the processor. `automatic`: by our
+/// own if OpenGL runs on the processor, too.
 enum class Technique { automatic, gl, splat };
 
 struct SceneViewOptions {
@@ -119,7 +119,7 @@ class SceneView {
 
   /// The viewpoint drawn last, for picking.
   [[nodiscard]] const Viewpoint& viewpoint() const { return viewpoint_; }
-  /// Whether our own renderer draws the boxes.
+  /// Whether our own renderer draws the scene.
   [[nodiscard]] bool isSplatting() const;
 
  private:

@@ -1,4 +1,4 @@
-// How boxes look, in the shaders and in the software renderer alike.
+// How boxes and lines look, in the shaders and in the software renderer alike.
 #pragma once
 
 namespace broadmark {
@@ -18,6 +18,14 @@ struct BoxLook {
   float smallest_pixels = 1.42F;
 };
 inline constexpr BoxLook kBoxLook;
+
+struct LineLook {
+  /// Lines lie so much nearer to the eye than they are, or the edges of boxes would cover half of
+  /// them.
+  float lift = 0.001F;
+  float faint = 0.28F;  ///< opacity of what bodies hide of a faint line
+};
+inline constexpr LineLook kLineLook;
 
 /// Width of the edges in a picture of that height, in pixels.
 constexpr float edgePixels(int height) {
