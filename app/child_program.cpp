@@ -42,7 +42,7 @@ std::vector<std::string> environment(
         variables, [&](const auto& variable) { return variable.first == name; });
     if (!is_set) all.push_back(text);
   }
-  for (const auto& [name, value] : variables) all.push_back(name + "=" + value);
+  for (const auto& [name, value] : variables) all.push_back(fmt::format("{}={}", name, value));
   return all;
 }
 

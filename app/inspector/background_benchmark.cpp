@@ -16,7 +16,8 @@ namespace broadmark {
 namespace {
 
 std::uint64_t stepsOf(const Plan& plan, const SessionOptions& options) {
-  const auto passes = static_cast<std::uint64_t>(options.warmup + options.repetitions.most);
+  const auto passes = static_cast<std::uint64_t>(options.warmup) +
+                      static_cast<std::uint64_t>(options.repetitions.most);
   std::uint64_t steps = 0;
   for (const PlanEntry& entry : plan.entries) {
     steps += passes * entry.cases.size() * entry.source.reference.scene.frames;

@@ -54,7 +54,7 @@ fs::path packageFolder(const fs::path& program) {
     if (holdsPackage(above / "python")) return above / "python";
     std::error_code none;
     for (const fs::directory_entry& version : fs::directory_iterator(above / "lib", none)) {
-      const fs::path packages = version.path() / "dist-packages";
+      fs::path packages = version.path() / "dist-packages";
       if (globMatches("python3*", version.path().filename().string()) && holdsPackage(packages)) {
         return packages;
       }

@@ -7,6 +7,7 @@
 
 #include "inspector/answer_text.h"
 #include "inspector/inspector.h"
+#include "words.h"
 
 namespace broadmark {
 namespace {
@@ -60,7 +61,7 @@ void Inspector::drawSpeed() {
     if (kSpeeds[i] <= playback.frames_per_second) chosen = i;
   }
   if (ui_.combo("##speed", chosen, speeds, "Frames shown per second, if all keep pace",
-                108 * ui_.scale)) {
+                std::min(108 * ui_.scale, ImGui::GetContentRegionAvail().x))) {
     playback.frames_per_second = kSpeeds[chosen];
   }
   // The place is kept while nothing is played, so that nothing beside it moves.
@@ -87,7 +88,7 @@ void Inspector::drawPosition(const RunProgress& progress) {
   ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - width, 20.0F));
   int frame = static_cast<int>(playback.frame());
   ImGui::BeginDisabled(last == 0);
-  if (ui_.slider("##frame", frame, 0, std::max(1, static_cast<int>(last)), "")) {
+  if (ui_.slider("##frame", frame, 0, std::max(1, static_cast<int>(last)))) {
     playback.goTo(frame);
   }
   ImGui::EndDisabled();
@@ -111,11 +112,11 @@ void Inspector::drawStatus(const RunProgress& progress) {
     ui_.plain(sourceText(progress.footage.get()));
     ui_.note("source");
     ImGui::SameLine(0, 14 * ui_.scale);
-    const std::string capacity = fmt::format("{}", progress.scene.objects);
+    const std::string bodies = counted(progress.scene.objects, "body", "bodies");
     const bool partly = !progress.scene.all_present && progress.snapshot;
-    ui_.faint(fmt::format(
-        "{} {}, {} bodies", progress.scene.name, progress.scene.object_type,
-        partly ? fmt::format("{} of {}", progress.snapshot->present, capacity) : capacity));
+    ui_.faint(
+        fmt::format("{} {}, {}", progress.scene.name, progress.scene.object_type,
+                    partly ? fmt::format("{} of {}", progress.snapshot->present, bodies) : bodies));
     if (progress.snapshot) {
       ImGui::SameLine(0, 14 * ui_.scale);
       ui_.faint(view_.answer().answer);

@@ -61,7 +61,7 @@ fs::path FileDialog::replacedBy(const fs::path& path) const {
   std::error_code none;
   if (fs::exists(path, none)) return path;
   for (const std::string& extension : request_.extensions) {
-    const fs::path whole = path.string() + extension;
+    fs::path whole = path.string() + extension;
     if (!path.has_extension() && fs::exists(whole, none)) return whole;
   }
   return {};

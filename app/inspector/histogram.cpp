@@ -37,12 +37,14 @@ void drawHistogram(Ui& ui, std::span<const double> values,
   }
   const auto label = [&](double value, float share) {
     const std::string number = text(value);
-    const float left = corner.x + share * (size.x - ImGui::CalcTextSize(number.c_str()).x);
-    draw.AddText({left, bottom}, colour(ui.theme.faint), number.c_str());
+    const float extent = ImGui::CalcTextSize(number.c_str()).x;
+    draw.AddText({corner.x + share * (size.x - extent), bottom}, colour(ui.theme.faint),
+                 number.c_str());
+    return extent;
   };
-  label(histogram.low, 0);
-  label((histogram.low + histogram.high) / 2, 0.5F);
-  label(histogram.high, 1);
+  const float ends = label(histogram.low, 0) + label(histogram.high, 1);
+  const bool room = size.x > 2 * ends;
+  if (room) label((histogram.low + histogram.high) / 2, 0.5F);
   ImGui::Dummy(size);
   ui.note("histogram");
 }

@@ -136,6 +136,18 @@ const std::vector<OpenedResults::Curve>& OpenedResults::curves(Phase phase) {
   return curves_;
 }
 
+const std::vector<ScalingCurve>& OpenedResults::scaling(Phase phase) {
+  if (scaling_of_ == phase) return scaling_;
+  scaling_of_ = phase;
+  std::vector<SizedCase> cases;
+  for (const std::size_t row : listed_) {
+    cases.push_back({.row = row, .result = &rows_[row].result, .algorithm = rows_[row].algorithm});
+  }
+  std::ranges::sort(cases, {}, &SizedCase::row);  // sorting the list changes no colour
+  scaling_ = scalingCurves(cases, phase);
+  return scaling_;
+}
+
 void OpenedResults::sort(std::optional<CaseColumn> by, bool descending) {
   sorted_by_ = by;
   descending_ = descending;
@@ -161,6 +173,7 @@ bool OpenedResults::before(std::size_t a, std::size_t b) const {
 }
 
 void OpenedResults::list() {
+  scaling_of_.reset();
   listed_.clear();
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (only_wrong_ && rows_[i].mismatches == 0) continue;

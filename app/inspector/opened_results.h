@@ -12,6 +12,7 @@
 #include "broadmark/names.h"
 #include "broadmark/render/frame_values.h"
 #include "broadmark/results.h"
+#include "inspector/scaling.h"
 
 namespace broadmark {
 
@@ -71,6 +72,8 @@ class OpenedResults {
   void mark(std::size_t row, bool on);
   /// Of the marked rows that have times, in the order of the file. Made when first asked for.
   const std::vector<Curve>& curves(Phase phase);
+  /// Of the listed rows, in the order of the file; likewise.
+  const std::vector<ScalingCurve>& scaling(Phase phase);
 
   /// The numbers of the rows to be shown, in order.
   [[nodiscard]] const std::vector<std::size_t>& listed() const { return listed_; }
@@ -93,6 +96,8 @@ class OpenedResults {
   bool only_wrong_ = false;
   std::vector<Curve> curves_;
   std::optional<Phase> curves_of_;  ///< nothing: they are to be made anew
+  std::vector<ScalingCurve> scaling_;
+  std::optional<Phase> scaling_of_;  ///< likewise
 };
 
 }  // namespace broadmark

@@ -47,10 +47,10 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
                                      ImGuiTableFlags_SizingFixedFit |
                                      ImGuiTableFlags_NoHostExtendX | ImGuiTableFlags_ScrollX;
   const float line = ImGui::GetTextLineHeight() + ImGui::GetStyle().ItemSpacing.y;
-  // The bar at the bottom is there only where the panel is narrow.
+  // How both stand to each other is a column, or, where the panel is narrow, a line below.
   const bool narrow = ImGui::GetContentRegionAvail().x < 270 * ui.scale;
-  const float height = 7 * line + 4 * ui.scale + (narrow ? ImGui::GetStyle().ScrollbarSize : 0.0F);
-  if (ImGui::BeginTable("pair", 4, kFlags, {0, height})) {
+  const float height = (narrow ? 10 : 7) * line + 4 * ui.scale;
+  if (ImGui::BeginTable("pair", narrow ? 3 : 4, kFlags, {0, height})) {
     const std::size_t deciding = decidingAxis(pair.a, pair.b);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -64,10 +64,13 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
       ImGui::TableNextRow();
       cell(ui, axis == deciding ? ui.theme.accent : ui.theme.faint, kAxes[axis], "");
       if (axis == deciding) ui.tooltip("The axis that decides");
+      const std::string kind(kRelations.nameOf(relation.kind));
+      const std::string extent = exactly(std::abs(static_cast<float>(relation.gap)));
       cell(ui, textColour(ui), exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
+      if (narrow) ui.coloured(rgb, kind);
       cell(ui, textColour(ui), exactly(pair.b.min[axis]), exactly(pair.b.max[axis]));
-      cell(ui, rgb, std::string(kRelations.nameOf(relation.kind)),
-           exactly(std::abs(static_cast<float>(relation.gap))));
+      if (narrow) ui.coloured(rgb, extent);
+      if (!narrow) cell(ui, rgb, kind, extent);
     }
     ImGui::EndTable();
   }

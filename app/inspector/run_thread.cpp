@@ -9,6 +9,9 @@
 namespace broadmark {
 namespace {
 
+/// Bodies that all overlap by a mistake should not take all memory: this is half a gigabyte.
+constexpr std::size_t kMostPairs = std::size_t{1} << 26;
+
 /// Whether one wish's snapshot also serves the other.
 bool showSame(const Wish& a, const Wish& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
@@ -175,7 +178,7 @@ void RunThread::openFootage() {
   lanes_.clear();
   second_.clear();
   footage_.reset();
-  oracle_ = Oracle(std::size_t{256} << 20);
+  oracle_ = Oracle(std::size_t{256} << 20, kMostPairs);
   seen_.clear();
   stop_.reset();
   shown_ = false;
@@ -225,7 +228,11 @@ bool RunThread::reconcileLanes() {
   for (const auto& lane : lanes_) {
     const auto report = std::ranges::find_if(
         reports, [&](const LaneReport& known) { return known.spec.same(lane->spec()); });
-    progress_.lanes.push_back(report != reports.end() ? std::move(*report) : lane->report());
+    if (report != reports.end()) {
+      progress_.lanes.push_back(std::move(*report));
+    } else {
+      progress_.lanes.push_back(lane->report());
+    }
   }
   return true;
 }

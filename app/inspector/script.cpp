@@ -244,6 +244,7 @@ void ScriptPlayer::rightClick(const Words& words, Inspector&) { pressAt(words[0]
 void ScriptPlayer::enter(const Words& words, Inspector& inspector) {
   pressAt(words[0], 0, 1);
   key({"Ctrl+A"}, inspector);
+  if (words[1].empty()) key({"Delete"}, inspector);
   type({words[1]}, inspector);
   key({"Enter"}, inspector);
 }

@@ -7,6 +7,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/recording.h"
+#include "broadmark/render/colouring.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "broadmark/swept_frames.h"
 #include "export_case.h"
@@ -96,6 +97,10 @@ void Session::end(std::function<void()> then) {
   }
 }
 
+const ColourMode& ViewOptions::colourMode() const {
+  return colourModes()[colouring % colourModes().size()];
+}
+
 Wish Session::wish() const {
   Wish wish{.footage = playback.footage(),
             .lanes = lanes.specs(),
@@ -105,7 +110,7 @@ Wish Session::wish() const {
             .stop_at_mismatch = mismatches.stop_at_mismatch,
             .known_mismatch = mismatches.known(),
             .shown_lane = lanes.shown(),
-            .structure = view.structure,
+            .structure = view.structure || view.colourMode().of_tests,
             .tracked = selection.bodies(),
             .second = second};
   if (wish.tracked.size() > kMostTracked) wish.tracked.clear();

@@ -30,6 +30,8 @@
 
 namespace broadmark {
 
+struct ColourMode;
+
 /// How the scene is shown.
 struct ViewOptions {
   std::size_t colouring = 0;  ///< which of the colour modes
@@ -47,6 +49,7 @@ struct ViewOptions {
   /// Colours tell how many bodies its cells hold, where it says so.
   bool structure_population = true;
 
+  [[nodiscard]] const ColourMode& colourMode() const;
   friend bool operator==(const ViewOptions&, const ViewOptions&) = default;
 };
 

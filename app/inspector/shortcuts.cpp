@@ -109,8 +109,10 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
       {GLFW_KEY_Q, true, false, kQuit, [this] { close(); }},
   };
-  for (std::size_t i = 0; i < panels_.size() && i < 10; ++i) {
-    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), true, false,
+  // From 1 to 9 and 0, then with Shift from 1 on.
+  constexpr std::size_t kDigits = 10;
+  for (std::size_t i = 0; i < std::min(panels_.size(), 2 * kDigits); ++i) {
+    shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % kDigits), true, i >= kDigits,
                           fmt::format("the panel {}", panels_[i]->name()),
                           [this, i] { enterPanel(*panels_[i]); }});
   }
@@ -226,7 +228,7 @@ void Inspector::drawHelp() {
     for (const Shortcut& shortcut : shortcuts_) row(shortcut.keys().c_str(), shortcut.doc.c_str());
     row("", "");
     for (const auto& [what, doc] : kMouse) row(what, doc);
-    for (const FlyKey& fly : kFlyKeys) {
+    for (const FlyKey& fly : flyKeys()) {
       row(keyName(fly.key).c_str(), fmt::format("fly {}, over the view", fly.doc).c_str());
     }
     row("", "");

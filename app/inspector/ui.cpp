@@ -58,6 +58,19 @@ std::string fittingText(std::string text, float room, ImFont* font) {
   return text + "…";
 }
 
+float widthOfWholeColumns(const char* table, int always) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  const ImGuiTable* const before = ImGui::TableFindByID(ImGui::GetID(table));
+  if (before == nullptr) return room;
+  float whole = before->InnerWindow->ScrollbarY ? ImGui::GetStyle().ScrollbarSize : 0;
+  for (int column = 0; column < before->ColumnsCount; ++column) {
+    const float width = before->Columns[column].MaxX - before->Columns[column].MinX;
+    if (column >= always && whole + width > room) return whole;
+    whole += width;
+  }
+  return room;
+}
+
 Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
   ui.scope_ += name;
   ui.scope_ += '/';
@@ -284,11 +297,11 @@ bool Ui::vector(const char* label, std::array<double, 3>& value, double min, dou
   return changed;
 }
 
-bool Ui::slider(const char* label, int& value, int min, int max, const char* format) {
+bool Ui::slider(const char* label, int& value, int min, int max) {
   // Of whole numbers Dear ImGui makes the grab as wide as a step: of few it would look half full.
   auto real = static_cast<float>(value);
   const bool changed =
-      ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), format,
+      ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), "",
                          ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
   value = static_cast<int>(std::lround(real));
   note(label);

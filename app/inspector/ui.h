@@ -96,7 +96,8 @@ class Ui {
   /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
   bool vector(const char* label, std::array<double, 3>& value, double min, double max,
               const char* tooltip = nullptr);
-  bool slider(const char* label, int& value, int min, int max, const char* format = "%.0f");
+  /// Without the number, which the grab would cover: that belongs into the label.
+  bool slider(const char* label, int& value, int min, int max);
   bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
                 bool enabled = true);
   bool beginMenu(const char* label);
@@ -171,6 +172,11 @@ class Ui {
 /// The text; of one that is wider than `room` as much of its beginning as fits, and "…". `font`:
 /// the present one if null.
 std::string fittingText(std::string text, float room, ImFont* font = nullptr);
+
+/// How wide a table may be here so that of its columns, as they were in the last picture, each one
+/// in sight is seen wholly: half a number would be a wrong one. The first `always` are shown
+/// anyhow.
+float widthOfWholeColumns(const char* table, int always);
 
 /// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
 void applyTheme(Ui& ui, bool dark, float scale);

@@ -158,12 +158,13 @@ void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
   values["benchmark.failed"] = std::to_string(report.failed());
 }
 
-void addCases(Values& values, const std::optional<OpenedResults>& results) {
+void addCases(Values& values, std::optional<OpenedResults>& results) {
   const auto rows = results ? std::span(results->rows()) : std::span<const OpenedResults::Row>();
   values["cases"] = results ? std::to_string(rows.size()) : "";
   values["cases.listed"] = results ? std::to_string(results->listed().size()) : "";
   values["cases.marked"] = std::to_string(std::ranges::count_if(rows, &OpenedResults::Row::marked));
   values["cases.wrong"] = results ? std::to_string(results->wrong()) : "";
+  values["cases.scaling"] = results ? std::to_string(results->scaling(Phase::total).size()) : "";
   const bool any = results && !results->listed().empty();
   values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
 }
@@ -274,9 +275,9 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.yaw"] = fmt::format("{:.4f}", view_.camera().yaw);
   values["camera.pitch"] = fmt::format("{:.4f}", view_.camera().pitch);
   values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
-  values["legend"] = legendText(view_.legend());
-  values["legend.oracle"] = legendText(view_.oracleLegend());
-  values["legend.cells"] = legendText(view_.cellLegend());
+  values["legend"] = legendText(view_.content().legend());
+  values["legend.oracle"] = legendText(view_.content().oracleLegend());
+  values["legend.cells"] = legendText(view_.content().cellLegend());
   values["view.answer"] = view_.answer().answer;
   values["view.oracle"] = view_.answer().beside;
   values["view.hands"] = view_.hands().text();
@@ -288,7 +289,7 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["second.pair"] = second_view_.answer().pair;
   values["second.yaw"] = fmt::format("{:.4f}", second_view_.camera().yaw);
   values["second.distance"] = fmt::format("{:.4f}", second_view_.camera().distance);
-  values["hidden"] = std::to_string(view_.hiddenBodies());
+  values["hidden"] = std::to_string(view_.content().hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);
   values["layout"] =

@@ -1,21 +1,21 @@
-// The view of the scene: what is drawn, the camera, and what the mouse does in it.
+// The view of the scene: its camera, and what the mouse does in it.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "broadmark/render/colouring.h"
 #include "broadmark/render/gl.h"
 #include "broadmark/render/input_queue.h"
 #include "broadmark/render/orbit_camera.h"
-#include "broadmark/render/overlays.h"
 #include "broadmark/render/scene_view.h"
 #include "inspector/answer_text.h"
 #include "inspector/hands.h"
 #include "inspector/session.h"
 #include "inspector/ui.h"
+#include "inspector/view_content.h"
 
 namespace broadmark {
 
@@ -25,7 +25,7 @@ struct FlyKey {
   std::array<float, 3> direction{};  ///< forward, right, up
   const char* doc = "";
 };
-extern const std::array<FlyKey, 6> kFlyKeys;
+std::span<const FlyKey> flyKeys();
 
 class View {
  public:
@@ -41,14 +41,7 @@ class View {
   [[nodiscard]] bool moved() const { return moved_; }
   /// Whether it moves by itself.
   [[nodiscard]] bool lively() const { return flight_.has_value(); }
-  /// What the colours of the present picture mean.
-  [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
-  /// The same of the oracle's answer, where the colours tell of another one.
-  [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
-  /// What the colours of the shown structure mean, and how many of its cells have each.
-  [[nodiscard]] const std::vector<LegendEntry>& cellLegend() const { return cell_legend_; }
-  /// How many bodies are not drawn because the user does not want to see them.
-  [[nodiscard]] std::size_t hiddenBodies() const;
+  [[nodiscard]] const ViewContent& content() const { return content_; }
   /// Whose answer is seen.
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
@@ -64,23 +57,12 @@ class View {
     OrbitCamera to;
     float part = 0;
   };
-  /// What a picture of the bodies was made from.
-  struct Shown {
-    std::shared_ptr<const Snapshot> snapshot;
-    std::shared_ptr<const PairComparison> comparison;  ///< with the other view; null: none
-    std::vector<std::uint32_t> selection;
-    ViewOptions options;
-    bool dark = false;
-  };
 
   void update(Session& session, const RunProgress& progress, bool dark);
   void drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size);
   void drawScene(const Ui& ui, ImVec2 corner, ImVec2 size);
-  void updateBodies(const Session& session);
-  void updateVisible(const ViewOptions& options);
-  void addXray(bool dark);
-  void updateLines(const Session& session, bool dark);
-  void add(Overlay overlay);
+  /// Of a scene that has not been looked at so far.
+  void placeCamera(const Snapshot& snapshot);
   void takeFlightRequest(Session& session);
   void fly(const OrbitCamera& to);
   void moveOn(float seconds);
@@ -91,28 +73,18 @@ class View {
   void beginDrag(const Hands::Seen& seen, ImVec2 mouse);
   void click(Session& session, ImVec2 at, bool fly_there);
   void selectWithin(Session& session, ImVec2 from, ImVec2 to);
-  void drawAxisNames(ImVec2 corner) const;
-  /// Of those that are present; empty if there are none.
-  [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
+  void drawAxisNames(ImVec2 corner, float scale) const;
   [[nodiscard]] double aspect() const;
 
   const Role role_;
   SceneView scene_;
-  SceneViewContent content_;
-  Shown shown_;
+  ViewContent content_;
+  ViewSpace space_;
   OrbitCamera camera_;
   std::optional<Flight> flight_;
   bool moved_ = false;
   std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
-  Colouring colouring_;
-  std::vector<LegendEntry> oracle_legend_;  ///< of the oracle's answer, if another one is shown
-  std::vector<LegendEntry> cell_legend_;
   AnswerText answer_;
-  std::vector<std::uint8_t> visible_;
-  std::vector<SceneLine> lines_;
-  std::vector<SceneWireBox> wire_boxes_;
-  std::uint64_t revision_ = 0;
-  std::size_t left_out_ = 0;  ///< lines and boxes that were too many
   Hands hands_;
   int width_ = 1;
   int height_ = 1;

@@ -117,7 +117,7 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
   const float left = corner.x + size.x - width - 2 * pad;
   const float top = left > taken.x + pad ? corner.y : taken.y;
   const ImVec2 at{left, top + pad / 2};
-  if (at.x < corner.x || at.y + height + 2 * line > corner.y + size.y) return;
+  if (at.x < corner.x || at.y + height + pad > corner.y + size.y) return;
   draw.AddRectFilled(at, {at.x + width + pad, at.y + height + pad},
                      colour(ui.theme.background, kBackdrop), 4 * ui.scale);
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
@@ -143,7 +143,7 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
   }
 }
 
-void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
+float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   constexpr std::pair<Tool, const char*> kButtons[] = {
       {Tool::move, "Moves the selected bodies by their handles (M)"},
       {Tool::turn, "Turns the selected bodies about their common centre (T)"},
@@ -159,7 +159,7 @@ void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   const float line = ImGui::GetFrameHeightWithSpacing();
   const float width = 4 * button + 3 * gap + 2 * pad;
   const float height = (brush ? 3 : 2) * line + 2 * pad - style.ItemSpacing.y;
-  if (width > size.x || height + 2 * line > size.y) return;
+  if (width > size.x || height + 2 * line > size.y) return size.y;
   const auto scope = ui.scope("Tools");
   ImGui::SetCursorScreenPos({corner.x + size.x - width - pad, corner.y + size.y - height - pad});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad, pad});
@@ -186,6 +186,7 @@ void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
   ImGui::EndChild();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
+  return size.y - height - pad;
 }
 
 }  // namespace broadmark

@@ -26,7 +26,8 @@ struct ViewLegend {
 /// there is no room.
 void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 size, ImVec2 taken);
 
-/// Buttons of the tools in the lower right corner; left out where there is no room.
-void drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
+/// Buttons of the tools in the lower right corner; left out where there is no room. Returns the
+/// height of what is free above them.
+float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size);
 
 }  // namespace broadmark

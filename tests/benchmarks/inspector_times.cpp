@@ -6,14 +6,20 @@
 // Then how long it takes from a click on an earlier frame to its picture: one that has been seen,
 // and one that an algorithm has to run to again, for its structure.
 //
-//   inspector_times [--objects N] [--frames F] [--rounds R] [--seek-objects N] [--seek-from F]
-//                   [--seek-to F]
+// And how many pictures a second there are with everything on, while the camera turns and while the
+// scene is played.
+//
+//   inspector_times [--objects N] [--frames F] [--rounds R] [--seek-from F] [--seek-to F]
+//                   [--crowd N]
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <numeric>
+#include <set>
 
 #include "benchmarks/contest.h"
 #include "broadmark/algorithms.h"
@@ -91,14 +97,14 @@ struct Watched {
 };
 
 struct Seek {
-  std::string objects = "128000";
   std::uint32_t from = 300;
   std::uint32_t to = 100;
 };
 
-void printSeekTimes(const Gl& gl, const Seek& seek, const char* algorithm) {
-  Watched watched(
-      gl, {.algorithm = algorithm, .objects = seek.objects, .frames = std::to_string(seek.from)});
+void printSeekTimes(const Gl& gl, const Seek& seek, const std::string& crowd,
+                    const char* algorithm) {
+  Watched watched(gl,
+                  {.algorithm = algorithm, .objects = crowd, .frames = std::to_string(seek.from)});
   watched.drawUntil([](const Snapshot& snapshot) { return snapshot.frame == 0; });
   watched.session().playback.goTo(seek.from);
   watched.drawUntil([&](const Snapshot& snapshot) { return snapshot.frame == seek.from; });
@@ -109,7 +115,78 @@ void printSeekTimes(const Gl& gl, const Seek& seek, const char* algorithm) {
   const double run_again =
       watched.drawUntil([](const Snapshot& snapshot) { return snapshot.structure != nullptr; });
   fmt::print("{:12} frame {} to {} of {} bodies: seen {:.0f} ms, run again {:.1f} s\n", algorithm,
-             seek.from, seek.to, seek.objects, 1000 * seen, run_again);
+             seek.from, seek.to, crowd, 1000 * seen, run_again);
+}
+
+/// All that can be shown: the cells of the algorithm and lines between all pairs, selected bodies
+/// through others, a second view with another algorithm's answer, both in the timeline.
+void showEverything(Session& session) {
+  session.lanes.add("grid2d-sap");
+  ViewOptions& view = session.view;
+  view.pair_lines = view.lines_of_all = view.xray = view.structure = true;
+  view.structure_near = false;
+  view.filter = {.largest = 1e6};
+  session.selection.select({0, 1, 2, 3});
+  session.showSecond(true);
+}
+
+/// The milliseconds of each picture while draw() is called for some seconds; the first one, which
+/// uploads what is new, does not count.
+template <class Draw>
+std::vector<double> pictureTimes(const Draw& draw) {
+  constexpr double kSeconds = 5;
+  std::vector<double> times;
+  draw();
+  for (double sum = 0; sum < 1000 * kSeconds; sum += times.back()) {
+    const auto start = std::chrono::steady_clock::now();
+    draw();
+    times.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
+            .count());
+  }
+  return times;
+}
+
+void printPictureTimes(const Gl& gl, const std::string& crowd) {
+  Watched watched(gl, {.algorithm = "columns", .objects = crowd, .frames = "2000"});
+  Session& session = watched.session();
+  showEverything(session);
+  watched.drawUntil([](const Snapshot& snapshot) { return snapshot.frame == 0; });
+  session.playback.goTo(1);  // in frame 0 no algorithm has found anything yet
+  watched.drawUntil([](const Snapshot& snapshot) { return snapshot.structure != nullptr; });
+  session.runs.settle(std::chrono::seconds(60));
+  // Pictures of the same frame cost little while nothing turns: these are no measure.
+  const auto print = [&](const char* what, std::vector<double> times, std::size_t changes) {
+    const double seconds = std::accumulate(times.begin(), times.end(), 0.0) / 1000;
+    std::ranges::sort(times);
+    fmt::print(
+        "{} bodies, everything on, {:8} {:5.1f} different pictures a second (95 %: {:.1f} ms)\n",
+        crowd, what, static_cast<double>(changes) / seconds, times[times.size() * 95 / 100]);
+  };
+  float x = 0.4F * kWidth;  // in the first view
+  const auto move_mouse = [&] {
+    watched.input.push({.kind = InputEvent::Kind::move, .x = x, .y = kHeight / 3.0F});
+    x += 3;
+  };
+  move_mouse();
+  watched.input.push({.kind = InputEvent::Kind::button, .code = 0, .down = true});
+  const std::vector<double> turning = pictureTimes([&] {
+    move_mouse();
+    watched.draw();
+    gl.Finish();
+  });
+  print("turning", turning, turning.size());
+  watched.input.push({.kind = InputEvent::Kind::button, .code = 0, .down = false});
+  session.playback.frames_per_second = 1000;
+  session.play(true);
+  std::set<std::uint32_t> frames;
+  const std::vector<double> playing = pictureTimes([&] {
+    watched.draw();
+    gl.Finish();
+    session.runs.look(
+        [&](const RunProgress& progress) { frames.insert(progress.snapshot->frame); });
+  });
+  print("playing", playing, frames.size());
 }
 
 struct InspectorTimes {
@@ -147,16 +224,18 @@ InspectorTimes inspectorTimes(const Gl& gl, const Setting& setting) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   CLI::App app("Compares the times that the inspector measures with those of a headless run.");
   Setting setting{.objects = "8000", .frames = "60"};
   int rounds = 3;
   Seek seek;
+  std::string crowd = "128000";
   app.add_option("--objects", setting.objects)->capture_default_str();
   app.add_option("--frames", setting.frames)->capture_default_str();
   app.add_option("--rounds", rounds)->capture_default_str();
-  app.add_option("--seek-objects", seek.objects)->capture_default_str();
   app.add_option("--seek-from", seek.from)->capture_default_str();
   app.add_option("--seek-to", seek.to)->capture_default_str();
+  app.add_option("--crowd", crowd, "bodies of what follows the ratios")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
 
   const auto context = makeOffscreenContext(GlSource::automatic);
@@ -179,6 +258,7 @@ int main(int argc, char** argv) {
     fmt::print("{:12} {:>9.1f} µs {:>9.1f} µs {:>7.2f} {:>10}\n", algorithm, a / 1000, b / 1000,
                b / a, disturbed);
   }
-  for (const char* algorithm : {"columns", "tracy"}) printSeekTimes(gl, seek, algorithm);
+  for (const char* algorithm : {"columns", "tracy"}) printSeekTimes(gl, seek, crowd, algorithm);
+  printPictureTimes(gl, crowd);
   return 0;
 }

@@ -132,12 +132,16 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
             "expect panel.left = Algorithms\n"
             "wait 3\n"
             "places algorithms\n"
-            "wait 20\n"
+            "expect popup = yes\n"
+            "wait 5\n"
             "places choice\n"
             "expect lanes = 1\n"
             "wait settled\n"
             "expect lane.sap.status = ok\n"
             "places chosen\n"
+            "expect panel.left = Scene\n"
+            "wait 5\n"
+            "places scene\n"
             "expect scene.objects = 275\n"
             "places typed\n"
             "expect dialog = yes\n"
@@ -156,8 +160,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   click(screen, "algorithms", "Algorithms/Add…");
   click(screen, "choice", "Algorithms/add/sap");
   click(screen, "chosen", "Scene");
-  std::this_thread::sleep_for(500ms);
-  click(screen, "opened", "Scene/objects");
+  click(screen, "scene", "Scene/objects");
   press(screen, "ctrl+a");
   screen.tool("type --delay 40 275");
   press(screen, "Return");

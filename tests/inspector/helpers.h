@@ -1,15 +1,18 @@
 // What tests of the session share.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/recording.h"
+#include "broadmark/results.h"
 #include "engine/helpers.h"
 #include "inspector/session.h"
 #include "support/changing_worlds.h"
@@ -37,6 +40,26 @@ inline RunProgress settled(Session& session) {
     });
   }
   return seen;
+}
+
+/// A case whose frames took so many nanoseconds, a list for each repetition.
+inline CaseResult caseOf(const std::string& algorithm, std::uint32_t objects,
+                         const std::vector<std::vector<std::int64_t>>& repetitions) {
+  CaseResult result;
+  result.algorithm = algorithm;
+  result.recording.scene.name = "Brownian";
+  result.recording.scene.object_type = "Cubes";
+  result.recording.scene.objects = objects;
+  result.recording.scene.frames = 3;
+  result.id = fmt::format("Brownian/Cubes/N{}/F3/{}/t2/margin=0.5", objects, algorithm);
+  result.threads = 2;
+  for (const auto& times : repetitions) {
+    Repetition& repetition = result.repetitions.emplace_back();
+    for (const std::int64_t ns : times) {
+      repetition.frames.emplace_back()[Phase::total] = ns;
+    }
+  }
+  return result;
 }
 
 /// A recording of 20 frames: in each frame another body is gone, the last ones first.

@@ -1,6 +1,5 @@
 #include "inspector/opened_results.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,26 +12,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-/// A case whose frames took so many nanoseconds, a list for each repetition.
-CaseResult caseOf(const std::string& algorithm, std::uint32_t objects,
-                  const std::vector<std::vector<std::int64_t>>& repetitions) {
-  CaseResult result;
-  result.algorithm = algorithm;
-  result.recording.scene.name = "Brownian";
-  result.recording.scene.object_type = "Cubes";
-  result.recording.scene.objects = objects;
-  result.recording.scene.frames = 3;
-  result.id = fmt::format("Brownian/Cubes/N{}/F3/{}/t2/margin=0.5", objects, algorithm);
-  result.threads = 2;
-  for (const auto& times : repetitions) {
-    Repetition& repetition = result.repetitions.emplace_back();
-    for (const std::int64_t ns : times) {
-      repetition.frames.emplace_back()[Phase::total] = ns;
-    }
-  }
-  return result;
-}
 
 OpenedResults opened(std::vector<CaseResult> cases) {
   Results results;
@@ -111,6 +90,73 @@ TEST(OpenedResults, PlotTheMedianOfTheRepetitions) {
   results.mark(0, false);
   ASSERT_EQ(results.curves(Phase::total).size(), 1U);
   EXPECT_EQ(results.curves(Phase::total)[0].row, 1U);
+}
+
+/// "kd: 200 1000" or "kd Brownian: 200 1000": a curve's name and sizes.
+std::vector<std::string> scalingOf(OpenedResults& results, Phase phase = Phase::total) {
+  std::vector<std::string> texts;
+  for (const ScalingCurve& curve : results.scaling(phase)) {
+    std::string& text = texts.emplace_back(curve.algorithm);
+    if (!curve.scene.empty()) text += ' ' + curve.scene;
+    text += ':';
+    for (const ScalingPoint& point : curve.points) text += fmt::format(" {}", point.objects);
+  }
+  return texts;
+}
+
+TEST(OpenedResults, PlotTheMeanOverNumbersOfBodies) {
+  OpenedResults results =
+      opened({caseOf("kd", 1000, {{30, 50}, {40}}), caseOf("sap", 100, {{1}}),
+              caseOf("kd", 10, {{4}}), caseOf("kd", 100, {{10, 16}}), caseOf("bf", 100, {{9}})});
+  // Neither sap nor bf grows.
+  EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 10 100 1000"));
+  const ScalingCurve& curve = results.scaling(Phase::total)[0];
+  EXPECT_DOUBLE_EQ(curve.points[1].seconds, 13e-9);
+  EXPECT_DOUBLE_EQ(curve.points[2].seconds, 40e-9);
+  EXPECT_EQ(curve.points[2].row, 0U);
+  EXPECT_NEAR(curve.exponent, 0.5, 1e-12);  // 4 to 40 over two decades, whatever lies between
+  EXPECT_THAT(scalingOf(results, Phase::upload), ElementsAre());
+
+  // As the list, whose order does not matter.
+  results.sort(CaseColumn::mean, false);
+  EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 10 100 1000"));
+  results.filter("N100", false);
+  EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 100 1000"));
+}
+
+TEST(OpenedResults, PlotOverNumbersOfBodiesOnlyRightAndCompleteCases) {
+  std::vector<CaseResult> cases;
+  for (const std::uint32_t objects : {10U, 20U, 40U, 80U, 160U}) {
+    cases.push_back(caseOf("kd", objects, {{objects}}));
+  }
+  cases[0].status = Status::mismatch;
+  cases[1].conditions.repetitions = 2;  // interrupted
+  cases[4].status = Status::timeout;
+  OpenedResults results = opened(std::move(cases));
+  EXPECT_THAT(scalingOf(results), ElementsAre("kd/margin=0.5: 40 80"));
+}
+
+TEST(OpenedResults, TellCurvesOverNumbersOfBodiesApart) {
+  std::vector<CaseResult> cases;
+  for (const std::uint32_t objects : {10U, 20U}) {
+    cases.push_back(caseOf("kd", objects, {{objects}}));
+    CaseResult& threaded = cases.emplace_back(caseOf("kd", objects, {{objects}}));
+    threaded.threads = 3;
+    threaded.id.replace(threaded.id.find("/t2/"), 4, "/t3/");
+  }
+  std::vector<CaseResult> scenes = {cases[0], cases[2]};
+  OpenedResults threads = opened(std::move(cases));
+  EXPECT_THAT(scalingOf(threads),
+              ElementsAre("kd/t2/margin=0.5: 10 20", "kd/t3/margin=0.5: 10 20"));
+
+  for (std::size_t i = 0; i < 2; ++i) {
+    CaseResult& other = scenes.emplace_back(scenes[i]);
+    other.recording.scene.name = "Gravity";
+    other.id.replace(0, std::string("Brownian").size(), "Gravity");
+  }
+  OpenedResults two_scenes = opened(std::move(scenes));
+  EXPECT_THAT(scalingOf(two_scenes), ElementsAre("kd/margin=0.5 Brownian/Cubes/F3: 10 20",
+                                                 "kd/margin=0.5 Gravity/Cubes/F3: 10 20"));
 }
 
 TEST(OpenedResults, SayWhyACaseCannotBeOpened) {

@@ -1,18 +1,15 @@
-// The cases of a results file: their numbers, their times over the frames, and the way back to
-// each.
+// The cases of a results file: their numbers, their times as plots, and the way back to each.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "broadmark/render/plot.h"
 #include "child_program.h"
-#include "inspector/curve_colours.h"
+#include "inspector/case_plots.h"
 #include "inspector/panel.h"
 #include "inspector/two_parts.h"
 #include "words.h"
@@ -22,9 +19,8 @@
 namespace broadmark::panels::cases {
 namespace {
 
-constexpr float kTableShare = 0.56F;     // of the width; the rest is the plot's
-constexpr float kRoomForBoth = 760;      // units: narrower, it is either the one or the other
-constexpr std::size_t kMostCurves = 24;  // more could not be told apart
+constexpr float kTableShare = 0.52F;  // of the width; the rest is the plot's
+constexpr float kRoomForBoth = 760;   // units: narrower, it is either the one or the other
 
 using Row = OpenedResults::Row;
 
@@ -77,7 +73,7 @@ class CasesPanel final : public Panel {
     const TwoParts parts{
         .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
     drawControls(context, results, parts.both());
-    parts.draw([&] { drawTable(context, results); }, [&] { drawTimes(context, results); });
+    parts.draw([&] { drawTable(context, results); }, [&] { plots_.draw(context, results); });
   }
 
  private:
@@ -95,7 +91,7 @@ class CasesPanel final : public Panel {
     results.filter(searched_, only_wrong_);
     if (!both) {
       ImGui::SameLine();
-      ui.toggle("Plot", plot_alone_, "The times of the marked cases in place of the table");
+      ui.toggle("Plot", plot_alone_, "The plot in place of the table");
     }
     Ui::besideIfRoom(105 * ui.scale);
     drawReport(context, results);
@@ -153,7 +149,7 @@ class CasesPanel final : public Panel {
       return;
     }
     const auto columns = static_cast<int>(kCaseColumns.entries.size()) + 1;
-    if (!ImGui::BeginTable("cases", columns, kFlags)) return;
+    if (!ImGui::BeginTable("cases", columns, kFlags, {widthOfWholeColumns("cases", 3), 0})) return;
     ImGui::TableSetupScrollFreeze(2, 1);
     ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
     for (const auto& [column, name] : kCaseColumns.entries) {
@@ -211,7 +207,7 @@ class CasesPanel final : public Panel {
     for (const auto& [column, name] : kCaseColumns.entries) {
       ImGui::TableNextColumn();
       if (column == CaseColumn::algorithm) {
-        const std::optional<Rgb> curve = curveColourOf(ui, results, index);
+        const std::optional<Rgb> curve = plots_.colourOf(ui, results, index);
         drawOpener(context, row, curve ? curve : colourOf(ui, row, column), place == 0);
       } else {
         const std::optional<Rgb> rgb = colourOf(ui, row, column);
@@ -251,81 +247,10 @@ class CasesPanel final : public Panel {
     return {};
   }
 
-  /// The colour of its curve, if it has one.
-  std::optional<Rgb> curveColourOf(const Ui& ui, OpenedResults& results, std::size_t index) const {
-    const auto& curves = results.curves(phase());
-    const auto found = std::ranges::find(curves, index, &OpenedResults::Curve::row);
-    if (found == curves.end()) return {};
-    return curveColour(static_cast<int>(found - curves.begin()) + 1, ui.theme.dark);
-  }
-
-  [[nodiscard]] Phase phase() const { return kPhases.entries.at(phase_).value; }
-
-  void drawTimes(PanelContext& context, OpenedResults& results) {
-    Ui& ui = context.ui;
-    ui.combo("##phase", phase_, kPhases.names(), "Which time is plotted", 150 * ui.scale);
-    ImGui::SameLine();
-    ui.checkbox("logarithmic", logarithmic_);
-    const auto& curves = results.curves(phase());
-    if (curves.empty()) {
-      ui.faintParagraph("Mark cases in the table to see their times over the frames.");
-      return;
-    }
-    if (curves.size() > kMostCurves) {
-      ImGui::SameLine();
-      ui.faint(fmt::format("the first {} of {} marked", kMostCurves, curves.size()));
-    }
-    drawPlotOf(context, results,
-               {curves.begin(), curves.begin() + static_cast<std::ptrdiff_t>(
-                                                     std::min(kMostCurves, curves.size()))});
-  }
-
-  void drawPlotOf(PanelContext& context, const OpenedResults& results,
-                  std::span<const OpenedResults::Curve> curves) {
-    const Theme& theme = context.ui.theme;
-    const FootageRequest* open = context.session.playback.footage().get();
-    const bool is_open = open != nullptr && open->source == FootageSource::results;
-    std::vector<PlotCurve> plotted;
-    PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
-    const auto& recording = results.rows()[curves.front().row].recording;
-    const bool one_recording = std::ranges::all_of(curves, [&](const OpenedResults::Curve& curve) {
-      return results.rows()[curve.row].recording == recording;
-    });
-    std::uint32_t last = 1;
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-      const Row& row = results.rows()[curves[i].row];
-      plotted.push_back({.label = one_recording ? row.algorithm : row.result.id,
-                         .colour = curveColour(static_cast<int>(i) + 1, theme.dark),
-                         .values = &curves[i].seconds,
-                         .circled = nullptr});
-      wrong.frames.push_back(&curves[i].mismatches);
-      last = std::max(last, curves[i].seconds.size() - 1);
-    }
-    zoom_.follow(nullptr, last, 0);
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", plotted,
-                                     {.logarithmic = logarithmic_,
-                                      .unit = "s",
-                                      .first = zoom_.first(),
-                                      .last = zoom_.last(),
-                                      .playhead = is_open ? context.session.playback.frame() : 0,
-                                      .span = {},
-                                      .marks = {wrong}},
-                                     room.x, room.y);
-    context.ui.note("plot");
-    if (done.zoom != 0) zoom_.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) zoom_.move(done.moved);
-    if (done.clicked_frame && is_open) {
-      context.session.playback.goTo(std::llround(*done.clicked_frame));
-    }
-  }
-
   std::string searched_;
   bool only_wrong_ = false;
   bool plot_alone_ = false;
-  std::size_t phase_ = kPhases.entries.size() - 1;  ///< the last: total
-  bool logarithmic_ = true;
-  Timeline zoom_;
+  CasePlots plots_;
 };
 
 }  // namespace

@@ -10,12 +10,14 @@
 #include "duel_report.h"
 #include "inspector/histogram.h"
 #include "inspector/panel.h"
+#include "inspector/two_parts.h"
 #include "words.h"
 
 namespace broadmark::panels::duel {
 namespace {
 
 constexpr float kTableShare = 0.68F;  // of the width; the rest is the histogram's
+constexpr float kRoomForBoth = 560;   // units: narrower, it is either the one or the other
 
 class DuelPanel final : public Panel {
  public:
@@ -39,14 +41,14 @@ class DuelPanel final : public Panel {
     if (!report.result.ok()) return drawFailures(ui, report.result);
     if (report.result.rounds() == 0) return;
     if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
-    const float width = ImGui::GetContentRegionAvail().x;
-    ImGui::BeginChild("table", {width * kTableShare, 0});
-    drawTable(ui, report.result);
-    ImGui::EndChild();
-    ImGui::SameLine();
-    ImGui::BeginChild("histogram", {0, 0});
-    drawRatios(ui, report.result);
-    ImGui::EndChild();
+    const TwoParts parts{.share = kTableShare,
+                         .narrowest = kRoomForBoth * ui.scale,
+                         .second_alone = histogram_alone_};
+    if (!parts.both()) {
+      ui.toggle("Histogram", histogram_alone_,
+                "How many rounds had which ratio, in place of the table");
+    }
+    parts.draw([&] { drawTable(ui, report.result); }, [&] { drawRatios(ui, report.result); });
   }
 
  private:
@@ -72,6 +74,7 @@ class DuelPanel final : public Panel {
     ImGui::SameLine();
     ui.faint(fmt::format("{}: {} in {}", kTaskStates.nameOf(report.state),
                          counted(report.result.rounds(), "round"), waitingTime(report.seconds)));
+    ui.note("rounds");
   }
 
   static void drawFailures(Ui& ui, const DuelResult& result) {
@@ -86,7 +89,7 @@ class DuelPanel final : public Panel {
   void drawTable(Ui& ui, const DuelResult& result) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
-    if (!ImGui::BeginTable("ranking", 6, kFlags)) return;
+    if (!ImGui::BeginTable("ranking", 6, kFlags, {widthOfWholeColumns("ranking", 2), 0})) return;
     for (const char* name : {"", "algorithm", "median", "least", "ratio", "95 % interval"}) {
       ImGui::TableSetupColumn(name);
     }
@@ -135,6 +138,7 @@ class DuelPanel final : public Panel {
   }
 
   double most_seconds_ = 60;
+  bool histogram_alone_ = false;
   std::size_t shown_ = 1;  ///< whose ratios are in the histogram
 };
 

@@ -47,7 +47,7 @@ class ResultsPanel final : public Panel {
                                        ImGuiTableFlags_ScrollY;
     const std::vector<std::string> columns = columnNames();
     if (!ImGui::BeginTable("results", static_cast<int>(columns.size()), kFlags,
-                           {widthOfWholeColumns(columns, rows), 0})) {
+                           {widthOfWholeColumns("results", 2), 0})) {
       return;
     }
     ImGui::TableSetupScrollFreeze(1, 1);
@@ -106,28 +106,6 @@ class ResultsPanel final : public Panel {
       if (which != Phase::total) phase(which);
     }
     return row;
-  }
-
-  /// As many columns as are seen wholly: half a number would be a wrong one.
-  static float widthOfWholeColumns(const std::vector<std::string>& columns,
-                                   const std::vector<Row>& rows) {
-    const float room = ImGui::GetContentRegionAvail().x;
-    const auto textWidth = [](const std::string& text) {
-      return ImGui::CalcTextSize(text.c_str()).x;
-    };
-    float whole = 0;
-    for (std::size_t column = 0; column < columns.size(); ++column) {
-      float width = textWidth(columns[column]);
-      for (const Row& row : rows) {
-        width = std::max(width, textWidth(column == 0   ? row.name
-                                          : column == 1 ? row.status
-                                                        : row.cells[column - 2].text));
-      }
-      width += 2 * ImGui::GetStyle().CellPadding.x;
-      if (column > 1 && whole + width > room) break;
-      whole += width;
-    }
-    return std::min(whole, room);
   }
 
   static void drawLane(PanelContext& context, const LaneReport& lane, const Row& row) {

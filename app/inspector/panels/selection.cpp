@@ -66,6 +66,9 @@ class SelectionPanel final : public Panel {
     ui.fact("size", fmt::format("{:.4g} × {:.4g} × {:.4g}", box.max[0] - box.min[0],
                                 box.max[1] - box.min[1], box.max[2] - box.min[2]));
     ui.fact("overlaps", std::to_string(snapshot.overlaps[body]));
+    if (snapshot.structure && body < snapshot.structure->tests().size()) {
+      ui.fact("tests", std::to_string(snapshot.structure->tests()[body]));
+    }
     ui.heading("Overlaps with");
     ImGui::BeginChild("partners", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     std::size_t listed = 0;
@@ -99,10 +102,10 @@ class SelectionPanel final : public Panel {
     ImGui::BeginChild("bodies", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
-      const std::string label =
-          isEmpty((*snapshot.boxes)[bodies[i]])
-              ? fmt::format("{}    absent", bodies[i])
-              : fmt::format("{}    {} overlaps", bodies[i], snapshot.overlaps[bodies[i]]);
+      const std::string label = isEmpty((*snapshot.boxes)[bodies[i]])
+                                    ? fmt::format("{}    absent", bodies[i])
+                                    : fmt::format("{}    {}", bodies[i],
+                                                  counted(snapshot.overlaps[bodies[i]], "overlap"));
       if (ui.selectable(label.c_str(), false)) context.session.selection.select({bodies[i]});
     }
     if (bodies.size() > kListedBodies) ui.faint("…");

@@ -16,6 +16,7 @@
 #include "inspector/histogram.h"
 #include "inspector/panel.h"
 #include "inspector/span_statistics.h"
+#include "inspector/two_parts.h"
 #include "words.h"
 
 namespace broadmark::panels::timeline {
@@ -29,6 +30,7 @@ Rgb rgbOf(ImGuiCol_ which) {
 }
 
 constexpr float kPlotShare = 0.56F;  // of the width, beside a span's statistics
+constexpr float kRoomForBoth = 600;  // units: narrower, it is either the one or the other
 
 class TimelinePanel final : public Panel {
  public:
@@ -44,15 +46,19 @@ class TimelinePanel final : public Panel {
     }
     if (!context.progress.footage) return;
     drawControls(context);
-    ImVec2 room = ImGui::GetContentRegionAvail();
-    const bool beside = context.session.timeline.span() && !context.progress.lanes.empty();
-    if (beside) room.x *= kPlotShare;
-    act(context, drawCurves(context, room));
-    if (!beside) return;
-    ImGui::SameLine();
-    ImGui::BeginChild("span", {0, 0});
-    drawSpan(context);
-    ImGui::EndChild();
+    const auto curves = [&] { act(context, drawCurves(context)); };
+    if (!context.session.timeline.span() || context.progress.lanes.empty()) {
+      curves();
+      return;
+    }
+    const TwoParts parts{.share = kPlotShare,
+                         .narrowest = kRoomForBoth * context.ui.scale,
+                         .second_alone = span_alone_};
+    if (!parts.both()) {
+      Ui::besideIfRoom(50 * context.ui.scale);
+      context.ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
+    }
+    parts.draw(curves, [&] { drawSpan(context); });
   }
 
  private:
@@ -137,7 +143,10 @@ class TimelinePanel final : public Panel {
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
     const float height =
         ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(lanes.size()) + 1.8F);
-    if (!ImGui::BeginTable("statistics", 8, kFlags, {0, height})) return;
+    if (!ImGui::BeginTable("statistics", 8, kFlags,
+                           {widthOfWholeColumns("statistics", 1), height})) {
+      return;
+    }
     ImGui::TableSetupScrollFreeze(1, 1);
     for (const char* name :
          {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}) {
@@ -173,7 +182,7 @@ class TimelinePanel final : public Panel {
     return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
   }
 
-  PlotResult drawCurves(PanelContext& context, ImVec2 room) const {
+  PlotResult drawCurves(PanelContext& context) const {
     const RunProgress& progress = context.progress;
     const Theme& theme = context.ui.theme;
     const Timeline& timeline = context.session.timeline;
@@ -209,6 +218,7 @@ class TimelinePanel final : public Panel {
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
         .thin = shows_pairs_ ? &pairs : nullptr,
         .marks = {wrong, disturbed}};
+    const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotResult done = drawPlot("plot", curves, options, room.x, room.y);
     context.ui.note("plot");
     return done;
@@ -231,6 +241,7 @@ class TimelinePanel final : public Panel {
   bool logarithmic_ = true;
   bool shows_pairs_ = true;
   bool shows_bodies_ = true;
+  bool span_alone_ = false;
   std::set<int> hidden_;
   std::vector<SpanStatistics> statistics_;  ///< of the lanes
   FrameSpan summarised_;                    ///< of which span

@@ -21,7 +21,7 @@ class ViewPanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     ViewOptions& view = context.session.view;
-    drawColours(ui, view);
+    drawColours(context);
     ui.heading("Show");
     ui.checkbox("only what overlaps", view.hide_free, "Hides bodies that are in no pair (H)");
     ui.checkbox("lines between pairs", view.pair_lines,
@@ -56,7 +56,7 @@ class ViewPanel final : public Panel {
     Ui& ui = context.ui;
     BodyFilter& filter = context.session.view.filter;
     ui.heading("Show of the crowd");
-    const auto& legend = context.view.legend();
+    const auto& legend = context.view.content().legend();
     for (std::size_t i = 0; i < std::min<std::size_t>(legend.size(), 64); ++i) {
       showBit(ui, legend[i].label, filter.hidden_classes, i);
     }
@@ -65,7 +65,7 @@ class ViewPanel final : public Panel {
               "Bodies whose longest edge is shorter are hidden, in world units");
     ui.number("largest", filter.largest, 0, kLargestSize,
               "Bodies whose longest edge is longer are hidden, in world units; 0: none");
-    std::size_t axis = static_cast<std::size_t>(filter.clip_axis + 1);
+    std::size_t axis = static_cast<std::size_t>(filter.clip_axis) + 1;
     if (ui.combo("clip", axis, {"nothing", "along x", "along y", "along z"},
                  "Hides the bodies whose centres lie beyond a plane")) {
       filter.clip_axis = static_cast<int>(axis) - 1;
@@ -73,7 +73,9 @@ class ViewPanel final : public Panel {
     ImGui::BeginDisabled(filter.clip_axis < 0);
     int percent = static_cast<int>(std::lround(100 * filter.clip_at));
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
-    if (ui.slider("clip at", percent, 0, 100, "%.0f %%")) filter.clip_at = percent / 100.0;
+    if (ui.slider(fmt::format("clip at {} %###clip at", percent).c_str(), percent, 0, 100)) {
+      filter.clip_at = percent / 100.0;
+    }
     ui.checkbox("clip below", filter.clip_below, "Hides what lies below the plane, not above");
     ImGui::EndDisabled();
     ImGui::BeginDisabled(!filter.hides());
@@ -161,14 +163,21 @@ class ViewPanel final : public Panel {
     }
   }
 
-  static void drawColours(Ui& ui, ViewOptions& view) {
+  static void drawColours(PanelContext& context) {
+    Ui& ui = context.ui;
+    ViewOptions& view = context.session.view;
     const std::size_t before = view.colouring;
     std::vector<std::string> titles;
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
     view.colouring %= titles.size();
     ui.combo("colours", view.colouring, titles, "What the bodies' colours tell (C: the next)");
     if (view.colouring != before) view.filter.hidden_classes = 0;  // they are of the other colours
-    ui.faintParagraph(colourModes()[view.colouring].help);
+    ui.faintParagraph(view.colourMode().help);
+    const Snapshot* snapshot = context.progress.snapshot.get();
+    if (view.colourMode().of_tests && snapshot != nullptr &&
+        (!snapshot->structure || snapshot->structure->tests().empty())) {
+      ui.faintParagraph("The shown algorithm does not tell its tests of this frame.");
+    }
   }
 
   static void drawStructure(PanelContext& context) {
@@ -184,8 +193,9 @@ class ViewPanel final : public Panel {
         snapshot != nullptr && snapshot->structure ? deepestLevel(*snapshot->structure) : 0;
     if (deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
-      ui.slider("depth", view.structure_level, -1, deepest,
-                view.structure_level < 0 ? "all" : "%.0f");
+      const int level = view.structure_level;
+      ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
+                view.structure_level, -1, deepest);
     }
     ImGui::BeginDisabled(snapshot == nullptr || !snapshot->structure ||
                          !tellsPopulations(*snapshot->structure));

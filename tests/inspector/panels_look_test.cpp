@@ -1,0 +1,198 @@
+// What every panel looks like, in small and large windows and both themes, with something of all
+// that it can show.
+#include <gtest/gtest.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <utility>
+
+#include "broadmark/render/framebuffer.h"
+#include "inspector/helpers.h"
+#include "inspector/inspector.h"
+#include "support/pictures.h"
+#include "support/places.h"
+
+namespace broadmark::tests {
+namespace {
+
+using namespace std::chrono_literals;
+using scenes::SceneEditor;
+
+/// Panels are flat: what moves, or has another colour, is seen in fewer pixels than in a scene.
+constexpr double kMostOfPanel = 0.3;
+
+/// Runs its case as usual, but says that a frame took what a rule makes of its number, and longer
+/// where the algorithm's name is longer: times look the same whenever they are drawn.
+class RuledHost final : public CaseHost {
+ public:
+  explicit RuledHost(const Case& run)
+      : inner_(makeLocalHost(run, {})),
+        length_(static_cast<std::int64_t>(run.algorithm.id.size())) {}
+
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
+    frame_ = 0;
+    inner_->start(scene, first);
+    return 1'000'000;
+  }
+  FrameRun step(const Frame& frame) override {
+    FrameRun run = inner_->step(frame);
+    ++frame_;
+    run.times = {};
+    run.times[Phase::update_objects] = 3'000 * length_;
+    run.times[Phase::search_overlaps] =
+        (4'000 + frame_ * 7'919 % 5'000) * length_ + 100 * (frame_ * length_ % 13);
+    run.times[Phase::total] = run.times[Phase::update_objects] + run.times[Phase::search_overlaps];
+    return run;
+  }
+  void stop() override { inner_->stop(); }
+  PairDigest digest() override { return inner_->digest(); }
+  PairRuns answer() override { return inner_->answer(); }
+  PairEvents events() override { return inner_->events(); }
+  Counts counters() override { return inner_->counters(); }
+  Counts setup() override { return inner_->setup(); }
+  RecordedDrawing structure() override { return inner_->structure(); }
+  std::string validate() override { return inner_->validate(); }
+
+ private:
+  std::unique_ptr<CaseHost> inner_;
+  std::int64_t length_;
+  std::int64_t frame_ = 0;
+};
+
+/// Three cases, one of them wrong and one without any time.
+Results threeCases() {
+  Results results;
+  results.complete = true;
+  results.cases = {caseOf("sap", 1000, {{30'000, 45'000, 32'000}}),
+                   caseOf("kd", 1000, {{52'000, 47'000, 60'000}}), caseOf("bf", 1000, {})};
+  CaseResult& wrong = results.cases[1];
+  wrong.checked = true;
+  wrong.differences.resize(1);
+  wrong.differences[0].frame = 2;
+  results.cases[2].status = Status::timeout;
+  return results;
+}
+
+/// What other machines, or other days, show otherwise.
+constexpr const char* kVaries[] = {"Batch/threads", "Duel/rounds"};
+
+/// Also what stands beside it, up to `right`: it may be wider or narrower.
+void blank(Picture& picture, const WidgetPlace& place, float right) {
+  for (int y = static_cast<int>(place.min.y);
+       y < std::min(static_cast<int>(place.max.y), picture.height); ++y) {
+    const auto row = picture.rgba.begin() + std::ptrdiff_t{4} * y * picture.width;
+    std::fill(row + 4 * static_cast<int>(place.min.x), row + 4 * static_cast<int>(right),
+              std::uint8_t{0});
+  }
+}
+
+/// The part of a picture in a rectangle.
+Picture cropped(const Picture& whole, const ImRect& at) {
+  const auto left = static_cast<std::size_t>(at.Min.x);
+  const auto top = static_cast<std::size_t>(at.Min.y);
+  Picture part{.width = static_cast<int>(at.GetWidth()),
+               .height = static_cast<int>(at.GetHeight())};
+  const std::size_t row = 4 * static_cast<std::size_t>(part.width);
+  part.rgba.resize(row * static_cast<std::size_t>(part.height));
+  for (std::size_t y = 0; y < static_cast<std::size_t>(part.height); ++y) {
+    const std::size_t from = 4 * ((top + y) * static_cast<std::size_t>(whole.width) + left);
+    std::memcpy(&part.rgba[y * row], &whole.rgba[from], row);
+  }
+  return part;
+}
+
+using Size = std::pair<int, int>;
+
+class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
+ protected:
+  PanelsLook()
+      : context(makeOffscreenContext(GlSource::automatic)),
+        gl(*context),
+        inspector(
+            gl, algorithmsAndFaultyOnes(), {.dark = std::get<bool>(GetParam())}, 1,
+            [](const Case& run, const CancelQuery&) { return std::make_unique<RuledHost>(run); }),
+        session(inspector.session()) {}
+
+  /// Gives every panel something to show. Nothing is drawn meanwhile, which would disturb frames.
+  void prepare() {
+    session.document.start({});
+    for (const float x : {0.0F, 3.0F}) {
+      session.document.desk.paint_at = {x, 1, 0};
+      session.document.add([this] { return session.document.desk.stroke(); });
+    }
+    session.document.edit(&SceneEditor::selectAll);
+    settled(session);
+
+    session.chooseScene("brownian", "kinematic");
+    setParameters(*session.draft, {{"objects", "100"}, {"frames", "40"}});
+    session.simulate();
+    session.lanes.add("sap");
+    LaneEdit& parallel = session.lanes.add("bf-simd-mt");
+    parallel.isa = Isa::scalar;
+    parallel.threads = 2;
+    session.lanes.changed();
+    session.playback.goTo(40);
+    settled(session);
+    session.startDuel(20);
+    session.commit();
+    while (session.duel.running()) std::this_thread::sleep_for(1ms);
+
+    setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
+    session.lanes.changed();
+    settled(session);
+    session.showSecond(true);
+    session.timeline.select(5, 30);
+    session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
+    settled(session);
+    session.notices.wanted_panels.clear();
+  }
+
+  Picture pictureOf(const Panel& panel) {
+    const auto [width, height] = std::get<Size>(GetParam());
+    const Framebuffer target(gl, width, height, 1);
+    inspector.showPanel(panel.name());
+    // A tab comes to the front, and its tables learn how wide they are.
+    for (int i = 0; i < 4; ++i) {
+      inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
+    }
+    const std::string place(kPlaces.nameOf(panel.place()));
+    const ImRect at = ImGui::FindWindowByName(place.c_str())->Rect();
+    Picture whole = target.read();
+    for (const std::string name : kVaries) {
+      if (!name.starts_with(panel.name())) continue;
+      const WidgetPlace* const widget = inspector.ui().find(name);
+      if (widget != nullptr && widget->visible) blank(whole, *widget, at.Max.x);
+    }
+    return cropped(whole, at);
+  }
+
+  std::unique_ptr<OffscreenContext> context;
+  Gl gl;
+  Inspector inspector;
+  Session& session;
+  InputQueue input;
+};
+
+TEST_P(PanelsLook, AsTheyDid) {
+  prepare();
+  const auto& [size, dark] = GetParam();
+  for (const auto& panel : makePanels()) {
+    const std::string name = fmt::format("{}-{}x{}-{}.png", panel->name(), size.first, size.second,
+                                         dark ? "dark" : "light");
+    EXPECT_TRUE(looksLikeGolden(
+        pictureOf(*panel), places::source("tests/inspector/golden/panels/" + name), kMostOfPanel));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(SizesAndThemes, PanelsLook,
+                         testing::Combine(testing::Values(Size{1024, 700}, Size{1920, 1080}),
+                                          testing::Bool()));
+
+}  // namespace
+}  // namespace broadmark::tests
