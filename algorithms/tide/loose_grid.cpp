@@ -124,8 +124,9 @@ void LooseGrid::chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 
   for (const Aabb& box : boxes) {
     if (isEmpty(box)) continue;
     const Extent extent = extentOf(box);
-    ++bodies[levelOf(extent)];
-    reach(extent);
+    const std::uint32_t level = levelOf(extent);
+    ++bodies[level];
+    reach(extent, level);
   }
   Steps low{};
   Steps high{};
@@ -152,7 +153,7 @@ void LooseGrid::chooseCells(std::span<const Aabb> boxes, const std::array<Bulk, 
     }
     at.strides[0] = 1;
     for (const int axis : {1, 2}) {
-      at.strides[axis] = at.strides[axis - 1] * static_cast<std::uint32_t>(at.counts[axis - 1]);
+      at.strides[axis] = at.strides[axis - 1] * at.counts[axis - 1];
     }
     at.first_cell = cell_count_;
     cell_count_ += static_cast<std::uint32_t>(size());
@@ -176,7 +177,6 @@ void LooseGrid::putInto(std::span<const Aabb> boxes) {
     insert(bodies_[body].cell(), static_cast<std::uint32_t>(body), boundsOf(extent, extent));
   }
   frame_ = 1;
-  to_move_.assign(boxes.size() / 64 + 1, 0);
 }
 
 std::uint32_t LooseGrid::levelOf(const Extent& extent) {
@@ -187,37 +187,50 @@ std::uint32_t LooseGrid::levelOf(const Extent& extent) {
   return level;
 }
 
-inline std::uint32_t LooseGrid::wrapped(std::int32_t cell, std::int32_t first, std::int32_t count) {
-  const std::uint32_t from_first =
-      static_cast<std::uint32_t>(cell) - static_cast<std::uint32_t>(first);
-  if (from_first < static_cast<std::uint32_t>(count)) [[likely]]
+inline LooseGrid::Steps LooseGrid::wrapped(Steps cells, const Level& at) {
+  Steps from_first = cells - at.first;
+  if (isEveryAxis((from_first >= 0) & (from_first < at.counts))) [[likely]]
     return from_first;
-  const std::int64_t rest = (std::int64_t{cell} - first) % count;
-  return static_cast<std::uint32_t>(rest < 0 ? rest + count : rest);
+  for (int axis = 0; axis < 3; ++axis) {
+    from_first[axis] %= at.counts[axis];
+    if (from_first[axis] < 0) from_first[axis] += at.counts[axis];
+  }
+  return from_first;
 }
 
 inline LooseGrid::Steps LooseGrid::stepsOf(const std::array<float, 4>& corner) const {
-  const Corner steps = (cornerOf(corner) - cornerOf(low_)) * factor_;
+  // The fourth number of a body's box is a whole one. As a float it is below what is normal, with
+  // which processors take long to calculate.
+  constexpr WholeCorner kAxes = {-1, -1, -1, 0};
+  const auto on_axes = std::bit_cast<Corner>(std::bit_cast<WholeCorner>(corner) & kAxes);
+  const Corner steps = (on_axes - cornerOf(low_)) * factor_;
   return truncated(smaller(larger(steps, Corner{} - kLastStep), Corner{} + kLastStep));
 }
 
-std::uint32_t LooseGrid::cellOf(const Extent& extent) const {
-  const std::uint32_t level = levelOf(extent);
+std::uint32_t LooseGrid::cellOf(const Extent& extent, std::uint32_t level) const {
   const Level& at = levels_[level];
-  const Steps cells = extent.min >> shiftOf(level);
-  std::uint32_t cell = at.first_cell;
-  for (int axis = 0; axis < 3; ++axis) {
-    cell += wrapped(cells[axis], at.first[axis], at.counts[axis]) * at.strides[axis];
-  }
-  return cell;
+  const Steps cell = wrapped(extent.min >> shiftOf(level), at) * at.strides;
+  return at.first_cell + static_cast<std::uint32_t>(cell[0] + cell[1] + cell[2]);
 }
 
-/// The two bytes of an axis; what is lower or higher than they can tell counts as their limit.
-inline LooseGrid::Bounds LooseGrid::boundsOnAxis(int axis, std::int32_t low, std::int32_t high) {
-  const auto in_cell = [](std::int32_t step) {
-    return static_cast<Bounds>(std::clamp(step, 0, kLastInCell));
-  };
-  return (in_cell(high) | (kLastInCell - in_cell(low)) << 8) << 16 * axis;
+/// The bytes of all axes; what is lower or higher than they can tell counts as their limit.
+inline LooseGrid::Bounds LooseGrid::boundsOnAxes(Steps low, Steps high) {
+  const Steps from_last = kLastInCell - low;
+#if defined(__SSE2__)
+  // Bounds that lie beyond a narrower number become its limit.
+  const __m128i words =
+      _mm_packs_epi32(std::bit_cast<__m128i>(high), std::bit_cast<__m128i>(from_last));
+  const __m128i bytes =
+      _mm_min_epu8(_mm_packus_epi16(words, words), _mm_set1_epi8(static_cast<char>(kLastInCell)));
+  return std::bit_cast<std::array<Bounds, 2>>(bytes)[0] & 0x00FF'FFFF'00FF'FFFF;
+#else
+  Bounds bounds = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds |= static_cast<Bounds>(std::clamp(high[axis], 0, kLastInCell)) << 8 * axis;
+    bounds |= static_cast<Bounds>(std::clamp(from_last[axis], 0, kLastInCell)) << 8 * (axis + 4);
+  }
+  return bounds;
+#endif
 }
 
 /// In the cell of a body, which is part of the extent.
@@ -233,13 +246,10 @@ LooseGrid::Bounds LooseGrid::boundsOf(const Extent& extent, const Extent& body) 
       (from_first >= 0) & (from_first < at.counts) & (extent.min >> shiftOf(level) == cell);
   const Steps low = in_bulk & ((extent.min >> to_level) - begin);
   const Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kLastInCell;
-  Bounds bounds = kNobody | kSomebody;
-  for (int axis = 0; axis < 3; ++axis) bounds |= boundsOnAxis(axis, low[axis], high[axis]);
-  return bounds;
+  return kNobody | kSomebody | boundsOnAxes(low, high);
 }
 
-void LooseGrid::reach(const Extent& extent) {
-  const std::uint32_t level = levelOf(extent);
+void LooseGrid::reach(const Extent& extent, std::uint32_t level) {
   used_levels_ |= 1U << level;
   levels_[level].reach = larger(levels_[level].reach, extent.edges());
 }
@@ -255,12 +265,14 @@ std::uint32_t LooseGrid::newLine() {
   return line;
 }
 
-/// Where a body lies that is in the cell.
+/// Where a body lies that is in the cell. Nobody could predict the place, so all are looked at.
 LooseGrid::Place LooseGrid::find(std::uint32_t cell, std::uint32_t body) {
   for (Line* line = &lines_[cell];; line = &lines_[line->next]) {
+    unsigned found = 0;
     for (std::uint32_t place = 0; place < Line::kPlaces; ++place) {
-      if (line->bodies[place] == body && line->bounds[place] != kNobody) return {line, place};
+      found |= unsigned{line->bodies[place] == body} << place;
     }
+    if (found != 0) return {line, static_cast<std::uint32_t>(std::countr_zero(found))};
   }
 }
 
@@ -284,6 +296,7 @@ void LooseGrid::remove(std::uint32_t cell, std::uint32_t body) {
   hole.line->bodies[hole.place] = own.bodies[last];
   hole.line->bounds[hole.place] = own.bounds[last];
   own.bounds[last] = kNobody;
+  own.bodies[last] = kNowhere;
   if (last == 0 && own.next != kNowhere) {
     free_lines_.push_back(own.next);
     own = lines_[own.next];
@@ -299,16 +312,14 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
     }
     const std::uint32_t body = bodies[i];
     const Aabb& box = boxes[body];
-    const bool was = bodies_[body].cell() != kNowhere;
-    const bool is = !isEmpty(box);
     std::uint32_t cell = kNowhere;
-    if (is) {
+    if (!isEmpty(box)) {
       const Extent extent = extentOf(box);
-      cell = cellOf(extent);
-      reach(extent);
+      const std::uint32_t level = levelOf(extent);
+      cell = cellOf(extent, level);
+      reach(extent, level);
     }
     bodies_[body].move(box, cell, frame_);
-    if (was || is) to_move_[body / 64] |= std::uint64_t{1} << body % 64;
   }
 }
 
@@ -335,9 +346,9 @@ void LooseGrid::prepare(std::uint32_t index) {
   // Around both places at once, unless it has moved far.
   const Steps far = 1 << kCellBits | now.edges();
   const auto is_near = [&](Steps from, Steps to) {
-    return isEveryAxis((to - from <= far) & (from - to <= far));
+    return (to - from <= far) & (from - to <= far);
   };
-  const bool near = is_near(before.min, now.min) && is_near(before.max, now.max);
+  const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
   const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
   // In a cell that it does not leave it is found at both places.
   const Extent& found = body.cell() == body.cellBefore() ? both : now;
@@ -350,65 +361,92 @@ void LooseGrid::prepare(std::uint32_t index) {
 /// Adds looks into the cells where somebody may overlap the extent.
 void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, unsigned wanted) {
   LargeArray<Look>& looks = next_batch_.looks;
+  const auto search = static_cast<std::uint32_t>(next_batch_.searches.size());
+  next_batch_.searches.push_back({body, wanted});
   for (std::uint32_t levels = used_levels_; levels != 0; levels &= levels - 1) {
     const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
-    lookAlongAxes(level, extent);
-    const auto& [columns, rows, slices] = looks_on_axes_;
-    std::size_t look = looks.size();
-    looks.resize(look + columns.size() * rows.size() * slices.size());
-    for (const LookOnAxis& slice : slices) {
-      for (const LookOnAxis& row : rows) {
-        const std::uint32_t first = levels_[level].first_cell + slice.cell + row.cell;
-        const Bounds least = kSomebody | slice.least | row.least;
-        for (const LookOnAxis& column : columns) {
-          prefetch(&lines_[first + column.cell]);
-          looks[look++] = {least | column.least, first + column.cell};
+    const Level& at = levels_[level];
+    const Steps counts = lookAlongAxes(at, shiftOf(level), extent);
+    const LookOnAxes* const on_axes = looks_on_axes_.data();
+    const std::size_t end = looks.size();
+    looks.resize(end + static_cast<std::size_t>(counts[0]) * counts[1] * counts[2]);
+    Look* look = looks.data() + end;
+    for (std::int32_t z = 0; z < counts[2]; ++z) {
+      for (std::int32_t y = 0; y < counts[1]; ++y) {
+        const std::uint32_t first =
+            at.first_cell + static_cast<std::uint32_t>(on_axes[z].cell[2] + on_axes[y].cell[1]);
+        const Bounds least = kSomebody | ofAxis(2, on_axes[z].least) | ofAxis(1, on_axes[y].least);
+        for (std::int32_t x = 0; x < counts[0]; ++x) {
+          const std::uint32_t cell = first + static_cast<std::uint32_t>(on_axes[x].cell[0]);
+          prefetch(&lines_[cell]);
+          *look++ = {least | ofAxis(0, on_axes[x].least), cell, search};
         }
       }
     }
   }
-  next_batch_.searches.push_back({body, wanted, looks.size(), 0});
 }
 
 /// Finds the cells on each axis where somebody may overlap the extent, and what bounds must reach
-/// there.
-void LooseGrid::lookAlongAxes(std::uint32_t level, const Extent& extent) {
+/// there. Returns how many these are.
+LooseGrid::Steps LooseGrid::lookAlongAxes(const Level& at, int shift, const Extent& extent) {
   constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
-  const Level& at = levels_[level];
-  const Steps first = (extent.min - at.reach) >> shiftOf(level);
-  const Steps last = extent.max >> shiftOf(level);
-  const int to_level = shiftOf(level) - kCellBits;
+  const Steps first = (extent.min - at.reach) >> shift;
+  const Steps last = extent.max >> shift;
+  const int to_level = shift - kCellBits;
   const Steps begin = first << kCellBits;
   // Beyond the bulk bounds tell nothing.
   const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
-  const Steps low = in_bulk & ((extent.min >> to_level) - begin);
-  const Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff;
+  Steps low = in_bulk & ((extent.min >> to_level) - begin);
+  Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff;
+  Steps cell = wrapped(first, at);
   // Where that is all there are, each once.
   const Steps counts = smaller(last - first + 1, at.counts);
-  for (int axis = 0; axis < 3; ++axis) {
-    LargeArray<LookOnAxis>& looks = looks_on_axes_[axis];
-    looks.resize(static_cast<std::size_t>(counts[axis]));
-    const auto end = static_cast<std::uint32_t>(at.counts[axis]);
-    std::uint32_t cell = wrapped(first[axis], at.first[axis], at.counts[axis]);
-    std::int32_t before = 0;  // from the beginning of the first cell to that of this one
-    for (LookOnAxis& look : looks) {
-      look = {boundsOnAxis(axis, high[axis] - before, low[axis] - before), cell * at.strides[axis]};
-      before += 1 << kCellBits;
-      cell = cell + 1 == end ? 0 : cell + 1;
-    }
+  looks_on_axes_.resize(static_cast<std::size_t>(std::max({counts[0], counts[1], counts[2]})));
+  for (LookOnAxes& look : looks_on_axes_) {
+    look = {cell * at.strides, boundsOnAxes(high, low)};
+    low -= 1 << kCellBits;
+    high -= 1 << kCellBits;
+    cell += 1;
+    cell &= cell < at.counts;
   }
+  return counts;
 }
 
-/// Lists who is there and reaches what was wanted, and sends for them.
-void LooseGrid::lookInto(const Look& look) {
-  for (const Line* line = &lines_[look.cell];; line = &lines_[line->next]) {
-    for (std::uint32_t place = 0; place < Line::kPlaces; ++place) {
-      if (!reaches(line->bounds[place], look.least)) continue;
-      prefetch(&bodies_[line->bodies[place]]);
-      candidates_.push_back({line->bodies[place], look.cell});
+template <class Visit>
+void LooseGrid::Line::forEachThatReaches(Bounds least, Visit visit) const {
+#if defined(__SSE2__)
+  // A bit for each highest bit of a byte: one branch for all, as mostly there is nobody.
+  const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(least));
+  const auto* const pairs = reinterpret_cast<const __m128i*>(bounds.data());
+  const auto highest_bits = [&](int pair) {
+    const __m128i rest = _mm_sub_epi8(_mm_load_si128(pairs + pair), each);
+    return std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(rest))} << 16 * pair;
+  };
+  // Where seven bits are set, adding 1 sets the eighth.
+  const std::uint64_t seven =
+      (highest_bits(0) | highest_bits(1) | highest_bits(2)) & 0x7F'7F7F'7F7F;
+  std::uint64_t all = (seven + 0x01'0101'0101) & 0x80'8080'8080;
+  for (; all != 0; all &= all - 1) visit(std::countr_zero(all) / 8);
+#else
+  for (std::uint32_t place = 0; place < kPlaces; ++place) {
+    if (reaches(bounds[place], least)) visit(place);
+  }
+#endif
+}
+
+/// Lists who else is there, in the cells of the batch, and reaches what was wanted.
+void LooseGrid::lookIntoCells() {
+  candidates_.clear();
+  for (const Look& look : batch_.looks) {
+    const std::uint32_t body = batch_.searches[look.search].body;
+    for (const Line* line = &lines_[look.cell];; line = &lines_[line->next]) {
+      line->forEachThatReaches(look.least, [&](int place) {
+        const std::uint32_t other = line->bodies[place];
+        if (other != body) candidates_.push_back({other, look.cell, look.search});
+      });
+      ++work_.lines;
+      if (line->next == kNowhere) break;
     }
-    ++work_.lines;
-    if (line->next == kNowhere) break;
   }
 }
 
@@ -456,7 +494,6 @@ std::string LooseGrid::validate() const {
   std::size_t present = 0;
   for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
     const Body& of = bodies_[body];
-    if (isToMove(body)) return fmt::format("body {} has not moved", body);
     if (isEmpty(of.box)) continue;
     ++present;
     const Extent extent = extentOf(of.box);

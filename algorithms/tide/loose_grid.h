@@ -57,7 +57,7 @@ class LooseGrid {
   /// Chooses cells for these boxes, one per body, and puts the bodies into them. O(n).
   void build(std::span<const Aabb> boxes);
 
-  /// Takes over where these bodies are now, each once; `boxes` has one for each body.
+  /// Takes over where these bodies are now, ascending; `boxes` has one for each body.
   void addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
   /// Moves them to other cells, and calls began(a, b) and ended(a, b) for every pair that begins or
@@ -95,14 +95,14 @@ class LooseGrid {
     [[nodiscard]] Steps edges() const { return max - min; }
   };
 
-  /// Of a box in a cell: on each axis a byte for its upper bound, counted from the cell's
-  /// beginning, and one for its lower bound, counted down from kLastInCell; a seventh one is 1. All
-  /// are at most kLastInCell, and the bit above that is set. Of a box that is looked for: what
-  /// these must reach for the two to overlap, without that bit.
+  /// Of a box in a cell: a byte for its upper bound on each axis, counted from the cell's
+  /// beginning, one that is 1, and on each axis a byte for its lower bound, counted down from
+  /// kLastInCell. All are at most kLastInCell, and the bit above that is set. Of a box that is
+  /// looked for: what these must reach for the two to overlap, without that bit.
   using Bounds = std::uint64_t;
   static constexpr std::int32_t kLastInCell = 127;  ///< a loose cell is as long as two
   static constexpr Bounds kNobody = 0x0080'8080'8080'8080;
-  static constexpr Bounds kSomebody = Bounds{1} << 48;
+  static constexpr Bounds kSomebody = Bounds{1} << 24;
 
   /// A byte that is too small takes its highest bit away.
   static bool reaches(Bounds bounds, Bounds least) {
@@ -113,12 +113,15 @@ class LooseGrid {
   struct alignas(64) Line {
     static constexpr std::uint32_t kPlaces = 5;
     std::array<Bounds, kPlaces> bounds{kNobody, kNobody, kNobody, kNobody, kNobody};
-    std::array<std::uint32_t, kPlaces> bodies{};
+    std::array<std::uint32_t, kPlaces> bodies{kNowhere, kNowhere, kNowhere, kNowhere, kNowhere};
     std::uint32_t next = kNowhere;
 
     [[nodiscard]] std::uint32_t count() const {
       return static_cast<std::uint32_t>(std::ranges::find(bounds, kNobody) - bounds.begin());
     }
+    /// Calls visit(place) where the bounds reach these.
+    template <class Visit>
+    void forEachThatReaches(Bounds least, Visit visit) const;
   };
   struct Place {
     Line* line;
@@ -146,10 +149,10 @@ class LooseGrid {
   };
 
   struct Level {
-    Steps first{};                           ///< the cell at which the bulk begins
-    Steps counts{};                          ///< cells
-    Steps reach{};                           ///< the longest edges of bodies there were, in steps
-    std::array<std::uint32_t, 3> strides{};  ///< from one cell to the next
+    Steps first{};    ///< the cell at which the bulk begins
+    Steps counts{};   ///< cells
+    Steps reach{};    ///< the longest edges of bodies there were, in steps
+    Steps strides{};  ///< from one cell to the next
     std::uint32_t first_cell = 0;
   };
 
@@ -164,19 +167,18 @@ class LooseGrid {
   /// Whose overlap with a body may change.
   struct Search {
     std::uint32_t body;
-    unsigned wanted;             ///< kBeginnings, kEnds or both
-    std::size_t looks_end;       ///< where to look is in Batch::looks, up to here
-    std::size_t candidates_end;  ///< who was found is in candidates_, up to here
+    unsigned wanted;  ///< kBeginnings, kEnds or both
   };
   /// Into a cell.
   struct Look {
     Bounds least;
     std::uint32_t cell;
+    std::uint32_t search;  ///< of the batch
   };
-  /// The part of one axis in Look; cells are counted from those at the level's beginning.
-  struct LookOnAxis {
+  /// The parts of the axes in Look; cells are counted from those at the level's beginning.
+  struct LookOnAxes {
+    Steps cell;
     Bounds least;
-    std::uint32_t cell;
   };
   /// What is to be done for a few moves.
   struct Batch {
@@ -193,6 +195,7 @@ class LooseGrid {
   struct Candidate {
     std::uint32_t body;
     std::uint32_t cell;
+    std::uint32_t search;
   };
   /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
   struct Left {
@@ -200,27 +203,31 @@ class LooseGrid {
     std::uint32_t cell;
   };
 
-  static bool isEveryAxis(Steps condition) {
-    return (condition[0] & condition[1] & condition[2]) != 0;
+  static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
+    return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
   }
   static int shiftOf(std::uint32_t level) {
     return kCellBits + kLevelBits * static_cast<int>(level);
   }
-  static std::uint32_t wrapped(std::int32_t cell, std::int32_t first, std::int32_t count);
-  static Bounds boundsOnAxis(int axis, std::int32_t low, std::int32_t high);
+  /// Counted from the first cell on each axis; those beyond the last ones begin anew.
+  static Steps wrapped(Steps cells, const Level& at);
+  static Bounds boundsOnAxes(Steps low, Steps high);
+  static Bounds ofAxis(int axis, Bounds bounds) { return bounds & 0xFF'0000'00FF << 8 * axis; }
 
   [[nodiscard]] Steps stepsOf(const std::array<float, 4>& corner) const;
   [[nodiscard]] Extent extentOf(const Aabb& box) const {
     return {stepsOf(box.min), stepsOf(box.max)};
   }
   static std::uint32_t levelOf(const Extent& extent);
-  [[nodiscard]] std::uint32_t cellOf(const Extent& extent) const;
+  [[nodiscard]] std::uint32_t cellOf(const Extent& extent, std::uint32_t level) const;
   /// kNowhere if the box is empty.
   [[nodiscard]] std::uint32_t cellOf(const Aabb& box) const {
-    return isEmpty(box) ? kNowhere : cellOf(extentOf(box));
+    if (isEmpty(box)) return kNowhere;
+    const Extent extent = extentOf(box);
+    return cellOf(extent, levelOf(extent));
   }
   [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& body) const;
-  void reach(const Extent& extent);
+  void reach(const Extent& extent, std::uint32_t level);
 
   void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
                    const std::array<Bulk, 3>& bulk);
@@ -235,12 +242,8 @@ class LooseGrid {
   void makeMove(const Step& step);
   void prepare(std::uint32_t body);
   void lookAround(std::uint32_t body, const Extent& extent, unsigned wanted);
-  void lookAlongAxes(std::uint32_t level, const Extent& extent);
-  void lookInto(const Look& look);
-  /// Whether it moves in this frame, and search() has yet to come to it.
-  [[nodiscard]] bool isToMove(std::uint32_t body) const {
-    return (to_move_[body / 64] >> body % 64 & 1) != 0;
-  }
+  Steps lookAlongAxes(const Level& at, int shift, const Extent& extent);
+  void lookIntoCells();
   template <class Began, class Ended>
   void consider(const Search& search, const Candidate& candidate, Began& began, Ended& ended);
 
@@ -252,11 +255,10 @@ class LooseGrid {
   LargeArray<Line> lines_;                 ///< of the cells, then those behind them
   std::vector<std::uint32_t> free_lines_;  ///< of these, nobody's
   LargeArray<Body> bodies_;
-  std::vector<std::uint32_t> moves_;    ///< the bodies of this frame's moves
-  std::vector<std::uint64_t> to_move_;  ///< a bit for each body
+  std::vector<std::uint32_t> moves_;  ///< the bodies of this frame's moves, ascending
   Batch batch_;
   Batch next_batch_;
-  std::array<LargeArray<LookOnAxis>, 3> looks_on_axes_;
+  LargeArray<LookOnAxes> looks_on_axes_;
   std::vector<Candidate> candidates_;
   std::vector<Left> left_;
   std::uint32_t frame_ = 1;
@@ -284,32 +286,24 @@ void LooseGrid::search(Began began, Ended ended) {
     std::swap(batch_, next_batch_);
     prepare_from(first + kBatch);
     for (const Step& step : batch_.steps) makeMove(step);
-    candidates_.clear();
-    std::size_t look = 0;
-    for (Search& search : batch_.searches) {
-      for (; look < search.looks_end; ++look) lookInto(batch_.looks[look]);
-      search.candidates_end = candidates_.size();
-    }
-    std::size_t candidate = 0;
-    for (const Search& search : batch_.searches) {
-      to_move_[search.body / 64] &= ~(std::uint64_t{1} << search.body % 64);
-      for (; candidate < search.candidates_end; ++candidate) {
-        consider(search, candidates_[candidate], began, ended);
-      }
+    lookIntoCells();
+    for (const Candidate& candidate : candidates_) prefetch(&bodies_[candidate.body]);
+    for (const Candidate& candidate : candidates_) {
+      consider(batch_.searches[candidate.search], candidate, began, ended);
     }
   }
 }
 
-/// Two bodies that both move are a pair of the one that search() comes to last.
+/// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
 template <class Began, class Ended>
 void LooseGrid::consider(const Search& search, const Candidate& candidate, Began& began,
                          Ended& ended) {
-  if (candidate.body == search.body || isToMove(candidate.body)) return;
   const Body& body = bodies_[search.body];
   const Body& other = bodies_[candidate.body];
   const bool moved = other.frame() == frame_;
-  const bool was = overlaps(body.before, moved ? other.before : other.box);
-  const bool is = overlaps(body.box, other.box);
+  if (moved && candidate.body > search.body) return;
+  const bool was = overlapOnAxes(body.before, moved ? other.before : other.box);
+  const bool is = overlapOnAxes(body.box, other.box);
   ++work_.tests;
   if (was == is) return;
   unsigned wanted = search.wanted;
