@@ -171,13 +171,7 @@ void Tide::searchOverlaps() {
     if (quiet_frames_ == kQuietFrames && !reports_events_) takePairs();
     return;
   }
-  grid_->search(
-      [this](std::uint32_t a, std::uint32_t b) {
-        if (filter_.wanted(a, b)) began_.add(a, b);
-      },
-      [this](std::uint32_t a, std::uint32_t b) {
-        if (filter_.wanted(a, b)) ended_.add(a, b);
-      });
+  grid_->search(filter_, began_, ended_);
   grid_->settle();
   began_run_ = began_.run();
   ended_run_ = ended_.run();

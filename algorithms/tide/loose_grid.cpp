@@ -323,24 +323,44 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
   }
 }
 
-void LooseGrid::makeMove(const Step& step) {
-  const Body& body = bodies_[step.body];
-  if (body.cell() == body.cellBefore()) {
-    const Place place = find(body.cell(), step.body);
-    place.line->bounds[place.place] = step.bounds;
-    return;
+/// Each batch takes one step after the other, in turns with those behind it: so what a step needs
+/// comes from memory meanwhile.
+void LooseGrid::search(const CollisionFilter& filter, PairBuffer& began, PairBuffer& ended) {
+  const std::size_t batches = (moves_.size() + Batch::kMoves - 1) / Batch::kMoves;
+  const auto under_way = [&](std::size_t batch) {
+    return batch < batches ? &under_way_[batch % kSteps] : nullptr;
+  };
+  for (std::size_t now = 0; now < batches + kSteps - 1; ++now) {
+    if (Batch* const batch = under_way(now)) takeMoves(now * Batch::kMoves, *batch);
+    if (Batch* const batch = under_way(now - 1)) prepare(*batch);
+    if (Batch* const batch = under_way(now - 2)) makeMoves(*batch);
+    // Not in the turn before: to read a line of which a part was just written takes long.
+    if (Batch* const batch = under_way(now - 3)) lookIntoCells(*batch);
+    if (Batch* const batch = under_way(now - 4)) tellChanges(*batch, filter, began, ended);
   }
-  ++work_.cell_changes;
-  if (body.cellBefore() != kNowhere) left_.push_back({step.body, body.cellBefore()});
-  if (body.cell() != kNowhere) insert(body.cell(), step.body, step.bounds);
 }
 
-/// Adds to the next batch what is to be done for the body.
-void LooseGrid::prepare(std::uint32_t index) {
+/// The moves from the given one on.
+void LooseGrid::takeMoves(std::size_t first, Batch& batch) {
+  const std::span<const std::uint32_t> moves = moves_;
+  batch.moves = moves.subspan(first, std::min(Batch::kMoves, moves.size() - first));
+  for (const std::uint32_t body : batch.moves) prefetch(&bodies_[body]);
+}
+
+/// Finds out what is to be done.
+void LooseGrid::prepare(Batch& batch) {
+  batch.looks.resize(0);
+  for (std::size_t i = 0; i < batch.moves.size(); ++i) {
+    batch.bounds[i] = prepareMove(batch.moves[i], batch.looks);
+  }
+}
+
+/// Adds where to look for whose overlap with a body may change; returns what its bounds become.
+LooseGrid::Bounds LooseGrid::prepareMove(std::uint32_t index, LargeArray<Look>& looks) {
   const Body& body = bodies_[index];
   const bool was = body.cellBefore() != kNowhere;
   const bool is = body.cell() != kNowhere;
-  if (!was && !is) return;
+  if (!was && !is) return kNobody;
   const Extent before = extentOf(body.before);
   const Extent now = extentOf(body.box);
   // Around both places at once, unless it has moved far.
@@ -352,17 +372,18 @@ void LooseGrid::prepare(std::uint32_t index) {
   const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
   // In a cell that it does not leave it is found at both places.
   const Extent& found = body.cell() == body.cellBefore() ? both : now;
-  next_batch_.steps.push_back({index, boundsOf(found, now)});
-  if (near) return lookAround(index, both, kBeginnings | kEnds);
-  if (was) lookAround(index, before, kEnds);
-  if (is) lookAround(index, now, kBeginnings);
+  if (near) {
+    lookAround(index, both, kBeginnings | kEnds, looks);
+  } else {
+    if (was) lookAround(index, before, kEnds, looks);
+    if (is) lookAround(index, now, kBeginnings, looks);
+  }
+  return boundsOf(found, now);
 }
 
 /// Adds looks into the cells where somebody may overlap the extent.
-void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, unsigned wanted) {
-  LargeArray<Look>& looks = next_batch_.looks;
-  const auto search = static_cast<std::uint32_t>(next_batch_.searches.size());
-  next_batch_.searches.push_back({body, wanted});
+void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, std::uint32_t wanted,
+                           LargeArray<Look>& looks) {
   for (std::uint32_t levels = used_levels_; levels != 0; levels &= levels - 1) {
     const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
     const Level& at = levels_[level];
@@ -379,7 +400,7 @@ void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, unsigned wa
         for (std::int32_t x = 0; x < counts[0]; ++x) {
           const std::uint32_t cell = first + static_cast<std::uint32_t>(on_axes[x].cell[0]);
           prefetch(&lines_[cell]);
-          *look++ = {least | ofAxis(0, on_axes[x].least), cell, search};
+          *look++ = {least | ofAxis(0, on_axes[x].least), cell, body, wanted};
         }
       }
     }
@@ -434,19 +455,64 @@ void LooseGrid::Line::forEachThatReaches(Bounds least, Visit visit) const {
 #endif
 }
 
-/// Lists who else is there, in the cells of the batch, and reaches what was wanted.
-void LooseGrid::lookIntoCells() {
-  candidates_.clear();
-  for (const Look& look : batch_.looks) {
-    const std::uint32_t body = batch_.searches[look.search].body;
+/// Puts bodies into their cells.
+void LooseGrid::makeMoves(const Batch& batch) {
+  for (std::size_t i = 0; i < batch.moves.size(); ++i) {
+    const std::uint32_t index = batch.moves[i];
+    const Body& body = bodies_[index];
+    if (body.cell() == body.cellBefore()) {
+      if (body.cell() == kNowhere) continue;
+      const Place place = find(body.cell(), index);
+      place.line->bounds[place.place] = batch.bounds[i];
+      continue;
+    }
+    ++work_.cell_changes;
+    if (body.cellBefore() != kNowhere) left_.push_back({index, body.cellBefore()});
+    if (body.cell() != kNowhere) insert(body.cell(), index, batch.bounds[i]);
+  }
+}
+
+/// Lists who else is there, in these cells, and reaches what was wanted.
+void LooseGrid::lookIntoCells(Batch& batch) {
+  batch.candidates.clear();
+  for (const Look& look : batch.looks) {
     for (const Line* line = &lines_[look.cell];; line = &lines_[line->next]) {
       line->forEachThatReaches(look.least, [&](int place) {
         const std::uint32_t other = line->bodies[place];
-        if (other != body) candidates_.push_back({other, look.cell, look.search});
+        if (other == look.body) return;
+        prefetch(&bodies_[other]);
+        batch.candidates.push_back({other, look.cell, look.body, look.wanted});
       });
       ++work_.lines;
       if (line->next == kNowhere) break;
     }
+  }
+}
+
+/// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
+std::uint32_t LooseGrid::change(const Candidate& candidate) {
+  const Body& body = bodies_[candidate.body];
+  const Body& other = bodies_[candidate.other];
+  const bool moved = other.frame() == frame_;
+  if (moved && candidate.other > candidate.body) return 0;
+  const bool was = overlapOnAxes(body.before, moved ? other.before : other.box);
+  const bool is = overlapOnAxes(body.box, other.box);
+  ++work_.tests;
+  if (was == is) return 0;
+  std::uint32_t wanted = candidate.wanted;
+  // A cell that it left tells of ends only, one into which it came of beginnings only.
+  if (moved && other.cellBefore() != other.cell()) {
+    wanted &= candidate.cell == other.cell() ? kBeginnings : kEnds;
+  }
+  return wanted & (is ? kBeginnings : kEnds);
+}
+
+void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
+                            PairBuffer& ended) {
+  for (const Candidate& candidate : batch.candidates) {
+    const std::uint32_t changed = change(candidate);
+    if (changed == 0 || !filter.wanted(candidate.body, candidate.other)) continue;
+    (changed == kBeginnings ? began : ended).add(candidate.body, candidate.other);
   }
 }
 

@@ -6,7 +6,7 @@
 // whose cells are no shorter than it is. So small and large bodies don't get in each other's way.
 //
 // What a move costs is waiting for memory, so a cell is one cache line: of five bodies it has the
-// numbers and the bounds, a byte each, which three instructions test together. Their boxes are in
+// numbers and the bounds, a byte each, which are tested together. Their boxes are in
 // an array by body, a line each, and looked at for the few that pass. A crowded cell has full lines
 // behind its own.
 //
@@ -31,8 +31,10 @@
 #include <vector>
 
 #include "broadmark/aabb.h"
+#include "broadmark/collision_filter.h"
 #include "broadmark/debug_draw.h"
 #include "broadmark/large_array.h"
+#include "broadmark/pair.h"
 #include "corner.h"
 #include "prefetch.h"
 #include "sample.h"
@@ -60,10 +62,8 @@ class LooseGrid {
   /// Takes over where these bodies are now, ascending; `boxes` has one for each body.
   void addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
-  /// Moves them to other cells, and calls began(a, b) and ended(a, b) for every pair that begins or
-  /// ends to overlap, once.
-  template <class Began, class Ended>
-  void search(Began began, Ended ended);
+  /// Moves them to other cells, and adds the wanted pairs that begin or end to overlap, once each.
+  void search(const CollisionFilter& filter, PairBuffer& began, PairBuffer& ended);
 
   /// Ends the frame.
   void settle();
@@ -156,47 +156,38 @@ class LooseGrid {
     std::uint32_t first_cell = 0;
   };
 
-  static constexpr unsigned kBeginnings = 1;
-  static constexpr unsigned kEnds = 2;
+  static constexpr std::uint32_t kBeginnings = 1;
+  static constexpr std::uint32_t kEnds = 2;
 
-  /// A body that moves, and what its bounds become.
-  struct Step {
-    std::uint32_t body;
-    Bounds bounds;
-  };
-  /// Whose overlap with a body may change.
-  struct Search {
-    std::uint32_t body;
-    unsigned wanted;  ///< kBeginnings, kEnds or both
-  };
-  /// Into a cell.
-  struct Look {
-    Bounds least;
-    std::uint32_t cell;
-    std::uint32_t search;  ///< of the batch
-  };
   /// The parts of the axes in Look; cells are counted from those at the level's beginning.
   struct LookOnAxes {
     Steps cell;
     Bounds least;
   };
-  /// What is to be done for a few moves.
-  struct Batch {
-    std::vector<Step> steps;
-    std::vector<Search> searches;
-    LargeArray<Look> looks;
-    void clear() {
-      steps.clear();
-      searches.clear();
-      looks.resize(0);
-    }
-  };
-  /// Somebody who may overlap a body that moves.
-  struct Candidate {
-    std::uint32_t body;
+  /// Into a cell, for those whose overlap with a body may change.
+  struct Look {
+    Bounds least;
     std::uint32_t cell;
-    std::uint32_t search;
+    std::uint32_t body;
+    std::uint32_t wanted;  ///< kBeginnings, kEnds or both
   };
+  /// Somebody, found in a cell, who may overlap a body.
+  struct Candidate {
+    std::uint32_t other;
+    std::uint32_t cell;
+    std::uint32_t body;
+    std::uint32_t wanted;
+  };
+  /// A few moves, and what is to be done for them.
+  struct Batch {
+    static constexpr std::size_t kMoves = 4;
+    std::span<const std::uint32_t> moves;
+    std::array<Bounds, kMoves> bounds{};  ///< what they become
+    LargeArray<Look> looks;
+    std::vector<Candidate> candidates;
+  };
+  static constexpr std::size_t kSteps = 5;  ///< that a batch takes
+
   /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
   struct Left {
     std::uint32_t body;
@@ -239,13 +230,18 @@ class LooseGrid {
   void insert(std::uint32_t cell, std::uint32_t body, Bounds bounds);
   void remove(std::uint32_t cell, std::uint32_t body);
 
-  void makeMove(const Step& step);
-  void prepare(std::uint32_t body);
-  void lookAround(std::uint32_t body, const Extent& extent, unsigned wanted);
+  void takeMoves(std::size_t first, Batch& batch);
+  void prepare(Batch& batch);
+  Bounds prepareMove(std::uint32_t body, LargeArray<Look>& looks);
+  void lookAround(std::uint32_t body, const Extent& extent, std::uint32_t wanted,
+                  LargeArray<Look>& looks);
   Steps lookAlongAxes(const Level& at, int shift, const Extent& extent);
-  void lookIntoCells();
-  template <class Began, class Ended>
-  void consider(const Search& search, const Candidate& candidate, Began& began, Ended& ended);
+  void makeMoves(const Batch& batch);
+  void lookIntoCells(Batch& batch);
+  void tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
+                   PairBuffer& ended);
+  /// kBeginnings or kEnds if the overlap of both begins or ends; else 0.
+  std::uint32_t change(const Candidate& candidate);
 
   std::array<float, 4> low_{};
   float factor_ = 1;  ///< steps to a unit of length
@@ -256,63 +252,11 @@ class LooseGrid {
   std::vector<std::uint32_t> free_lines_;  ///< of these, nobody's
   LargeArray<Body> bodies_;
   std::vector<std::uint32_t> moves_;  ///< the bodies of this frame's moves, ascending
-  Batch batch_;
-  Batch next_batch_;
+  std::array<Batch, kSteps> under_way_;
   LargeArray<LookOnAxes> looks_on_axes_;
-  std::vector<Candidate> candidates_;
   std::vector<Left> left_;
   std::uint32_t frame_ = 1;
   Work work_;
 };
-
-// In the header, for what is called with an event to be inlined.
-
-template <class Began, class Ended>
-void LooseGrid::search(Began began, Ended ended) {
-  // While a few moves are made, the cells around the next ones come from memory.
-  constexpr std::size_t kBatch = 8;
-  const auto moves_from = [&](std::size_t first) {
-    const std::span<const std::uint32_t> moves = moves_;
-    first = std::min(first, moves.size());
-    return moves.subspan(first, std::min(kBatch, moves.size() - first));
-  };
-  const auto prepare_from = [&](std::size_t first) {
-    next_batch_.clear();
-    for (const std::uint32_t body : moves_from(first + kBatch)) prefetch(&bodies_[body]);
-    for (const std::uint32_t body : moves_from(first)) prepare(body);
-  };
-  prepare_from(0);
-  for (std::size_t first = 0; first < moves_.size(); first += kBatch) {
-    std::swap(batch_, next_batch_);
-    prepare_from(first + kBatch);
-    for (const Step& step : batch_.steps) makeMove(step);
-    lookIntoCells();
-    for (const Candidate& candidate : candidates_) prefetch(&bodies_[candidate.body]);
-    for (const Candidate& candidate : candidates_) {
-      consider(batch_.searches[candidate.search], candidate, began, ended);
-    }
-  }
-}
-
-/// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
-template <class Began, class Ended>
-void LooseGrid::consider(const Search& search, const Candidate& candidate, Began& began,
-                         Ended& ended) {
-  const Body& body = bodies_[search.body];
-  const Body& other = bodies_[candidate.body];
-  const bool moved = other.frame() == frame_;
-  if (moved && candidate.body > search.body) return;
-  const bool was = overlapOnAxes(body.before, moved ? other.before : other.box);
-  const bool is = overlapOnAxes(body.box, other.box);
-  ++work_.tests;
-  if (was == is) return;
-  unsigned wanted = search.wanted;
-  // A cell that it left tells of ends only, one into which it came of beginnings only.
-  if (moved && other.cellBefore() != other.cell()) {
-    wanted &= candidate.cell == other.cell() ? kBeginnings : kEnds;
-  }
-  if (is && (wanted & kBeginnings) != 0) began(search.body, candidate.body);
-  if (was && (wanted & kEnds) != 0) ended(search.body, candidate.body);
-}
 
 }  // namespace broadmark::tide

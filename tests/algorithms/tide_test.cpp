@@ -162,18 +162,18 @@ class LooseGridTest : public testing::Test {
     for (std::uint32_t body = 0; body < now.size(); ++body) {
       if (!sameBits(before[body], now[body])) changed.push_back(body);
     }
-    std::vector<Pair> began;
-    std::vector<Pair> ended;
+    PairBuffer began;
+    PairBuffer ended;
     grid.addMoves(changed, now);
-    grid.search([&](auto a, auto b) { began.push_back(orderedPair(a, b)); },
-                [&](auto a, auto b) { ended.push_back(orderedPair(a, b)); });
+    grid.search({}, began, ended);
     grid.settle();
     ASSERT_EQ(grid.validate(), "");
-    EXPECT_EQ(sortedList(began), without(bruteForcePairs(now), bruteForcePairs(before)));
-    EXPECT_EQ(sortedList(ended), without(bruteForcePairs(before), bruteForcePairs(now)));
+    EXPECT_EQ(sortedList(began.run()), without(bruteForcePairs(now), bruteForcePairs(before)));
+    EXPECT_EQ(sortedList(ended.run()), without(bruteForcePairs(before), bruteForcePairs(now)));
   }
 
-  static std::vector<Pair> sortedList(std::vector<Pair> pairs) {
+  static std::vector<Pair> sortedList(PairRun run) {
+    std::vector<Pair> pairs(run.begin(), run.end());
     std::ranges::sort(pairs);
     return pairs;
   }
