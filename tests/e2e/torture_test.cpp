@@ -120,6 +120,7 @@ TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
   Arguments endless = call(subject, "cut");
   endless.insert(endless.end(), {"--minutes", "100"});
   Program program(directory_, endless);
+  ASSERT_TRUE(program.waitUntil([&] { return program.children().size() == 2; }));
   // It is written every ten seconds, and when it ends.
   std::this_thread::sleep_for(std::chrono::milliseconds(700));
   program.signal(SIGINT);

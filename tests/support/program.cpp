@@ -1,15 +1,18 @@
 #include "support/program.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
 #include "support/places.h"
@@ -49,9 +52,14 @@ Program::~Program() {
 }
 
 std::vector<pid_t> Program::children() const {
-  std::ifstream list("/proc/" + std::to_string(pid_) + "/task/" + std::to_string(pid_) +
-                     "/children");
-  return {std::istream_iterator<pid_t>(list), {}};
+  std::vector<pid_t> all;
+  std::error_code none;  // a thread may end meanwhile
+  const std::filesystem::path threads = fmt::format("/proc/{}/task", pid_);
+  for (const auto& thread : std::filesystem::directory_iterator(threads, none)) {
+    std::ifstream list(thread.path() / "children");
+    all.insert(all.end(), std::istream_iterator<pid_t>(list), {});
+  }
+  return all;
 }
 
 bool Program::runs() {

@@ -47,7 +47,7 @@ class Program {
 
   [[nodiscard]] pid_t id() const { return pid_; }
   void signal(int number) const { ::kill(pid_, number); }
-  /// The processes that its main thread has started.
+  /// The processes that it has started.
   [[nodiscard]] std::vector<pid_t> children() const;
 
   /// Whether it has not ended yet.
