@@ -28,7 +28,7 @@ fs::path fileOf(const std::string& name) {
 std::vector<SdkPlugin> sdkPlugins() {
   std::vector<SdkPlugin> all;
 #define SDK_PLUGIN(name, package, releases, built) \
-  all.push_back({name, package, releases, built, built ? fileOf(name) : fs::path()});
+  all.push_back({name, package, releases, built, (built) ? fileOf(name) : fs::path()});
 #include "sdk_plugins.inc"
 #undef SDK_PLUGIN
   return all;

@@ -149,17 +149,17 @@ std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter&
   const Strips strips(boxes, axes[1]);
   StripContents contents = fill(strips, boxes);
   const std::span<const std::uint32_t> worlds = filter.worlds();
-  const auto worldOf = [&](std::uint32_t body) { return worlds.empty() ? 0 : worlds[body]; };
+  const auto world_of = [&](std::uint32_t body) { return worlds.empty() ? 0 : worlds[body]; };
 
   for (std::uint32_t s = 0; s < strips.count(); ++s) {
     const std::span bodies(contents.bodies.data() + contents.start[s],
                            contents.start[s + 1] - contents.start[s]);
     std::ranges::sort(bodies, {}, [&](std::uint32_t body) {
-      return std::pair(worldOf(body), boxes[body].min[sweep_axis]);
+      return std::pair(world_of(body), boxes[body].min[sweep_axis]);
     });
     for (auto i = bodies.begin(); i != bodies.end(); ++i) {
       const Aabb& a = boxes[*i];
-      for (auto j = i + 1; j != bodies.end() && worldOf(*j) == worldOf(*i) &&
+      for (auto j = i + 1; j != bodies.end() && world_of(*j) == world_of(*i) &&
                            boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
            ++j) {
         if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&

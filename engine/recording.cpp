@@ -145,8 +145,8 @@ void Recording::requireUnchanged() const {
 }
 
 const RecordingOrigin& Recording::origin() const {
-  static const RecordingOrigin kUnknown;
-  return kUnknown;
+  static const RecordingOrigin unknown;
+  return unknown;
 }
 
 const std::string& Recording::hash() {

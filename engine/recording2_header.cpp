@@ -185,7 +185,7 @@ RecordingOrigin Recording2Header::origin() const {
   RecordingOrigin origin{.source = textIn(fields_, "source"), .scene_parameters = {}};
   if (fields_.has("scene_parameters")) {
     const Json& parameters = fields_.at("scene_parameters");
-    JsonFields(parameters, fields_.path("scene_parameters"));  // is an object
+    [[maybe_unused]] const JsonFields object(parameters, fields_.path("scene_parameters"));
     origin.scene_parameters = formatJson(parameters);
   }
   return origin;

@@ -133,7 +133,7 @@ void Splatter::drawBand(const SplatView& view, std::uint32_t background, int num
   }
   for (const StripLayer& layer : strips_) drawLines(layer, number, band);
   for (int y = band.begin; y < band.end; ++y) {
-    const auto from = worker.colours.begin() + (y - band.begin) * band.stride;
+    const auto from = worker.colours.begin() + std::ptrdiff_t{y - band.begin} * band.stride;
     std::copy(from, from + view.width, colours_.begin() + std::ptrdiff_t{y} * view.width);
   }
 }

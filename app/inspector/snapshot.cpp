@@ -42,15 +42,15 @@ SeenAnswer oraclesAnswer(const SnapshotWish& wish, const Frame& frame, Oracle& o
 
 /// What follows from an answer; the boxes are there already.
 void takeAnswer(SeenAnswer answer, bool check, Snapshot& snapshot) {
-  const auto overlapsIn = [&](const PairRun& found) {
+  const auto overlaps_in = [&](const PairRun& found) {
     return overlapCounts(snapshot.boxes->size(), {&found, 1});
   };
-  snapshot.overlaps = overlapsIn(answer.pairs);
+  snapshot.overlaps = overlaps_in(answer.pairs);
   snapshot.checked = check && answer.difference.has_value();
   if (snapshot.checked) {
     const bool same = answer.agrees();
     snapshot.right_pairs = same ? answer.pairs.size() : answer.right.size();
-    snapshot.right_overlaps = same ? snapshot.overlaps : overlapsIn(answer.right);
+    snapshot.right_overlaps = same ? snapshot.overlaps : overlaps_in(answer.right);
     snapshot.difference = std::move(*answer.difference);
   }
   snapshot.pairs = std::move(answer.pairs);

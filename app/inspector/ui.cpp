@@ -327,7 +327,7 @@ bool Ui::parameter(const Parameter& parameter) {
   if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
     return checkbox(name.c_str(), **flag, tip.c_str());
   }
-  const auto withUnit = [&](bool changed) {
+  const auto with_unit = [&](bool changed) {
     const std::string_view unit = parameterUnit(parameter);
     if (unit.empty()) return changed;
     ImGui::SameLine();
@@ -341,12 +341,12 @@ bool Ui::parameter(const Parameter& parameter) {
     return changed;
   };
   if (std::int64_t* const* whole = std::get_if<std::int64_t*>(&parameter.value)) {
-    return withUnit(integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
-                            static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)),
-                            tip.c_str()));
+    return with_unit(integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
+                             static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)),
+                             tip.c_str()));
   }
   if (double* const* real = std::get_if<double*>(&parameter.value)) {
-    return withUnit(number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str()));
+    return with_unit(number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str()));
   }
   if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
     const auto& options = (*choice)->options;

@@ -97,11 +97,11 @@ class Round {
     // An exact answer is the same one every time, or wrong.
     std::vector<PairDigest> first;
     std::vector<PairDigest> second;
-    if (const auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &first)) return fault;
+    if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &first)) return fault;
     if (!trial_.supported()) return std::nullopt;
     count(world, coverage);
     if (random_.onceIn(kSeldom)) {
-      if (const auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &second)) return fault;
+      if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &second)) return fault;
       if (first != second) return Fault{FaultKind::unsteady, 0, "another answer the second time"};
     }
     if (random_.onceIn(kSeldom)) {
@@ -133,7 +133,7 @@ class Round {
 
   /// The fault, if it shows on these frames as it did, in the last one.
   std::optional<Fault> again(Trial& trial, IndexedFrames& frames, FaultKind kind) const {
-    const auto fault = kind == FaultKind::leak ? trial.leak(frames) : trial.run(frames);
+    auto fault = kind == FaultKind::leak ? trial.leak(frames) : trial.run(frames);
     if (!fault || fault->kind != kind) return std::nullopt;
     // One of the initial pose is told of the first frame, which no recording is without.
     if (std::max(fault->frame, 1U) < frames.scene().frames) return std::nullopt;

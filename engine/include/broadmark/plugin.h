@@ -83,6 +83,7 @@ inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
 
 }  // namespace broadmark
 
+// NOLINTBEGIN(bugprone-macro-parentheses): a name and a type
 /// Exports a Plugin<Entry> under a name; entries() returns a std::vector of them.
 #define BROADMARK_EXPORT_PLUGIN(symbol, Entry, entries)                              \
   extern "C" {                                                                       \
@@ -91,6 +92,7 @@ inline constexpr char kAlgorithmPluginSymbol[] = "broadmark_plugin";
                                              BROADMARK_BUILD, BROADMARK_OPTIMISED};  \
   }                                                                                  \
   static_assert(true)
+// NOLINTEND(bugprone-macro-parentheses)
 
 /// Exports the algorithms that a function `std::vector<broadmark::Algorithm> variants()` returns.
 #define BROADMARK_PLUGIN(variants) \
