@@ -8,9 +8,20 @@ namespace broadmark {
 /// How many elements ahead to send for what a loop reads in no order: some hundred nanoseconds.
 inline constexpr std::size_t kPrefetchAhead = 16;
 
+/// How many for prefetchFar(), of which more can be under way at a time.
+inline constexpr std::size_t kPrefetchFarAhead = 128;
+
 inline void prefetch(const void* address) {
   __builtin_prefetch(address);
   // GCC takes a loop that does nothing but prefetch for one that does nothing (GCC 12).
+  asm volatile("");
+}
+
+/// Sends for it into the second cache only.
+inline void prefetchFar(const void* address) {
+  constexpr int kReading = 0;
+  constexpr int kSecondCache = 2;
+  __builtin_prefetch(address, kReading, kSecondCache);
   asm volatile("");
 }
 

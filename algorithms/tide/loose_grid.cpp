@@ -234,7 +234,7 @@ inline LooseGrid::Bounds LooseGrid::boundsOnAxes(Steps low, Steps high) {
 }
 
 /// In the cell of a body, which is part of the extent.
-LooseGrid::Bounds LooseGrid::boundsOf(const Extent& extent, const Extent& body) const {
+inline LooseGrid::Bounds LooseGrid::boundsOf(const Extent& extent, const Extent& body) const {
   const std::uint32_t level = levelOf(body);
   const Level& at = levels_[level];
   const int to_level = shiftOf(level) - kCellBits;
@@ -306,6 +306,10 @@ void LooseGrid::remove(std::uint32_t cell, std::uint32_t body) {
 void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
   moves_.assign(bodies.begin(), bodies.end());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (i + kPrefetchFarAhead < bodies.size()) {
+      prefetchFar(&boxes[bodies[i + kPrefetchFarAhead]]);
+      prefetchFar(&bodies_[bodies[i + kPrefetchFarAhead]]);
+    }
     if (i + kPrefetchAhead < bodies.size()) {
       prefetch(&boxes[bodies[i + kPrefetchAhead]]);
       prefetch(&bodies_[bodies[i + kPrefetchAhead]]);
@@ -333,7 +337,10 @@ void LooseGrid::search(const CollisionFilter& filter, PairBuffer& began, PairBuf
   for (std::size_t now = 0; now < batches + kSteps - 1; ++now) {
     if (Batch* const batch = under_way(now)) takeMoves(now * Batch::kMoves, *batch);
     if (Batch* const batch = under_way(now - 1)) prepare(*batch);
-    if (Batch* const batch = under_way(now - 2)) makeMoves(*batch);
+    if (Batch* const batch = under_way(now - 2)) {
+      if (moves_.size() >= kManyMoves) sendForLinesBehind(*batch);
+      makeMoves(*batch);
+    }
     // Not in the turn before: to read a line of which a part was just written takes long.
     if (Batch* const batch = under_way(now - 3)) lookIntoCells(*batch);
     if (Batch* const batch = under_way(now - 4)) tellChanges(*batch, filter, began, ended);
@@ -387,29 +394,26 @@ void LooseGrid::lookAround(std::uint32_t body, const Extent& extent, std::uint32
   for (std::uint32_t levels = used_levels_; levels != 0; levels &= levels - 1) {
     const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
     const Level& at = levels_[level];
-    const Steps counts = lookAlongAxes(at, shiftOf(level), extent);
-    const LookOnAxes* const on_axes = looks_on_axes_.data();
-    const std::size_t end = looks.size();
-    looks.resize(end + static_cast<std::size_t>(counts[0]) * counts[1] * counts[2]);
-    Look* look = looks.data() + end;
-    for (std::int32_t z = 0; z < counts[2]; ++z) {
-      for (std::int32_t y = 0; y < counts[1]; ++y) {
-        const std::uint32_t first =
-            at.first_cell + static_cast<std::uint32_t>(on_axes[z].cell[2] + on_axes[y].cell[1]);
-        const Bounds least = kSomebody | ofAxis(2, on_axes[z].least) | ofAxis(1, on_axes[y].least);
-        for (std::int32_t x = 0; x < counts[0]; ++x) {
-          const std::uint32_t cell = first + static_cast<std::uint32_t>(on_axes[x].cell[0]);
-          prefetch(&lines_[cell]);
-          *look++ = {least | ofAxis(0, on_axes[x].least), cell, body, wanted};
+    const Surroundings around = surroundings(at, shiftOf(level), extent);
+    const std::size_t known = looks.size();
+    // One more is written, and not kept.
+    looks.resize(known +
+                 static_cast<std::size_t>(around.counts[0]) * around.counts[1] * around.counts[2] +
+                 1);
+    Look* end = looks.data() + known;
+    for (std::int32_t z = 0; z < around.counts[2]; z += 2) {
+      for (std::int32_t y = 0; y < around.counts[1]; y += 2) {
+        for (std::int32_t x = 0; x < around.counts[0]; x += 2) {
+          end = lookIntoEight(at, around, Steps{x, y, z, 0}, {0, 0, body, wanted}, end);
         }
       }
     }
+    looks.resize(static_cast<std::size_t>(end - looks.data()));
   }
 }
 
-/// Finds the cells on each axis where somebody may overlap the extent, and what bounds must reach
-/// there. Returns how many these are.
-LooseGrid::Steps LooseGrid::lookAlongAxes(const Level& at, int shift, const Extent& extent) {
+inline LooseGrid::Surroundings LooseGrid::surroundings(const Level& at, int shift,
+                                                       const Extent& extent) {
   constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
   const Steps first = (extent.min - at.reach) >> shift;
   const Steps last = extent.max >> shift;
@@ -417,26 +421,45 @@ LooseGrid::Steps LooseGrid::lookAlongAxes(const Level& at, int shift, const Exte
   const Steps begin = first << kCellBits;
   // Beyond the bulk bounds tell nothing.
   const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
-  Steps low = in_bulk & ((extent.min >> to_level) - begin);
-  Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff;
-  Steps cell = wrapped(first, at);
-  // Where that is all there are, each once.
-  const Steps counts = smaller(last - first + 1, at.counts);
-  looks_on_axes_.resize(static_cast<std::size_t>(std::max({counts[0], counts[1], counts[2]})));
-  for (LookOnAxes& look : looks_on_axes_) {
-    look = {cell * at.strides, boundsOnAxes(high, low)};
-    low -= 1 << kCellBits;
-    high -= 1 << kCellBits;
-    cell += 1;
-    cell &= cell < at.counts;
-  }
-  return counts;
+  return {.first = wrapped(first, at),
+          .counts = smaller(last - first + 1, at.counts),  // all there are, once each
+          .low = in_bulk & ((extent.min >> to_level) - begin),
+          .high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff};
 }
 
-template <class Visit>
-void LooseGrid::Line::forEachThatReaches(Bounds least, Visit visit) const {
+/// Adds looks into two cells on each axis, those at the offset and the next, as far as there are
+/// any. Without a branch, as nobody could predict how many these are. Returns the end.
+inline LooseGrid::Look* LooseGrid::lookIntoEight(const Level& at, const Surroundings& around,
+                                                 Steps offset, Look as, Look* looks) const {
+  Steps cell = around.first + offset;
+  cell -= (cell >= at.counts) & at.counts;
+  const Steps next = cell + 1;
+  const Steps is_two = around.counts - offset > 1;
+  const Steps at_cell = cell * at.strides;
+  const std::array<Steps, 2> cells = {
+      at_cell, is_two ? (at_cell + at.strides) & (next < at.counts) : at_cell};
+  const Steps low = around.low - (offset << kCellBits);
+  const Steps high = around.high - (offset << kCellBits);
+  const std::array<Bounds, 2> least = {
+      boundsOnAxes(high, low), boundsOnAxes(high - (1 << kCellBits), low - (1 << kCellBits))};
+  const std::array<Steps, 2> is_there = {Steps{} - 1, is_two};
+  for (int z = 0; z < 2; ++z) {
+    for (int y = 0; y < 2; ++y) {
+      for (int x = 0; x < 2; ++x) {
+        as.cell =
+            at.first_cell + static_cast<std::uint32_t>(cells[z][2] + cells[y][1] + cells[x][0]);
+        as.least = kSomebody | ofAxis(2, least[z]) | ofAxis(1, least[y]) | ofAxis(0, least[x]);
+        prefetch(&lines_[as.cell]);
+        *looks = as;
+        looks += is_there[z][2] & is_there[y][1] & is_there[x][0] & 1;
+      }
+    }
+  }
+  return looks;
+}
+
+inline unsigned LooseGrid::Line::placesThatReach(Bounds least) const {
 #if defined(__SSE2__)
-  // A bit for each highest bit of a byte: one branch for all, as mostly there is nobody.
   const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(least));
   const auto* const pairs = reinterpret_cast<const __m128i*>(bounds.data());
   const auto highest_bits = [&](int pair) {
@@ -446,13 +469,24 @@ void LooseGrid::Line::forEachThatReaches(Bounds least, Visit visit) const {
   // Where seven bits are set, adding 1 sets the eighth.
   const std::uint64_t seven =
       (highest_bits(0) | highest_bits(1) | highest_bits(2)) & 0x7F'7F7F'7F7F;
-  std::uint64_t all = (seven + 0x01'0101'0101) & 0x80'8080'8080;
-  for (; all != 0; all &= all - 1) visit(std::countr_zero(all) / 8);
+  const std::uint64_t eighth = (seven + 0x01'0101'0101) & 0x80'8080'8080;
+  // Each of these five bits next to the one before.
+  return static_cast<unsigned>((eighth >> 7) * 0x01'0204'0810 >> 32) & 0x1F;
 #else
+  unsigned places = 0;
   for (std::uint32_t place = 0; place < kPlaces; ++place) {
-    if (reaches(bounds[place], least)) visit(place);
+    places |= unsigned{reaches(bounds[place], least)} << place;
   }
+  return places;
 #endif
+}
+
+/// Only in crowded cells there are lines that nobody knows of before another one has come.
+void LooseGrid::sendForLinesBehind(const Batch& batch) const {
+  for (const Look& look : batch.looks) {
+    const std::uint32_t next = lines_[look.cell].next;
+    prefetch(&lines_[next == kNowhere ? look.cell : next]);
+  }
 }
 
 /// Puts bodies into their cells.
@@ -472,32 +506,56 @@ void LooseGrid::makeMoves(const Batch& batch) {
   }
 }
 
-/// Lists who else is there, in these cells, and reaches what was wanted.
+/// Lists who else is there, in these cells, and reaches what was wanted. First the few lines where
+/// there is somebody, without a branch: nobody could predict which these are.
 void LooseGrid::lookIntoCells(Batch& batch) {
-  batch.candidates.clear();
-  for (const Look& look : batch.looks) {
+  hits_.resize(batch.looks.size());
+  std::size_t hits = 0;
+  std::size_t lines_behind = 0;
+  for (std::size_t i = 0; i < batch.looks.size(); ++i) {
+    const Look& look = batch.looks[i];
     for (const Line* line = &lines_[look.cell];; line = &lines_[line->next]) {
-      line->forEachThatReaches(look.least, [&](int place) {
-        const std::uint32_t other = line->bodies[place];
-        if (other == look.body) return;
-        prefetch(&bodies_[other]);
-        batch.candidates.push_back({other, look.cell, look.body, look.wanted});
-      });
-      ++work_.lines;
-      if (line->next == kNowhere) break;
+      const unsigned places = line->placesThatReach(look.least);
+      hits_[hits] = {line, static_cast<std::uint32_t>(i), places};
+      hits += places != 0 ? 1 : 0;
+      if (line->next == kNowhere) [[likely]]
+        break;
+      ++lines_behind;
+      hits_.resize(hits_.size() + 1);
     }
   }
+  work_.lines += batch.looks.size() + lines_behind;
+  addCandidates(batch, hits);
+}
+
+/// All but the bodies that are looking.
+void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
+  batch.candidates.resize(hits * Line::kPlaces);
+  Candidate* end = batch.candidates.data();
+  for (std::size_t i = 0; i < hits; ++i) {
+    const Hit& hit = hits_[i];
+    const Look& look = batch.looks[hit.look];
+    unsigned places = hit.places;
+    do {
+      const std::uint32_t other =
+          hit.line->bodies[static_cast<std::size_t>(std::countr_zero(places))];
+      prefetch(&bodies_[other]);
+      *end = {other, look.cell, look.body, look.wanted};
+      end += other != look.body ? 1 : 0;
+      places &= places - 1;
+    } while (places != 0);
+  }
+  batch.candidates.resize(static_cast<std::size_t>(end - batch.candidates.data()));
 }
 
 /// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
-std::uint32_t LooseGrid::change(const Candidate& candidate) {
+std::uint32_t LooseGrid::change(const Candidate& candidate) const {
   const Body& body = bodies_[candidate.body];
   const Body& other = bodies_[candidate.other];
   const bool moved = other.frame() == frame_;
   if (moved && candidate.other > candidate.body) return 0;
   const bool was = overlapOnAxes(body.before, moved ? other.before : other.box);
   const bool is = overlapOnAxes(body.box, other.box);
-  ++work_.tests;
   if (was == is) return 0;
   std::uint32_t wanted = candidate.wanted;
   // A cell that it left tells of ends only, one into which it came of beginnings only.
@@ -514,11 +572,13 @@ void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, P
     if (changed == 0 || !filter.wanted(candidate.body, candidate.other)) continue;
     (changed == kBeginnings ? began : ended).add(candidate.body, candidate.other);
   }
+  work_.tests += batch.candidates.size();
 }
 
 void LooseGrid::settle() {
-  for (const Left& left : left_) {
-    remove(left.cell, left.body);
+  for (std::size_t i = 0; i < left_.size(); ++i) {
+    if (i + kPrefetchAhead < left_.size()) prefetch(&lines_[left_[i + kPrefetchAhead].cell]);
+    remove(left_[i].cell, left_[i].body);
   }
   left_.clear();
   moves_.clear();

@@ -116,12 +116,12 @@ class LooseGrid {
     std::array<std::uint32_t, kPlaces> bodies{kNowhere, kNowhere, kNowhere, kNowhere, kNowhere};
     std::uint32_t next = kNowhere;
 
+    /// The bodies in it, which are in its first places.
     [[nodiscard]] std::uint32_t count() const {
-      return static_cast<std::uint32_t>(std::ranges::find(bounds, kNobody) - bounds.begin());
+      return static_cast<std::uint32_t>(kPlaces - std::ranges::count(bounds, kNobody));
     }
-    /// Calls visit(place) where the bounds reach these.
-    template <class Visit>
-    void forEachThatReaches(Bounds least, Visit visit) const;
+    /// A bit for each place whose bounds reach these.
+    [[nodiscard]] unsigned placesThatReach(Bounds least) const;
   };
   struct Place {
     Line* line;
@@ -159,10 +159,12 @@ class LooseGrid {
   static constexpr std::uint32_t kBeginnings = 1;
   static constexpr std::uint32_t kEnds = 2;
 
-  /// The parts of the axes in Look; cells are counted from those at the level's beginning.
-  struct LookOnAxes {
-    Steps cell;
-    Bounds least;
+  /// The cells of a level where somebody may overlap an extent.
+  struct Surroundings {
+    Steps first;   ///< counted from the level's first cell; beyond the last one they begin anew
+    Steps counts;  ///< how many on each axis
+    Steps low;     ///< the extent, counted from the beginning of the first one
+    Steps high;
   };
   /// Into a cell, for those whose overlap with a body may change.
   struct Look {
@@ -170,6 +172,12 @@ class LooseGrid {
     std::uint32_t cell;
     std::uint32_t body;
     std::uint32_t wanted;  ///< kBeginnings, kEnds or both
+  };
+  /// The bodies in some places of a line, met by a look.
+  struct Hit {
+    const Line* line;
+    std::uint32_t look;
+    unsigned places;  ///< a bit each
   };
   /// Somebody, found in a cell, who may overlap a body.
   struct Candidate {
@@ -184,9 +192,11 @@ class LooseGrid {
     std::span<const std::uint32_t> moves;
     std::array<Bounds, kMoves> bounds{};  ///< what they become
     LargeArray<Look> looks;
-    std::vector<Candidate> candidates;
+    LargeArray<Candidate> candidates;
   };
   static constexpr std::size_t kSteps = 5;  ///< that a batch takes
+  /// So many moves and more touch more memory than stays in caches.
+  static constexpr std::size_t kManyMoves = 1000;
 
   /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
   struct Left {
@@ -235,13 +245,17 @@ class LooseGrid {
   Bounds prepareMove(std::uint32_t body, LargeArray<Look>& looks);
   void lookAround(std::uint32_t body, const Extent& extent, std::uint32_t wanted,
                   LargeArray<Look>& looks);
-  Steps lookAlongAxes(const Level& at, int shift, const Extent& extent);
+  static Surroundings surroundings(const Level& at, int shift, const Extent& extent);
+  Look* lookIntoEight(const Level& at, const Surroundings& around, Steps offset, Look as,
+                      Look* looks) const;
+  void sendForLinesBehind(const Batch& batch) const;
   void makeMoves(const Batch& batch);
   void lookIntoCells(Batch& batch);
+  void addCandidates(Batch& batch, std::size_t hits) const;
   void tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
                    PairBuffer& ended);
   /// kBeginnings or kEnds if the overlap of both begins or ends; else 0.
-  std::uint32_t change(const Candidate& candidate);
+  [[nodiscard]] std::uint32_t change(const Candidate& candidate) const;
 
   std::array<float, 4> low_{};
   float factor_ = 1;  ///< steps to a unit of length
@@ -253,7 +267,7 @@ class LooseGrid {
   LargeArray<Body> bodies_;
   std::vector<std::uint32_t> moves_;  ///< the bodies of this frame's moves, ascending
   std::array<Batch, kSteps> under_way_;
-  LargeArray<LookOnAxes> looks_on_axes_;
+  LargeArray<Hit> hits_;
   std::vector<Left> left_;
   std::uint32_t frame_ = 1;
   Work work_;
