@@ -82,7 +82,8 @@ struct Watched {
   template <class IsThere>
   double drawUntil(const IsThere& is_there) {
     const auto start = std::chrono::steady_clock::now();
-    for (bool there = false; !there;) {
+    bool there = false;
+    while (!there) {
       session().runs.look([&](const RunProgress& progress) {
         there = progress.snapshot && is_there(*progress.snapshot);
       });

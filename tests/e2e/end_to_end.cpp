@@ -8,6 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/places.h"
+
 namespace broadmark::tests {
 
 std::string readFile(const fs::path& path) {
