@@ -40,8 +40,8 @@ class TestCounts {
 
  private:
   std::vector<std::uint32_t> own_;
-  std::vector<std::uint32_t>
-      changes_;  ///< of how many rows are tested against this, from row to row
+  /// Of how many rows are tested against this, from row to row.
+  std::vector<std::uint32_t> changes_;
 };
 
 }  // namespace broadmark

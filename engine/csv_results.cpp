@@ -79,21 +79,6 @@ Column bound(const std::string& name, double Interval::*end) {
           }};
 }
 
-/// The mean over all frames of `ns`, in seconds.
-Column meanSeconds(std::string name, std::function<std::int64_t(const FrameTimes&)> ns) {
-  return {std::move(name), [ns = std::move(ns)](const CaseResult& result, const Summary&) {
-            double sum = 0;
-            double count = 0;
-            for (const Repetition& repetition : result.repetitions) {
-              for (const FrameTimes& frame : repetition.frames) {
-                sum += static_cast<double>(ns(frame)) * 1e-9;
-                ++count;
-              }
-            }
-            return count == 0 ? "" : fmt::format("{:.9g}", sum / count);
-          }};
-}
-
 /// A count of wrong pairs, known where answers were checked.
 Column wrongPairs(const std::string& name, std::uint64_t CaseResult::*count) {
   return {name, [count](const CaseResult& result, const Summary&) {
@@ -143,9 +128,10 @@ Columns resultColumns() {
        {"initialize_seconds", meanInitialisation}});
   for (const auto& [phase, name] : kPhases.entries) {
     if (phase == Phase::total) continue;  // that is seconds_per_frame
-    columns.push_back(
-        meanSeconds(fmt::format("{}_seconds", name),
-                    [phase = phase](const FrameTimes& frame) { return frame[phase]; }));
+    columns.push_back(column(fmt::format("{}_seconds", name), [phase = phase](R r) {
+      const std::optional<double> mean = r.meanSeconds(phase);
+      return mean ? fmt::format("{:.9g}", *mean) : "";
+    }));
   }
   add({column("pairs_mean", [](R r) { return r.pairs_mean; }),
        column("pairs_max", [](R r) { return r.pairs_max; }),

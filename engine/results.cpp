@@ -23,6 +23,17 @@ Summary CaseResult::summary() const {
   return summarise(views);
 }
 
+std::optional<double> CaseResult::meanSeconds(Phase phase) const {
+  double sum = 0;
+  std::size_t frames_counted = 0;
+  for (const Repetition& repetition : repetitions) {
+    for (const FrameTimes& times : repetition.frames) sum += static_cast<double>(times[phase]);
+    frames_counted += repetition.frames.size();
+  }
+  if (frames_counted == 0) return std::nullopt;
+  return sum * 1e-9 / static_cast<double>(frames_counted);
+}
+
 std::optional<double> CaseResult::perFrame(ProcessorCounter which) const {
   double sum = 0;
   std::size_t frames_counted = 0;

@@ -6,11 +6,6 @@
 namespace broadmark {
 namespace {
 
-/// In double: two huge coordinates may add up to more than a float holds.
-double centreOf(const Aabb& box, std::size_t axis) {
-  return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
-}
-
 double longestEdge(const Aabb& box) {
   double longest = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

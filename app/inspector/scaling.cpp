@@ -19,16 +19,6 @@ std::string sceneOf(const CaseResult& result) {
   return id;
 }
 
-double meanSeconds(const CaseResult& result, Phase phase) {
-  double sum = 0;
-  std::size_t frames = 0;
-  for (const Repetition& repetition : result.repetitions) {
-    for (const FrameTimes& times : repetition.frames) sum += static_cast<double>(times[phase]);
-    frames += repetition.frames.size();
-  }
-  return frames > 0 ? sum * 1e-9 / static_cast<double>(frames) : 0;
-}
-
 double exponentOf(const std::vector<ScalingPoint>& points) {
   const auto count = static_cast<double>(points.size());
   const auto x = [](const ScalingPoint& point) {
@@ -66,7 +56,7 @@ std::vector<Family> familiesOf(std::span<const SizedCase> cases, Phase phase) {
   std::vector<Family> families;
   for (const SizedCase& sized : cases) {
     const CaseResult& result = *sized.result;
-    const double seconds = meanSeconds(result, phase);
+    const double seconds = result.meanSeconds(phase).value_or(0);
     if (result.status != Status::ok || !result.isComplete() || seconds <= 0) continue;
     const std::string scene = sceneOf(result);
     const std::string case_name = caseNameOf(result);

@@ -131,7 +131,7 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
       const auto middle = [&](const Aabb& box) {
         std::array<float, 3> centre{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          centre[axis] = (box.min[axis] + box.max[axis]) / 2;
+          centre[axis] = static_cast<float>(centreOf(box, axis));
         }
         return centre;
       };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
@@ -41,6 +42,11 @@ inline constexpr Aabb kEmptyBox = [] {
 }();
 
 constexpr bool isEmpty(const Aabb& box) { return box.min[0] > box.max[0]; }
+
+/// In double, as two huge coordinates may add up to more than a float holds.
+constexpr double centreOf(const Aabb& box, std::size_t axis) {
+  return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
+}
 
 /// The box grown by `margin` on every side.
 constexpr Aabb enlarged(Aabb box, float margin) {

@@ -111,6 +111,8 @@ struct CaseResult {
 
   /// The total times in seconds, per repetition.
   [[nodiscard]] Summary summary() const;
+  /// The mean of a phase per frame, over all repetitions; nothing if there is no frame.
+  [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
   /// The mean per frame, over the repetitions in which it was known; nothing if there is none.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
   /// Whether it ran as often as was asked for, or ended by its status. A run that was interrupted
