@@ -5,10 +5,10 @@
 // levels, each of cells four times as long as those of the one before; a body lies in the first one
 // whose cells are no shorter than it is. So small and large bodies don't get in each other's way.
 //
-// What a move costs is waiting for memory, so a cell is one cache line: of five bodies it has the
-// numbers and the bounds, a byte each, which are tested together. Their boxes are in
-// an array by body, a line each, and looked at for the few that pass. A crowded cell has full lines
-// behind its own.
+// What a move costs is waiting for memory, and branches that nobody can predict. So a cell is one
+// cache line: of five bodies it has the numbers and the bounds, a byte each, which are tested
+// together. Their boxes are in an array by body, a line each, and looked at for the few that pass.
+// A crowded cell has full lines behind its own.
 //
 // A level has cells for the bulk of the world only. Beyond, it begins anew from the other side:
 // what lies far off shares cells with others, costs tests, and needs no bounds.
