@@ -150,7 +150,17 @@ void sweep(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_
 
 void sweepCells(const BoxArrays& boxes, const std::uint32_t* ends, const MarkedBody* bodies,
                 Range rows, PairBuffer& pairs) {
-  sweepWindows<0>(boxes, ends, rows, CellWindows{ends, bodies}, pairs);
+  // Where none has a mark, as in the only cell there is, all pairs are reported.
+  MarkedBody marks = 0;
+  std::size_t end = rows.begin;
+  for (std::size_t row = rows.begin; row < rows.end; ++row) {
+    for (; end < ends[row]; ++end) marks |= bodies[end] & ~kNumberMask;
+  }
+  if (marks != 0) {
+    sweepWindows<0>(boxes, ends, rows, CellWindows{ends, bodies}, pairs);
+  } else {
+    sweepWindows<0>(boxes, ends, rows, Windows{ends, bodies}, pairs);
+  }
 }
 
 void testRow(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range columns,
