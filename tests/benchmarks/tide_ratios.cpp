@@ -1,6 +1,6 @@
 // What a frame costs by how many bodies move: a curve, `tide` beside others, all with events.
 // Bodies are unit cubes, a tenth of the space; in each frame others move by up to half a unit on
-// each axis. The contestants take turns frame by frame. Exit status 1 if a target is missed.
+// each axis. The contestants take turns frame by frame.
 //
 //   tide_ratios [BODIES [ROUNDS [ALGORITHM...]]]
 
