@@ -2,19 +2,15 @@
 
 #include "broadmark/box_arrays.h"
 
-#include <cstdlib>
+#include <algorithm>
 #include <limits>
-#include <new>
 
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kArrays = 6;
 
 }  // namespace
-
-void BoxArrays::Free::operator()(float* memory) const { std::free(memory); }
 
 Aabb BoxArrays::box(std::size_t i) const {
   return {{min(0)[i], min(1)[i], min(2)[i], 0}, {max(0)[i], max(1)[i], max(2)[i], 0}};
@@ -27,9 +23,7 @@ void BoxArrays::resize(std::size_t size) {
   if (padded(size) > stride_) {
     // Growing again by a little each time must not mean new memory each time.
     const std::size_t stride = std::max(padded(size), padded(stride_ + stride_ / 2));
-    memory_.reset(
-        static_cast<float*>(std::aligned_alloc(kAlignment, kArrays * stride * sizeof(float))));
-    if (!memory_) throw std::bad_alloc();
+    memory_.reset(static_cast<float*>(allocateLarge(kArrays * stride * sizeof(float))));
     stride_ = stride;
   }
   size_ = size;

@@ -97,8 +97,9 @@ class SharedMemory {
     return offset + items.size_bytes();
   }
   /// Reads `count` items from a byte offset into `items`, which keeps its capacity.
-  template <class Item>
-  void read(std::vector<Item>& items, std::size_t count, std::uint64_t offset = 0) const {
+  template <class Item, class Allocator>
+  void read(std::vector<Item, Allocator>& items, std::size_t count,
+            std::uint64_t offset = 0) const {
     requireHeld(offset, count, sizeof(Item));
     items.resize(count);
     readBytes(std::as_writable_bytes(std::span(items)), offset);

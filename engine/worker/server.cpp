@@ -13,6 +13,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/headers_hash.h"
+#include "broadmark/large_array.h"
 #include "broadmark/memory_limit.h"
 #include "broadmark/worker_process.h"
 #include "worker/protocol.h"
@@ -179,7 +180,7 @@ class Server {
     started_ = false;
     host().stop();
     // Others run while this waits for its next pass.
-    std::vector<Aabb>().swap(boxes_);
+    LargeVector<Aabb>().swap(boxes_);
     std::vector<Aabb>().swap(changed_boxes_);
     std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
@@ -197,7 +198,7 @@ class Server {
   const AlgorithmFinder& find_;
   SharedMemory frames_;
   SharedMemory answers_;
-  std::vector<Aabb> boxes_;  ///< of the last frame
+  LargeVector<Aabb> boxes_;  ///< of the last frame
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
   std::optional<LocalHost> host_;

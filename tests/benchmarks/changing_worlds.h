@@ -13,6 +13,7 @@
 
 #include "benchmarks/contest.h"
 #include "broadmark/collision_filter.h"
+#include "broadmark/large_array.h"
 #include "torture/inputs.h"
 
 namespace broadmark::benchmarks {
@@ -40,14 +41,15 @@ class LivingWorld {
   virtual void change() = 0;
 
   /// Fills the slots; the world is the cube of this side.
-  void begin(std::string name, std::vector<Aabb> boxes, float side, CollisionFilter filter = {}) {
+  void begin(std::string name, std::span<const Aabb> boxes, float side,
+             CollisionFilter filter = {}) {
     scene_.name = std::move(name);
     scene_.object_type = "Cubes";
     scene_.objects = static_cast<std::uint32_t>(boxes.size());
     scene_.world = {{0, 0, 0, 0}, {side, side, side, 0}};
     scene_.all_present = std::ranges::none_of(boxes, isEmpty);
     scene_.filter = std::move(filter);
-    boxes_ = std::move(boxes);
+    boxes_.assign(boxes.begin(), boxes.end());
     side_ = side;
   }
   [[nodiscard]] const Aabb& box(std::uint32_t body) const { return boxes_[body]; }
@@ -78,7 +80,7 @@ class LivingWorld {
 
  private:
   SceneInfo scene_;
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
   std::vector<std::uint32_t> changed_;
   std::uint32_t index_ = 0;
   float side_ = 0;
@@ -135,7 +137,7 @@ class ComeAndGo final : public LivingWorld {
       free_.push_back(static_cast<std::uint32_t>(boxes.size()));
       boxes.push_back(kEmptyBox);
     }
-    begin("ComeAndGo", std::move(boxes), inputs::cubeRoot(10.0 * bodies));
+    begin("ComeAndGo", boxes, inputs::cubeRoot(10.0 * bodies));
   }
 
  private:

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "broadmark/aabb.h"
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -37,14 +38,11 @@ class BoxArrays {
   void assign(std::span<const Aabb> boxes);
 
  private:
-  struct Free {
-    void operator()(float* memory) const;
-  };
   [[nodiscard]] float* array(int which) const {
     return memory_.get() + static_cast<std::size_t>(which) * stride_;
   }
 
-  std::unique_ptr<float[], Free> memory_;
+  std::unique_ptr<float[], FreeMemory> memory_;
   std::size_t size_ = 0;
   std::size_t stride_ = 0;  ///< floats from one array to the next
 };

@@ -10,6 +10,7 @@
 
 #include "broadmark/aabb.h"
 #include "broadmark/collision_filter.h"
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -93,7 +94,7 @@ class FrameList final : public IndexedFrames {
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
 
   SceneInfo scene_;
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
 };
 
 }  // namespace broadmark

@@ -8,6 +8,7 @@
 #include <new>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #if defined(__linux__)
 #include <sys/mman.h>
@@ -28,10 +29,28 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   void* const memory = std::aligned_alloc(alignment, bytes);
   if (memory == nullptr) throw std::bad_alloc();
 #if defined(MADV_HUGEPAGE)
-  if (bytes >= kHugePage) ::madvise(memory, bytes, MADV_HUGEPAGE);  // else pages are small
+  if (bytes >= kHugePage) {
+    // What was in use before lies in small pages, and would stay there. If this fails, they do.
+    ::madvise(memory, bytes, MADV_DONTNEED);
+    ::madvise(memory, bytes, MADV_HUGEPAGE);
+  }
 #endif
   return memory;
 }
+
+/// Of containers of the standard library, so that millions of entries lie in huge pages.
+template <class T>
+struct LargeAllocator {
+  using value_type = T;
+  LargeAllocator() = default;
+  template <class U>
+  explicit(false) LargeAllocator(const LargeAllocator<U>&) {}
+  T* allocate(std::size_t n) { return static_cast<T*>(allocateLarge(n * sizeof(T))); }
+  void deallocate(T* memory, std::size_t) { std::free(memory); }
+  bool operator==(const LargeAllocator&) const = default;
+};
+template <class T>
+using LargeVector = std::vector<T, LargeAllocator<T>>;
 
 /// A growing array that initialises nothing. It keeps its memory when it shrinks.
 template <class T>

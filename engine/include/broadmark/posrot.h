@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/large_array.h"
 #include "broadmark/pose.h"
 #include "broadmark/recording.h"
 
@@ -56,7 +57,7 @@ class PosrotReader final : public OriginalRecording, public PoseSource {
   std::vector<Aabb> unturned_;
   std::vector<Vec3> half_extents_;
   std::vector<Pose> poses_;
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
 };
 
 /// Writes a .posrot recording; as RecordingWriter, it leaves nothing unless finished.

@@ -20,6 +20,7 @@
 
 #include "broadmark/files.h"
 #include "broadmark/frame.h"
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -121,7 +122,7 @@ class RecordingReader final : public OriginalRecording {
  private:
   std::span<const Aabb> readBoxes(std::uint32_t index) override;
 
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
 };
 
 class BoxRecordingFile;  // a recording of some kind while it is written

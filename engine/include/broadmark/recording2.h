@@ -12,6 +12,7 @@
 
 #include "broadmark/aabb.h"
 #include "broadmark/hasher.h"
+#include "broadmark/large_array.h"
 #include "broadmark/recording.h"
 
 namespace broadmark {
@@ -63,7 +64,7 @@ class Recording2Reader final : public Recording {
 
   RecordingOrigin origin_;
   std::vector<RecordedFrame> index_;
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
   std::vector<std::uint32_t> ids_;
   std::uint32_t changed_ = 0;             ///< so many of them count
   std::optional<std::uint32_t> current_;  ///< the frame that boxes_ and ids_ hold

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "broadmark/frame.h"
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -51,7 +52,7 @@ class SubRecording final : public IndexedFrames {
   IndexedFrames& whole_;
   Part part_;
   SceneInfo scene_;
-  std::vector<Aabb> boxes_;
+  LargeVector<Aabb> boxes_;
 };
 
 /// What a part of a scene is called: "FreeFall case".

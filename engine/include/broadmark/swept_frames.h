@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "broadmark/frame.h"
+#include "broadmark/large_array.h"
 
 namespace broadmark {
 
@@ -49,7 +50,7 @@ class SweptFrames final : public IndexedFrames {
   SceneInfo scene_;
   std::optional<std::uint32_t> last_;  ///< the frame that the following are of; nothing: none
   std::vector<Aabb> before_;           ///< as `frames_` has them
-  std::vector<Aabb> boxes_;            ///< swept
+  LargeVector<Aabb> boxes_;            ///< swept
   bool knows_changed_ = false;
   std::vector<std::uint32_t> moved_;       ///< that changed in `frames_`
   std::vector<std::uint32_t> candidates_;  ///< that changed in it in this frame or the one before
