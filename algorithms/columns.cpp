@@ -325,7 +325,7 @@ bool Columns::copyBoxes(const Frame& frame) {
       }
       // While the copies wait for memory, the next boxes come.
       const auto next = frame.boxes.subspan(first + count);
-      prefetch(next.data(), next.data() + std::min(kBlock, next.size()));
+      prefetchFar(next.data(), next.data() + std::min(kBlock, next.size()));
       forEachCopy(layout, block, count,
                   [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
     }

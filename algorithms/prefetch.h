@@ -27,11 +27,11 @@ inline void prefetchFar(const void* address) {
 
 /// Sends for all of an array, from `begin` up to `end`.
 template <class T>
-void prefetch(const T* begin, const T* end) {
+void prefetchFar(const T* begin, const T* end) {
   constexpr std::size_t kCacheLine = 64;
   const auto* const stop = reinterpret_cast<const char*>(end);
   for (const auto* line = reinterpret_cast<const char*>(begin); line < stop; line += kCacheLine) {
-    prefetch(line);
+    prefetchFar(line);
   }
 }
 

@@ -32,7 +32,7 @@ class alignas(64) Chains {
     if (reinterpret_cast<std::uintptr_t>(end) % kChunkBytes == 0) [[unlikely]]
       lengthen(column);
     *end++ = copy;
-    prefetch(end + kCopiesInLine);  // by the time that it is written to, it is there
+    prefetchFar(end + kCopiesInLine);  // by the time that it is written to, it is there
   }
 
   [[nodiscard]] std::size_t count(std::size_t column) const {
@@ -58,7 +58,7 @@ class alignas(64) Chains {
     std::size_t place = firstPlace(column);
     for (std::size_t left = chains_[column].before; left > 0; left -= kCopies) {
       // Only processors know how far ahead of a loop they look; no further than a chunk, here.
-      prefetch(chunk->next, chunk->next + 1);
+      prefetchFar(chunk->next, chunk->next + 1);
       for (; place < kCopies; ++place) visit(chunk->copies[place]);
       place = 0;
       chunk = chunk->next;
@@ -156,7 +156,7 @@ class ChainsAhead {
     const Chains::Chain& chain = chains_.front().chains_[column_];
     // That the chunk before knows the next one is looked at only now, as it had to come, too.
     chunk_ = chunk_ == nullptr ? chain.first : chunk_->next;
-    if (chunk_ != nullptr) prefetch(chunk_, chunk_ + 1);
+    if (chunk_ != nullptr) prefetchFar(chunk_, chunk_ + 1);
     if (chunk_ == chain.last) {
       chunk_ = nullptr;
       chains_ = chains_.subspan(1);

@@ -77,8 +77,8 @@ void HitSink::takeOneEach() {
 /// Has the boxes decide.
 void HitSink::decide() {
   for (std::size_t k = 0; k < doubts_; ++k) {
-    prefetch(&boxes_[doubtful_[k].a]);
-    prefetch(&boxes_[doubtful_[k].b]);
+    prefetchFar(&boxes_[doubtful_[k].a]);
+    prefetchFar(&boxes_[doubtful_[k].b]);
   }
   Pair* const room = pairs_.room(doubts_);
   std::size_t count = 0;
