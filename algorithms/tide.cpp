@@ -103,7 +103,7 @@ void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& exe
   if (reports_events_) anew_ = withEvents(std::move(anew_));
   anew_->initialize(scene, first, execution);
   if (!reports_events_) findAnew(first.index, first.boxes);
-  grid_.emplace();
+  grid_.emplace(execution.isa());
   buildGrid(first.boxes);
   is_anew_ = true;
   quiet_frames_ = kQuietFrames;

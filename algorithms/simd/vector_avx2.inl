@@ -69,3 +69,16 @@ inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[
                                             _mm256_packs_epi32(hits[2], hits[3]));
   return static_cast<unsigned>(_mm256_movemask_epi8(packed));
 }
+
+inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
+  const __m256i each = _mm256_set1_epi64x(static_cast<std::int64_t>(least));
+  const __m256i highest = _mm256_set1_epi64x(0x0080'8080'8080'8080);
+  const auto* const halves = reinterpret_cast<const __m256i*>(line);
+  unsigned reach = 0;
+  for (int half = 0; half < 2; ++half) {
+    const __m256i rest = _mm256_sub_epi8(_mm256_load_si256(halves + half), each);
+    const __m256i all = _mm256_cmpeq_epi64(_mm256_and_si256(rest, highest), highest);
+    reach |= static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(all))) << 4 * half;
+  }
+  return reach;
+}

@@ -75,3 +75,10 @@ inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[
   }
   return hits;
 }
+
+inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
+  const __m512i each = _mm512_set1_epi64(static_cast<std::int64_t>(least));
+  const __m512i highest = _mm512_set1_epi64(0x0080'8080'8080'8080);
+  const __m512i rest = _mm512_sub_epi8(_mm512_load_si512(line), each);
+  return _mm512_cmpeq_epi64_mask(_mm512_and_si512(rest, highest), highest);
+}

@@ -72,3 +72,17 @@ inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[
   }
   return hits;
 }
+
+inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
+  const uint8x16_t each = vreinterpretq_u8_u64(vdupq_n_u64(least));
+  const uint64x2_t highest = vdupq_n_u64(0x0080'8080'8080'8080);
+  unsigned reach = 0;
+  for (unsigned pair = 0; pair < 3; ++pair) {
+    const uint8x16_t rest = vsubq_u8(vreinterpretq_u8_u64(vld1q_u64(line + 2 * pair)), each);
+    const uint64x2_t all = vceqq_u64(vandq_u64(vreinterpretq_u64_u8(rest), highest), highest);
+    reach |= (static_cast<unsigned>(vgetq_lane_u64(all, 0) & 1) |
+              static_cast<unsigned>(vgetq_lane_u64(all, 1) & 2))
+             << 2 * pair;
+  }
+  return reach;
+}

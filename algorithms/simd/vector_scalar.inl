@@ -76,3 +76,15 @@ inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[
   }
   return hits;
 }
+
+/// Of the numbers in a cache line, at least the first five: bit i is set if the seven lower bytes
+/// of number i reach those of `least`, each of them. All have their highest bits, those of `least`
+/// not.
+inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
+  constexpr std::uint64_t kHighest = 0x0080'8080'8080'8080;
+  unsigned reach = 0;
+  for (unsigned i = 0; i < 5; ++i) {
+    reach |= unsigned{((line[i] - least) & kHighest) == kHighest} << i;
+  }
+  return reach;
+}

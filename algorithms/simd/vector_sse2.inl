@@ -68,3 +68,18 @@ inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[
       _mm_packs_epi16(_mm_packs_epi32(hits[0], hits[1]), _mm_packs_epi32(hits[2], hits[3]));
   return static_cast<unsigned>(_mm_movemask_epi8(packed));
 }
+
+inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
+  const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(least));
+  const auto* const pairs = reinterpret_cast<const __m128i*>(line);
+  std::uint64_t highest = 0;
+  for (int pair = 0; pair < 3; ++pair) {
+    const __m128i rest = _mm_sub_epi8(_mm_load_si128(pairs + pair), each);
+    highest |= std::uint64_t{static_cast<unsigned>(_mm_movemask_epi8(rest))} << 16 * pair;
+  }
+  // Where seven bits are set, adding 1 sets the eighth.
+  const std::uint64_t seven = highest & 0x7F'7F7F'7F7F;
+  const std::uint64_t eighth = (seven + 0x01'0101'0101) & 0x80'8080'8080;
+  // Each of these five bits next to the one before.
+  return static_cast<unsigned>((eighth >> 7) * 0x01'0204'0810 >> 32) & 0x1F;
+}

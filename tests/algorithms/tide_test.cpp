@@ -189,7 +189,7 @@ TEST_F(LooseGridTest, TellsEachEventOnce) {
   constexpr std::size_t kBodies = 300;
   inputs::Random random(3, 0);
   std::vector<Aabb> boxes = anyBoxes(kBodies, random);
-  LooseGrid grid;
+  LooseGrid grid(bestIsa());
   grid.build(boxes);
   for (int frame = 0; frame < 180; ++frame) {
     const std::vector<Aabb> before = boxes;
@@ -202,7 +202,7 @@ TEST_F(LooseGridTest, TellsEachEventOnce) {
 // Crowded cells have many lines.
 TEST_F(LooseGridTest, CopesWithCrowds) {
   std::vector<Aabb> boxes = inputs::identical(700, 0, 1);
-  LooseGrid grid;
+  LooseGrid grid(bestIsa());
   grid.build(boxes);
   for (int frame = 0; frame < 4; ++frame) {
     const std::vector<Aabb> before = boxes;
@@ -219,7 +219,7 @@ TEST_F(LooseGridTest, NeedsNoBounds) {
   for (const inputs::Input& input : inputs::kAll) {
     SCOPED_TRACE(input.name);
     std::vector<Aabb> boxes = input.boxes(100, 0, 1);
-    LooseGrid grid;
+    LooseGrid grid(bestIsa());
     grid.build(boxes);
     for (std::uint32_t frame = 1; frame < 6; ++frame) {
       const std::vector<Aabb> before = boxes;
@@ -235,7 +235,7 @@ TEST_F(LooseGridTest, MayBeEmpty) {
   for (const std::size_t n : {0U, 1U, 2U}) {
     const std::vector<Aabb> nobody(n, kEmptyBox);
     const std::vector<Aabb> all(n, inputs::boxAt({5, 5, 5}, {1, 1, 1}));
-    LooseGrid grid;
+    LooseGrid grid(bestIsa());
     grid.build(nobody);
     step(grid, nobody, all);
     step(grid, all, nobody);

@@ -1,0 +1,10 @@
+#include "tide/kernels.h"
+
+#define BROADMARK_KERNELS "tide/kernels.inl"
+#include "simd/for_each_isa.inl"
+
+namespace broadmark::tide {
+
+const Kernels& kernels(Isa isa) { return simd::kernelsFor(isa); }
+
+}  // namespace broadmark::tide
