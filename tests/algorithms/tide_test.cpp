@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "algorithms/runs.h"
+#include "tide/kernels.h"
 #include "tide/loose_grid.h"
 
 namespace broadmark::tests {
@@ -201,16 +202,73 @@ TEST_F(LooseGridTest, TellsEachEventOnce) {
 
 // Crowded cells have many lines.
 TEST_F(LooseGridTest, CopesWithCrowds) {
-  std::vector<Aabb> boxes = inputs::identical(700, 0, 1);
-  LooseGrid grid(bestIsa());
-  grid.build(boxes);
-  for (int frame = 0; frame < 4; ++frame) {
-    const std::vector<Aabb> before = boxes;
-    for (std::size_t body = 0; body < boxes.size(); body += 50) {
-      boxes[body] = frame % 2 == 0 ? inputs::boxAt({1e6F, 0, 0}, {1, 1, 1}) : boxes[1];
+  for (const Isa isa : supportedIsas()) {
+    SCOPED_TRACE(isaName(isa));
+    std::vector<Aabb> boxes = inputs::identical(700, 0, 1);
+    LooseGrid grid(isa);
+    grid.build(boxes);
+    for (int frame = 0; frame < 4; ++frame) {
+      const std::vector<Aabb> before = boxes;
+      for (std::size_t body = 0; body < boxes.size(); body += 50) {
+        boxes[body] = frame % 2 == 0 ? inputs::boxAt({1e6F, 0, 0}, {1, 1, 1}) : boxes[1];
+      }
+      step(grid, before, boxes);
+      if (HasFailure()) return;
     }
-    step(grid, before, boxes);
-    if (HasFailure()) return;
+  }
+}
+
+// Bounds of any kind: a byte that is one too small is enough to be missed.
+TEST(TideKernels, FindThoseThatReach) {
+  constexpr std::size_t kLooks = 2000;
+  inputs::Random random(4, 0);
+  const auto anyBounds = [&](int most) {
+    tide::Bounds bounds = tide::kSomebody;
+    for (const int byte : {0, 1, 2, 4, 5, 6}) {
+      bounds |= static_cast<tide::Bounds>(random.integer(0, most)) << 8 * byte;
+    }
+    return bounds;
+  };
+  std::vector<tide::Line> lines(kLooks);
+  std::vector<const tide::Line*> into;
+  std::vector<tide::Bounds> least;
+  for (tide::Line& line : lines) {
+    const int bodies = random.integer(0, tide::Line::kPlaces);
+    for (int place = 0; place < bodies; ++place)
+      line.bounds[place] = tide::kNobody | anyBounds(127);
+    if (random.integer(0, 3) == 0) line.next = 7;
+    into.push_back(&line);
+    least.push_back(anyBounds(random.integer(0, 127)) |
+                    static_cast<tide::Bounds>(random.integer(0, 255)) << 56);
+  }
+  constexpr std::uint32_t kFirstLook = 5;
+  for (const Isa isa : supportedIsas()) {
+    SCOPED_TRACE(isaName(isa));
+    std::vector<tide::Hit> hits(kLooks);
+    std::vector<std::uint32_t> followed(kLooks);
+    const tide::Kernels::Found found = tide::kernels(isa).look(
+        into.data(), least.data(), kLooks, kFirstLook, hits.data(), followed.data());
+    std::size_t hit = 0;
+    std::size_t next = 0;
+    for (std::uint32_t look = 0; look < kLooks; ++look) {
+      std::uint32_t places = 0;
+      for (std::uint32_t place = 0; place < tide::Line::kPlaces; ++place) {
+        if (tide::reaches(lines[look].bounds[place], least[look])) places |= 1U << place;
+      }
+      if (places != 0) {
+        ASSERT_LT(hit, found.hits);
+        EXPECT_EQ(hits[hit].line, &lines[look]);
+        EXPECT_EQ(hits[hit].look, kFirstLook + look);
+        EXPECT_EQ(hits[hit++].places, places);
+      }
+      if (lines[look].next != tide::kNowhere) {
+        ASSERT_LT(next, found.followed);
+        EXPECT_EQ(followed[next++], kFirstLook + look);
+      }
+    }
+    EXPECT_EQ(hit, found.hits);
+    EXPECT_EQ(next, found.followed);
+    EXPECT_GT(hit, kLooks / 50) << "or too little was tested";
   }
 }
 
