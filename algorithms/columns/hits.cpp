@@ -15,16 +15,6 @@
 
 namespace broadmark::columns {
 
-namespace {
-
-/// orderedPair() in arithmetic: compilers make a branch of it, which is wrong half of the time.
-Pair withoutBranch(std::uint32_t i, std::uint32_t j) {
-  const std::uint32_t smaller = j ^ ((i ^ j) & (0U - std::uint32_t{i < j}));
-  return {smaller, i ^ j ^ smaller};
-}
-
-}  // namespace
-
 void HitSink::flush() {
   takeAll();
   decide();
@@ -63,7 +53,7 @@ void HitSink::takeOneEach() {
                          unsigned{b.first <= a.last} & unsigned{reportedHere(a.body, b.body)};
     const unsigned shared = unsigned{a.first == b.last} | unsigned{b.first == a.last} |
                             unsigned{sharesStep(b.key, limitsOf(a.key))};
-    const Pair pair = withoutBranch(bodyNumber(a.body), bodyNumber(b.body));
+    const Pair pair = orderedPair(bodyNumber(a.body), bodyNumber(b.body));
     *room = pair;
     room += hit & ~shared;
     *doubtful = pair;

@@ -92,8 +92,8 @@ class Cells {
     const Extent extent = extentOf(box);
     return cellOf(extent, levelOf(extent));
   }
-  /// The bounds of an extent in the cell of a box, which is part of it.
-  [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& box) const;
+  /// The bounds of an extent in the cell of a box, which is part of it and of that level.
+  [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& box, std::uint32_t level) const;
   static Bounds boundsOnAxes(Steps low, Steps high);
 
   /// From now on there is such a box.
@@ -172,8 +172,7 @@ inline Bounds Cells::boundsOnAxes(Steps low, Steps high) {
 #endif
 }
 
-inline Bounds Cells::boundsOf(const Extent& extent, const Extent& box) const {
-  const std::uint32_t level = levelOf(box);
+inline Bounds Cells::boundsOf(const Extent& extent, const Extent& box, std::uint32_t level) const {
   const Level& at = levels_[level];
   const int to_level = shiftOf(level) - kCellBits;
   const Steps cell = box.min >> shiftOf(level);

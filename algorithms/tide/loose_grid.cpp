@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
 #include <map>
 
 #include "prefetch.h"
@@ -24,13 +25,13 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
     if (isEmpty(box)) continue;
     const Extent extent = cells_.extentOf(box);
     lines_.insert(bodies_[body].cell(), static_cast<std::uint32_t>(body),
-                  cells_.boundsOf(extent, extent));
+                  cells_.boundsOf(extent, extent, Cells::levelOf(extent)));
   }
   frame_ = 1;
 }
 
 void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
-  moves_.assign(bodies.begin(), bodies.end());
+  moves_.resize(bodies.size());
   lines_.makeRoom(bodies.size());  // none may move while there are looks into it
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (i + kPrefetchFarAhead < bodies.size()) {
@@ -43,13 +44,15 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
     }
     const std::uint32_t body = bodies[i];
     const Aabb& box = boxes[body];
+    const Extent extent = cells_.extentOf(box);
+    std::uint32_t level = 0;
     std::uint32_t cell = kNowhere;
     if (!isEmpty(box)) {
-      const Extent extent = cells_.extentOf(box);
-      const std::uint32_t level = Cells::levelOf(extent);
+      level = Cells::levelOf(extent);
       cell = cells_.cellOf(extent, level);
       cells_.reach(extent, level);
     }
+    moves_[i] = {extent, body, level};
     bodies_[body].move(box, cell, frame_);
   }
 }
@@ -76,9 +79,9 @@ void LooseGrid::search(const CollisionFilter& filter, PairBuffer& began, PairBuf
 
 /// The moves from the given one on.
 void LooseGrid::takeMoves(std::size_t first, Batch& batch) {
-  const std::span<const std::uint32_t> moves = moves_;
+  const std::span<const Move> moves = moves_;
   batch.moves = moves.subspan(first, std::min(Batch::kMoves, moves.size() - first));
-  for (const std::uint32_t body : batch.moves) prefetch(&bodies_[body]);
+  for (const Move& move : batch.moves) prefetch(&bodies_[move.body]);
 }
 
 /// Finds out what is to be done.
@@ -91,13 +94,13 @@ void LooseGrid::prepare(Batch& batch) const {
 }
 
 /// Adds where to look for whose overlap with a body may change; returns what its bounds become.
-Bounds LooseGrid::prepareMove(std::uint32_t index, Batch& batch) const {
-  const Body& body = bodies_[index];
+Bounds LooseGrid::prepareMove(const Move& move, Batch& batch) const {
+  const Body& body = bodies_[move.body];
   const bool was = body.cellBefore() != kNowhere;
   const bool is = body.cell() != kNowhere;
   if (!was && !is) return kNobody;
   const Extent before = cells_.extentOf(body.before);
-  const Extent now = cells_.extentOf(body.box);
+  const Extent& now = move.to;
   // Around both places at once, unless it has moved far.
   const Steps far = 1 << Cells::kCellBits | now.edges();
   const auto is_near = [&](Steps from, Steps to) {
@@ -108,12 +111,12 @@ Bounds LooseGrid::prepareMove(std::uint32_t index, Batch& batch) const {
   // In a cell that it does not leave it is found at both places.
   const Extent& found = body.cell() == body.cellBefore() ? both : now;
   if (near) {
-    lookAround({index, kBeginnings | kEnds}, both, batch);
+    lookAround({move.body, kBeginnings | kEnds}, both, batch);
   } else {
-    if (was) lookAround({index, kEnds}, before, batch);
-    if (is) lookAround({index, kBeginnings}, now, batch);
+    if (was) lookAround({move.body, kEnds}, before, batch);
+    if (is) lookAround({move.body, kBeginnings}, now, batch);
   }
-  return cells_.boundsOf(found, now);
+  return cells_.boundsOf(found, now, move.level);
 }
 
 /// Adds looks into the cells where somebody may overlap the extent.
@@ -176,17 +179,14 @@ void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std:
 /// of the next one that is.
 inline void LooseGrid::lookIntoEight(const Cells::Level& at, const TwoCells& cells,
                                      std::size_t search, Looks& looks) const {
-  const Line* const level = &lines_[at.first_cell];
-  const std::array<const Line*, 2> x = {level + cells.at[0], level + cells.next[0]};
-  const std::array<std::ptrdiff_t, 2> y = {cells.at[1], cells.next[1]};
-  const std::array<std::ptrdiff_t, 2> z = {cells.at[2], cells.next[2]};
+  static_assert(sizeof(const Line*) == sizeof(std::uint64_t));
+  const Two x = bytesOf<0>(cells) + reinterpret_cast<std::uintptr_t>(&lines_[at.first_cell]);
+  const Two y = bytesOf<1>(cells);
+  const Two z = bytesOf<2>(cells);
   constexpr std::int32_t kCell = 1 << Cells::kCellBits;
-  const Bounds least = Cells::boundsOnAxes(cells.high, cells.low);
-  const Bounds least_next = Cells::boundsOnAxes(cells.high - kCell, cells.low - kCell);
-  const Bounds common = Looks::withSearch(kSomebody, search);
-  const std::array<Bounds, 2> least_x = {ofAxis(0, least) | common, ofAxis(0, least_next) | common};
-  const std::array<Bounds, 2> least_y = {ofAxis(1, least), ofAxis(1, least_next)};
-  const std::array<Bounds, 2> least_z = {ofAxis(2, least), ofAxis(2, least_next)};
+  const Two least = {Cells::boundsOnAxes(cells.high, cells.low),
+                     Cells::boundsOnAxes(cells.high - kCell, cells.low - kCell)};
+  const Two least_x = ofAxis(0, least) | Looks::withSearch(kSomebody, search);
 
   const std::size_t row = 1 - cells.is_two[0];
   const std::size_t layer = row << -cells.is_two[1];
@@ -194,14 +194,14 @@ inline void LooseGrid::lookIntoEight(const Cells::Level& at, const TwoCells& cel
   const Line** const to_cells = looks.cells.data() + looks.count;
   Bounds* const to_least = looks.least.data() + looks.count;
   looks.count += layer << -cells.is_two[2];
-  for (std::size_t k = 0; k < 2; ++k) {
-    for (std::size_t j = 0; j < 2; ++j) {
-      for (std::size_t i = 0; i < 2; ++i) {
-        const std::size_t to = k * layer + j * row + i;
-        to_cells[to] = x[i] + (y[j] + z[k]);
-        to_least[to] = least_x[i] | (least_y[j] | least_z[k]);
-        prefetchFar(to_cells[to]);
-      }
+  for (int k = 0; k < 2; ++k) {
+    for (int j = 0; j < 2; ++j) {
+      const std::size_t to = (k != 0 ? layer : 0) + (j != 0 ? row : 0);
+      const Two lines = x + twice(y[j]) + twice(z[k]);
+      const Two bounds = least_x | ofAxis(1, twice(least[j])) | ofAxis(2, twice(least[k]));
+      std::memcpy(to_cells + to, &lines, sizeof(lines));
+      std::memcpy(to_least + to, &bounds, sizeof(bounds));
+      for (int i = 0; i < 2; ++i) prefetchFar(reinterpret_cast<const void*>(lines[i]));
     }
   }
 }
@@ -217,7 +217,7 @@ void LooseGrid::sendForLinesBehind(const Batch& batch) const {
 /// Puts bodies into their cells.
 void LooseGrid::makeMoves(const Batch& batch) {
   for (std::size_t i = 0; i < batch.moves.size(); ++i) {
-    const std::uint32_t index = batch.moves[i];
+    const std::uint32_t index = batch.moves[i].body;
     const Body& body = bodies_[index];
     if (body.cell() == body.cellBefore()) {
       if (body.cell() == kNowhere) continue;
@@ -287,27 +287,42 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
 std::uint32_t LooseGrid::change(const Search& search, const Candidate& candidate) const {
   const Body& body = bodies_[search.body];
   const Body& other = bodies_[candidate.other];
-  const bool moved = other.frame() == frame_;
-  if (moved && candidate.other > search.body) return 0;
-  const bool was = overlapOnAxes(body.before, moved ? other.before : other.box);
-  const bool is = overlapOnAxes(body.box, other.box);
-  if (was == is) return 0;
+  const Aabb* before = &other.box;
   std::uint32_t wanted = search.wanted;
-  // A cell that it left tells of ends only, one into which it came of beginnings only.
-  if (moved && other.cellBefore() != other.cell()) {
-    wanted &= lines_.numberOf(candidate.cell) == other.cell() ? kBeginnings : kEnds;
+  if (other.frame() == frame_) [[unlikely]] {
+    if (candidate.other > search.body) return 0;
+    before = &other.before;
+    // A cell that it left tells of ends only, one into which it came of beginnings only.
+    if (other.cellBefore() != other.cell()) {
+      wanted &= lines_.numberOf(candidate.cell) == other.cell() ? kBeginnings : kEnds;
+    }
   }
-  return wanted & (is ? kBeginnings : kEnds);
+  const unsigned was{overlapOnAxes(body.before, *before)};
+  const unsigned is{overlapOnAxes(body.box, other.box)};
+  static_assert(kBeginnings == 1 && kEnds == 2);
+  return wanted & ((is & ~was) | (was & ~is) << 1);
 }
 
+/// Nobody could predict which these are, so all are written, and counted only if they are some.
 void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
                             PairBuffer& ended) {
+  const bool wants_all = filter.wantsAll();
+  Pair* const first_began = began.room(batch.candidates.size());
+  Pair* const first_ended = ended.room(batch.candidates.size());
+  Pair* next_began = first_began;
+  Pair* next_ended = first_ended;
   for (const Candidate& candidate : batch.candidates) {
     const Search& search = batch.searches[candidate.search];
-    const std::uint32_t changed = change(search, candidate);
-    if (changed == 0 || !filter.wanted(search.body, candidate.other)) continue;
-    (changed == kBeginnings ? began : ended).add(search.body, candidate.other);
+    std::uint32_t changed = change(search, candidate);
+    if (!wants_all && changed != 0 && !filter.wanted(search.body, candidate.other)) changed = 0;
+    const Pair pair = orderedPair(search.body, candidate.other);
+    *next_began = pair;
+    *next_ended = pair;
+    next_began += changed & kBeginnings;
+    next_ended += changed / kEnds;
   }
+  began.advance(static_cast<std::size_t>(next_began - first_began));
+  ended.advance(static_cast<std::size_t>(next_ended - first_ended));
   work_.tests += batch.candidates.size();
 }
 
@@ -317,7 +332,7 @@ void LooseGrid::settle() {
     lines_.remove(left_[i].cell, left_[i].body);
   }
   left_.clear();
-  moves_.clear();
+  moves_.resize(0);
   ++frame_;
 }
 
@@ -357,7 +372,7 @@ std::string LooseGrid::validate() const {
     if (!isEveryAxis(extent.edges() <= cells_.level(Cells::levelOf(extent)).reach)) {
       return fmt::format("body {} reaches farther than its level", body);
     }
-    const Bounds bounds = cells_.boundsOf(extent, extent) & ~kNobody;
+    const Bounds bounds = cells_.boundsOf(extent, extent, Cells::levelOf(extent)) & ~kNobody;
     bool is_there = false;
     for (std::uint32_t line = of.cell(); line != kNowhere; line = lines_[line].next) {
       for (std::uint32_t place = 0; place < lines_[line].count(); ++place) {

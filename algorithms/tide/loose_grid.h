@@ -87,6 +87,13 @@ class LooseGrid {
     }
   };
 
+  /// Where a body is now.
+  struct Move {
+    Extent to;
+    std::uint32_t body;
+    std::uint32_t level;
+  };
+
   static constexpr std::uint32_t kBeginnings = 1;
   static constexpr std::uint32_t kEnds = 2;
 
@@ -128,7 +135,7 @@ class LooseGrid {
   /// A few moves, and what is to be done for them.
   struct Batch {
     static constexpr std::size_t kMoves = 4;
-    std::span<const std::uint32_t> moves;
+    std::span<const Move> moves;
     std::array<Bounds, kMoves> bounds{};  ///< what they become
     std::array<Search, 2 * kMoves> searches{};
     std::size_t search_count = 0;
@@ -148,11 +155,21 @@ class LooseGrid {
   static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
     return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
   }
-  static Bounds ofAxis(int axis, Bounds bounds) { return bounds & 0xFF'0000'00FF << 8 * axis; }
+  /// Two numbers side by side, of a cell and the next one on an axis.
+  using Two = std::uint64_t __attribute__((vector_size(16)));
+  static Two twice(std::uint64_t number) { return Two{number, number}; }
+  static Two ofAxis(int axis, Two bounds) { return bounds & 0xFF'0000'00FF << 8 * axis; }
+  /// What an axis adds to the address of a line.
+  template <int axis>
+  static Two bytesOf(const TwoCells& cells) {
+    const auto numbers =
+        __builtin_shufflevector(cells.at, cells.next, axis, axis, 4 + axis, 4 + axis);
+    return (std::bit_cast<Two>(numbers) >> 32) * sizeof(Line);
+  }
 
   void takeMoves(std::size_t first, Batch& batch);
   void prepare(Batch& batch) const;
-  Bounds prepareMove(std::uint32_t index, Batch& batch) const;
+  Bounds prepareMove(const Move& move, Batch& batch) const;
   void lookAround(Search search, const Extent& extent, Batch& batch) const;
   void lookAroundFarOff(std::uint32_t level, const Extent& extent, std::size_t search,
                         Looks& looks) const;
@@ -171,7 +188,7 @@ class LooseGrid {
   Cells cells_;
   Lines lines_;
   LargeArray<Body> bodies_;
-  std::vector<std::uint32_t> moves_;  ///< the bodies of this frame's moves, ascending
+  LargeArray<Move> moves_;  ///< of this frame, by body
   std::array<Batch, kSteps> under_way_;
   LargeArray<Hit> hits_;
   LargeArray<std::uint32_t> followed_;    ///< looks into lines behind which there are others

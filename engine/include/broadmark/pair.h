@@ -20,8 +20,10 @@ struct Pair {
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
 
+/// In arithmetic: compilers make a branch of a comparison, which is wrong half of the time.
 constexpr Pair orderedPair(std::uint32_t i, std::uint32_t j) {
-  return i < j ? Pair{i, j} : Pair{j, i};
+  const std::uint32_t smaller = j ^ ((i ^ j) & (0U - std::uint32_t{i < j}));
+  return {smaller, i ^ j ^ smaller};
 }
 
 /// A contiguous run of pairs, borrowed.
