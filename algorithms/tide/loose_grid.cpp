@@ -258,7 +258,8 @@ void LooseGrid::lookIntoCells(Batch& batch) {
   addCandidates(batch, hits);
 }
 
-/// All but the bodies that are looking. In a line there are seldom more than two.
+/// All but the bodies that are looking. In a line there are seldom more than two, and nobody could
+/// predict whether there are.
 void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
   batch.candidates.resize(hits * Line::kPlaces + 1);  // the last one is written, and not kept
   Candidate* end = batch.candidates.data();
@@ -269,6 +270,7 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
     const std::uint32_t body = batch.searches[search].body;
     std::uint32_t places = hit.places;
     const auto add = [&] {
+      // Where nobody is left the first one is looked at again, and not kept.
       const std::uint32_t any = places | (hit.places & (0U - unsigned{places == 0}));
       const std::uint32_t other = hit.line->bodies[std::countr_zero(any)];
       prefetchFar(&bodies_[other]);

@@ -113,17 +113,20 @@ class LooseGrid {
       cells.resize(count + more);
       least.resize(count + more);
     }
-    static Bounds withSearch(Bounds least, std::size_t search) { return least | search << 56; }
+    static constexpr int kSearchBegins = 56;  ///< bits below it
+    static Bounds withSearch(Bounds least, std::size_t search) {
+      return least | search << kSearchBegins;
+    }
     [[nodiscard]] std::uint32_t searchOf(std::size_t look) const {
-      return static_cast<std::uint32_t>(least[look] >> 56);
+      return static_cast<std::uint32_t>(least[look] >> kSearchBegins);
     }
   };
   /// A cell on each axis, and the next one as far as it is wanted.
   struct TwoCells {
-    Steps at;    ///< what it adds to the number of a cell
-    Steps next;  ///< the same of the next one
-    Steps is_two;
-    Steps low;  ///< what is looked for, counted from the beginning of the first one
+    Steps at;      ///< what it adds to the number of a cell
+    Steps next;    ///< the same of the next one
+    Steps is_two;  ///< -1 on axes where there is a next one, else 0
+    Steps low;     ///< what is looked for, counted from the beginning of the first one
     Steps high;
   };
   /// Somebody, found in a cell, who may overlap a body.

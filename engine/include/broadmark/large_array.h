@@ -38,7 +38,7 @@ inline void* allocateLarge(std::size_t bytes, std::size_t alignment = 64) {
   return memory;
 }
 
-/// Of containers of the standard library, so that millions of entries lie in huge pages.
+/// For containers of the standard library: large ones, too, lie in huge pages then.
 template <class T>
 struct LargeAllocator {
   using value_type = T;
