@@ -201,7 +201,7 @@ inline void LooseGrid::lookIntoEight(const Cells::Level& at, const TwoCells& cel
       const Two bounds = least_x | ofAxis(1, twice(least[j])) | ofAxis(2, twice(least[k]));
       std::memcpy(to_cells + to, &lines, sizeof(lines));
       std::memcpy(to_least + to, &bounds, sizeof(bounds));
-      for (int i = 0; i < 2; ++i) prefetchFar(reinterpret_cast<const void*>(lines[i]));
+      for (int i = 0; i < 2; ++i) prefetchFar(std::bit_cast<const Line*>(lines[i]));
     }
   }
 }

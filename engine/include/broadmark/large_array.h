@@ -63,6 +63,7 @@ class LargeArray {
     if (size > capacity_) {
       // Growing again by a little each time must not mean new memory each time.
       const std::size_t capacity = size + size / 8 + 64;
+      // NOLINTNEXTLINE(bugprone-sizeof-expression): where entries are pointers, of a pointer
       std::unique_ptr<T[], FreeMemory> bigger(static_cast<T*>(allocateLarge(capacity * sizeof(T))));
       for (std::size_t i = 0; i < size_; ++i) bigger[i] = memory_[i];
       memory_ = std::move(bigger);
