@@ -25,7 +25,7 @@ inline void prefetchFar(const void* address) {
   asm volatile("");
 }
 
-/// Sends for all of an array, from `begin` up to `end`.
+/// The same for all of an array, from `begin` up to `end`.
 template <class T>
 void prefetchFar(const T* begin, const T* end) {
   constexpr std::size_t kCacheLine = 64;

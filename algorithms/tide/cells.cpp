@@ -3,6 +3,7 @@
 #include "tide/cells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -165,20 +166,17 @@ Steps Cells::wrappedFarOff(Steps from_first, const Level& at) {
   return from_first;
 }
 
-Cells::Surroundings Cells::surroundings(std::uint32_t level, const Extent& extent) const {
-  const Level& at = levels_[level];
-  const int shift = shiftOf(level);
+Cells::Surroundings Cells::surroundings(const Extent& extent, std::uint32_t level) const {
   constexpr std::int32_t kFarOff = std::numeric_limits<std::int32_t>::max();
-  const Steps first = (extent.min - at.reach) >> shift;
-  const Steps last = extent.max >> shift;
-  const int to_level = shift - kCellBits;
-  const Steps begin = first << kCellBits;
+  const Level& at = levels_[level];
+  const auto [first, last] = rangeAround(extent, level);
+  const Extent in_first = countedFrom(first, extent, level);
   // Beyond the bulk bounds tell nothing.
   const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
   return {.first = wrapped(first, at),
           .counts = smaller(last - first + 1, at.counts),  // all there are, once each
-          .low = in_bulk & ((extent.min >> to_level) - begin),
-          .high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kFarOff};
+          .low = in_bulk & in_first.min,
+          .high = in_bulk ? in_first.max : Steps{} + kFarOff};
 }
 
 Aabb Cells::boxOf(Steps cell, std::uint32_t level) const {

@@ -15,6 +15,7 @@
 // Detection", 2005, 7.2.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -51,6 +52,7 @@ inline constexpr Bounds kSomebody = Bounds{1} << 24;
 /// A byte that is too small takes its highest bit away.
 inline bool reaches(Bounds bounds, Bounds least) { return ((bounds - least) & kNobody) == kNobody; }
 
+/// The cells of all levels, numbered one after the other.
 class Cells {
  public:
   static constexpr int kCellBits = 6;   ///< of the steps in a cell of level 0
@@ -65,7 +67,12 @@ class Cells {
     std::uint32_t first_cell = 0;
   };
 
-  /// The cells of a level where somebody may overlap an extent.
+  /// In which cells of a level somebody may overlap an extent, counted from where steps begin.
+  struct Range {
+    Steps first;
+    Steps last;
+  };
+  /// These cells, each of them once, and the extent there.
   struct Surroundings {
     Steps first;   ///< counted from the level's first cell; beyond the last one they begin anew
     Steps counts;  ///< how many on each axis
@@ -108,7 +115,17 @@ class Cells {
   static int shiftOf(std::uint32_t level) {
     return kCellBits + kLevelBits * static_cast<int>(level);
   }
-  [[nodiscard]] Surroundings surroundings(std::uint32_t level, const Extent& extent) const;
+  [[nodiscard]] Range rangeAround(const Extent& extent, std::uint32_t level) const {
+    const int shift = shiftOf(level);
+    return {(extent.min - levels_[level].reach) >> shift, extent.max >> shift};
+  }
+  /// The extent counted from the beginning of a cell of this level, 64 to a cell.
+  static Extent countedFrom(Steps cell, const Extent& extent, std::uint32_t level) {
+    const int to_level = shiftOf(level) - kCellBits;
+    const Steps begin = cell << kCellBits;
+    return {(extent.min >> to_level) - begin, (extent.max >> to_level) - begin};
+  }
+  [[nodiscard]] Surroundings surroundings(const Extent& extent, std::uint32_t level) const;
 
   /// The box around a cell, which is counted from where steps begin.
   [[nodiscard]] Aabb boxOf(Steps cell, std::uint32_t level) const;
@@ -174,16 +191,14 @@ inline Bounds Cells::boundsOnAxes(Steps low, Steps high) {
 
 inline Bounds Cells::boundsOf(const Extent& extent, const Extent& box, std::uint32_t level) const {
   const Level& at = levels_[level];
-  const int to_level = shiftOf(level) - kCellBits;
   const Steps cell = box.min >> shiftOf(level);
-  const Steps begin = cell << kCellBits;
   // Who looks into a cell takes it for one in the bulk.
   const Steps from_first = cell - at.first;
   const Steps in_bulk =
       (from_first >= 0) & (from_first < at.counts) & (extent.min >> shiftOf(level) == cell);
-  const Steps low = in_bulk & ((extent.min >> to_level) - begin);
-  const Steps high = in_bulk ? (extent.max >> to_level) - begin : Steps{} + kLastInCell;
-  return kNobody | kSomebody | boundsOnAxes(low, high);
+  const Extent in_cell = countedFrom(cell, extent, level);
+  return kNobody | kSomebody |
+         boundsOnAxes(in_bulk & in_cell.min, in_bulk ? in_cell.max : Steps{} + kLastInCell);
 }
 
 }  // namespace broadmark::tide

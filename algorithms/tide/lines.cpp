@@ -3,7 +3,6 @@
 #include "tide/lines.h"
 
 #include <bit>
-#include <string>
 #include <utility>
 
 namespace broadmark::tide {

@@ -126,22 +126,19 @@ void LooseGrid::lookAround(Search search, const Extent& extent, Batch& batch) co
   for (std::uint32_t levels = cells_.usedLevels(); levels != 0; levels &= levels - 1) {
     const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
     const Cells::Level& at = cells_.level(level);
-    const int shift = Cells::shiftOf(level);
-    const Steps first = (extent.min - at.reach) >> shift;
-    const Steps last = extent.max >> shift;
+    const auto [first, last] = cells_.rangeAround(extent, level);
     // Nearly always: no more than two on each axis, all of them in the bulk.
     if (isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
         [[likely]] {
       const Steps number_of_first = (first - at.first) * at.strides;
       const Steps is_two = last > first;
-      const int to_level = shift - Cells::kCellBits;
-      const Steps begin = first << Cells::kCellBits;
+      const Extent in_first = Cells::countedFrom(first, extent, level);
       lookIntoEight(at,
                     {.at = number_of_first,
                      .next = number_of_first + (at.strides & is_two),
                      .is_two = is_two,
-                     .low = (extent.min >> to_level) - begin,
-                     .high = (extent.max >> to_level) - begin},
+                     .low = in_first.min,
+                     .high = in_first.max},
                     number, batch.looks);
     } else {
       lookAroundFarOff(level, extent, number, batch.looks);
@@ -152,7 +149,7 @@ void LooseGrid::lookAround(Search search, const Extent& extent, Batch& batch) co
 void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std::size_t search,
                                  Looks& looks) const {
   const Cells::Level& at = cells_.level(level);
-  const Cells::Surroundings around = cells_.surroundings(level, extent);
+  const Cells::Surroundings around = cells_.surroundings(extent, level);
   for (std::int32_t z = 0; z < around.counts[2]; z += 2) {
     for (std::int32_t y = 0; y < around.counts[1]; y += 2) {
       for (std::int32_t x = 0; x < around.counts[0]; x += 2) {
