@@ -53,7 +53,7 @@ constexpr std::size_t kBlock = BoxBlock::kBoxes;
 constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
 /// Rows whose boxes are looked at together: more where boxes are past the caches.
 constexpr std::size_t kRowsPerLook = Kernels::kSweptRows;
-constexpr std::size_t kRowsPerLookPastCaches = 16 * kRowsPerLook;
+constexpr std::size_t kRowsPerLookPastCaches = 64 * kRowsPerLook;
 
 /// What there was to do, for the counters.
 struct Done {
@@ -193,7 +193,8 @@ class Check final : public ColumnVisitor {
     BoxBlock block;
     for (const MarkedBody body : bodies) {
       kernels_.find_steps(&boxes_[bodyNumber(body)], &body, 1, world.layout.scales(), block);
-      forEachCopy(world.layout, block, 1, [&](std::size_t column, const Copy& copy) {
+      expected[block.columns[0]].push_back(body);
+      forEachOtherCopy(world.layout, block, [&](std::size_t column, const Copy& copy) {
         expected[column].push_back(copy.body);
       });
     }
@@ -312,24 +313,24 @@ bool Columns::copyBoxes(const Frame& frame) {
     const auto [begin, end] = share(blocks, team().size(), worker);
     BoxBlock block;
     std::array<MarkedBody, kBlock> bodies;
-    for (std::size_t k = begin; k < end && chains.leastCount() <= limit; ++k) {
+    std::size_t copies = 0;
+    for (std::size_t k = begin; k < end && copies <= limit; ++k) {
       const std::size_t first = k * kBlock;
       const std::size_t count = std::min(kBlock, boxes_.size() - first);
       const Aabb* const boxes = frame.boxes.data() + first;
       std::iota(bodies.begin(), bodies.end(), static_cast<MarkedBody>(first));
       kernels_->find_steps(boxes, bodies.data(), count, layout.scales(), block);
-      if (past_caches) {
-        copyPastCaches(boxes, count * sizeof(Aabb), boxes_.data() + first);
-      } else {
-        std::copy_n(boxes, count, boxes_.data() + first);
-      }
       // While the copies wait for memory, the next boxes come.
       const auto next = frame.boxes.subspan(first + count);
       prefetchFar(next.data(), next.data() + std::min(kBlock, next.size()));
-      forEachCopy(layout, block, count,
-                  [&](std::size_t column, const Copy& copy) { chains.append(column, copy); });
+      copies += appendCopies(layout, block, count, chains);
+      if (past_caches) {
+        kernels_->copy_past_caches(boxes, count, boxes_.data() + first);
+      } else {
+        std::copy_n(boxes, count, boxes_.data() + first);
+      }
     }
-    if (past_caches) showCopiesPastCaches();
+    if (past_caches) showWritesPastCaches();
   });
   std::size_t copies = 0;
   for (const Chains& chains : chains_) copies += chains.count();

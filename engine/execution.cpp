@@ -61,7 +61,8 @@ bool isaSupported(Isa isa) {
     case Isa::avx512:
       return isaSupported(Isa::avx2) && __builtin_cpu_supports("avx512f") != 0 &&
              __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0 &&
-             __builtin_cpu_supports("avx512vl") != 0;
+             __builtin_cpu_supports("avx512vl") != 0 && __builtin_cpu_supports("avx512cd") != 0 &&
+             __builtin_cpu_supports("bmi2") != 0;
 #elif defined(__aarch64__)
     case Isa::neon:
       return true;  // part of every such processor

@@ -25,14 +25,13 @@ class alignas(64) Chains {
     chains_.assign(columns, {});
     ends_.assign(columns, nullptr);
     if (slabs_.empty()) slabs_.emplace_back(kFewestInSlab);
-    slab_ = used_in_slab_ = used_before_ = 0;
+    slab_ = used_in_slab_ = 0;
   }
-  void append(std::size_t column, const Copy& copy) {
-    Copy*& end = ends_[column];
-    if (reinterpret_cast<std::uintptr_t>(end) % kChunkBytes == 0) [[unlikely]]
-      lengthen(column);
-    *end++ = copy;
-    prefetchFar(end + kCopiesInLine);  // by the time that it is written to, it is there
+  void append(std::size_t column, const Copy& copy) { append(ends_.data(), column, copy); }
+  /// Appends `count` copies, each to its column.
+  void append(const std::uint32_t* columns, const Copy* copies, std::size_t count) {
+    Copy** const ends = ends_.data();
+    for (std::size_t k = 0; k < count; ++k) append(ends, columns[k], copies[k]);
   }
 
   [[nodiscard]] std::size_t count(std::size_t column) const {
@@ -45,12 +44,6 @@ class alignas(64) Chains {
     for (std::size_t column = 0; column < chains_.size(); ++column) copies += count(column);
     return copies;
   }
-  /// As many or fewer, known at once: the first and the last chunk of a chain may be nearly empty.
-  [[nodiscard]] std::size_t leastCount() const {
-    const std::size_t chunks = used_before_ + used_in_slab_;
-    return chunks > 2 * chains_.size() ? (chunks - 2 * chains_.size()) * kCopies : 0;
-  }
-
   /// Calls visit(copy) for each copy in a column, in the order in which they came.
   template <class Visit>
   void forEach(std::size_t column, Visit visit) const {
@@ -98,7 +91,16 @@ class alignas(64) Chains {
   /// copies go would lie a multiple of 2 KiB apart, where they push each other out of the caches.
   static std::size_t firstPlace(std::size_t column) { return column * 29 % kCopies; }
 
-  void lengthen(std::size_t column) {
+  void append(Copy** ends, std::size_t column, const Copy& copy) {
+    if (reinterpret_cast<std::uintptr_t>(ends[column]) % kChunkBytes == 0) [[unlikely]]
+      lengthen(column);
+    Copy* const end = ends[column]++;
+    *end = copy;
+    prefetchFar(end + 1 + kCopiesInLine);  // by the time that it is written to, it is there
+  }
+
+  // Were it part of the loops that append, they would have no registers left.
+  [[gnu::noinline]] void lengthen(std::size_t column) {
     Chunk* const chunk = newChunk();
     Chain& chain = chains_[column];
     std::size_t place = 0;
@@ -115,7 +117,6 @@ class alignas(64) Chains {
 
   Chunk* newChunk() {
     if (used_in_slab_ == slabs_[slab_].size) {
-      used_before_ += used_in_slab_;
       used_in_slab_ = 0;
       if (++slab_ == slabs_.size())
         slabs_.emplace_back(std::min(2 * slabs_.back().size, kMostInSlab));
@@ -138,7 +139,6 @@ class alignas(64) Chains {
   std::vector<Slab> slabs_;
   std::size_t slab_ = 0;          ///< the one that chunks are taken from
   std::size_t used_in_slab_ = 0;  ///< chunks
-  std::size_t used_before_ = 0;   ///< in the slabs before it
 };
 
 /// Sends for the copies of a column, a chunk at a time, while something else is computed.

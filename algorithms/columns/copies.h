@@ -5,7 +5,8 @@
 // 255. A copy's limits are the bytes that another copy's key may have at most: its own last steps,
 // and its first steps counted down. So two copies overlap on both axes, in steps, if no byte of
 // one's key is above the other's limits: one comparison of vectors of bytes tests a vector of
-// copies on four sides.
+// copies on four sides. The last step on the sweep axis is counted down, too, so that a copy's
+// numbers are compared in the same way.
 //
 // That is exact but where bounds share a step. Only then are the boxes themselves looked at.
 #pragma once
@@ -26,18 +27,14 @@ constexpr std::uint32_t keyOf(std::uint32_t first_a, std::uint32_t first_b, std:
 }
 /// The limits for other copies' keys that follow from a key.
 constexpr std::uint32_t limitsOf(std::uint32_t key) { return ~(key << 16 | key >> 16); }
-/// Whether a key that is within the limits is as high as one of them: a step is shared.
-constexpr bool sharesStep(std::uint32_t key, std::uint32_t limits) {
-  const std::uint32_t below = limits - key;  // byte by byte: none is borrowed from
-  return ((below - 0x0101'0101) & ~below & 0x8080'8080) != 0;
-}
-
 /// A box in one of the columns that it touches.
 struct alignas(16) Copy {
-  std::uint32_t first;  ///< step on the sweep axis
-  std::uint32_t last;   ///< likewise
+  std::uint32_t first;      ///< step on the sweep axis
+  std::uint32_t last_down;  ///< its last step there, counted down: all bits are the opposite ones
   std::uint32_t key;
   MarkedBody body;
+
+  [[nodiscard]] constexpr std::uint32_t last() const { return ~last_down; }
 };
 
 /// Whether two copies in a column overlap in steps.
@@ -46,7 +43,7 @@ constexpr bool overlapInSteps(const Copy& a, const Copy& b) {
   for (int shift = 0; shift < 32; shift += 8) {
     if ((b.key >> shift & 255) > (limits >> shift & 255)) return false;
   }
-  return a.first <= b.last && b.first <= a.last;
+  return a.first <= b.last() && b.first <= a.last();
 }
 
 /// The copies of a column in the order of their lower bounds, roughly. Behind the last one there is

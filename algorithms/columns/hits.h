@@ -12,19 +12,25 @@
 namespace broadmark::columns {
 
 /// Takes hits and adds the pairs among them.
+///
+/// A hit has a place, row | distance << 32, and bits. Each bit is of a pair of copies: of a lane
+/// and a step, as kernels lay them out, it is row + lane and the one distance + step behind it.
 class HitSink {
  public:
   /// All are borrowed.
   HitSink(const Kernels& kernels, const Sorted& sorted, const Aabb* boxes, PairBuffer& pairs)
       : kernels_(kernels), sorted_(sorted), boxes_(boxes), pairs_(pairs) {}
 
-  /// Where the next hits go: room for kRoom of them, which count after advance().
+  /// Where the next hits go in places() and bits(): room for kRoom of them, which count after
+  /// advance().
   static constexpr std::size_t kRoom = 64;
-  Hits* room() {
+  std::size_t room() {
     if (size_ + kRoom > kSize) takeAll();
-    return hits_ + size_;
+    return size_;
   }
-  void advance(const Hits* end) { size_ = static_cast<std::size_t>(end - hits_); }
+  std::uint64_t* places() { return places_; }
+  std::uint64_t* bits() { return bits_; }
+  void advance(std::size_t end) { size_ = end; }
   /// Adds the pairs of all hits. The order of the pairs follows from the hits since the flush
   /// before.
   void flush();
@@ -44,9 +50,12 @@ class HitSink {
   const Sorted& sorted_;
   const Aabb* boxes_;
   PairBuffer& pairs_;
-  Hits hits_[kSize];  // no std::array: kernels must not instantiate its functions
+  // No std::array: kernels must not instantiate its functions.
+  alignas(64) std::uint64_t places_[kSize + Kernels::kTakenTogether];
+  alignas(64) std::uint64_t bits_[kSize + Kernels::kTakenTogether];
   std::size_t size_ = 0;
-  Pair doubtful_[kMostDoubts + 1];  ///< hits of which some bounds share a step
+  /// Hits of which some bounds share a step.
+  Pair doubtful_[kMostDoubts + Kernels::kTakenTogether];
   std::size_t doubts_ = 0;
   std::uint64_t compared_boxes_ = 0;
 };

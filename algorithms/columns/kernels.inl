@@ -3,10 +3,10 @@
 // Boxes into steps: a vector of boxes at once. What is made of the steps is a plain loop over
 // arrays, which compilers turn into vectors by themselves.
 //
-// The sweep: neighbours have nearly the same windows. So a group of rows is tested at once against
-// what their windows span together: a vector of columns is loaded once for all of them, and there
-// is one badly predicted end of a loop instead of many. Nothing else branches: hits are always
-// written, and counted only if there are any.
+// The sweep: a vector of rows is tested at once against what lies one place behind each of them,
+// two places, and so on: neighbours have nearly the same windows, so that a vector of rows has one
+// badly predicted end of a loop. Nothing else branches: hits are always written, and counted only
+// if there are any.
 
 /// The steps of kLanes boxes, from box k of the block on.
 inline void findStepsOf(const float* bounds, std::size_t k, const columns::StepScales& scales,
@@ -43,6 +43,8 @@ void findSteps(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
     findStepsOf(rest, whole, scales, block);
   }
   const std::uint32_t columns_in_row = scales.columns_in_row;
+  const MarkedBody mark_a = axisMark(scales.of[0].axis);
+  const MarkedBody mark_b = axisMark(scales.of[1].axis);
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t low_a = block.low[0][k];
     const std::uint32_t low_b = block.low[1][k];
@@ -51,113 +53,119 @@ void findSteps(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
     // How many columns it goes on for. Then its last step in this one is the last one there is.
     const std::uint32_t more_a = (high_a >> kBits) - (low_a >> kBits);
     const std::uint32_t more_b = (high_b >> kBits) - (low_b >> kBits);
-    const std::uint32_t goes_on_a = more_a != 0 ? kLast : 0;
-    const std::uint32_t goes_on_b = more_b != 0 ? kLast : 0;
-    block.keys[k] = columns::keyOf(low_a & kLast, low_b & kLast, (high_a & kLast) | goes_on_a,
-                                   (high_b & kLast) | goes_on_b);
-    block.columns[k] = (low_b >> kBits) * columns_in_row + (low_a >> kBits);
-    static_assert(columns::kFirstAxis == 1 && columns::kSecondAxis == 2);
-    const bool simple = more_a + more_b <= 1;
-    block.crossing[k] = simple ? more_a + 2 * more_b : columns::kOtherwise;
+    const bool on_a = more_a != 0;
+    const bool on_b = more_b != 0;
+    const std::uint32_t first_a = low_a & kLast;
+    const std::uint32_t first_b = low_b & kLast;
+    const std::uint32_t last_a = high_a & kLast;
+    const std::uint32_t last_b = high_b & kLast;
+    const std::uint32_t column = (low_b >> kBits) * columns_in_row + (low_a >> kBits);
+    block.columns[k] = column;
+    block.keys[k] = columns::keyOf(first_a, first_b, on_a ? kLast : last_a, on_b ? kLast : last_b);
+    block.crossed[k] = more_a + more_b;
+    // If it crosses one side: on the first axis, or else on the second.
+    block.next_columns[k] = column + (on_a ? 1 : columns_in_row);
+    block.next_keys[k] = columns::keyOf(on_a ? 0 : first_a, on_a ? first_b : 0, last_a, last_b);
+    block.next_bodies[k] = bodies[k] | (on_a ? mark_a : mark_b);
   }
   for (std::size_t k = 0; k < count; ++k) {
-    block.copies[k] = {block.first[k], block.last[k], block.keys[k], bodies[k]};
+    block.copies[k] = {block.first[k], ~block.last[k], block.keys[k], bodies[k]};
+  }
+  for (std::size_t word = 0; word < columns::BoxBlock::kBoxes / 64; ++word) {
+    std::uint64_t none = 0;
+    std::uint64_t one = 0;
+    for (std::size_t bit = 0; bit < 64; bit += kLanes) {
+      const Keys crossed = loadKeys(block.crossed + 64 * word + bit);
+      none |= std::uint64_t{equal(crossed, broadcastKey(0))} << bit;
+      one |= std::uint64_t{equal(crossed, broadcastKey(1))} << bit;
+    }
+    const std::size_t before = 64 * word;
+    const std::size_t here = count <= before ? 0 : count - before;
+    const std::uint64_t all = here >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << here) - 1;
+    block.cross_one[word] = one & all;
+    block.cross_more[word] = ~(none | one) & all;
   }
 }
 
-/// Which row and which lane a bit of hits is of.
-constexpr std::size_t rowOf(std::size_t bit) { return bit / kHitLanes % kHitRows; }
-constexpr std::size_t laneOf(std::size_t bit) {
-  return bit / (kHitLanes * kHitRows) * kHitLanes + bit % kHitLanes;
+void copyPastCaches(const Aabb* boxes, std::size_t count, Aabb* to) {
+  constexpr std::size_t kFloats = 8;  // in a box
+  const auto* const from = reinterpret_cast<const float*>(boxes);
+  auto* const target = reinterpret_cast<float*>(to);
+  const std::size_t whole = kFloats * count / kLanes * kLanes;
+  for (std::size_t i = 0; i < whole; i += kLanes) {
+    storePastCaches(target + i, loadFromAnywhere(from + i));
+  }
+  for (std::size_t i = whole; i < kFloats * count; ++i) target[i] = from[i];
 }
 
-/// Tests a group of rows against columns from `begin` until `end` is reached. Of the first vector
-/// of columns only the hits `first` count, of the others the hits `others`.
-inline void sweepRows(const std::uint32_t* keys, const Keys (&limits)[kHitRows],
-                      const Keys (&ends)[kHitRows], std::size_t row, std::size_t begin,
-                      std::size_t end, columns::HitSink& sink, std::uint64_t first,
-                      std::uint64_t others) {
-  std::uint64_t wanted = first;
-  Keys positions = lanesFrom(static_cast<std::uint32_t>(begin));
-  for (std::size_t column = begin; column < end;) {
-    columns::Hits* hits = sink.room();
-    const std::size_t room_end = column + columns::HitSink::kRoom * kLanes;
-    const std::size_t stop = end < room_end ? end : room_end;
-    for (; column < stop; column += kLanes) {
-      const std::uint64_t found =
-          hitsOfRows(loadKeys(keys + column), positions, limits, ends) & wanted;
-      positions = movedOn(positions);
-      wanted = others;
-      hits->row = static_cast<std::uint32_t>(row);
-      hits->column = static_cast<std::uint32_t>(column);
-      hits->bits = found;
-      hits += found != 0 ? 1 : 0;
+/// Which lane and which step a bit of hits is of.
+constexpr std::size_t laneOf(std::size_t bit) {
+  return bit / (kHitLanes * kHitSteps) * kHitLanes + bit % kHitLanes;
+}
+constexpr std::size_t stepOf(std::size_t bit) { return bit / kHitLanes % kHitSteps; }
+
+/// The place of a hit: see columns::HitSink.
+constexpr std::uint64_t placeOf(std::size_t row, std::size_t distance) {
+  return std::uint64_t{row} | std::uint64_t{distance} << 32;
+}
+
+/// Tests `row` against the columns from `begin` to `end`.
+inline void sweepRow(const std::uint32_t* keys, std::size_t row, std::size_t begin, std::size_t end,
+                     columns::HitSink& sink) {
+  const Keys limits = limitsOf(broadcastKey(keys[row]));
+  for (std::size_t column = begin; column < end; column += kLanes) {
+    std::size_t hits = sink.room();
+    unsigned found = withinLimits(loadKeys(keys + column), limits);
+    if (end - column < kLanes) found &= (1U << (end - column)) - 1;
+    for (; found != 0; found &= found - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(found));
+      sink.places()[hits] = placeOf(row, column + lane - row);
+      sink.bits()[hits] = 1;  // its first lane and step
+      ++hits;
     }
     sink.advance(hits);
   }
 }
 
-/// Of the hits of a group with the vector right behind its first row: those of columns behind their
-/// row. The others are found twice, or are of a row with itself.
-constexpr std::uint64_t behindRows() {
-  std::uint64_t wanted = 0;
-  for (std::size_t bit = 0; bit < kHitRows * kLanes; ++bit) {
-    if (laneOf(bit) >= rowOf(bit)) wanted |= std::uint64_t{1} << bit;
-  }
-  return wanted;
-}
-
-/// All hits of a row of a group.
-constexpr std::uint64_t hitsOfRow(std::size_t row) {
-  std::uint64_t wanted = 0;
-  for (std::size_t bit = 0; bit < kHitRows * kLanes; ++bit) {
-    if (rowOf(bit) == row) wanted |= std::uint64_t{1} << bit;
-  }
-  return wanted;
-}
-
 void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
            columns::HitSink& sink) {
-  // Windows that differ by more are tested row by row where they do.
-  constexpr std::size_t kFar = 64;
-  constexpr std::size_t kMost = columns::Kernels::kSweptRows;
-  constexpr std::uint64_t kAll = ~std::uint64_t{0};
-  std::uint32_t limits[kMost];
-  for (std::size_t r = 0; r < kMost; ++r) limits[r] = columns::limitsOf(keys[rows.begin + r]);
-  for (std::size_t row = rows.begin; row < rows.end; row += kHitRows) {
-    Keys group_limits[kHitRows];
-    Keys group_ends[kHitRows];
-    std::size_t farthest = 0;
-    for (std::size_t r = 0; r < kHitRows; ++r) {
-      group_limits[r] = broadcastKey(limits[row - rows.begin + r]);
-      group_ends[r] = broadcastKey(ends[row + r]);
-      farthest = farthest > ends[row + r] ? farthest : ends[row + r];
-    }
-    const std::size_t begin = row + 1;
-    std::size_t common = farthest;
-    if (farthest > begin + kFar) [[unlikely]] {
-      std::size_t nearest = farthest;
-      for (std::size_t r = 0; r < kHitRows; ++r) {
-        nearest = nearest < ends[row + r] ? nearest : ends[row + r];
+  // So far rows go together before those are counted that are to go on. A few do it one by one.
+  constexpr std::size_t kStretch = 32;
+  constexpr int kFew = kLanes / 2;
+  static_assert(kStretch / kHitSteps <= columns::HitSink::kRoom);
+  std::uint64_t* const places = sink.places();
+  std::uint64_t* const bits = sink.bits();
+  for (std::size_t row = rows.begin; row < rows.end; row += kLanes) {
+    const Keys limits = limitsOf(loadKeys(keys + row));
+    Keys left = minus(loadKeys(ends + row), lanesFrom(static_cast<std::uint32_t>(row + 1)));
+    std::size_t distance = 1;
+    for (unsigned going_on = positive(left); going_on != 0; going_on = positive(left)) {
+      if (distance > 1 && __builtin_popcount(going_on) <= kFew) {
+        for (; going_on != 0; going_on &= going_on - 1) {
+          const std::size_t r = row + static_cast<std::size_t>(__builtin_ctz(going_on));
+          sweepRow(keys, r, r + distance, ends[r], sink);
+        }
+        break;
       }
-      if (nearest < begin) nearest = begin;
-      if (farthest - nearest > kFar) common = begin + (nearest - begin) / kLanes * kLanes;
-    }
-    sweepRows(keys, group_limits, group_ends, row, begin, common, sink, behindRows(), kAll);
-    if (common == farthest) [[likely]]
-      continue;
-    for (std::size_t r = 0; r < kHitRows; ++r) {
-      const std::uint64_t of_row = hitsOfRow(r);
-      sweepRows(keys, group_limits, group_ends, row, common, ends[row + r], sink, of_row, of_row);
+      std::size_t hits = sink.room();
+      const std::size_t stop = distance + kStretch;
+      while (distance < stop && positive(left) != 0) {
+        const std::uint64_t found = hitsOfSteps(keys + row + distance, limits, left);
+        places[hits] = placeOf(row, distance);
+        bits[hits] = found;
+        hits += found != 0 ? 1 : 0;
+        left = minus(left, broadcastKey(std::uint32_t{kHitSteps}));
+        distance += kHitSteps;
+      }
+      sink.advance(hits);
     }
   }
 }
 
-inline constexpr columns::Kernels kKernels = [] {
-  columns::Kernels kernels = {{}, {}, findSteps, sweep};
-  for (std::size_t bit = 0; bit < 64; ++bit) {
-    kernels.row_of[bit] = static_cast<std::uint8_t>(rowOf(bit));
-    kernels.lane_of[bit] = static_cast<std::uint8_t>(laneOf(bit));
-  }
-  return kernels;
-}();
+#if defined(BROADMARK_AVX512)
+#include "columns/take_pairs_avx512.inl"
+#else
+#include "columns/take_pairs.inl"
+#endif
+
+inline constexpr columns::Kernels kKernels = {findSteps, copyPastCaches, sweep, takePairs};

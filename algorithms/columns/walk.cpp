@@ -12,7 +12,7 @@
 namespace broadmark::columns {
 namespace {
 
-/// A column has as many buckets as copies, or up to twice as many, but no more than this.
+/// A column has as many buckets as copies, or down to half as many, but no more than this.
 constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
 /// What it costs to put a copy in order and to test it at all, in tests.
 constexpr double kWorkPerCopy = 40;
@@ -57,7 +57,8 @@ void Walk::goThrough(const CutWorld& world, const Part& part) {
 }
 
 void Walk::order(const CutWorld& world, std::size_t column, std::size_t count) {
-  const auto bucket_bits = static_cast<int>(std::bit_width(std::min(count, kMostBuckets) - 1));
+  const auto bucket_bits =
+      static_cast<int>(std::bit_width((std::min(count, kMostBuckets) - 1) / 2));
   const auto bucket_of = [&](std::uint32_t step) {
     return step >> (Layout::kSweepBits - bucket_bits);
   };
@@ -71,7 +72,7 @@ void Walk::order(const CutWorld& world, std::size_t column, std::size_t count) {
   sorted_.tests = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Copy& copy = sorted_.copies[i];
-    const std::uint32_t end = places_[bucket_of(copy.last)];
+    const std::uint32_t end = places_[bucket_of(copy.last())];
     sorted_.keys[i] = copy.key;
     sorted_.ends[i] = end;
     sorted_.tests += end - i;
@@ -116,10 +117,7 @@ bool Walk::fill(const Layout& layout, Chains& chains) {
       boxes[i] = boxes_.boxes[bodyNumber(bodies[i])];
     }
     boxes_.kernels->find_steps(boxes.data(), bodies.data(), count, layout.scales(), block);
-    forEachCopy(layout, block, count, [&](std::size_t column, const Copy& copy) {
-      chains.append(column, copy);
-      ++copies;
-    });
+    copies += appendCopies(layout, block, count, chains);
   }
   return copies <= limit;
 }

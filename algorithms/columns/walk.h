@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -111,44 +112,34 @@ class Walk {
   std::array<Chains, kMostLevels> chains_;  ///< of what is cut, by level
 };
 
-/// Calls visit(column, copy) for every column that the boxes of a block touch.
-///
-/// First come all boxes' first columns, without a branch. Few boxes touch others; most of those
-/// that do touch one, the next on the first axis or on the second. Which of all these a box is
-/// nobody can tell, so boxes are sorted by it, and each kind has a loop of its own.
+/// Calls visit(k) for each box of a set.
 template <class Visit>
-inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t count,
-                        Visit visit) {
+inline void forEachBox(const BoxBlock::Set& set, Visit visit) {
+  std::size_t word = 0;
+  for (std::uint64_t bits : set) {
+    for (; bits != 0; bits &= bits - 1) {
+      visit(64 * word + static_cast<std::size_t>(std::countr_zero(bits)));
+    }
+    ++word;
+  }
+}
+
+/// Calls visit(column, copy) for every column that the boxes of a block touch beside their first
+/// ones. Few boxes touch others, and most of those that do touch one.
+template <class Visit>
+inline void forEachOtherCopy(const Layout& layout, const BoxBlock& block, Visit visit) {
   constexpr int kBits = Layout::kStepBits;
   constexpr std::uint32_t kLast = Layout::kLastStep;
   // Marks are by axis: columns within a column may be cut on other axes than it.
   const MarkedBody mark_a = axisMark(layout.scales().of[0].axis);
   const MarkedBody mark_b = axisMark(layout.scales().of[1].axis);
-  std::array<std::array<std::uint16_t, BoxBlock::kBoxes>, kCrossings> boxes;
-  std::array<std::size_t, kCrossings> sizes{};
-  for (std::size_t k = 0; k < count; ++k) {
-    visit(block.columns[k], block.copies[k]);
-    const std::uint32_t crossing = block.crossing[k];
-    boxes[crossing][sizes[crossing]++] = static_cast<std::uint16_t>(k);
-  }
-  const auto of = [&](Crossing crossing) {
-    return std::span(boxes[crossing].data(), sizes[crossing]);
-  };
-  for (const std::uint32_t k : of(kFirstAxis)) {
+  forEachBox(block.cross_one, [&](std::size_t k) {
     Copy copy = block.copies[k];
-    copy.key =
-        keyOf(0, block.low[1][k] & kLast, block.high[0][k] & kLast, block.high[1][k] & kLast);
-    copy.body |= mark_a;
-    visit(block.columns[k] + 1, copy);
-  }
-  for (const std::uint32_t k : of(kSecondAxis)) {
-    Copy copy = block.copies[k];
-    copy.key =
-        keyOf(block.low[0][k] & kLast, 0, block.high[0][k] & kLast, block.high[1][k] & kLast);
-    copy.body |= mark_b;
-    visit(block.columns[k] + layout.scales().columns_in_row, copy);
-  }
-  for (const std::uint32_t k : of(kOtherwise)) {
+    copy.key = block.next_keys[k];
+    copy.body = block.next_bodies[k];
+    visit(block.next_columns[k], copy);
+  });
+  forEachBox(block.cross_more, [&](std::size_t k) {
     Copy copy = block.copies[k];
     const MarkedBody body = copy.body;
     const std::uint32_t low_a = block.low[0][k];
@@ -169,7 +160,19 @@ inline void forEachCopy(const Layout& layout, const BoxBlock& block, std::size_t
         visit(layout.indexOf(a, b), copy);
       }
     }
-  }
+  });
+}
+
+/// Adds the copies of a block of boxes to the chains of the columns that they touch. Returns how
+/// many.
+inline std::size_t appendCopies(const Layout& layout, const BoxBlock& block, std::size_t count,
+                                Chains& chains) {
+  chains.append(block.columns, block.copies, count);
+  forEachOtherCopy(layout, block, [&](std::size_t column, const Copy& copy) {
+    chains.append(column, copy);
+    ++count;
+  });
+  return count;
 }
 
 }  // namespace broadmark::columns

@@ -6,6 +6,8 @@
 // copies of shared inline functions behind, of which the linker might keep one for everybody. So
 // kernels may call nothing that is instantiated here from a standard header; all headers but those
 // of the intrinsics must have been included before.
+//
+// Where a kernel is written in another way for AVX-512, BROADMARK_AVX512 tells that it is its turn.
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -54,11 +56,13 @@ namespace avx2 {
 }  // namespace avx2
 BROADMARK_TARGET_END
 
-BROADMARK_TARGET_BEGIN("avx512f,avx512bw")
+BROADMARK_TARGET_BEGIN("avx512f,avx512bw,avx512cd,bmi2,popcnt")
+#define BROADMARK_AVX512
 namespace avx512 {
 #include "simd/vector_avx512.inl"
 #include BROADMARK_KERNELS
 }  // namespace avx512
+#undef BROADMARK_AVX512
 BROADMARK_TARGET_END
 
 #elif defined(__aarch64__)

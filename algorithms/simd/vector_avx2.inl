@@ -49,26 +49,39 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_cvttps_epi32(kept));
 }
 
-inline constexpr std::size_t kHitRows = 4;
-inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
 inline Keys lanesFrom(std::uint32_t position) {
   return _mm256_add_epi32(broadcastKey(position), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
 }
-inline Keys movedOn(Keys positions) {
-  return _mm256_add_epi32(positions, _mm256_set1_epi32(kLanes));
+inline Keys minus(Keys a, Keys b) { return _mm256_sub_epi32(a, b); }
+inline unsigned equal(Keys a, Keys b) {
+  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)));
 }
-inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
-                                const Keys (&ends)[kHitRows]) {
-  __m256i hits[kHitRows];
-  for (std::size_t r = 0; r < kHitRows; ++r) {
-    const __m256i above = _mm256_subs_epu8(keys, limits[r]);
-    hits[r] = _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
-                               _mm256_cmpgt_epi32(ends[r], positions));
+inline unsigned positive(Keys numbers) {
+  return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(numbers, _mm256_setzero_si256())));
+}
+inline Keys limitsOf(Keys keys) {
+  const Keys swapped = _mm256_or_si256(_mm256_slli_epi32(keys, 16), _mm256_srli_epi32(keys, 16));
+  return _mm256_xor_si256(swapped, _mm256_set1_epi32(-1));
+}
+
+inline constexpr std::size_t kHitSteps = 4;
+inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
+inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
+  __m256i hits[kHitSteps];
+  for (std::size_t s = 0; s < kHitSteps; ++s) {
+    const __m256i above = _mm256_subs_epu8(loadKeys(keys + s), limits);
+    hits[s] = _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
+                               _mm256_cmpgt_epi32(left, _mm256_set1_epi32(static_cast<int>(s))));
   }
   const __m256i packed = _mm256_packs_epi16(_mm256_packs_epi32(hits[0], hits[1]),
                                             _mm256_packs_epi32(hits[2], hits[3]));
   return static_cast<unsigned>(_mm256_movemask_epi8(packed));
 }
+
+#include "simd/compare_copies_sse2.inl"
+
+inline void storePastCaches(float* to, Vector value) { _mm256_stream_ps(to, value); }
+inline Vector loadFromAnywhere(const float* from) { return _mm256_loadu_ps(from); }
 
 inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
   const __m256i each = _mm256_set1_epi64x(static_cast<std::int64_t>(least));

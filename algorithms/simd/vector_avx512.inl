@@ -56,25 +56,35 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   _mm512_storeu_si512(to, _mm512_cvttps_epi32(kept));
 }
 
-inline constexpr std::size_t kHitRows = 4;
-inline constexpr std::size_t kHitLanes = 16;
 inline Keys lanesFrom(std::uint32_t position) {
   return _mm512_add_epi32(broadcastKey(position),
                           _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
 }
-inline Keys movedOn(Keys positions) {
-  return _mm512_add_epi32(positions, _mm512_set1_epi32(kLanes));
+inline Keys minus(Keys a, Keys b) { return _mm512_sub_epi32(a, b); }
+inline unsigned equal(Keys a, Keys b) { return _mm512_cmpeq_epi32_mask(a, b); }
+inline unsigned positive(Keys numbers) {
+  return _mm512_cmpgt_epi32_mask(numbers, _mm512_setzero_si512());
 }
-inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
-                                const Keys (&ends)[kHitRows]) {
-  std::uint64_t hits = 0;
-  for (std::size_t r = 0; r < kHitRows; ++r) {
-    const unsigned of_row =
-        withinLimits(keys, limits[r]) & _mm512_cmplt_epu32_mask(positions, ends[r]);
-    hits |= std::uint64_t{of_row} << (r * kHitLanes);
+inline Keys limitsOf(Keys keys) {
+  return _mm512_xor_si512(_mm512_rol_epi32(keys, 16), _mm512_set1_epi32(-1));
+}
+
+inline constexpr std::size_t kHitSteps = 4;
+inline constexpr std::size_t kHitLanes = 16;
+inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
+  Mask hits[kHitSteps];
+  for (std::size_t s = 0; s < kHitSteps; ++s) {
+    const Keys above = _mm512_subs_epu8(loadKeys(keys + s), limits);
+    const Mask in_window = _mm512_cmpgt_epi32_mask(left, _mm512_set1_epi32(static_cast<int>(s)));
+    hits[s] = _mm512_mask_testn_epi32_mask(in_window, above, above);
   }
-  return hits;
+  // Within mask registers: a way out of them for each step takes longer.
+  return _cvtmask64_u64(_mm512_kunpackd(_mm512_kunpackw(hits[3], hits[2]),  //
+                                        _mm512_kunpackw(hits[1], hits[0])));
 }
+
+inline void storePastCaches(float* to, Vector value) { _mm512_stream_ps(to, value); }
+inline Vector loadFromAnywhere(const float* from) { return _mm512_loadu_ps(from); }
 
 inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
   const __m512i each = _mm512_set1_epi64(static_cast<std::int64_t>(least));

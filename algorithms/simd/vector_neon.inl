@@ -56,22 +56,51 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   vst1q_u32(to, vcvtq_u32_f32(kept));
 }
 
-inline constexpr std::size_t kHitRows = 4;
-inline constexpr std::size_t kHitLanes = 4;
 inline Keys lanesFrom(std::uint32_t position) {
   constexpr Keys kLaneNumbers = {0, 1, 2, 3};
   return vaddq_u32(broadcastKey(position), kLaneNumbers);
 }
-inline Keys movedOn(Keys positions) { return vaddq_u32(positions, vdupq_n_u32(kLanes)); }
-inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
-                                const Keys (&ends)[kHitRows]) {
+inline Keys minus(Keys a, Keys b) { return vsubq_u32(a, b); }
+inline unsigned equal(Keys a, Keys b) { return bits(vceqq_u32(a, b)); }
+inline unsigned positive(Keys numbers) { return bits(vcgtzq_s32(vreinterpretq_s32_u32(numbers))); }
+inline Keys limitsOf(Keys keys) {
+  return vmvnq_u32(vreinterpretq_u32_u16(vrev32q_u16(vreinterpretq_u16_u32(keys))));
+}
+
+inline constexpr std::size_t kHitSteps = 4;
+inline constexpr std::size_t kHitLanes = 4;
+inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   std::uint64_t hits = 0;
-  for (std::size_t r = 0; r < kHitRows; ++r) {
-    const unsigned of_row = withinLimits(keys, limits[r]) & bits(vcltq_u32(positions, ends[r]));
-    hits |= std::uint64_t{of_row} << (r * kHitLanes);
+  for (std::size_t s = 0; s < kHitSteps; ++s) {
+    const unsigned of_step = withinLimits(loadKeys(keys + s), limits) &
+                             positive(minus(left, broadcastKey(static_cast<std::uint32_t>(s))));
+    hits |= std::uint64_t{of_step} << (s * kHitLanes);
   }
   return hits;
 }
+
+struct ComparedCopies {
+  unsigned overlap;
+  unsigned shared;
+};
+inline ComparedCopies compareCopies(const std::uint32_t* a, const std::uint32_t* b) {
+  constexpr Keys kSweepAxis = {~0U, ~0U, 0, 0};
+  constexpr Keys kKey = {0, 0, ~0U, 0};
+  const Keys of_a = vld1q_u32(a);
+  const Keys of_b = vld1q_u32(b);
+  // The first two numbers change places, and so do the halves of the third.
+  const Keys halves = vreinterpretq_u32_u16(vrev32q_u16(vreinterpretq_u16_u32(of_a)));
+  const Keys most = vmvnq_u32(vbslq_u32(kSweepAxis, vrev64q_u32(of_a), halves));
+  const Keys above = vandq_u32(vcgtq_u32(of_b, most), kSweepAxis);
+  const Keys same_bytes =
+      vreinterpretq_u32_u8(vceqq_u8(vreinterpretq_u8_u32(of_b), vreinterpretq_u8_u32(most)));
+  const Keys same =
+      vorrq_u32(vandq_u32(vceqq_u32(of_b, most), kSweepAxis), vandq_u32(same_bytes, kKey));
+  return {vmaxvq_u32(above) == 0 ? 1U : 0U, vmaxvq_u32(same) != 0 ? 1U : 0U};
+}
+
+inline void storePastCaches(float* to, Vector value) { store(to, value); }
+inline Vector loadFromAnywhere(const float* from) { return vld1q_f32(from); }
 
 inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
   const uint8x16_t each = vreinterpretq_u8_u64(vdupq_n_u64(least));

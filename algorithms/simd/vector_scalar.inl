@@ -59,23 +59,52 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   *to = static_cast<std::uint32_t>(static_cast<std::int32_t>(at_least < last ? at_least : last));
 }
 
-/// Rows that are tested at once, and how many lanes of a row are neighbours in the bits of hits:
-/// bit (l / kHitLanes * kHitRows + r) * kHitLanes + l % kHitLanes is row r and lane l.
-inline constexpr std::size_t kHitRows = 4;
-inline constexpr std::size_t kHitLanes = 1;
 /// `position` and those behind it.
 inline Keys lanesFrom(std::uint32_t position) { return position; }
-/// By a vector.
-inline Keys movedOn(Keys positions) { return positions + kLanes; }
-/// The hits of four rows: withinLimits(), and the position is below the row's end.
-inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
-                                const Keys (&ends)[kHitRows]) {
+inline Keys minus(Keys a, Keys b) { return a - b; }
+/// The lanes in which they are equal; lane i is bit i.
+inline unsigned equal(Keys a, Keys b) { return a == b ? 1 : 0; }
+/// The lanes with a number above 0, signed.
+inline unsigned positive(Keys numbers) { return static_cast<std::int32_t>(numbers) > 0 ? 1 : 0; }
+/// The limits that follow from keys: see columns/copies.h.
+inline Keys limitsOf(Keys keys) { return ~(keys << 16 | keys >> 16); }
+
+/// How many steps behind all lanes are tested at once.
+inline constexpr std::size_t kHitSteps = 4;
+/// How many lanes of a step are neighbours in the bits of hits: bit
+/// (l / kHitLanes * kHitSteps + s) * kHitLanes + l % kHitLanes is lane l and step s.
+inline constexpr std::size_t kHitLanes = 1;
+/// The hits of four steps: in lane l and step s, keys[l + s] is within the limits, and s is below
+/// what is left.
+inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   std::uint64_t hits = 0;
-  for (std::size_t r = 0; r < kHitRows; ++r) {
-    hits |= std::uint64_t{withinLimits(keys, limits[r]) & (positions < ends[r] ? 1U : 0U)} << r;
+  for (std::size_t s = 0; s < kHitSteps; ++s) {
+    hits |= std::uint64_t{withinLimits(keys[s], limits) & positive(left - static_cast<Keys>(s))}
+            << s;
   }
   return hits;
 }
+
+/// Of two copies (columns/copies.h), four numbers each, aligned to 16 bytes: whether they overlap
+/// on the sweep axis, in steps, and whether bounds on any axis share a step. 1 or 0 each.
+struct ComparedCopies {
+  unsigned overlap;
+  unsigned shared;
+};
+inline ComparedCopies compareCopies(const std::uint32_t* a, const std::uint32_t* b) {
+  const std::uint32_t a_last = ~a[1];
+  const std::uint32_t b_last = ~b[1];
+  // A byte of the key that is as high as the limit.
+  const std::uint32_t below = limitsOf(a[2]) - b[2];  // byte by byte: none is borrowed from
+  const bool in_key = ((below - 0x0101'0101) & ~below & 0x8080'8080) != 0;
+  return {unsigned{a[0] <= b_last} & unsigned{b[0] <= a_last},
+          unsigned{a[0] == b_last} | unsigned{b[0] == a_last} | unsigned{in_key}};
+}
+
+/// To an address aligned to a vector, past the caches if there is a way.
+inline void storePastCaches(float* to, Vector value) { *to = value; }
+/// From any address.
+inline Vector loadFromAnywhere(const float* from) { return *from; }
 
 /// Of the numbers in a cache line, at least the first five: bit i is set if the seven lower bytes
 /// of number i reach those of `least`, each of them. All have their highest bits, those of `least`

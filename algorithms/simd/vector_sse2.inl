@@ -50,24 +50,37 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_cvttps_epi32(kept));
 }
 
-inline constexpr std::size_t kHitRows = 4;
-inline constexpr std::size_t kHitLanes = 4;
 inline Keys lanesFrom(std::uint32_t position) {
   return _mm_add_epi32(broadcastKey(position), _mm_setr_epi32(0, 1, 2, 3));
 }
-inline Keys movedOn(Keys positions) { return _mm_add_epi32(positions, _mm_set1_epi32(kLanes)); }
-inline std::uint64_t hitsOfRows(Keys keys, Keys positions, const Keys (&limits)[kHitRows],
-                                const Keys (&ends)[kHitRows]) {
-  __m128i hits[kHitRows];
-  for (std::size_t r = 0; r < kHitRows; ++r) {
-    const __m128i above = _mm_subs_epu8(keys, limits[r]);
-    hits[r] = _mm_and_si128(_mm_cmpeq_epi32(above, _mm_setzero_si128()),
-                            _mm_cmplt_epi32(positions, ends[r]));
+inline Keys minus(Keys a, Keys b) { return _mm_sub_epi32(a, b); }
+inline unsigned equal(Keys a, Keys b) { return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(a, b))); }
+inline unsigned positive(Keys numbers) {
+  return bits(_mm_castsi128_ps(_mm_cmpgt_epi32(numbers, _mm_setzero_si128())));
+}
+inline Keys limitsOf(Keys keys) {
+  const Keys swapped = _mm_or_si128(_mm_slli_epi32(keys, 16), _mm_srli_epi32(keys, 16));
+  return _mm_xor_si128(swapped, _mm_set1_epi32(-1));
+}
+
+inline constexpr std::size_t kHitSteps = 4;
+inline constexpr std::size_t kHitLanes = 4;
+inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
+  __m128i hits[kHitSteps];
+  for (std::size_t s = 0; s < kHitSteps; ++s) {
+    const __m128i above = _mm_subs_epu8(loadKeys(keys + s), limits);
+    hits[s] = _mm_and_si128(_mm_cmpeq_epi32(above, _mm_setzero_si128()),
+                            _mm_cmpgt_epi32(left, _mm_set1_epi32(static_cast<int>(s))));
   }
   const __m128i packed =
       _mm_packs_epi16(_mm_packs_epi32(hits[0], hits[1]), _mm_packs_epi32(hits[2], hits[3]));
   return static_cast<unsigned>(_mm_movemask_epi8(packed));
 }
+
+#include "simd/compare_copies_sse2.inl"
+
+inline void storePastCaches(float* to, Vector value) { _mm_stream_ps(to, value); }
+inline Vector loadFromAnywhere(const float* from) { return _mm_loadu_ps(from); }
 
 inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
   const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(least));
