@@ -51,9 +51,9 @@ namespace {
 constexpr std::size_t kBlock = BoxBlock::kBoxes;
 /// The boxes themselves are looked at rarely: so many of them should not take up the caches.
 constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
-/// Rows whose boxes are looked at together: more where boxes are past the caches.
-constexpr std::size_t kRowsPerLook = Kernels::kSweptRows;
-constexpr std::size_t kRowsPerLookPastCaches = 64 * kRowsPerLook;
+/// Rows whose hits, and boxes, are looked at together: more where boxes are past the caches.
+constexpr std::size_t kRowsPerLook = 16 * Kernels::kSweptRows;
+constexpr std::size_t kRowsPerLookPastCaches = 4 * kRowsPerLook;
 
 /// What there was to do, for the counters.
 struct Done {
@@ -105,10 +105,11 @@ class Sweep final : public ColumnVisitor {
 
   void column(Walk& walk, const Part& part) override {
     const Sorted& sorted = walk.sorted();
-    const Range rows = {rowAt(sorted, part.from, search_.rows_per_look),
-                        rowAt(sorted, part.to, search_.rows_per_look)};
     // It is crowded, and cutting it would not help.
-    if (walk.crowded() && DenseSweep::pays(sorted)) {
+    const bool dense = walk.crowded() && DenseSweep::pays(sorted);
+    const std::size_t together = dense ? Kernels::kSweptRows : search_.rows_per_look;
+    const Range rows = {rowAt(sorted, part.from, together), rowAt(sorted, part.to, together)};
+    if (dense) {
       sweepBoxes(sorted, rows);
     } else {
       sweepKeys(walk, rows);

@@ -12,7 +12,7 @@
 namespace broadmark::columns {
 namespace {
 
-/// A column has as many buckets as copies, or down to half as many, but no more than this.
+/// A column has as many buckets as copies, or up to twice as many, but no more than this.
 constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
 /// What it costs to put a copy in order and to test it at all, in tests.
 constexpr double kWorkPerCopy = 40;
@@ -58,7 +58,7 @@ void Walk::goThrough(const CutWorld& world, const Part& part) {
 
 void Walk::order(const CutWorld& world, std::size_t column, std::size_t count) {
   const auto bucket_bits =
-      static_cast<int>(std::bit_width((std::min(count, kMostBuckets) - 1) / 2));
+      static_cast<int>(std::bit_width(std::min(count, kMostBuckets) - 1));
   const auto bucket_of = [&](std::uint32_t step) {
     return step >> (Layout::kSweepBits - bucket_bits);
   };

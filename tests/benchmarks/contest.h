@@ -20,6 +20,7 @@
 #include "broadmark/algorithms.h"
 #include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
+#include "broadmark/large_array.h"
 #include "broadmark/statistics.h"
 
 namespace broadmark::benchmarks {
@@ -51,8 +52,10 @@ struct Contestant {
 /// Contestants on the same frames, which are gone through to and fro, so that all motion is smooth.
 class Contest {
  public:
-  /// `frames` must not be empty; borrowed.
-  explicit Contest(std::string name, std::span<const std::vector<Aabb>> frames) : frames_(frames) {
+  /// `frames` must not be empty. They are copied to where recordings keep theirs: large ones into
+  /// huge pages.
+  explicit Contest(std::string name, std::span<const std::vector<Aabb>> frames) {
+    for (const std::vector<Aabb>& frame : frames) frames_.emplace_back(frame.begin(), frame.end());
     scene_.name = std::move(name);
     scene_.object_type = "Cubes";
     scene_.objects = static_cast<std::uint32_t>(frames_[0].size());
@@ -114,7 +117,7 @@ class Contest {
   }
 
   SceneInfo scene_;
-  std::span<const std::vector<Aabb>> frames_;
+  std::vector<LargeVector<Aabb>> frames_;
   ChangedBodies changed_bodies_;
   std::vector<Contestant> contestants_;
 };
