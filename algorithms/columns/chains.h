@@ -44,6 +44,7 @@ class alignas(64) Chains {
     for (std::size_t column = 0; column < chains_.size(); ++column) copies += count(column);
     return copies;
   }
+
   /// Calls visit(copy) for each copy in a column, in the order in which they came.
   template <class Visit>
   void forEach(std::size_t column, Visit visit) const {

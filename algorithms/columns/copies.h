@@ -27,6 +27,7 @@ constexpr std::uint32_t keyOf(std::uint32_t first_a, std::uint32_t first_b, std:
 }
 /// The limits for other copies' keys that follow from a key.
 constexpr std::uint32_t limitsOf(std::uint32_t key) { return ~(key << 16 | key >> 16); }
+
 /// A box in one of the columns that it touches.
 struct alignas(16) Copy {
   std::uint32_t first;      ///< step on the sweep axis

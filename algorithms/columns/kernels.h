@@ -60,8 +60,8 @@ struct Kernels {
 
   /// Takes one pair out of each of some hits (HitSink), of these copies. Those hits that have more
   /// go to the beginning; returns how many they are. `pairs` and `doubtful` are where the next pair
-  /// goes that is sure, and the next of which the boxes have to decide. There must be room for one
-  /// of each hit and kTakenTogether more.
+  /// goes that is sure, and the next of which the boxes have to decide. In all four arrays there
+  /// must be room for one of each hit and kTakenTogether more.
   std::size_t (*take_pairs)(std::uint64_t* places, std::uint64_t* bits, std::size_t count,
                             const Copy* copies, Pair*& pairs, Pair*& doubtful);
   static constexpr std::size_t kTakenTogether = 8;
