@@ -71,7 +71,7 @@ class Tide final : public BroadPhase {
   void takePairs();
   void followCrowds();
 
-  std::int64_t from_scratch_ = 15;
+  std::int64_t from_scratch_ = 12;
   bool reports_events_ = false;
   CollisionFilter filter_;
   std::vector<std::uint32_t> bodies_;  ///< all ids
