@@ -48,7 +48,7 @@ constexpr bool overlapInSteps(const Copy& a, const Copy& b) {
 }
 
 /// The copies of a column in the order of their lower bounds, roughly. Behind the last one there is
-/// padding for whole vectors and groups of rows.
+/// padding for whole vectors.
 struct Sorted {
   static constexpr std::size_t kPadding = 64;
 
