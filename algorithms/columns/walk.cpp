@@ -57,8 +57,7 @@ void Walk::goThrough(const CutWorld& world, const Part& part) {
 }
 
 void Walk::order(const CutWorld& world, std::size_t column, std::size_t count) {
-  const auto bucket_bits =
-      static_cast<int>(std::bit_width(std::min(count, kMostBuckets) - 1));
+  const auto bucket_bits = static_cast<int>(std::bit_width(std::min(count, kMostBuckets) - 1));
   const auto bucket_of = [&](std::uint32_t step) {
     return step >> (Layout::kSweepBits - bucket_bits);
   };
