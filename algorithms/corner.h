@@ -33,14 +33,15 @@ inline Corner smaller(Corner a, Corner b) { return _mm_min_ps(a, b); }
 inline Corner larger(Corner a, Corner b) { return _mm_max_ps(a, b); }
 #endif
 
-/// Whether a condition, the result of a comparison, holds on all three axes.
-inline bool isEveryAxis(WholeCorner condition) {
+/// On which axes a condition holds, the result of a comparison: bit i for axis i.
+inline unsigned axesWhere(WholeCorner condition) {
 #if defined(__SSE2__)
-  return (_mm_movemask_ps(std::bit_cast<__m128>(condition)) & 7) == 7;
+  return static_cast<unsigned>(_mm_movemask_ps(std::bit_cast<__m128>(condition))) & 7;
 #else
-  return (condition[0] & condition[1] & condition[2]) != 0;
+  return static_cast<unsigned>((condition[0] & 1) | (condition[1] & 2) | (condition[2] & 4));
 #endif
 }
+inline bool isEveryAxis(WholeCorner condition) { return axesWhere(condition) == 7; }
 
 /// Towards 0; all of them must be in the range of an integer.
 inline WholeCorner truncated(Corner corner) { return __builtin_convertvector(corner, WholeCorner); }

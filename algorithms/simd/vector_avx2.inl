@@ -83,15 +83,16 @@ inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys le
 inline void storePastCaches(float* to, Vector value) { _mm256_stream_ps(to, value); }
 inline Vector loadFromAnywhere(const float* from) { return _mm256_loadu_ps(from); }
 
-inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
-  const __m256i each = _mm256_set1_epi64x(static_cast<std::int64_t>(least));
-  const __m256i highest = _mm256_set1_epi64x(0x0080'8080'8080'8080);
+inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {
+  const __m256i each = _mm256_set1_epi64x(static_cast<std::int64_t>(limits));
   const auto* const halves = reinterpret_cast<const __m256i*>(line);
-  unsigned reach = 0;
+  unsigned within = 0;
   for (int half = 0; half < 2; ++half) {
-    const __m256i rest = _mm256_sub_epi8(_mm256_load_si256(halves + half), each);
-    const __m256i all = _mm256_cmpeq_epi64(_mm256_and_si256(rest, highest), highest);
-    reach |= static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(all))) << 4 * half;
+    const __m256i above = _mm256_subs_epu8(_mm256_load_si256(halves + half), each);
+    const __m256i none = _mm256_cmpeq_epi64(above, _mm256_setzero_si256());
+    within |= static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(none))) << 4 * half;
   }
-  return reach;
+  return within;
 }
+
+#include "simd/lines_within.inl"

@@ -86,9 +86,18 @@ inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys le
 inline void storePastCaches(float* to, Vector value) { _mm512_stream_ps(to, value); }
 inline Vector loadFromAnywhere(const float* from) { return _mm512_loadu_ps(from); }
 
-inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
-  const __m512i each = _mm512_set1_epi64(static_cast<std::int64_t>(least));
-  const __m512i highest = _mm512_set1_epi64(0x0080'8080'8080'8080);
-  const __m512i rest = _mm512_sub_epi8(_mm512_load_si512(line), each);
-  return _mm512_cmpeq_epi64_mask(_mm512_and_si512(rest, highest), highest);
+inline std::uint64_t linesWithin(const std::uint64_t* const* lines, const std::uint64_t* limits) {
+  // Any number passes in two places, in the last one who has no highest bit.
+  const __m512i counted = _mm512_setr_epi64(-1, -1, -1, -1, -1, 0, 0, std::int64_t{1} << 63);
+  Mask within[8];
+  for (int l = 0; l < 8; ++l) {
+    const __m512i each = _mm512_set1_epi64(static_cast<std::int64_t>(limits[l]));
+    const __m512i above = _mm512_subs_epu8(_mm512_load_si512(lines[l]), each);
+    within[l] = _mm512_testn_epi64_mask(above, counted);
+  }
+  const auto four = [&](int l) {
+    return _mm512_kunpackw(_mm512_kunpackb(within[l + 3], within[l + 2]),
+                           _mm512_kunpackb(within[l + 1], within[l]));
+  };
+  return _cvtmask64_u64(_mm512_kunpackd(four(4), four(0)));
 }

@@ -102,16 +102,17 @@ inline ComparedCopies compareCopies(const std::uint32_t* a, const std::uint32_t*
 inline void storePastCaches(float* to, Vector value) { store(to, value); }
 inline Vector loadFromAnywhere(const float* from) { return vld1q_f32(from); }
 
-inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
-  const uint8x16_t each = vreinterpretq_u8_u64(vdupq_n_u64(least));
-  const uint64x2_t highest = vdupq_n_u64(0x0080'8080'8080'8080);
-  unsigned reach = 0;
+inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {
+  const uint8x16_t each = vreinterpretq_u8_u64(vdupq_n_u64(limits));
+  unsigned within = 0;
   for (unsigned pair = 0; pair < 3; ++pair) {
-    const uint8x16_t rest = vsubq_u8(vreinterpretq_u8_u64(vld1q_u64(line + 2 * pair)), each);
-    const uint64x2_t all = vceqq_u64(vandq_u64(vreinterpretq_u64_u8(rest), highest), highest);
-    reach |= (static_cast<unsigned>(vgetq_lane_u64(all, 0) & 1) |
-              static_cast<unsigned>(vgetq_lane_u64(all, 1) & 2))
-             << 2 * pair;
+    const uint8x16_t above = vqsubq_u8(vreinterpretq_u8_u64(vld1q_u64(line + 2 * pair)), each);
+    const uint64x2_t none = vceqzq_u64(vreinterpretq_u64_u8(above));
+    within |= (static_cast<unsigned>(vgetq_lane_u64(none, 0) & 1) |
+               static_cast<unsigned>(vgetq_lane_u64(none, 1) & 2))
+              << 2 * pair;
   }
-  return reach;
+  return within;
 }
+
+#include "simd/lines_within.inl"

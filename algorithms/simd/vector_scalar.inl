@@ -106,14 +106,15 @@ inline void storePastCaches(float* to, Vector value) { *to = value; }
 /// From any address.
 inline Vector loadFromAnywhere(const float* from) { return *from; }
 
-/// Of the numbers in a cache line, at least the first five: bit i is set if the seven lower bytes
-/// of number i reach those of `least`, each of them. All have their highest bits, those of `least`
-/// not.
-inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
-  constexpr std::uint64_t kHighest = 0x0080'8080'8080'8080;
-  unsigned reach = 0;
+/// Of the first five numbers in a cache line: bit i is set if no byte of number i is above that of
+/// `limits`. All bytes are at most 127.
+inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {
+  constexpr std::uint64_t kHighest = 0x8080'8080'8080'8080;
+  unsigned within = 0;
   for (unsigned i = 0; i < 5; ++i) {
-    reach |= unsigned{((line[i] - least) & kHighest) == kHighest} << i;
+    within |= unsigned{(((limits | kHighest) - line[i]) & kHighest) == kHighest} << i;
   }
-  return reach;
+  return within;
 }
+
+#include "simd/lines_within.inl"

@@ -82,17 +82,17 @@ inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys le
 inline void storePastCaches(float* to, Vector value) { _mm_stream_ps(to, value); }
 inline Vector loadFromAnywhere(const float* from) { return _mm_loadu_ps(from); }
 
-inline unsigned lowBytesReach(const std::uint64_t* line, std::uint64_t least) {
-  const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(least));
+inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {
+  const __m128i each = _mm_set1_epi64x(static_cast<std::int64_t>(limits));
   const auto* const pairs = reinterpret_cast<const __m128i*>(line);
-  std::uint64_t highest = 0;
+  unsigned within = 0;
   for (int pair = 0; pair < 3; ++pair) {
-    const __m128i rest = _mm_sub_epi8(_mm_load_si128(pairs + pair), each);
-    highest |= std::uint64_t{static_cast<unsigned>(_mm_movemask_epi8(rest))} << 16 * pair;
+    const __m128i above = _mm_subs_epu8(_mm_load_si128(pairs + pair), each);
+    const __m128i halves = _mm_cmpeq_epi32(above, _mm_setzero_si128());
+    const __m128i whole = _mm_and_si128(halves, _mm_shuffle_epi32(halves, 0xB1));
+    within |= static_cast<unsigned>(_mm_movemask_pd(_mm_castsi128_pd(whole))) << 2 * pair;
   }
-  // Where seven bits are set, adding 1 sets the eighth.
-  const std::uint64_t seven = highest & 0x7F'7F7F'7F7F;
-  const std::uint64_t eighth = (seven + 0x01'0101'0101) & 0x80'8080'8080;
-  // Each of these five bits next to the one before.
-  return static_cast<unsigned>((eighth >> 7) * 0x01'0204'0810 >> 32) & 0x1F;
+  return within;
 }
+
+#include "simd/lines_within.inl"

@@ -104,12 +104,18 @@ void Cells::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sampl
       }
       return looked_into * (kCellCost + crowding(boxes, of_edge));
     };
-    for (double least = cost(edge);;) {
-      const double shorter = cost(edge * kShorter);
-      if (shorter >= least || edge * kShorter < kShortest) break;
-      least = shorter;
-      edge *= kShorter;
+    double least = cost(edge);
+    const auto is_better = [&](double other) {
+      if (other < kShortest) return false;
+      const double of_other = cost(other);
+      if (of_other >= least) return false;
+      least = of_other;
+      edge = other;
+      return true;
+    };
+    while (is_better(edge * kShorter)) {
     }
+    if (!is_better(edge * std::sqrt(kShorter))) is_better(edge / std::sqrt(kShorter));
   }
   factor_ = static_cast<float>((1 << kCellBits) / edge);
 }
@@ -175,8 +181,7 @@ Cells::Surroundings Cells::surroundings(const Extent& extent, std::uint32_t leve
   const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
   return {.first = wrapped(first, at),
           .counts = smaller(last - first + 1, at.counts),  // all there are, once each
-          .low = in_bulk & in_first.min,
-          .high = in_bulk ? in_first.max : Steps{} + kFarOff};
+          .extent = {in_bulk & in_first.min, in_bulk ? in_first.max : Steps{} + kFarOff}};
 }
 
 Aabb Cells::boxOf(Steps cell, std::uint32_t level) const {

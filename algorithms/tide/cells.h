@@ -33,6 +33,10 @@ inline constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::ma
 /// Where a coordinate lies, on three axes; the fourth number means nothing.
 using Steps = WholeCorner;
 
+inline std::uint32_t sumOfAxes(Steps numbers) {
+  return static_cast<std::uint32_t>(numbers[0] + numbers[1] + numbers[2]);
+}
+
 /// A box in steps.
 struct Extent {
   Steps min;
@@ -40,17 +44,18 @@ struct Extent {
   [[nodiscard]] Steps edges() const { return max - min; }
 };
 
-/// Of a box in a cell: a byte for its upper bound on each axis, counted from the cell's beginning,
-/// one that is 1, and on each axis a byte for its lower bound, counted down from kLastInCell. All
-/// are at most kLastInCell, and the bit above that is set. Of a box that is looked for: what these
-/// must reach for the two to overlap, without that bit. The highest byte means nothing.
+/// Of a box in a cell: on each axis a byte for its upper bound, counted down from kLastInCell, and
+/// one for its lower bound, counted from the cell's beginning. Of a box that is looked for: what
+/// these may be at most for the two to overlap. No byte is above kLastInCell, and those that belong
+/// to no axis are 0.
 using Bounds = std::uint64_t;
-inline constexpr std::int32_t kLastInCell = 127;  ///< a loose cell is as long as two
-inline constexpr Bounds kNobody = 0x0080'8080'8080'8080;
-inline constexpr Bounds kSomebody = Bounds{1} << 24;
+inline constexpr std::int32_t kLastInCell = 127;       ///< a loose cell is as long as two
+inline constexpr Bounds kNobody = Bounds{0x7F} << 24;  ///< within no limits
 
-/// A byte that is too small takes its highest bit away.
-inline bool reaches(Bounds bounds, Bounds least) { return ((bounds - least) & kNobody) == kNobody; }
+inline bool areWithin(Bounds bounds, Bounds limits) {
+  constexpr Bounds kHighest = 0x8080'8080'8080'8080;
+  return (((limits | kHighest) - bounds) & kHighest) == kHighest;
+}
 
 /// The cells of all levels, numbered one after the other.
 class Cells {
@@ -74,10 +79,9 @@ class Cells {
   };
   /// These cells, each of them once, and the extent there.
   struct Surroundings {
-    Steps first;   ///< counted from the level's first cell; beyond the last one they begin anew
-    Steps counts;  ///< how many on each axis
-    Steps low;     ///< the extent, counted from the beginning of the first one
-    Steps high;
+    Steps first;    ///< counted from the level's first cell; beyond the last one they begin anew
+    Steps counts;   ///< how many on each axis
+    Extent extent;  ///< counted from the beginning of the first one
   };
 
   /// Chooses them for these boxes. O(n).
@@ -90,8 +94,7 @@ class Cells {
   static std::uint32_t levelOf(const Extent& extent);
   [[nodiscard]] std::uint32_t cellOf(const Extent& extent, std::uint32_t level) const {
     const Level& at = levels_[level];
-    const Steps cell = wrapped(extent.min >> shiftOf(level), at) * at.strides;
-    return at.first_cell + static_cast<std::uint32_t>(cell[0] + cell[1] + cell[2]);
+    return at.first_cell + sumOfAxes(wrapped(extent.min >> shiftOf(level), at) * at.strides);
   }
   /// kNowhere if the box is empty.
   [[nodiscard]] std::uint32_t cellOf(const Aabb& box) const {
@@ -101,7 +104,8 @@ class Cells {
   }
   /// The bounds of an extent in the cell of a box, which is part of it and of that level.
   [[nodiscard]] Bounds boundsOf(const Extent& extent, const Extent& box, std::uint32_t level) const;
-  static Bounds boundsOnAxes(Steps low, Steps high);
+  /// What the bounds of those who overlap an extent may be at most.
+  static Bounds limitsOf(const Extent& in_cell) { return bytesOf(in_cell.min, in_cell.max); }
 
   /// From now on there is such a box.
   void reach(const Extent& extent, std::uint32_t level) {
@@ -149,6 +153,7 @@ class Cells {
     return wrappedFarOff(from_first, at);
   }
   static Steps wrappedFarOff(Steps from_first, const Level& at);
+  static Bounds bytesOf(Steps counted_down, Steps counted);
 
   void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
                    const std::array<Bulk, 3>& bulk);
@@ -169,21 +174,22 @@ inline std::uint32_t Cells::levelOf(const Extent& extent) {
   return level;
 }
 
-/// The bytes of all axes; what is lower or higher than they can tell counts as their limit.
-inline Bounds Cells::boundsOnAxes(Steps low, Steps high) {
-  const Steps from_last = kLastInCell - low;
+/// The bytes of all axes, of which the former are counted down; what is lower or higher than they
+/// can tell counts as their limit.
+inline Bounds Cells::bytesOf(Steps counted_down, Steps counted) {
+  const Steps from_last = kLastInCell - counted_down;
 #if defined(__SSE2__)
-  // Bounds that lie beyond a narrower number become its limit.
+  // What lies beyond a narrower number becomes its limit.
   const __m128i words =
-      _mm_packs_epi32(std::bit_cast<__m128i>(high), std::bit_cast<__m128i>(from_last));
+      _mm_packs_epi32(std::bit_cast<__m128i>(from_last), std::bit_cast<__m128i>(counted));
   const __m128i bytes =
       _mm_min_epu8(_mm_packus_epi16(words, words), _mm_set1_epi8(static_cast<char>(kLastInCell)));
   return std::bit_cast<std::array<Bounds, 2>>(bytes)[0] & 0x00FF'FFFF'00FF'FFFF;
 #else
   Bounds bounds = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    bounds |= static_cast<Bounds>(std::clamp(high[axis], 0, kLastInCell)) << 8 * axis;
-    bounds |= static_cast<Bounds>(std::clamp(from_last[axis], 0, kLastInCell)) << 8 * (axis + 4);
+    bounds |= static_cast<Bounds>(std::clamp(from_last[axis], 0, kLastInCell)) << 8 * axis;
+    bounds |= static_cast<Bounds>(std::clamp(counted[axis], 0, kLastInCell)) << 8 * (axis + 4);
   }
   return bounds;
 #endif
@@ -197,8 +203,7 @@ inline Bounds Cells::boundsOf(const Extent& extent, const Extent& box, std::uint
   const Steps in_bulk =
       (from_first >= 0) & (from_first < at.counts) & (extent.min >> shiftOf(level) == cell);
   const Extent in_cell = countedFrom(cell, extent, level);
-  return kNobody | kSomebody |
-         boundsOnAxes(in_bulk & in_cell.min, in_bulk ? in_cell.max : Steps{} + kLastInCell);
+  return bytesOf(in_bulk ? in_cell.max : Steps{} + kLastInCell, in_bulk & in_cell.min);
 }
 
 }  // namespace broadmark::tide

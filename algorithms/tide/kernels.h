@@ -5,27 +5,27 @@
 #include <cstdint>
 
 #include "broadmark/execution.h"
-#include "tide/lines.h"
+#include "tide/looks.h"
 
 namespace broadmark::tide {
 
-/// The bodies in some places of a line, met by a look.
+/// Some bodies met by a look.
 struct Hit {
-  const Line* line;
+  std::uint64_t places;  ///< a byte for each line, in which there is a bit for each place
   std::uint32_t look;
-  std::uint32_t places;  ///< a bit each
 };
 
 struct Kernels {
   struct Found {
     std::size_t hits;
     std::size_t followed;
+    std::size_t lines;  ///< that were looked into
   };
-  /// Looks into `count` lines for bounds that reach what is wanted in each; looks are numbered from
-  /// `first` on. Lists the lines where there are any, and the looks whose lines are followed by
-  /// others. There is room for `count` of both.
-  Found (*look)(const Line* const* lines, const Bounds* least, std::size_t count,
-                std::uint32_t first, Hit* hits, std::uint32_t* followed);
+  /// Looks for bounds within limits; looks are numbered from `first` on. Lists the looks that find
+  /// any, and those with lines that are followed by others, which are told by bits of
+  /// Look::kFollowed. There is room for `count` of both.
+  Found (*look)(const Look* looks, std::size_t count, std::uint32_t first, Hit* hits,
+                Hit* followed);
 };
 
 /// The kernels for an instruction set, which this processor must support.

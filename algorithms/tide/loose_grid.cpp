@@ -31,8 +31,9 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
 }
 
 void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
-  moves_.resize(bodies.size());
+  searches_.resize(2 * bodies.size());
   lines_.makeRoom(bodies.size());  // none may move while there are looks into it
+  Search* next = searches_.data();
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (i + kPrefetchFarAhead < bodies.size()) {
       prefetchFar(&boxes[bodies[i + kPrefetchFarAhead]]);
@@ -42,33 +43,68 @@ void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const 
       prefetch(&boxes[bodies[i + kPrefetchAhead]]);
       prefetch(&bodies_[bodies[i + kPrefetchAhead]]);
     }
-    const std::uint32_t body = bodies[i];
-    const Aabb& box = boxes[body];
-    const Extent extent = cells_.extentOf(box);
-    std::uint32_t level = 0;
-    std::uint32_t cell = kNowhere;
-    if (!isEmpty(box)) {
-      level = Cells::levelOf(extent);
-      cell = cells_.cellOf(extent, level);
-      cells_.reach(extent, level);
-    }
-    moves_[i] = {extent, body, level};
-    bodies_[body].move(box, cell, frame_);
+    next = addSearches(bodies[i], boxes[bodies[i]], next);
   }
+  searches_.resize(static_cast<std::size_t>(next - searches_.data()));
+}
+
+/// Moves a body, and writes its searches; returns where the next ones go.
+inline LooseGrid::Search* LooseGrid::addSearches(std::uint32_t index, const Aabb& to,
+                                                 Search* next) {
+  Body& body = bodies_[index];
+  const std::uint32_t cell_before = body.cell();
+  const Extent before = cells_.extentOf(body.box);
+  const Extent now = cells_.extentOf(to);
+  std::uint32_t level = 0;
+  std::uint32_t cell = kNowhere;
+  if (!isEmpty(to)) {
+    level = Cells::levelOf(now);
+    cell = cells_.cellOf(now, level);
+    cells_.reach(now, level);
+  }
+  body.move(to, cell, frame_);
+  // Around both places at once, unless it has moved far.
+  const Steps far = 1 << Cells::kCellBits | now.edges();
+  const auto is_near = [&](Steps from, Steps at) {
+    return (at - from <= far) & (from - at <= far);
+  };
+  const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
+  const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
+  // In a cell that it does not leave it is found at both places.
+  const Bounds bounds = cells_.boundsOf(cell == cell_before ? both : now, now, level);
+  Search search = {both, bounds, index, kBeginnings | kEnds, cell, cell_before};
+  const bool was = cell_before != kNowhere;
+  const bool is = cell != kNowhere;
+  if (near && was && is) [[likely]] {
+    *next++ = search;
+    return next;
+  }
+  if (was) {
+    search.around = before;
+    search.wanted = kEnds;
+    *next++ = search;
+    search.cell_before = cell;  // that has been told
+  }
+  if (is) {
+    search.around = now;
+    search.wanted = kBeginnings;
+    *next++ = search;
+  }
+  return next;
 }
 
 /// Each batch takes one step after the other, in turns with those behind it: so what a step needs
 /// comes from memory meanwhile.
 void LooseGrid::search(const CollisionFilter& filter, PairBuffer& began, PairBuffer& ended) {
-  const std::size_t batches = (moves_.size() + Batch::kMoves - 1) / Batch::kMoves;
+  const std::size_t batches = (searches_.size() + Batch::kSearches - 1) / Batch::kSearches;
   const auto under_way = [&](std::size_t batch) {
     return batch < batches ? &under_way_[batch % kSteps] : nullptr;
   };
   for (std::size_t now = 0; now < batches + kSteps - 1; ++now) {
-    if (Batch* const batch = under_way(now)) takeMoves(now * Batch::kMoves, *batch);
-    if (Batch* const batch = under_way(now - 1)) prepare(*batch);
+    if (Batch* const batch = under_way(now)) takeSearches(now * Batch::kSearches, *batch);
+    if (Batch* const batch = under_way(now - 1)) lookAround(*batch);
     if (Batch* const batch = under_way(now - 2)) {
-      if (moves_.size() >= kManyMoves) sendForLinesBehind(*batch);
+      if (searches_.size() >= kManySearches) sendForLinesBehind(*batch);
       makeMoves(*batch);
     }
     // Not in the turn before: to read a line of which a part was just written takes long.
@@ -77,77 +113,49 @@ void LooseGrid::search(const CollisionFilter& filter, PairBuffer& began, PairBuf
   }
 }
 
-/// The moves from the given one on.
-void LooseGrid::takeMoves(std::size_t first, Batch& batch) {
-  const std::span<const Move> moves = moves_;
-  batch.moves = moves.subspan(first, std::min(Batch::kMoves, moves.size() - first));
-  for (const Move& move : batch.moves) prefetch(&bodies_[move.body]);
-}
-
-/// Finds out what is to be done.
-void LooseGrid::prepare(Batch& batch) const {
-  batch.looks.count = 0;
-  batch.search_count = 0;
-  for (std::size_t i = 0; i < batch.moves.size(); ++i) {
-    batch.bounds[i] = prepareMove(batch.moves[i], batch);
+/// The searches from the given one on.
+void LooseGrid::takeSearches(std::size_t first, Batch& batch) {
+  const std::span<const Search> searches = searches_;
+  batch.searches = searches.subspan(first, std::min(Batch::kSearches, searches.size() - first));
+  for (const Search& search : batch.searches) {
+    // No processor knows that these are read one after the other, as so much else is meanwhile.
+    prefetch(&search + kSearchesAhead);
+    prefetchFar(&bodies_[search.body]);
   }
 }
 
-/// Adds where to look for whose overlap with a body may change; returns what its bounds become.
-Bounds LooseGrid::prepareMove(const Move& move, Batch& batch) const {
-  const Body& body = bodies_[move.body];
-  const bool was = body.cellBefore() != kNowhere;
-  const bool is = body.cell() != kNowhere;
-  if (!was && !is) return kNobody;
-  const Extent before = cells_.extentOf(body.before);
-  const Extent& now = move.to;
-  // Around both places at once, unless it has moved far.
-  const Steps far = 1 << Cells::kCellBits | now.edges();
-  const auto is_near = [&](Steps from, Steps to) {
-    return (to - from <= far) & (from - to <= far);
-  };
-  const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
-  const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
-  // In a cell that it does not leave it is found at both places.
-  const Extent& found = body.cell() == body.cellBefore() ? both : now;
-  if (near) {
-    lookAround({move.body, kBeginnings | kEnds}, both, batch);
-  } else {
-    if (was) lookAround({move.body, kEnds}, before, batch);
-    if (is) lookAround({move.body, kBeginnings}, now, batch);
-  }
-  return cells_.boundsOf(found, now, move.level);
-}
-
-/// Adds looks into the cells where somebody may overlap the extent.
-void LooseGrid::lookAround(Search search, const Extent& extent, Batch& batch) const {
-  const std::size_t number = batch.search_count++;
-  batch.searches[number] = search;
-  for (std::uint32_t levels = cells_.usedLevels(); levels != 0; levels &= levels - 1) {
-    const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
-    const Cells::Level& at = cells_.level(level);
-    const auto [first, last] = cells_.rangeAround(extent, level);
-    // Nearly always: no more than two on each axis, all of them in the bulk.
-    if (isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
-        [[likely]] {
-      const Steps number_of_first = (first - at.first) * at.strides;
-      const Steps is_two = last > first;
-      const Extent in_first = Cells::countedFrom(first, extent, level);
-      lookIntoEight(at,
-                    {.at = number_of_first,
-                     .next = number_of_first + (at.strides & is_two),
-                     .is_two = is_two,
-                     .low = in_first.min,
-                     .high = in_first.max},
-                    number, batch.looks);
-    } else {
-      lookAroundFarOff(level, extent, number, batch.looks);
+/// Adds looks into the cells where somebody may overlap who is searched for.
+void LooseGrid::lookAround(Batch& batch) const {
+  batch.looks.resize(0);
+  for (std::uint32_t i = 0; i < batch.searches.size(); ++i) {
+    const Extent& extent = batch.searches[i].around;
+    for (std::uint32_t levels = cells_.usedLevels(); levels != 0; levels &= levels - 1) {
+      const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
+      const Cells::Level& at = cells_.level(level);
+      const auto [first, last] = cells_.rangeAround(extent, level);
+      // Nearly always: no more than two on each axis, all of them in the bulk.
+      if (isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
+          [[likely]] {
+        const Steps number_of_first = (first - at.first) * at.strides;
+        const Steps is_two = last > first;
+        addLook({.first = &lines_[at.first_cell + sumOfAxes(number_of_first)],
+                 .next = at.strides & is_two,
+                 .is_two = is_two,
+                 .extent = Cells::countedFrom(first, extent, level)},
+                i, batch);
+      } else {
+        lookAroundFarOff(level, extent, i, batch);
+      }
     }
   }
+  // All at once: so what each waits for, to know where a page lies, is waited for together.
+  for (const Look& look : batch.looks) {
+    for (const Line* const line : look.lines) prefetchFar(line);
+  }
 }
 
-void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std::size_t search,
-                                 Looks& looks) const {
+void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std::uint32_t search,
+                                 Batch& batch) const {
   const Cells::Level& at = cells_.level(level);
   const Cells::Surroundings around = cells_.surroundings(extent, level);
   for (std::int32_t z = 0; z < around.counts[2]; z += 2) {
@@ -159,127 +167,108 @@ void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std:
         const Steps number = cell * at.strides;
         const Steps is_two = around.counts - offset > 1;
         const Steps next = (number + at.strides) & (cell + 1 < at.counts);
-        lookIntoEight(at,
-                      {.at = number,
-                       .next = is_two ? next : number,
-                       .is_two = is_two,
-                       .low = around.low - (offset << Cells::kCellBits),
-                       .high = around.high - (offset << Cells::kCellBits)},
-                      search, looks);
+        const Steps from_first = offset << Cells::kCellBits;
+        addLook({.first = &lines_[at.first_cell + sumOfAxes(number)],
+                 .next = (next - number) & is_two,
+                 .is_two = is_two,
+                 .extent = {around.extent.min - from_first, around.extent.max - from_first}},
+                search, batch);
       }
     }
   }
 }
 
-/// Adds looks into two cells on each axis, as far as there are two. Without a branch, as nobody
-/// could predict how many these are: all eight are written, each that is not wanted at the place
-/// of the next one that is.
-inline void LooseGrid::lookIntoEight(const Cells::Level& at, const TwoCells& cells,
-                                     std::size_t search, Looks& looks) const {
-  static_assert(sizeof(const Line*) == sizeof(std::uint64_t));
-  const Two x = bytesOf<0>(cells) + reinterpret_cast<std::uintptr_t>(&lines_[at.first_cell]);
-  const Two y = bytesOf<1>(cells);
-  const Two z = bytesOf<2>(cells);
-  constexpr std::int32_t kCell = 1 << Cells::kCellBits;
-  const Two least = {Cells::boundsOnAxes(cells.high, cells.low),
-                     Cells::boundsOnAxes(cells.high - kCell, cells.low - kCell)};
-  const Two least_x = ofAxis(0, least) | Looks::withSearch(kSomebody, search);
-
-  const std::size_t row = 1 - cells.is_two[0];
-  const std::size_t layer = row << -cells.is_two[1];
-  looks.makeRoom(8);
-  const Line** const to_cells = looks.cells.data() + looks.count;
-  Bounds* const to_least = looks.least.data() + looks.count;
-  looks.count += layer << -cells.is_two[2];
-  for (int k = 0; k < 2; ++k) {
-    for (int j = 0; j < 2; ++j) {
-      const std::size_t to = (k != 0 ? layer : 0) + (j != 0 ? row : 0);
-      const Two lines = x + twice(y[j]) + twice(z[k]);
-      const Two bounds = least_x | ofAxis(1, twice(least[j])) | ofAxis(2, twice(least[k]));
-      std::memcpy(to_cells + to, &lines, sizeof(lines));
-      std::memcpy(to_least + to, &bounds, sizeof(bounds));
-      for (int i = 0; i < 2; ++i) prefetchFar(std::bit_cast<const Line*>(lines[i]));
-    }
-  }
+inline void LooseGrid::addLook(const EightCells& cells, std::uint32_t search, Batch& batch) {
+  const auto number = static_cast<std::uint32_t>(batch.looks.size());
+  batch.looks.resize(number + 1);
+  Look& look = batch.looks[number];
+  setLook(cells, look);
+  look.search = search;
+  look.of_cells = number;
 }
 
 /// Only in crowded cells there are lines that nobody knows of before another one has come.
 void LooseGrid::sendForLinesBehind(const Batch& batch) const {
-  for (std::size_t i = 0; i < batch.looks.count; ++i) {
-    const Line* const cell = batch.looks.cells[i];
-    prefetchFar(cell->next == kNowhere ? cell : &lines_[cell->next]);
+  for (const Look& look : batch.looks) {
+    for (const Line* const line : look.lines) {
+      prefetchFar(line->next == kNowhere ? line : &lines_[line->next]);
+    }
   }
 }
 
 /// Puts bodies into their cells.
 void LooseGrid::makeMoves(const Batch& batch) {
-  for (std::size_t i = 0; i < batch.moves.size(); ++i) {
-    const std::uint32_t index = batch.moves[i].body;
-    const Body& body = bodies_[index];
-    if (body.cell() == body.cellBefore()) {
-      if (body.cell() == kNowhere) continue;
-      lines_.setBounds(body.cell(), index, batch.bounds[i]);
+  for (const Search& search : batch.searches) {
+    if (search.cell == search.cell_before) {
+      lines_.setBounds(search.cell, search.body, search.bounds);
       continue;
     }
     ++work_.cell_changes;
-    if (body.cellBefore() != kNowhere) left_.push_back({index, body.cellBefore()});
-    if (body.cell() != kNowhere) lines_.insert(body.cell(), index, batch.bounds[i]);
+    if (search.cell_before != kNowhere) left_.push_back({search.body, search.cell_before});
+    if (search.cell != kNowhere) lines_.insert(search.cell, search.body, search.bounds);
   }
 }
 
-/// Lists who else is there, in these cells, and reaches what was wanted: first those in the cells'
-/// own lines, then in the lines behind them, and so on.
+/// Lists who else is there, in these cells, and is within limits: first those in the cells' own
+/// lines, then in the lines behind them, and so on.
 void LooseGrid::lookIntoCells(Batch& batch) {
-  Looks& looks = batch.looks;
   std::size_t hits = 0;
-  for (std::size_t first = 0; first < looks.count;) {
-    const std::size_t count = looks.count - first;
-    looks.makeRoom(count);
+  for (std::size_t first = 0; first < batch.looks.size();) {
+    const std::size_t count = batch.looks.size() - first;
     hits_.resize(hits + count);
     followed_.resize(count);
-    lines_behind_.resize(count);
-    const Line* const* const lines = first == 0 ? looks.cells.data() : lines_behind_.data();
     const Kernels::Found found =
-        kernels_->look(lines, looks.least.data() + first, count, static_cast<std::uint32_t>(first),
+        kernels_->look(batch.looks.data() + first, count, static_cast<std::uint32_t>(first),
                        hits_.data() + hits, followed_.data());
     hits += found.hits;
-    for (std::size_t i = 0; i < found.followed; ++i) {
-      const std::uint32_t look = followed_[i];
-      lines_behind_[i] = &lines_[lines[look - first]->next];
-      looks.cells[looks.count] = looks.cells[look];
-      looks.least[looks.count++] = looks.least[look];
-    }
+    work_.lines += found.lines;
+    for (std::size_t i = 0; i < found.followed; ++i) addLookBehind(followed_[i], batch);
     first += count;
   }
-  work_.lines += looks.count;
   addCandidates(batch, hits);
 }
 
-/// All but the bodies that are looking. In a line there are seldom more than two, and nobody could
-/// predict whether there are.
+void LooseGrid::addLookBehind(const Hit& followed, Batch& batch) const {
+  batch.looks.resize(batch.looks.size() + 1);
+  const Look& before = batch.looks[followed.look];
+  Look& behind = batch.looks[batch.looks.size() - 1];
+  behind = before;
+  for (std::uint32_t line = 0; line < Look::kLines; ++line) {
+    if ((followed.places >> 8 * line & 0xFF) != 0)
+      behind.lines[line] = &lines_[before.lines[line]->next];
+  }
+  behind.wanted = (followed.places >> 7) * Look::kLine;
+}
+
+/// All but the bodies that are looking. A look seldom finds more than three, and nobody could
+/// predict whether it does.
 void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
-  batch.candidates.resize(hits * Line::kPlaces + 1);  // the last one is written, and not kept
+  batch.candidates.resize(hits * (Look::kLines * Line::kPlaces) +
+                          1);  // the last one is written, and not kept
   Candidate* end = batch.candidates.data();
   for (std::size_t i = 0; i < hits; ++i) {
     const Hit& hit = hits_[i];
-    const Line* const cell = batch.looks.cells[hit.look];
-    const std::uint32_t search = batch.looks.searchOf(hit.look);
-    const std::uint32_t body = batch.searches[search].body;
-    std::uint32_t places = hit.places;
+    const Look& look = batch.looks[hit.look];
+    const Look& cells = batch.looks[look.of_cells];
+    const std::uint32_t body = batch.searches[look.search].body;
+    std::uint64_t places = hit.places;
     const auto add = [&] {
       // Where nobody is left the first one is looked at again, and not kept.
-      const std::uint32_t any = places | (hit.places & (0U - unsigned{places == 0}));
-      const std::uint32_t other = hit.line->bodies[std::countr_zero(any)];
-      prefetchFar(&bodies_[other]);
-      *end = {cell, other, search};
+      const std::uint64_t any = places | (hit.places & (0U - std::uint64_t{places == 0}));
+      const auto bit = static_cast<std::uint32_t>(std::countr_zero(any));
+      const std::uint32_t line = bit / 8;
+      const std::uint32_t other = look.lines[line]->bodies[bit % 8];
+      *end = {cells.lines[line], other, look.search};
       end += unsigned{places != 0} & unsigned{other != body};
       places &= places - 1;
     };
     add();
     add();
+    add();
     while (places != 0) [[unlikely]] add();
   }
   batch.candidates.resize(static_cast<std::size_t>(end - batch.candidates.data()));
+  for (const Candidate& candidate : batch.candidates) prefetchFar(&bodies_[candidate.other]);
 }
 
 /// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
@@ -331,7 +320,7 @@ void LooseGrid::settle() {
     lines_.remove(left_[i].cell, left_[i].body);
   }
   left_.clear();
-  moves_.resize(0);
+  searches_.resize(0);
   ++frame_;
 }
 
@@ -371,12 +360,12 @@ std::string LooseGrid::validate() const {
     if (!isEveryAxis(extent.edges() <= cells_.level(Cells::levelOf(extent)).reach)) {
       return fmt::format("body {} reaches farther than its level", body);
     }
-    const Bounds bounds = cells_.boundsOf(extent, extent, Cells::levelOf(extent)) & ~kNobody;
+    const Bounds bounds = cells_.boundsOf(extent, extent, Cells::levelOf(extent));
     bool is_there = false;
     for (std::uint32_t line = of.cell(); line != kNowhere; line = lines_[line].next) {
       for (std::uint32_t place = 0; place < lines_[line].count(); ++place) {
         is_there |=
-            lines_[line].bodies[place] == body && reaches(lines_[line].bounds[place], bounds);
+            lines_[line].bodies[place] == body && areWithin(lines_[line].bounds[place], bounds);
       }
     }
     if (!is_there) return fmt::format("body {} is not in its cell", body);

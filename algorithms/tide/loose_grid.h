@@ -87,47 +87,18 @@ class LooseGrid {
     }
   };
 
-  /// Where a body is now.
-  struct Move {
-    Extent to;
-    std::uint32_t body;
-    std::uint32_t level;
-  };
-
   static constexpr std::uint32_t kBeginnings = 1;
   static constexpr std::uint32_t kEnds = 2;
 
-  /// For those whose overlap with a body may change.
-  struct Search {
+  /// For those whose overlap with a body that moves may change. A body that has moved far has two,
+  /// one behind the other: around where it was, and around where it is.
+  struct alignas(64) Search {
+    Extent around;
+    Bounds bounds;  ///< of the body, from now on
     std::uint32_t body;
     std::uint32_t wanted;  ///< kBeginnings, kEnds or both
-  };
-  /// Into cells, of which these are the first lines, and what bounds must reach there. The highest
-  /// byte of that is the number of a search in the batch.
-  struct Looks {
-    LargeArray<const Line*> cells;
-    LargeArray<Bounds> least;
-    std::size_t count = 0;
-
-    void makeRoom(std::size_t more) {
-      cells.resize(count + more);
-      least.resize(count + more);
-    }
-    static constexpr int kSearchBegins = 56;  ///< bits below it
-    static Bounds withSearch(Bounds least, std::size_t search) {
-      return least | search << kSearchBegins;
-    }
-    [[nodiscard]] std::uint32_t searchOf(std::size_t look) const {
-      return static_cast<std::uint32_t>(least[look] >> kSearchBegins);
-    }
-  };
-  /// A cell on each axis, and the next one as far as it is wanted.
-  struct TwoCells {
-    Steps at;      ///< what it adds to the number of a cell
-    Steps next;    ///< the same of the next one
-    Steps is_two;  ///< -1 on axes where there is a next one, else 0
-    Steps low;     ///< what is looked for, counted from the beginning of the first one
-    Steps high;
+    std::uint32_t cell;    ///< of the body: kNowhere if it is absent
+    std::uint32_t cell_before;
   };
   /// Somebody, found in a cell, who may overlap a body.
   struct Candidate {
@@ -135,19 +106,17 @@ class LooseGrid {
     std::uint32_t other;
     std::uint32_t search;
   };
-  /// A few moves, and what is to be done for them.
+  /// A few searches, and what is to be done for them.
   struct Batch {
-    static constexpr std::size_t kMoves = 4;
-    std::span<const Move> moves;
-    std::array<Bounds, kMoves> bounds{};  ///< what they become
-    std::array<Search, 2 * kMoves> searches{};
-    std::size_t search_count = 0;
-    Looks looks;
+    static constexpr std::size_t kSearches = 8;
+    std::span<const Search> searches;
+    LargeArray<Look> looks;
     LargeArray<Candidate> candidates;
   };
   static constexpr std::size_t kSteps = 5;  ///< that a batch takes
-  /// So many moves and more touch more memory than stays in caches.
-  static constexpr std::size_t kManyMoves = 1000;
+  /// So many searches and more touch more memory than stays in caches.
+  static constexpr std::size_t kManySearches = 1000;
+  static constexpr std::size_t kSearchesAhead = 32;
 
   /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
   struct Left {
@@ -158,26 +127,13 @@ class LooseGrid {
   static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
     return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
   }
-  /// Two numbers side by side, of a cell and the next one on an axis.
-  using Two = std::uint64_t __attribute__((vector_size(16)));
-  static Two twice(std::uint64_t number) { return Two{number, number}; }
-  static Two ofAxis(int axis, Two bounds) { return bounds & 0xFF'0000'00FF << 8 * axis; }
-  /// What an axis adds to the address of a line.
-  template <int axis>
-  static Two bytesOf(const TwoCells& cells) {
-    const auto numbers =
-        __builtin_shufflevector(cells.at, cells.next, axis, axis, 4 + axis, 4 + axis);
-    return (std::bit_cast<Two>(numbers) >> 32) * sizeof(Line);
-  }
-
-  void takeMoves(std::size_t first, Batch& batch);
-  void prepare(Batch& batch) const;
-  Bounds prepareMove(const Move& move, Batch& batch) const;
-  void lookAround(Search search, const Extent& extent, Batch& batch) const;
-  void lookAroundFarOff(std::uint32_t level, const Extent& extent, std::size_t search,
-                        Looks& looks) const;
-  void lookIntoEight(const Cells::Level& at, const TwoCells& cells, std::size_t search,
-                     Looks& looks) const;
+  Search* addSearches(std::uint32_t body, const Aabb& to, Search* next);
+  void takeSearches(std::size_t first, Batch& batch);
+  void lookAround(Batch& batch) const;
+  void lookAroundFarOff(std::uint32_t level, const Extent& extent, std::uint32_t search,
+                        Batch& batch) const;
+  static void addLook(const EightCells& cells, std::uint32_t search, Batch& batch);
+  void addLookBehind(const Hit& followed, Batch& batch) const;
   void sendForLinesBehind(const Batch& batch) const;
   void makeMoves(const Batch& batch);
   void lookIntoCells(Batch& batch);
@@ -191,11 +147,10 @@ class LooseGrid {
   Cells cells_;
   Lines lines_;
   LargeArray<Body> bodies_;
-  LargeArray<Move> moves_;  ///< of this frame, by body
+  LargeArray<Search> searches_;  ///< of this frame, by body
   std::array<Batch, kSteps> under_way_;
   LargeArray<Hit> hits_;
-  LargeArray<std::uint32_t> followed_;    ///< looks into lines behind which there are others
-  LargeArray<const Line*> lines_behind_;  ///< which are looked into next
+  LargeArray<Hit> followed_;  ///< looks into lines behind which there are others
   std::vector<Left> left_;
   std::uint32_t frame_ = 1;
   Work work_;
