@@ -168,7 +168,8 @@ class Cells {
 
 inline std::uint32_t Cells::levelOf(const Extent& extent) {
   const Steps edges = extent.edges();
-  const std::int32_t longest = std::max({edges[0], edges[1], edges[2]});
+  const std::int32_t longest =
+      edges[0] > edges[1] ? std::max(edges[0], edges[2]) : std::max(edges[1], edges[2]);
   std::uint32_t level = 0;
   while (level + 1 < kLevels && longest > 1 << shiftOf(level)) ++level;
   return level;

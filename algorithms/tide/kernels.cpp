@@ -1,5 +1,7 @@
 #include "tide/kernels.h"
 
+#include "prefetch.h"
+
 #define BROADMARK_KERNELS "tide/kernels.inl"
 #include "simd/for_each_isa.inl"
 

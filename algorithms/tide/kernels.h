@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "broadmark/execution.h"
-#include "tide/looks.h"
+#include "tide/search.h"
 
 namespace broadmark::tide {
 
@@ -16,6 +16,14 @@ struct Hit {
 };
 
 struct Kernels {
+  /// Takes over where bodies are, and writes their searches, of which there is room for two each.
+  /// Returns how many these are. `boxes` and `of_bodies` have one for each body there is.
+  std::size_t (*add_searches)(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,
+                              std::size_t count, const Aabb* boxes, Body* of_bodies,
+                              Search* searches);
+  bool (*set_look_around)(const Cells& cells, const Line* lines, const Extent& extent,
+                          std::uint32_t level, Look& look);
+
   struct Found {
     std::size_t hits;
     std::size_t followed;

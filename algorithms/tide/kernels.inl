@@ -3,17 +3,100 @@
 // Nobody could predict which looks find somebody, so nothing branches: all of them are written
 // down, and counted only if they do.
 
-tide::Kernels::Found look(const tide::Look* looks, std::size_t count, std::uint32_t first,
-                          tide::Hit* hits, tide::Hit* followed) {
-  tide::Kernels::Found found = {0, 0, 0};
+using namespace broadmark::tide;
+
+/// Moves a body, and writes its searches; returns where the next ones go.
+inline Search* addSearchesOf(Cells& cells, std::uint32_t frame, std::uint32_t index, Body& body,
+                           const Aabb& to, Search* next) {
+  const std::uint32_t cell_before = body.cell();
+  const Extent before = cells.extentOf(body.box);
+  const Extent now = cells.extentOf(to);
+  std::uint32_t level = 0;
+  std::uint32_t cell = kNowhere;
+  if (!isEmpty(to)) {
+    level = Cells::levelOf(now);
+    cell = cells.cellOf(now, level);
+    cells.reach(now, level);
+  }
+  body.move(to, cell, frame);
+  // Around both places at once, unless it has moved far.
+  const Steps far = 1 << Cells::kCellBits | now.edges();
+  const auto is_near = [&](Steps from, Steps at) {
+    return (at - from <= far) & (from - at <= far);
+  };
+  const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
+  const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
+  // In a cell that it does not leave it is found at both places.
+  const Bounds bounds = cells.boundsOf(cell == cell_before ? both : now, now, level);
+  Search search = {both, bounds, index, kBeginnings | kEnds, cell, cell_before};
+  const bool was = cell_before != kNowhere;
+  const bool is = cell != kNowhere;
+  if (near && was && is) [[likely]] {
+    *next++ = search;
+    return next;
+  }
+  if (was) {
+    search.around = before;
+    search.wanted = kEnds;
+    *next++ = search;
+    search.cell_before = cell;  // that has been told
+  }
+  if (is) {
+    search.around = now;
+    search.wanted = kBeginnings;
+    *next++ = search;
+  }
+  return next;
+}
+
+std::size_t addSearches(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,
+                        std::size_t count, const Aabb* boxes, Body* of_bodies,
+                        Search* searches) {
+  Search* next = searches;
   for (std::size_t i = 0; i < count; ++i) {
-    const tide::Look& look = looks[i];
+    if (i + kPrefetchFarAhead < count) {
+      prefetchFar(&boxes[bodies[i + kPrefetchFarAhead]]);
+      prefetchFar(&of_bodies[bodies[i + kPrefetchFarAhead]]);
+    }
+    if (i + kPrefetchAhead < count) {
+      prefetch(&boxes[bodies[i + kPrefetchAhead]]);
+      prefetch(&of_bodies[bodies[i + kPrefetchAhead]]);
+    }
+    const std::uint32_t body = bodies[i];
+    next = addSearchesOf(cells, frame, body, of_bodies[body], boxes[body], next);
+  }
+  return static_cast<std::size_t>(next - searches);
+}
+
+/// Where somebody on a level may overlap an extent, if that is two cells on each axis, all of them
+/// in the bulk: nearly always. Else false.
+bool setLookAround(const Cells& cells, const Line* lines, const Extent& extent,
+                          std::uint32_t level, Look& look) {
+  const Cells::Level& at = cells.level(level);
+  const auto [first, last] = cells.rangeAround(extent, level);
+  if (!isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
+    return false;
+  const Steps number_of_first = (first - at.first) * at.strides;
+  const Steps is_two = last > first;
+  setLook({.first = lines + at.first_cell + sumOfAxes(number_of_first),
+           .next = at.strides & is_two,
+           .is_two = is_two,
+           .extent = Cells::countedFrom(first, extent, level)},
+          look);
+  return true;
+}
+
+Kernels::Found look(const Look* looks, std::size_t count, std::uint32_t first,
+                          Hit* hits, Hit* followed) {
+  Kernels::Found found = {0, 0, 0};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Look& look = looks[i];
     const auto* const lines = reinterpret_cast<const std::uint64_t* const*>(look.lines);
     const std::uint64_t within = linesWithin(lines, look.limits) & look.wanted;
     constexpr std::uint64_t kEach = 0x0101'0101'0101'0101;
     found.lines += (look.wanted & kEach) * kEach >> 56;
-    const std::uint64_t places = within & tide::Look::kPlaces;
-    const std::uint64_t are_followed = within & tide::Look::kFollowed;
+    const std::uint64_t places = within & Look::kPlaces;
+    const std::uint64_t are_followed = within & Look::kFollowed;
     const auto number = first + static_cast<std::uint32_t>(i);
     hits[found.hits] = {places, number};
     found.hits += places != 0 ? 1 : 0;
@@ -23,4 +106,4 @@ tide::Kernels::Found look(const tide::Look* looks, std::size_t count, std::uint3
   return found;
 }
 
-inline constexpr tide::Kernels kKernels = {look};
+inline constexpr Kernels kKernels = {addSearches, setLookAround, look};

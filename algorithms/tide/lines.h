@@ -46,6 +46,7 @@ class Lines {
   /// So many bodies can be inserted without a line moving in memory.
   void makeRoom(std::size_t bodies);
   [[nodiscard]] const Line& operator[](std::size_t line) const { return lines_[line]; }
+  [[nodiscard]] const Line* data() const { return lines_.data(); }
   [[nodiscard]] std::uint32_t numberOf(const Line* line) const {
     return static_cast<std::uint32_t>(line - lines_.data());
   }

@@ -33,64 +33,9 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
 void LooseGrid::addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
   searches_.resize(2 * bodies.size());
   lines_.makeRoom(bodies.size());  // none may move while there are looks into it
-  Search* next = searches_.data();
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (i + kPrefetchFarAhead < bodies.size()) {
-      prefetchFar(&boxes[bodies[i + kPrefetchFarAhead]]);
-      prefetchFar(&bodies_[bodies[i + kPrefetchFarAhead]]);
-    }
-    if (i + kPrefetchAhead < bodies.size()) {
-      prefetch(&boxes[bodies[i + kPrefetchAhead]]);
-      prefetch(&bodies_[bodies[i + kPrefetchAhead]]);
-    }
-    next = addSearches(bodies[i], boxes[bodies[i]], next);
-  }
-  searches_.resize(static_cast<std::size_t>(next - searches_.data()));
-}
-
-/// Moves a body, and writes its searches; returns where the next ones go.
-inline LooseGrid::Search* LooseGrid::addSearches(std::uint32_t index, const Aabb& to,
-                                                 Search* next) {
-  Body& body = bodies_[index];
-  const std::uint32_t cell_before = body.cell();
-  const Extent before = cells_.extentOf(body.box);
-  const Extent now = cells_.extentOf(to);
-  std::uint32_t level = 0;
-  std::uint32_t cell = kNowhere;
-  if (!isEmpty(to)) {
-    level = Cells::levelOf(now);
-    cell = cells_.cellOf(now, level);
-    cells_.reach(now, level);
-  }
-  body.move(to, cell, frame_);
-  // Around both places at once, unless it has moved far.
-  const Steps far = 1 << Cells::kCellBits | now.edges();
-  const auto is_near = [&](Steps from, Steps at) {
-    return (at - from <= far) & (from - at <= far);
-  };
-  const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
-  const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
-  // In a cell that it does not leave it is found at both places.
-  const Bounds bounds = cells_.boundsOf(cell == cell_before ? both : now, now, level);
-  Search search = {both, bounds, index, kBeginnings | kEnds, cell, cell_before};
-  const bool was = cell_before != kNowhere;
-  const bool is = cell != kNowhere;
-  if (near && was && is) [[likely]] {
-    *next++ = search;
-    return next;
-  }
-  if (was) {
-    search.around = before;
-    search.wanted = kEnds;
-    *next++ = search;
-    search.cell_before = cell;  // that has been told
-  }
-  if (is) {
-    search.around = now;
-    search.wanted = kBeginnings;
-    *next++ = search;
-  }
-  return next;
+  const std::size_t searches = kernels_->add_searches(
+      cells_, frame_, bodies.data(), bodies.size(), boxes.data(), bodies_.data(), searches_.data());
+  searches_.resize(searches);
 }
 
 /// Each batch takes one step after the other, in turns with those behind it: so what a step needs
@@ -131,19 +76,9 @@ void LooseGrid::lookAround(Batch& batch) const {
     const Extent& extent = batch.searches[i].around;
     for (std::uint32_t levels = cells_.usedLevels(); levels != 0; levels &= levels - 1) {
       const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
-      const Cells::Level& at = cells_.level(level);
-      const auto [first, last] = cells_.rangeAround(extent, level);
-      // Nearly always: no more than two on each axis, all of them in the bulk.
-      if (isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
-          [[likely]] {
-        const Steps number_of_first = (first - at.first) * at.strides;
-        const Steps is_two = last > first;
-        addLook({.first = &lines_[at.first_cell + sumOfAxes(number_of_first)],
-                 .next = at.strides & is_two,
-                 .is_two = is_two,
-                 .extent = Cells::countedFrom(first, extent, level)},
-                i, batch);
-      } else {
+      if (!kernels_->set_look_around(cells_, lines_.data(), extent, level, addLook(i, batch)))
+          [[unlikely]] {
+        batch.looks.resize(batch.looks.size() - 1);
         lookAroundFarOff(level, extent, i, batch);
       }
     }
@@ -168,23 +103,24 @@ void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std:
         const Steps is_two = around.counts - offset > 1;
         const Steps next = (number + at.strides) & (cell + 1 < at.counts);
         const Steps from_first = offset << Cells::kCellBits;
-        addLook({.first = &lines_[at.first_cell + sumOfAxes(number)],
+        setLook({.first = &lines_[at.first_cell + sumOfAxes(number)],
                  .next = (next - number) & is_two,
                  .is_two = is_two,
                  .extent = {around.extent.min - from_first, around.extent.max - from_first}},
-                search, batch);
+                addLook(search, batch));
       }
     }
   }
 }
 
-inline void LooseGrid::addLook(const EightCells& cells, std::uint32_t search, Batch& batch) {
+/// Has no lines yet.
+inline Look& LooseGrid::addLook(std::uint32_t search, Batch& batch) {
   const auto number = static_cast<std::uint32_t>(batch.looks.size());
   batch.looks.resize(number + 1);
   Look& look = batch.looks[number];
-  setLook(cells, look);
   look.search = search;
   look.of_cells = number;
+  return look;
 }
 
 /// Only in crowded cells there are lines that nobody knows of before another one has come.

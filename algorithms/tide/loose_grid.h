@@ -67,39 +67,6 @@ class LooseGrid {
   [[nodiscard]] std::string validate() const;
 
  private:
-  /// A cache line: where a body is, and where it was before its last move. The fourth components
-  /// have the frame of that, and cells.
-  struct alignas(64) Body {
-    Aabb box;
-    Aabb before;
-
-    [[nodiscard]] std::uint32_t frame() const { return std::bit_cast<std::uint32_t>(box.min[3]); }
-    /// kNowhere: it is absent.
-    [[nodiscard]] std::uint32_t cell() const { return std::bit_cast<std::uint32_t>(box.max[3]); }
-    [[nodiscard]] std::uint32_t cellBefore() const {
-      return std::bit_cast<std::uint32_t>(before.max[3]);
-    }
-    void move(const Aabb& to, std::uint32_t to_cell, std::uint32_t in_frame) {
-      before = box;
-      box = to;
-      box.min[3] = std::bit_cast<float>(in_frame);
-      box.max[3] = std::bit_cast<float>(to_cell);
-    }
-  };
-
-  static constexpr std::uint32_t kBeginnings = 1;
-  static constexpr std::uint32_t kEnds = 2;
-
-  /// For those whose overlap with a body that moves may change. A body that has moved far has two,
-  /// one behind the other: around where it was, and around where it is.
-  struct alignas(64) Search {
-    Extent around;
-    Bounds bounds;  ///< of the body, from now on
-    std::uint32_t body;
-    std::uint32_t wanted;  ///< kBeginnings, kEnds or both
-    std::uint32_t cell;    ///< of the body: kNowhere if it is absent
-    std::uint32_t cell_before;
-  };
   /// Somebody, found in a cell, who may overlap a body.
   struct Candidate {
     const Line* cell;
@@ -127,12 +94,11 @@ class LooseGrid {
   static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
     return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
   }
-  Search* addSearches(std::uint32_t body, const Aabb& to, Search* next);
   void takeSearches(std::size_t first, Batch& batch);
   void lookAround(Batch& batch) const;
   void lookAroundFarOff(std::uint32_t level, const Extent& extent, std::uint32_t search,
                         Batch& batch) const;
-  static void addLook(const EightCells& cells, std::uint32_t search, Batch& batch);
+  static Look& addLook(std::uint32_t search, Batch& batch);
   void addLookBehind(const Hit& followed, Batch& batch) const;
   void sendForLinesBehind(const Batch& batch) const;
   void makeMoves(const Batch& batch);

@@ -1,4 +1,4 @@
-// Looks for those who may overlap a box.
+// Searches for those whose overlap with a body that moves may change, and looks into cells for them.
 //
 // As a rule a box has two cells on each axis around it, so a look is into eight cells at once, of
 // which those that are not wanted stand for the first one.
@@ -10,11 +10,46 @@
 #include <cstdint>
 #include <cstring>
 
+#include "broadmark/aabb.h"
 #include "corner.h"
 #include "tide/cells.h"
 #include "tide/lines.h"
 
 namespace broadmark::tide {
+
+/// A cache line: where a body is, and where it was before its last move. The fourth components
+/// have the frame of that, and cells.
+struct alignas(64) Body {
+  Aabb box;
+  Aabb before;
+
+  [[nodiscard]] std::uint32_t frame() const { return std::bit_cast<std::uint32_t>(box.min[3]); }
+  /// kNowhere: it is absent.
+  [[nodiscard]] std::uint32_t cell() const { return std::bit_cast<std::uint32_t>(box.max[3]); }
+  [[nodiscard]] std::uint32_t cellBefore() const {
+    return std::bit_cast<std::uint32_t>(before.max[3]);
+  }
+  void move(const Aabb& to, std::uint32_t to_cell, std::uint32_t in_frame) {
+    before = box;
+    box = to;
+    box.min[3] = std::bit_cast<float>(in_frame);
+    box.max[3] = std::bit_cast<float>(to_cell);
+  }
+};
+
+inline constexpr std::uint32_t kBeginnings = 1;
+inline constexpr std::uint32_t kEnds = 2;
+
+/// For those whose overlap with a body that moves may change. A body that has moved far has two,
+/// one behind the other: around where it was, and around where it is.
+struct alignas(64) Search {
+  Extent around;
+  Bounds bounds;  ///< of the body, from now on
+  std::uint32_t body;
+  std::uint32_t wanted;  ///< kBeginnings, kEnds or both
+  std::uint32_t cell;    ///< of the body: kNowhere if it is absent
+  std::uint32_t cell_before;
+};
 
 /// Into the lines of two cells on each axis, or into those behind them.
 struct alignas(64) Look {
@@ -43,7 +78,7 @@ struct EightCells {
 };
 
 /// All but `search` and `of_cells`.
-inline void setLook(const EightCells& cells, Look& look) {
+[[gnu::always_inline]] inline void setLook(const EightCells& cells, Look& look) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
   constexpr Eight kSecond[3] = {{0, kAll, 0, kAll, 0, kAll, 0, kAll},
                                 {0, 0, kAll, kAll, 0, 0, kAll, kAll},
