@@ -1,4 +1,4 @@
-// The inner loop of looking for bodies, one for each instruction set.
+// The inner loops of Tide, one table of them for each instruction set.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,18 @@ struct Kernels {
   std::size_t (*add_searches)(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,
                               std::size_t count, const Aabb* boxes, Body* of_bodies,
                               Search* searches);
-  bool (*set_look_around)(const Cells& cells, const Line* lines, const Extent& extent,
-                          std::uint32_t level, Look& look);
+
+  /// Sets a look for who on a level may overlap an extent, all but its numbers, and returns true if
+  /// that is nearly as always: two cells on each axis at most, all of them in the bulk.
+  bool (*set_look)(const Cells& cells, const Line* lines, const Extent& extent, std::uint32_t level,
+                   Look& look);
 
   struct Found {
     std::size_t hits;
     std::size_t followed;
     std::size_t lines;  ///< that were looked into
   };
+
   /// Looks for bounds within limits; looks are numbered from `first` on. Lists the looks that find
   /// any, and those with lines that are followed by others, which are told by bits of
   /// Look::kFollowed. There is room for `count` of both.

@@ -1,13 +1,10 @@
-// The kernel of Tide, written once; compiled for each instruction set by for_each_isa.inl.
-//
-// Nobody could predict which looks find somebody, so nothing branches: all of them are written
-// down, and counted only if they do.
+// The kernels of Tide, written once; compiled for each instruction set by for_each_isa.inl.
 
 using namespace broadmark::tide;
 
 /// Moves a body, and writes its searches; returns where the next ones go.
-inline Search* addSearchesOf(Cells& cells, std::uint32_t frame, std::uint32_t index, Body& body,
-                           const Aabb& to, Search* next) {
+inline Search* moveBody(Cells& cells, std::uint32_t frame, std::uint32_t index, Body& body,
+                        const Aabb& to, Search* next) {
   const std::uint32_t cell_before = body.cell();
   const Extent before = cells.extentOf(body.box);
   const Extent now = cells.extentOf(to);
@@ -26,8 +23,11 @@ inline Search* addSearchesOf(Cells& cells, std::uint32_t frame, std::uint32_t in
   };
   const bool near = isEveryAxis(is_near(before.min, now.min) & is_near(before.max, now.max));
   const Extent both = {smaller(before.min, now.min), larger(before.max, now.max)};
-  // In a cell that it does not leave it is found at both places.
-  const Bounds bounds = cells.boundsOf(cell == cell_before ? both : now, now, level);
+  // In a cell that it does not leave it is found at both places. Nobody could predict whether it
+  // leaves it.
+  const Steps stays = Steps{} - std::int32_t{cell == cell_before};
+  const Extent found = {stays ? both.min : now.min, stays ? both.max : now.max};
+  const Bounds bounds = cells.boundsOf(found, now, level);
   Search search = {both, bounds, index, kBeginnings | kEnds, cell, cell_before};
   const bool was = cell_before != kNowhere;
   const bool is = cell != kNowhere;
@@ -50,8 +50,7 @@ inline Search* addSearchesOf(Cells& cells, std::uint32_t frame, std::uint32_t in
 }
 
 std::size_t addSearches(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,
-                        std::size_t count, const Aabb* boxes, Body* of_bodies,
-                        Search* searches) {
+                        std::size_t count, const Aabb* boxes, Body* of_bodies, Search* searches) {
   Search* next = searches;
   for (std::size_t i = 0; i < count; ++i) {
     if (i + kPrefetchFarAhead < count) {
@@ -63,31 +62,31 @@ std::size_t addSearches(Cells& cells, std::uint32_t frame, const std::uint32_t* 
       prefetch(&of_bodies[bodies[i + kPrefetchAhead]]);
     }
     const std::uint32_t body = bodies[i];
-    next = addSearchesOf(cells, frame, body, of_bodies[body], boxes[body], next);
+    next = moveBody(cells, frame, body, of_bodies[body], boxes[body], next);
   }
   return static_cast<std::size_t>(next - searches);
 }
 
-/// Where somebody on a level may overlap an extent, if that is two cells on each axis, all of them
-/// in the bulk: nearly always. Else false.
-bool setLookAround(const Cells& cells, const Line* lines, const Extent& extent,
-                          std::uint32_t level, Look& look) {
+bool setLook(const Cells& cells, const Line* lines, const Extent& extent, std::uint32_t level,
+             Look& look) {
   const Cells::Level& at = cells.level(level);
   const auto [first, last] = cells.rangeAround(extent, level);
-  if (!isEveryAxis((first >= at.first) & (last - at.first < at.counts) & (last - first <= 1)))
-    return false;
-  const Steps number_of_first = (first - at.first) * at.strides;
+  const Steps in_bulk = (first >= at.first) & (last - at.first < at.counts);
+  if (!isEveryAxis(in_bulk & (last - first <= 1))) return false;
+  const Steps number = (first - at.first) * at.strides;
   const Steps is_two = last > first;
-  setLook({.first = lines + at.first_cell + sumOfAxes(number_of_first),
-           .next = at.strides & is_two,
-           .is_two = is_two,
-           .extent = Cells::countedFrom(first, extent, level)},
-          look);
+  setLines({.first = lines + at.first_cell + sumOfAxes(number),
+            .next = at.strides & is_two,
+            .is_two = is_two,
+            .extent = Cells::countedFrom(first, extent, level)},
+           look);
   return true;
 }
 
-Kernels::Found look(const Look* looks, std::size_t count, std::uint32_t first,
-                          Hit* hits, Hit* followed) {
+// Nobody could predict which looks find somebody, so nothing branches: all of them are written
+// down, and counted only if they do.
+Kernels::Found look(const Look* looks, std::size_t count, std::uint32_t first, Hit* hits,
+                    Hit* followed) {
   Kernels::Found found = {0, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const Look& look = looks[i];
@@ -106,4 +105,4 @@ Kernels::Found look(const Look* looks, std::size_t count, std::uint32_t first,
   return found;
 }
 
-inline constexpr Kernels kKernels = {addSearches, setLookAround, look};
+inline constexpr Kernels kKernels = {addSearches, setLook, look};

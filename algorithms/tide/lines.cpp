@@ -2,7 +2,6 @@
 
 #include "tide/lines.h"
 
-#include <bit>
 #include <utility>
 
 namespace broadmark::tide {
@@ -31,28 +30,21 @@ std::uint32_t Lines::newLine() {
   return line;
 }
 
-/// Where a body lies that is in the cell. Nobody could predict the place, so all are looked at.
-Lines::Place Lines::find(std::uint32_t cell, std::uint32_t body) {
-  for (Line* line = &lines_[cell];; line = &lines_[line->next]) {
-    unsigned found = 0;
-    for (std::uint32_t place = 0; place < Line::kPlaces; ++place) {
-      found |= unsigned{line->bodies[place] == body} << place;
-    }
-    if (found != 0) return {line, static_cast<std::uint32_t>(std::countr_zero(found))};
+/// Where a body lies that is in this line or one behind it.
+Lines::Place Lines::find(std::uint32_t line, std::uint32_t body) {
+  for (;; line = lines_[line].next) {
+    const std::uint32_t place = lines_[line].placeOf(body);
+    if (place < Line::kPlaces) return {&lines_[line], place};
   }
 }
 
-/// Lines behind a cell's own are full: what comes and goes does so in its own.
-void Lines::insert(std::uint32_t cell, std::uint32_t body, Bounds bounds) {
-  std::uint32_t place = lines_[cell].count();
-  if (place == Line::kPlaces) {
-    const std::uint32_t behind = newLine();
-    lines_[behind] = std::exchange(lines_[cell], Line());
-    lines_[cell].next = behind;
-    place = 0;
-  }
-  lines_[cell].bounds[place] = bounds;
-  lines_[cell].bodies[place] = body;
+/// In a cell whose own line is full. Lines behind it are full, too: what comes and goes does so in
+/// its own.
+Lines::Place Lines::newPlace(std::uint32_t cell) {
+  const std::uint32_t behind = newLine();
+  lines_[behind] = std::exchange(lines_[cell], Line());
+  lines_[cell].next = behind;
+  return {&lines_[cell], 0};
 }
 
 void Lines::remove(std::uint32_t cell, std::uint32_t body) {
@@ -63,7 +55,7 @@ void Lines::remove(std::uint32_t cell, std::uint32_t body) {
   hole.line->bounds[hole.place] = own.bounds[last];
   own.bounds[last] = kNobody;
   own.bodies[last] = kNowhere;
-  if (last == 0 && own.next != kNowhere) {
+  if (own.next != kNowhere && last == 0) {
     free_lines_.push_back(own.next);
     own = lines_[own.next];
   }

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -23,10 +24,17 @@ struct alignas(64) Line {
   std::uint32_t bodies[kPlaces] = {kNowhere, kNowhere, kNowhere, kNowhere, kNowhere};
   std::uint32_t next = kNowhere;
 
-  /// The bodies in it, which are in its first places.
-  [[nodiscard]] std::uint32_t count() const {
-    return static_cast<std::uint32_t>(kPlaces - std::ranges::count(bounds, kNobody));
+  /// Where somebody is in it; kPlaces: nowhere. Without a branch, as nobody could predict the
+  /// place.
+  [[nodiscard]] std::uint32_t placeOf(std::uint32_t body) const {
+    unsigned found = 1U << kPlaces;
+    for (std::uint32_t place = 0; place < kPlaces; ++place) {
+      found |= unsigned{bodies[place] == body} << place;
+    }
+    return static_cast<std::uint32_t>(std::countr_zero(found));
   }
+  /// The bodies in it, which are in its first places.
+  [[nodiscard]] std::uint32_t count() const { return placeOf(kNowhere); }
 };
 
 /// Those of the cells, then those behind them.
@@ -34,14 +42,18 @@ class Lines {
  public:
   /// Empty cells.
   void clear(std::uint32_t cells);
-  void insert(std::uint32_t cell, std::uint32_t body, Bounds bounds);
+  /// Puts a body into a cell, where it `is_new` or gets other bounds. Nobody could predict which of
+  /// both it is, so both are done alike.
+  void put(std::uint32_t cell, std::uint32_t body, Bounds bounds, bool is_new) {
+    Place at = {&lines_[cell], lines_[cell].placeOf(is_new ? kNowhere : body)};
+    if (at.place == Line::kPlaces) [[unlikely]] {
+      at = is_new ? newPlace(cell) : find(lines_[cell].next, body);
+    }
+    at.line->bounds[at.place] = bounds;
+    at.line->bodies[at.place] = body;
+  }
   /// The body lies in the cell.
   void remove(std::uint32_t cell, std::uint32_t body);
-  /// Gives new bounds to a body that lies in the cell.
-  void setBounds(std::uint32_t cell, std::uint32_t body, Bounds bounds) {
-    const Place place = find(cell, body);
-    place.line->bounds[place.place] = bounds;
-  }
 
   /// So many bodies can be inserted without a line moving in memory.
   void makeRoom(std::size_t bodies);
@@ -60,7 +72,8 @@ class Lines {
     std::uint32_t place;
   };
 
-  Place find(std::uint32_t cell, std::uint32_t body);
+  Place find(std::uint32_t line, std::uint32_t body);
+  Place newPlace(std::uint32_t cell);
   std::uint32_t newLine();
 
   std::uint32_t cells_ = 0;

@@ -24,8 +24,8 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
     bodies_[body].move(box, cells_.cellOf(box), 0);
     if (isEmpty(box)) continue;
     const Extent extent = cells_.extentOf(box);
-    lines_.insert(bodies_[body].cell(), static_cast<std::uint32_t>(body),
-                  cells_.boundsOf(extent, extent, Cells::levelOf(extent)));
+    lines_.put(bodies_[body].cell(), static_cast<std::uint32_t>(body),
+               cells_.boundsOf(extent, extent, Cells::levelOf(extent)), true);
   }
   frame_ = 1;
 }
@@ -76,9 +76,9 @@ void LooseGrid::lookAround(Batch& batch) const {
     const Extent& extent = batch.searches[i].around;
     for (std::uint32_t levels = cells_.usedLevels(); levels != 0; levels &= levels - 1) {
       const auto level = static_cast<std::uint32_t>(std::countr_zero(levels));
-      if (!kernels_->set_look_around(cells_, lines_.data(), extent, level, addLook(i, batch)))
-          [[unlikely]] {
-        batch.looks.resize(batch.looks.size() - 1);
+      const std::size_t looks = batch.looks.size();
+      if (!kernels_->set_look(cells_, lines_.data(), extent, level, addLook(i, batch))) {
+        batch.looks.resize(looks);
         lookAroundFarOff(level, extent, i, batch);
       }
     }
@@ -103,11 +103,11 @@ void LooseGrid::lookAroundFarOff(std::uint32_t level, const Extent& extent, std:
         const Steps is_two = around.counts - offset > 1;
         const Steps next = (number + at.strides) & (cell + 1 < at.counts);
         const Steps from_first = offset << Cells::kCellBits;
-        setLook({.first = &lines_[at.first_cell + sumOfAxes(number)],
-                 .next = (next - number) & is_two,
-                 .is_two = is_two,
-                 .extent = {around.extent.min - from_first, around.extent.max - from_first}},
-                addLook(search, batch));
+        setLines({.first = &lines_[at.first_cell + sumOfAxes(number)],
+                  .next = (next - number) & is_two,
+                  .is_two = is_two,
+                  .extent = {around.extent.min - from_first, around.extent.max - from_first}},
+                 addLook(search, batch));
       }
     }
   }
@@ -134,15 +134,19 @@ void LooseGrid::sendForLinesBehind(const Batch& batch) const {
 
 /// Puts bodies into their cells.
 void LooseGrid::makeMoves(const Batch& batch) {
+  const std::size_t left_before = left_.size();
+  left_.resize(left_before + batch.searches.size());
+  Left* left = left_.data() + left_before;
   for (const Search& search : batch.searches) {
-    if (search.cell == search.cell_before) {
-      lines_.setBounds(search.cell, search.body, search.bounds);
-      continue;
+    const bool changes = search.cell != search.cell_before;
+    *left = {search.body, search.cell_before};
+    left += unsigned{changes} & unsigned{search.cell_before != kNowhere};
+    work_.cell_changes += changes ? 1 : 0;
+    if (search.cell != kNowhere) [[likely]] {
+      lines_.put(search.cell, search.body, search.bounds, changes);
     }
-    ++work_.cell_changes;
-    if (search.cell_before != kNowhere) left_.push_back({search.body, search.cell_before});
-    if (search.cell != kNowhere) lines_.insert(search.cell, search.body, search.bounds);
   }
+  left_.resize(static_cast<std::size_t>(left - left_.data()));
 }
 
 /// Lists who else is there, in these cells, and is within limits: first those in the cells' own
@@ -170,8 +174,8 @@ void LooseGrid::addLookBehind(const Hit& followed, Batch& batch) const {
   Look& behind = batch.looks[batch.looks.size() - 1];
   behind = before;
   for (std::uint32_t line = 0; line < Look::kLines; ++line) {
-    if ((followed.places >> 8 * line & 0xFF) != 0)
-      behind.lines[line] = &lines_[before.lines[line]->next];
+    if ((followed.places >> 8 * line & Look::kFollowed & 0xFF) == 0) continue;
+    behind.lines[line] = &lines_[before.lines[line]->next];
   }
   behind.wanted = (followed.places >> 7) * Look::kLine;
 }
@@ -179,13 +183,12 @@ void LooseGrid::addLookBehind(const Hit& followed, Batch& batch) const {
 /// All but the bodies that are looking. A look seldom finds more than three, and nobody could
 /// predict whether it does.
 void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
-  batch.candidates.resize(hits * (Look::kLines * Line::kPlaces) +
-                          1);  // the last one is written, and not kept
+  // One more than there may be: it is written, and not kept.
+  batch.candidates.resize(hits * Look::kLines * Line::kPlaces + 1);
   Candidate* end = batch.candidates.data();
   for (std::size_t i = 0; i < hits; ++i) {
     const Hit& hit = hits_[i];
     const Look& look = batch.looks[hit.look];
-    const Look& cells = batch.looks[look.of_cells];
     const std::uint32_t body = batch.searches[look.search].body;
     std::uint64_t places = hit.places;
     const auto add = [&] {
@@ -194,7 +197,7 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
       const auto bit = static_cast<std::uint32_t>(std::countr_zero(any));
       const std::uint32_t line = bit / 8;
       const std::uint32_t other = look.lines[line]->bodies[bit % 8];
-      *end = {cells.lines[line], other, look.search};
+      *end = {other, hit.look * Look::kLines + line};
       end += unsigned{places != 0} & unsigned{other != body};
       places &= places - 1;
     };
@@ -208,7 +211,9 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
 }
 
 /// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
-std::uint32_t LooseGrid::change(const Search& search, const Candidate& candidate) const {
+std::uint32_t LooseGrid::change(const Batch& batch, const Candidate& candidate) const {
+  const Look& look = batch.looks[candidate.line / Look::kLines];
+  const Search& search = batch.searches[look.search];
   const Body& body = bodies_[search.body];
   const Body& other = bodies_[candidate.other];
   const Aabb* before = &other.box;
@@ -218,7 +223,8 @@ std::uint32_t LooseGrid::change(const Search& search, const Candidate& candidate
     before = &other.before;
     // A cell that it left tells of ends only, one into which it came of beginnings only.
     if (other.cellBefore() != other.cell()) {
-      wanted &= lines_.numberOf(candidate.cell) == other.cell() ? kBeginnings : kEnds;
+      const Line* const cell = batch.looks[look.of_cells].lines[candidate.line % Look::kLines];
+      wanted &= lines_.numberOf(cell) == other.cell() ? kBeginnings : kEnds;
     }
   }
   const unsigned was{overlapOnAxes(body.before, *before)};
@@ -236,10 +242,11 @@ void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, P
   Pair* next_began = first_began;
   Pair* next_ended = first_ended;
   for (const Candidate& candidate : batch.candidates) {
-    const Search& search = batch.searches[candidate.search];
-    std::uint32_t changed = change(search, candidate);
-    if (!wants_all && changed != 0 && !filter.wanted(search.body, candidate.other)) changed = 0;
-    const Pair pair = orderedPair(search.body, candidate.other);
+    const std::uint32_t body =
+        batch.searches[batch.looks[candidate.line / Look::kLines].search].body;
+    std::uint32_t changed = change(batch, candidate);
+    if (!wants_all && changed != 0 && !filter.wanted(body, candidate.other)) changed = 0;
+    const Pair pair = orderedPair(body, candidate.other);
     *next_began = pair;
     *next_ended = pair;
     next_began += changed & kBeginnings;
@@ -255,7 +262,7 @@ void LooseGrid::settle() {
     if (i + kPrefetchAhead < left_.size()) prefetch(&lines_[left_[i + kPrefetchAhead].cell]);
     lines_.remove(left_[i].cell, left_[i].body);
   }
-  left_.clear();
+  left_.resize(0);
   searches_.resize(0);
   ++frame_;
 }

@@ -67,11 +67,10 @@ class LooseGrid {
   [[nodiscard]] std::string validate() const;
 
  private:
-  /// Somebody, found in a cell, who may overlap a body.
+  /// Somebody, found by a look, who may overlap a body.
   struct Candidate {
-    const Line* cell;
     std::uint32_t other;
-    std::uint32_t search;
+    std::uint32_t line;  ///< of all looks of the batch
   };
   /// A few searches, and what is to be done for them.
   struct Batch {
@@ -107,7 +106,7 @@ class LooseGrid {
   void tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
                    PairBuffer& ended);
   /// kBeginnings or kEnds if the overlap of both begins or ends; else 0.
-  [[nodiscard]] std::uint32_t change(const Search& search, const Candidate& candidate) const;
+  [[nodiscard]] std::uint32_t change(const Batch& batch, const Candidate& candidate) const;
 
   const Kernels* kernels_;
   Cells cells_;
@@ -117,7 +116,7 @@ class LooseGrid {
   std::array<Batch, kSteps> under_way_;
   LargeArray<Hit> hits_;
   LargeArray<Hit> followed_;  ///< looks into lines behind which there are others
-  std::vector<Left> left_;
+  LargeArray<Left> left_;
   std::uint32_t frame_ = 1;
   Work work_;
 };

@@ -1,4 +1,5 @@
-// Searches for those whose overlap with a body that moves may change, and looks into cells for them.
+// Searches for those whose overlap with a body that moves may change, and looks into cells for
+// them.
 //
 // As a rule a box has two cells on each axis around it, so a look is into eight cells at once, of
 // which those that are not wanted stand for the first one.
@@ -77,8 +78,9 @@ struct EightCells {
   Extent extent;  ///< what is looked for, counted from the beginning of the first one
 };
 
-/// All but `search` and `of_cells`.
-[[gnu::always_inline]] inline void setLook(const EightCells& cells, Look& look) {
+/// All of a look but `search` and `of_cells`. Inlined, to be compiled for a kernel's instruction
+/// set.
+[[gnu::always_inline]] inline void setLines(const EightCells& cells, Look& look) {
   constexpr std::uint64_t kAll = ~std::uint64_t{0};
   constexpr Eight kSecond[3] = {{0, kAll, 0, kAll, 0, kAll, 0, kAll},
                                 {0, 0, kAll, kAll, 0, 0, kAll, kAll},
