@@ -294,6 +294,7 @@ class Columns final : public PairBroadPhase {
 };
 
 void Columns::updateObjects(const Frame& frame) {
+  team().wake();  // while this thread chooses a layout
   boxes_.resize(frame.boxes.size());
   takeSample(
       boxes_.size(), [&](std::size_t i) { return frame.boxes[i]; }, sample_);

@@ -17,6 +17,9 @@ namespace {
 /// in less than a wake-up takes. Pointless when threads outnumber the cores.
 constexpr int kSpins = 2000;
 
+/// The same where work has been promised.
+constexpr int kSpinsAwake = 50'000;
+
 /// Tells the processor that this thread only waits.
 void pauseSpin() {
 #if defined(__x86_64__)
@@ -26,14 +29,16 @@ void pauseSpin() {
 #endif
 }
 
-/// Waits until `value` is no longer `old`.
+/// Waits until `value` is no longer `old`; returns what it is.
 template <class T>
-void awaitChange(const std::atomic<T>& value, T old, int spins) {
+T awaitChange(const std::atomic<T>& value, T old, int spins) {
   for (int spin = 0; spin < spins; ++spin) {
-    if (value.load(std::memory_order_acquire) != old) return;
+    const T now = value.load(std::memory_order_acquire);
+    if (now != old) return now;
     pauseSpin();
   }
   value.wait(old, std::memory_order_acquire);
+  return value.load(std::memory_order_acquire);
 }
 
 int spinsFor(int workers) { return workers <= static_cast<int>(usableCores().size()) ? kSpins : 0; }
@@ -109,8 +114,7 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
 
 void ThreadTeam::stop() {
   stopping_.store(true);
-  generation_.fetch_add(1, std::memory_order_release);
-  generation_.notify_all();
+  tell(generation_ + 1);
   for (std::thread& thread : threads_) thread.join();
 }
 
@@ -122,25 +126,30 @@ void ThreadTeam::perform(int worker) {
   }
 }
 
+void ThreadTeam::tell(unsigned generation) {
+  generation_.store(generation, std::memory_order_release);
+  generation_.notify_all();
+}
+
+void ThreadTeam::wake() {
+  if (!threads_.empty() && spins_ > 0) tell(generation_ | 1U);
+}
+
 void ThreadTeam::start(Job job) {
   job_ = job;
   busy_.store(size() - 1, std::memory_order_relaxed);
-  if (!threads_.empty()) {
-    generation_.fetch_add(1, std::memory_order_release);
-    generation_.notify_all();
-  }
+  if (!threads_.empty()) tell((generation_ | 1U) + 1);
   perform(0);
-  for (int busy = busy_.load(std::memory_order_acquire); busy != 0;
-       busy = busy_.load(std::memory_order_acquire)) {
-    awaitChange(busy_, busy, spins_);
-  }
+  for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins_);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void ThreadTeam::loop(int worker) {
-  for (unsigned seen = 0;; ++seen) {
-    awaitChange(generation_, seen, spins_);
+  for (unsigned seen = 0;;) {
+    const bool is_awake = (seen & 1U) != 0;
+    seen = awaitChange(generation_, seen, is_awake ? kSpinsAwake : spins_);
     if (stopping_.load()) return;
+    if ((seen & 1U) != 0) continue;
     perform(worker);
     if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_one();
   }

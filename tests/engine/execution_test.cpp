@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -67,6 +68,22 @@ TEST(ThreadTeam, ManyShortRunsLoseNothing) {
       for (const int count : counts) sum += count;
       ASSERT_EQ(sum, (run + 1) * size);
     }
+  }
+}
+
+// Whether it is woken once, twice or never, and whether it has gone back to sleep by then.
+TEST(ThreadTeam, RunsOnceAWakeUp) {
+  for (const int size : {1, 2, 3, 5}) {
+    ThreadTeam team(size);
+    constexpr int kRuns = kSanitized ? 100 : 1000;
+    for (int run = 0; run < kRuns; ++run) {
+      for (int time = 0; time < run % 3; ++time) team.wake();
+      if (run % 100 == 99) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      std::atomic<int> ran = 0;
+      team.run([&](int) { ++ran; });
+      ASSERT_EQ(ran, size);
+    }
+    team.wake();  // and is destroyed
   }
 }
 

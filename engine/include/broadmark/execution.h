@@ -50,6 +50,10 @@ class ThreadTeam {
   /// it; if not, all workers may use the cores `usable`.
   bool pin(std::span<const int> cores, std::span<const int> usable);
 
+  /// Wakes the workers, as there will be work for them within half a millisecond: so long they wait
+  /// awake. To wake up takes one that sleeps a tenth of that, and far more in a virtual machine.
+  void wake();
+
   /// Calls work(worker) once for each worker, in parallel, and returns when all are done. The first
   /// exception of any worker is rethrown here. Not reentrant.
   template <class Work>
@@ -65,12 +69,14 @@ class ThreadTeam {
     void* context = nullptr;
   };
   void start(Job);
+  void tell(unsigned generation);
   void perform(int worker);
   void loop(int worker);
   void stop();
 
   int spins_;  ///< of a waiting worker, before it sleeps
   Job job_;
+  /// Twice the jobs there have been; one more where workers were woken for the next one.
   std::atomic<unsigned> generation_{0};
   std::atomic<int> busy_{0};
   std::atomic<bool> stopping_{false};
