@@ -1,0 +1,57 @@
+// What a sample tells.
+
+#include "sample.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "torture/inputs.h"
+
+namespace broadmark {
+namespace {
+
+/// The same from all bounds in order.
+Bulk bulkOfSorted(const std::vector<Aabb>& sample, int axis) {
+  std::vector<double> lows;
+  std::vector<double> highs;
+  for (const Aabb& box : sample) {
+    lows.push_back(box.min[axis]);
+    highs.push_back(box.max[axis]);
+  }
+  std::ranges::sort(lows);
+  std::ranges::sort(highs, std::greater());
+  const auto at = static_cast<std::size_t>(0.05 * static_cast<double>(sample.size() - 1));
+  const double more = (highs[at] - lows[at]) / 4;
+  return {std::max(lows[0], lows[at] - more), std::min(highs[0], highs[at] + more)};
+}
+
+// Sorted and reversed, too: then every 16th box tells little of the others.
+TEST(Sample, FindsTheBulkWhereverItLies) {
+  for (const inputs::Input& input : inputs::kAll) {
+    for (const std::size_t size : {1U, 2U, 15U, 16U, 17U, 100U, 256U, 1000U, 2047U, 2048U}) {
+      SCOPED_TRACE(testing::Message() << input.name << ", " << size);
+      std::vector<Aabb> sample = input.boxes(static_cast<std::uint32_t>(size), 0, 1);
+      std::erase_if(sample, isEmpty);
+      if (sample.empty()) continue;
+      for (int order = 0; order < 3; ++order) {
+        if (order == 1) {
+          std::ranges::sort(sample, {}, [](const Aabb& box) { return box.min[0]; });
+        } else if (order == 2) {
+          std::ranges::reverse(sample);
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+          const Bulk expected = bulkOfSorted(sample, axis);
+          const Bulk bulk = bulkOf(sample, axis);
+          EXPECT_EQ(bulk.low, expected.low);
+          EXPECT_EQ(bulk.high, expected.high);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace broadmark
