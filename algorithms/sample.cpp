@@ -18,17 +18,17 @@ LowEnd lowEndOf(std::span<const float> numbers) {
   constexpr std::size_t kStride = 16;
   constexpr double kPart = 0.05;
   constexpr double kPivotPart = 0.15;
-  const auto placeOf = [](double part, std::size_t count) {
+  const auto place_of = [](double part, std::size_t count) {
     return static_cast<std::ptrdiff_t>(part * static_cast<double>(count - 1));
   };
   std::array<float, kMostSampled / kStride + 1> few;
   std::size_t few_count = 0;
   for (std::size_t i = 0; i < numbers.size(); i += kStride) few[few_count++] = numbers[i];
-  const auto pivot = few.begin() + placeOf(kPivotPart, few_count);
+  const auto pivot = few.begin() + place_of(kPivotPart, few_count);
   std::nth_element(few.begin(), pivot, few.begin() + few_count);
 
   std::array<float, kMostSampled> low;
-  const std::ptrdiff_t wanted = placeOf(kPart, numbers.size());
+  const std::ptrdiff_t wanted = place_of(kPart, numbers.size());
   auto end = low.begin();
   for (const float number : numbers) {
     *end = number;

@@ -127,6 +127,16 @@ inline void sweepRow(const std::uint32_t* keys, std::size_t row, std::size_t beg
   }
 }
 
+/// Tests rows one by one against what lies `distance` places and more behind them; bit i of `which`
+/// is for row `first` + i.
+inline void sweepEach(const std::uint32_t* keys, const std::uint32_t* ends, std::size_t first,
+                      unsigned which, std::size_t distance, columns::HitSink& sink) {
+  for (; which != 0; which &= which - 1) {
+    const std::size_t row = first + static_cast<std::size_t>(__builtin_ctz(which));
+    sweepRow(keys, row, row + distance, ends[row], sink);
+  }
+}
+
 void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
            columns::HitSink& sink) {
   // So far rows go together before those are counted that are to go on. A few do it one by one.
@@ -141,10 +151,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
     std::size_t distance = 1;
     for (unsigned going_on = positive(left); going_on != 0; going_on = positive(left)) {
       if (distance > 1 && __builtin_popcount(going_on) <= kFew) {
-        for (; going_on != 0; going_on &= going_on - 1) {
-          const std::size_t r = row + static_cast<std::size_t>(__builtin_ctz(going_on));
-          sweepRow(keys, r, r + distance, ends[r], sink);
-        }
+        sweepEach(keys, ends, row, going_on, distance, sink);
         break;
       }
       std::size_t hits = sink.room();

@@ -46,8 +46,8 @@ struct Extent {
 
 /// Of a box in a cell: on each axis a byte for its upper bound, counted down from kLastInCell, and
 /// one for its lower bound, counted from the cell's beginning. Of a box that is looked for: what
-/// these may be at most for the two to overlap. No byte is above kLastInCell, and those that belong
-/// to no axis are 0.
+/// these may be at most for the two to overlap. No byte is above kLastInCell; one that belongs to
+/// no axis is 0, but in kNobody.
 using Bounds = std::uint64_t;
 inline constexpr std::int32_t kLastInCell = 127;       ///< a loose cell is as long as two
 inline constexpr Bounds kNobody = Bounds{0x7F} << 24;  ///< within no limits

@@ -2,6 +2,22 @@
 
 using namespace broadmark::tide;
 
+/// Writes a search for each place of a body that has moved far, has come or has gone.
+inline Search* addApart(Search search, const Extent& before, const Extent& now, Search* next) {
+  if (search.cell_before != kNowhere) {
+    search.around = before;
+    search.wanted = kEnds;
+    *next++ = search;
+    search.cell_before = search.cell;  // that has been told
+  }
+  if (search.cell != kNowhere) {
+    search.around = now;
+    search.wanted = kBeginnings;
+    *next++ = search;
+  }
+  return next;
+}
+
 /// Moves a body, and writes its searches; returns where the next ones go.
 inline Search* moveBody(Cells& cells, std::uint32_t frame, std::uint32_t index, Body& body,
                         const Aabb& to, Search* next) {
@@ -29,24 +45,11 @@ inline Search* moveBody(Cells& cells, std::uint32_t frame, std::uint32_t index, 
   const Extent found = {stays ? both.min : now.min, stays ? both.max : now.max};
   const Bounds bounds = cells.boundsOf(found, now, level);
   Search search = {both, bounds, index, kBeginnings | kEnds, cell, cell_before};
-  const bool was = cell_before != kNowhere;
-  const bool is = cell != kNowhere;
-  if (near && was && is) [[likely]] {
-    *next++ = search;
-    return next;
+  if (near && cell_before != kNowhere && cell != kNowhere) [[likely]] {
+    *next = search;
+    return next + 1;
   }
-  if (was) {
-    search.around = before;
-    search.wanted = kEnds;
-    *next++ = search;
-    search.cell_before = cell;  // that has been told
-  }
-  if (is) {
-    search.around = now;
-    search.wanted = kBeginnings;
-    *next++ = search;
-  }
-  return next;
+  return addApart(search, before, now, next);
 }
 
 std::size_t addSearches(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,

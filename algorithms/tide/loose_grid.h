@@ -82,6 +82,7 @@ class LooseGrid {
   static constexpr std::size_t kSteps = 5;  ///< that a batch takes
   /// So many searches and more touch more memory than stays in caches.
   static constexpr std::size_t kManySearches = 1000;
+  /// So many searches ahead one is sent for.
   static constexpr std::size_t kSearchesAhead = 32;
 
   /// Somebody who has left a cell and lies there until settle(), for pairs that end there.

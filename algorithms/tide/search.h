@@ -95,7 +95,7 @@ struct EightCells {
     }
     return wanted;
   }();
-  static_assert(sizeof(Line*) == sizeof(std::uint64_t));
+  static_assert(sizeof(std::uintptr_t) == sizeof(std::uint64_t));
 
   constexpr std::int32_t kCell = 1 << Cells::kCellBits;
   const Bounds here = Cells::limitsOf(cells.extent);

@@ -222,17 +222,17 @@ TEST_F(LooseGridTest, CopesWithCrowds) {
 TEST(TideKernels, FindThoseWithinLimits) {
   constexpr std::uint32_t kLooks = 500;
   inputs::Random random(4, 0);
-  const auto anyBounds = [&](int least) {
+  const auto any_bounds = [&](int least) {
     tide::Bounds bounds = 0;
     for (const int byte : {0, 1, 2, 4, 5, 6}) {
       bounds |= static_cast<tide::Bounds>(random.integer(least, 127)) << 8 * byte;
     }
     return bounds;
   };
-  std::vector<tide::Line> lines(tide::Look::kLines * kLooks);
+  std::vector<tide::Line> lines(std::size_t{tide::Look::kLines} * kLooks);
   for (tide::Line& line : lines) {
     const int bodies = random.integer(0, tide::Line::kPlaces);
-    for (int place = 0; place < bodies; ++place) line.bounds[place] = anyBounds(0);
+    for (int place = 0; place < bodies; ++place) line.bounds[place] = any_bounds(0);
     for (std::uint32_t& body : line.bodies) body = static_cast<std::uint32_t>(random.integer(0, 9));
     if (random.integer(0, 9) == 0) line.next = 7;
   }
@@ -241,7 +241,7 @@ TEST(TideKernels, FindThoseWithinLimits) {
     looks[look].wanted = 0;
     for (std::uint32_t i = 0; i < tide::Look::kLines; ++i) {
       looks[look].lines[i] = &lines[tide::Look::kLines * look + i];
-      looks[look].limits[i] = anyBounds(random.integer(0, 127));
+      looks[look].limits[i] = any_bounds(random.integer(0, 127));
       if (random.integer(0, 3) != 0) looks[look].wanted |= tide::Look::kLine << 8 * i;
     }
   }
