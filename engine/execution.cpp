@@ -43,11 +43,13 @@ T awaitChange(const std::atomic<T>& value, T old, int spins) {
 
 int spinsFor(int workers) { return workers <= static_cast<int>(usableCores().size()) ? kSpins : 0; }
 
-/// Lets a thread use these cores only. Whether the system allowed it.
-bool bind(pthread_t thread, std::span<const int> cores) {
+/// Lets a thread use these cores only, but for one. Whether the system allowed it.
+bool bind(pthread_t thread, std::span<const int> cores, int but = -1) {
   cpu_set_t set;
   CPU_ZERO(&set);
-  for (const int core : cores) CPU_SET(core, &set);
+  for (const int core : cores) {
+    if (core != but) CPU_SET(core, &set);
+  }
   return ::pthread_setaffinity_np(thread, sizeof set, &set) == 0;
 }
 
@@ -88,6 +90,7 @@ std::vector<Isa> supportedIsas() {
 Isa bestIsa() { return supportedIsas().back(); }
 
 ThreadTeam::ThreadTeam(int size) : spins_(spinsFor(size)) {
+  if (spins_ > 0) shared_cores_ = usableCores();
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
   try {
     for (int worker = 1; worker < size; ++worker) {
@@ -106,10 +109,23 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
   for (std::size_t i = 0; all && i < threads_.size(); ++i) {
     all = bind(threads_[i].native_handle(), cores.subspan(i + 1, 1));
   }
+  shared_cores_.clear();
+  callers_core_ = -1;
   if (all) return true;
   bind(::pthread_self(), usable);
   for (std::thread& thread : threads_) bind(thread.native_handle(), usable);
+  if (std::cmp_less_equal(size(), usable.size()))
+    shared_cores_.assign(usable.begin(), usable.end());
   return false;
+}
+
+/// In a virtual machine Linux takes an idle core for one that has been taken away, and often wakes
+/// a thread on the core of the one that wakes it: then both share it for a frame.
+void ThreadTeam::keepApart() {
+  const int core = ::sched_getcpu();
+  if (shared_cores_.empty() || core == callers_core_) return;
+  callers_core_ = core;
+  for (std::thread& thread : threads_) bind(thread.native_handle(), shared_cores_, core);
 }
 
 void ThreadTeam::stop() {
@@ -132,13 +148,18 @@ void ThreadTeam::tell(unsigned generation) {
 }
 
 void ThreadTeam::wake() {
-  if (!threads_.empty() && spins_ > 0) tell(generation_ | 1U);
+  if (threads_.empty() || spins_ == 0) return;
+  keepApart();
+  tell(generation_ | 1U);
 }
 
 void ThreadTeam::start(Job job) {
   job_ = job;
   busy_.store(size() - 1, std::memory_order_relaxed);
-  if (!threads_.empty()) tell((generation_ | 1U) + 1);
+  if (!threads_.empty()) {
+    keepApart();
+    tell((generation_ | 1U) + 1);
+  }
   perform(0);
   for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins_);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));

@@ -104,7 +104,31 @@ TEST(Pinning, OfCoresThatDoNotExistLeavesAllFree) {
     ThreadTeam team(2);
     EXPECT_FALSE(team.pin(std::vector{usable.front(), CPU_SETSIZE - 1}, usable));
     EXPECT_FALSE(team.pin({}, usable));
-    for (const auto& cores : usableByWorker(team)) EXPECT_EQ(cores, usable);
+    const auto by_worker = usableByWorker(team);
+    EXPECT_EQ(by_worker[0], usable);
+    EXPECT_EQ(by_worker[1].size(), std::max<std::size_t>(usable.size(), 2) - 1);
+  });
+}
+
+// Wherever that is, also once it has gone to another one; as long as the cores are enough.
+TEST(ThreadTeam, KeepsItsWorkersOffTheCallersCore) {
+  onAnotherThread([] {
+    const std::vector<int> usable = usableCores();
+    if (usable.size() < 2) GTEST_SKIP() << "there is one core only";
+    ThreadTeam team(2);
+    ThreadTeam large(static_cast<int>(usable.size()) + 1);
+    for (const int core : usable) {
+      cpu_set_t set;
+      CPU_ZERO(&set);
+      CPU_SET(core, &set);
+      if (::pthread_setaffinity_np(::pthread_self(), sizeof set, &set) != 0) {
+        GTEST_SKIP() << "this system allows no pinning";
+      }
+      std::vector<int> others = usable;
+      std::erase(others, core);
+      EXPECT_EQ(usableByWorker(team)[1], others);
+      EXPECT_EQ(usableByWorker(large)[1], usable);
+    }
   });
 }
 

@@ -36,7 +36,8 @@ Isa bestIsa();
 
 /// Exactly `size` workers, the caller being worker 0. A benchmark wants a fixed number of threads
 /// with fixed shares (same answer for the same count, nothing stolen, nothing allocated per call);
-/// that, and a clean ThreadSanitizer, is why this is not a task scheduler.
+/// that, and a clean ThreadSanitizer, is why this is not a task scheduler. Where there are cores
+/// enough, no worker runs on that of the caller.
 class ThreadTeam {
  public:
   explicit ThreadTeam(int size);
@@ -69,6 +70,7 @@ class ThreadTeam {
     void* context = nullptr;
   };
   void start(Job);
+  void keepApart();
   void tell(unsigned generation);
   void perform(int worker);
   void loop(int worker);
@@ -83,6 +85,8 @@ class ThreadTeam {
   std::atomic<bool> failed_{false};
   std::exception_ptr failure_;
   std::vector<std::thread> threads_;
+  std::vector<int> shared_cores_;  ///< those of all workers, if they are enough and none is pinned
+  int callers_core_ = -1;          ///< from which the others are kept away
 };
 
 /// Something costly that all instances under one Execution share, such as a device's context.
