@@ -47,7 +47,7 @@ inline FourCompared compareFour(__m512i a, __m512i b) {
   const __m512i body_a = _mm512_and_si512(a, numbers);
   const __m512i body_b = _mm512_and_si512(b, numbers);
   return {
-      _cvtmask16_u32(_mm512_kor(above, elsewhere)), _cvtmask16_u32(shared),
+      bits(_mm512_kor(above, elsewhere)), bits(shared),
       _mm512_unpackhi_epi32(_mm512_min_epu32(body_a, body_b), _mm512_max_epu32(body_a, body_b))};
 }
 
@@ -80,7 +80,7 @@ std::size_t takePairs(std::uint64_t* places, std::uint64_t* bits, std::size_t co
     const __m512i place = _mm512_maskz_loadu_epi64(lanes, places + k);
     const __m512i of_hits = _mm512_maskz_loadu_epi64(lanes, bits + k);
     const __m512i more = _mm512_and_si512(of_hits, _mm512_sub_epi64(of_hits, each(1)));
-    const __mmask8 keep = _mm512_test_epi64_mask(more, more);
+    const unsigned keep = avx512::bits(_mm512_test_epi64_mask(more, more));
     kept_places = storeSome(keep, place, kept_places);
     kept_bits = storeSome(keep, more, kept_bits);
 
