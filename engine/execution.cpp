@@ -119,8 +119,8 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
   return false;
 }
 
-/// In a virtual machine Linux takes an idle core for one that has been taken away, and often wakes
-/// a thread on the core of the one that wakes it: then both share it for a frame.
+/// In a virtual machine Linux often wakes a thread on the core of the one that wakes it, although
+/// another core is idle: then both share it for a frame.
 void ThreadTeam::keepApart() {
   const int core = ::sched_getcpu();
   if (shared_cores_.empty() || core == callers_core_) return;
