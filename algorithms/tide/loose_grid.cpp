@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <bit>
 #include <map>
 
 #include "prefetch.h"
@@ -212,7 +212,7 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
 
 /// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
 std::uint32_t LooseGrid::change(const Batch& batch, const Candidate& candidate) const {
-  const Look& look = batch.looks[candidate.line / Look::kLines];
+  const Look& look = batch.lookOf(candidate);
   const Search& search = batch.searches[look.search];
   const Body& body = bodies_[search.body];
   const Body& other = bodies_[candidate.other];
@@ -242,8 +242,7 @@ void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, P
   Pair* next_began = first_began;
   Pair* next_ended = first_ended;
   for (const Candidate& candidate : batch.candidates) {
-    const std::uint32_t body =
-        batch.searches[batch.looks[candidate.line / Look::kLines].search].body;
+    const std::uint32_t body = batch.searches[batch.lookOf(candidate).search].body;
     std::uint32_t changed = change(batch, candidate);
     if (!wants_all && changed != 0 && !filter.wanted(body, candidate.other)) changed = 0;
     const Pair pair = orderedPair(body, candidate.other);

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -78,6 +77,10 @@ class LooseGrid {
     std::span<const Search> searches;
     LargeArray<Look> looks;
     LargeArray<Candidate> candidates;
+
+    [[nodiscard]] const Look& lookOf(const Candidate& candidate) const {
+      return looks[candidate.line / Look::kLines];
+    }
   };
   static constexpr std::size_t kSteps = 5;  ///< that a batch takes
   /// So many searches and more touch more memory than stays in caches.
