@@ -41,8 +41,6 @@ T awaitChange(const std::atomic<T>& value, T old, int spins) {
   return value.load(std::memory_order_acquire);
 }
 
-int spinsFor(int workers) { return workers <= static_cast<int>(usableCores().size()) ? kSpins : 0; }
-
 /// Lets a thread use these cores only, but for one. Whether the system allowed it.
 bool bind(pthread_t thread, std::span<const int> cores, int but = -1) {
   cpu_set_t set;
@@ -89,8 +87,12 @@ std::vector<Isa> supportedIsas() {
 
 Isa bestIsa() { return supportedIsas().back(); }
 
-ThreadTeam::ThreadTeam(int size) : spins_(spinsFor(size)) {
-  if (spins_ > 0) shared_cores_ = usableCores();
+ThreadTeam::ThreadTeam(int size) : spins_(0) {
+  std::vector<int> usable = usableCores();
+  if (std::cmp_less_equal(size, usable.size())) {
+    spins_ = kSpins;
+    shared_cores_ = std::move(usable);
+  }
   threads_.reserve(static_cast<std::size_t>(std::max(size, 1) - 1));
   try {
     for (int worker = 1; worker < size; ++worker) {
