@@ -4,11 +4,11 @@
 // known. Bodies at rest are not looked at, but for those around the ones that move.
 //
 // When many move it is quicker to find all pairs anew: then `columns` does it, until few move
-// again.
+// again (tide/cost_model.h).
 //
-// O(m · k), m the bodies that move, k those around one of them; O(n) from the share of the
-// parameter on. A frame in which nothing moves costs nothing. Where pairs are asked for and not
-// events, they are kept in a set, O(1) for each that begins or ends.
+// O(m · k), m the bodies that move, k those around one of them; O(n) where that is quicker. A frame
+// in which nothing moves costs nothing. Where pairs are asked for and not events, they are kept in
+// a set, O(1) for each that begins or ends.
 //
 // Source: Broadmark; for the grid see tide/loose_grid.h.
 
@@ -25,22 +25,21 @@
 #include "broadmark/pair_set.h"
 #include "columns.h"
 #include "marked_body.h"
+#include "tide/cost_model.h"
 #include "tide/loose_grid.h"
 #include "variants.h"
 
 namespace broadmark::tide {
 namespace {
 
-/// After so many frames in a row in which few bodies moved the grid is built again: that takes
-/// about as long as finding all pairs twice.
-constexpr int kQuietFrames = 4;
-
 /// Directly on BroadPhase: events need no pairs.
 class Tide final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"from_scratch", "percentage of bodies that move from which on all pairs are found anew",
-           &from_scratch_, 0, 100});
+    visit({"from_scratch_cost",
+           "cost of finding all pairs anew, in percent of what is expected: more of it keeps to "
+           "the grid longer",
+           &from_scratch_cost_, 1, 1'000'000});
   }
 
   void reportEvents() override { reports_events_ = true; }
@@ -62,27 +61,26 @@ class Tide final : public BroadPhase {
   [[nodiscard]] std::string validate() const override;
 
  private:
-  [[nodiscard]] bool isMany(std::size_t moves, std::int64_t percentage) const {
-    return 100 * moves > static_cast<std::size_t>(percentage) * bodies_.size();
-  }
   void findAnew(std::uint32_t frame, std::span<const Aabb> boxes);
   void beginAnew(const Frame& frame);
   void buildGrid(std::span<const Aabb> boxes);
+  void searchGrid();
   void takePairs();
-  void followCrowds();
+  void countPairs();
 
-  std::int64_t from_scratch_ = 12;
+  std::int64_t from_scratch_cost_ = 100;
   bool reports_events_ = false;
   CollisionFilter filter_;
   std::vector<std::uint32_t> bodies_;  ///< all ids
+  std::vector<std::uint32_t> tried_;   ///< some
 
   std::unique_ptr<BroadPhase> anew_;  ///< finds all pairs
   bool is_anew_ = false;              ///< this frame is its
-  int quiet_frames_ = 0;              ///< of its last ones
 
   std::optional<LooseGrid> grid_;
-  double usual_work_ = 0;   ///< for a move, twice what the first frame took; 0: not known yet
-  double excess_work_ = 0;  ///< beyond that, since the grid was built
+  bool grid_is_ready_ = false;  ///< knows where bodies are
+  CostModel costs_;
+  std::uint64_t pair_count_ = 0;
   std::uint64_t moves_ = 0;
   std::uint64_t builds_ = 0;
   std::vector<Aabb> boxes_;  ///< for building it anew
@@ -96,17 +94,19 @@ class Tide final : public BroadPhase {
 
 void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   filter_ = scene.filter;
+  costs_ = CostModel(reports_events_ ? kCostsOfEvents : kCostsOfPairs,
+                     static_cast<double>(from_scratch_cost_) / 100, first.boxes.size());
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
   anew_ = columns::create();
   if (isChangingWorld(scene)) anew_ = compacted(std::move(anew_));
   if (reports_events_) anew_ = withEvents(std::move(anew_));
   anew_->initialize(scene, first, execution);
+  is_anew_ = true;
   if (!reports_events_) findAnew(first.index, first.boxes);
+  countPairs();
   grid_.emplace(execution.isa());
   buildGrid(first.boxes);
-  is_anew_ = true;
-  quiet_frames_ = kQuietFrames;
   if (!reports_events_) takePairs();
 }
 
@@ -121,33 +121,36 @@ void Tide::findAnew(std::uint32_t frame, std::span<const Aabb> boxes) {
 void Tide::updateObjects(const Frame& frame) {
   moves_ = frame.changed->size();
   builds_ = 0;
-  const bool grid_is_ready = !is_anew_ || quiet_frames_ == kQuietFrames;
-  if (grid_is_ready && !isMany(moves_, from_scratch_)) {
+  if (grid_is_ready_ && !costs_.scratchIsQuicker(moves_)) {
     is_anew_ = false;
     grid_->resetWork();
     grid_->addMoves(*frame.changed, frame.boxes);
     return;
   }
+  grid_is_ready_ = false;
   if (!is_anew_) {
     beginAnew(frame);
     return;
   }
   anew_->updateObjects(frame);
-  // Well below the limit, or the next frame might be above it again.
-  quiet_frames_ = isMany(moves_, from_scratch_ / 2) ? 0 : quiet_frames_ + 1;
-  if (quiet_frames_ == kQuietFrames) buildGrid(frame.boxes);
+  if (costs_.gridPays(moves_)) buildGrid(frame.boxes);
 }
 
 void Tide::buildGrid(std::span<const Aabb> boxes) {
   grid_->build(boxes);
-  usual_work_ = excess_work_ = 0;
+  grid_is_ready_ = true;
   ++builds_;
+  tried_.clear();
+  const std::size_t step = boxes.size() / CostModel::kEnoughMoves + 1;
+  for (std::size_t body = 0; body < boxes.size(); body += step) {
+    tried_.push_back(static_cast<std::uint32_t>(body));
+  }
+  costs_.setGrid(grid_->tryMoves(tried_, boxes), tried_.size());
 }
 
 /// From now on all pairs are found anew. Its last frame was some time ago.
 void Tide::beginAnew(const Frame& frame) {
   is_anew_ = true;
-  quiet_frames_ = 0;
   if (reports_events_) {  // which are what differs from the frame before
     grid_->boxes(boxes_);
     findAnew(frame.index - 1, boxes_);
@@ -168,9 +171,14 @@ void Tide::updateStructures() {
 void Tide::searchOverlaps() {
   if (is_anew_) {
     anew_->searchOverlaps();
-    if (quiet_frames_ == kQuietFrames && !reports_events_) takePairs();
-    return;
+    if (grid_is_ready_ && !reports_events_) takePairs();
+  } else {
+    searchGrid();
   }
+  countPairs();
+}
+
+void Tide::searchGrid() {
   grid_->search(filter_, began_, ended_);
   grid_->settle();
   began_run_ = began_.run();
@@ -180,7 +188,11 @@ void Tide::searchOverlaps() {
     for (const Pair pair : began_run_) pairs_.insert(pair);
     pairs_run_ = pairs_.run();
   }
-  if (moves_ > 0) followCrowds();
+  const std::size_t changes = began_.size() + ended_.size();
+  if (moves_ > 0 && costs_.anotherGridPays(grid_->work(), changes, moves_)) {
+    grid_->boxes(boxes_);
+    buildGrid(boxes_);
+  }
 }
 
 void Tide::takePairs() {
@@ -191,18 +203,13 @@ void Tide::takePairs() {
   pairs_run_ = pairs_.run();
 }
 
-/// Bodies may crowd where the grid has too few cells for them. Once the work beyond the usual has
-/// cost as much as a new grid does, there is one.
-void Tide::followCrowds() {
-  constexpr double kWorkOfBuilding = 15;  // for a body, in lines that are looked into
-  constexpr double kLeast = 16;           // for a move: never worth it
-  const double work = static_cast<double>(grid_->work().lines + grid_->work().tests);
-  const double moves = static_cast<double>(moves_);
-  if (usual_work_ == 0) usual_work_ = 2 * std::max(work / moves, kLeast);
-  excess_work_ += std::max(0.0, work - usual_work_ * moves);
-  if (excess_work_ < kWorkOfBuilding * static_cast<double>(bodies_.size())) return;
-  grid_->boxes(boxes_);
-  buildGrid(boxes_);
+void Tide::countPairs() {
+  if (reports_events_) {
+    pair_count_ += pairCount(events().began) - pairCount(events().ended);
+  } else {
+    pair_count_ = pairCount(overlaps());
+  }
+  costs_.setPairs(pair_count_);
 }
 
 void Tide::drawStructure(DebugDraw& draw) const {
@@ -220,7 +227,7 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
     anew_->visitCounters(visit);
     return;
   }
-  visit("lines looked into", grid_->work().lines);
+  visit("looks", grid_->work().looks);
   visit("tests", grid_->work().tests);
   visit("cell changes", grid_->work().cell_changes);
   visit("pairs begun", began_.size());
@@ -228,7 +235,7 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
 }
 
 std::string Tide::validate() const {
-  if (is_anew_ && quiet_frames_ < kQuietFrames) return anew_->validate();
+  if (!grid_is_ready_) return anew_->validate();
   return grid_->validate();
 }
 

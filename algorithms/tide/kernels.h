@@ -30,7 +30,6 @@ struct Kernels {
   struct Found {
     std::size_t hits;
     std::size_t followed;
-    std::size_t lines;  ///< that were looked into
   };
 
   /// Looks for bounds within limits; looks are numbered from `first` on. Lists the looks that find

@@ -90,13 +90,11 @@ bool setLook(const Cells& cells, const Line* lines, const Extent& extent, std::u
 // down, and counted only if they do.
 Kernels::Found look(const Look* looks, std::size_t count, std::uint32_t first, Hit* hits,
                     Hit* followed) {
-  Kernels::Found found = {0, 0, 0};
+  Kernels::Found found = {0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     const Look& look = looks[i];
     const auto* const lines = reinterpret_cast<const std::uint64_t* const*>(look.lines);
     const std::uint64_t within = linesWithin(lines, look.limits) & look.wanted;
-    constexpr std::uint64_t kEach = 0x0101'0101'0101'0101;
-    found.lines += (look.wanted & kEach) * kEach >> 56;
     const std::uint64_t places = within & Look::kPlaces;
     const std::uint64_t are_followed = within & Look::kFollowed;
     const auto number = first + static_cast<std::uint32_t>(i);

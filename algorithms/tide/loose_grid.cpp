@@ -6,6 +6,7 @@
 
 #include <bit>
 #include <map>
+#include <utility>
 
 #include "prefetch.h"
 
@@ -161,10 +162,10 @@ void LooseGrid::lookIntoCells(Batch& batch) {
         kernels_->look(batch.looks.data() + first, count, static_cast<std::uint32_t>(first),
                        hits_.data() + hits, followed_.data());
     hits += found.hits;
-    work_.lines += found.lines;
     for (std::size_t i = 0; i < found.followed; ++i) addLookBehind(followed_[i], batch);
     first += count;
   }
+  work_.looks += batch.looks.size();
   addCandidates(batch, hits);
 }
 
@@ -264,6 +265,15 @@ void LooseGrid::settle() {
   left_.resize(0);
   searches_.resize(0);
   ++frame_;
+}
+
+Work LooseGrid::tryMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes) {
+  const Work before = std::exchange(work_, {});
+  PairBuffer none;
+  addMoves(bodies, boxes);
+  search({}, none, none);
+  settle();
+  return std::exchange(work_, before);
 }
 
 void LooseGrid::boxes(std::vector<Aabb>& into) const {

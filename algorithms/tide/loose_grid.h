@@ -28,7 +28,7 @@ namespace broadmark::tide {
 
 /// What a frame took.
 struct Work {
-  std::uint64_t lines = 0;  ///< cache lines of cells that were looked into
+  std::uint64_t looks = 0;  ///< into the lines of eight cells, or into those behind them
   std::uint64_t tests = 0;  ///< of a box against another body's
   std::uint64_t cell_changes = 0;
 };
@@ -57,6 +57,10 @@ class LooseGrid {
   /// The work since reset.
   [[nodiscard]] const Work& work() const { return work_; }
   void resetWork() { work_ = {}; }
+
+  /// The work of a frame in which these bodies move, but not from where they are; `boxes` has one
+  /// for each body.
+  Work tryMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
   /// The boxes, one per body, as of the last frame that was settled.
   void boxes(std::vector<Aabb>& into) const;

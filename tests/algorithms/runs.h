@@ -77,7 +77,7 @@ inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm)
   if (algorithm.id != "tide") return all;
   for (std::size_t i = all.size(); i-- > 0;) {
     all.push_back(all[i]);
-    all.back().parameters = {{"from_scratch", "100"}};
+    all.back().parameters = {{"from_scratch_cost", "1000000"}};
   }
   return all;
 }

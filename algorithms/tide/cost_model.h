@@ -1,0 +1,97 @@
+// What frames cost, by what is counted in them: when it is quicker to find all pairs anew, and when
+// a new grid pays. Nothing is timed, so that the same frames always lead to the same decisions.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "tide/loose_grid.h"
+
+namespace broadmark::tide {
+
+/// What things take, in nanoseconds on the machine of docs/records.md: only how they compare
+/// matters (there, "Where `tide` changes over").
+struct Costs {
+  // In the grid.
+  double build = 100;  ///< for each body there is
+  double move = 35;    ///< for each body that moves, and for each of its looks and tests
+  double look = 36;
+  double test = 13;
+  double change = 0;  ///< of the set of pairs, for each that begins or ends
+  // From scratch.
+  double body = 12;
+  double pair = 22;
+};
+inline constexpr Costs kCostsOfEvents;
+inline constexpr Costs kCostsOfPairs = {.change = 150, .pair = 5};
+
+/// Of a world, frame by frame.
+class CostModel {
+ public:
+  CostModel() = default;
+  /// The factor is for what is found from scratch.
+  CostModel(const Costs& costs, double factor, std::size_t bodies)
+      : costs_(costs), factor_(factor), bodies_(static_cast<double>(bodies)) {}
+
+  /// To be told in each frame.
+  void setPairs(std::uint64_t pairs) { pairs_ = static_cast<double>(pairs); }
+
+  /// Whether finding all pairs anew promises to be quicker than to move so many bodies.
+  [[nodiscard]] bool scratchIsQuicker(std::size_t moves) const {
+    return costOf(moves) > costFromScratch();
+  }
+
+  /// A frame was found from scratch in which so many bodies moved. Whether a grid would have paid
+  /// by now.
+  bool gridPays(std::size_t moves) {
+    wasted_ = std::max(0.0, wasted_ + costFromScratch() - costOf(moves));
+    return wasted_ >= costs_.build * bodies_ + costs_.change * pairs_;
+  }
+
+  /// There is a new grid, and this is what some moves take in it that change nothing.
+  void setGrid(const Work& work, std::size_t moves) {
+    usual_ = excess_ = wasted_ = 0;
+    // If all moved, about as many pairs would begin or end as there are.
+    move_ = costOfMove(work, pairs_ / std::max(1.0, bodies_) * static_cast<double>(moves), moves);
+  }
+  /// A frame in the grid in which so many pairs began or ended, and so many bodies moved: some.
+  /// Whether another grid would have paid by now, since bodies crowd where it has too few cells for
+  /// them: then moves beyond the usual cost have come to as much as it takes.
+  bool anotherGridPays(const Work& work, std::size_t changes, std::size_t moves) {
+    constexpr double kLeast = 170;  // never worth it
+    const double move = costOfMove(work, static_cast<double>(changes), moves);
+    if (moves >= kEnoughMoves) move_ = move;
+    if (usual_ == 0) usual_ = 2 * std::max(move, kLeast);
+    excess_ += static_cast<double>(moves) * std::max(0.0, move - usual_);
+    return excess_ >= costs_.build * bodies_;
+  }
+
+  /// So many tell what a move costs.
+  static constexpr std::size_t kEnoughMoves = 256;
+
+ private:
+  [[nodiscard]] double costOf(std::size_t moves) const {
+    return move_ * static_cast<double>(moves);
+  }
+  [[nodiscard]] double costFromScratch() const {
+    return factor_ * (costs_.body * bodies_ + costs_.pair * pairs_);
+  }
+  /// On average.
+  [[nodiscard]] double costOfMove(const Work& work, double changes, std::size_t moves) const {
+    const double sum = costs_.look * static_cast<double>(work.looks) +
+                       costs_.test * static_cast<double>(work.tests) + costs_.change * changes;
+    return costs_.move + sum / static_cast<double>(std::max<std::size_t>(moves, 1));
+  }
+
+  Costs costs_;
+  double factor_ = 1;
+  double bodies_ = 0;
+  double pairs_ = 0;
+  double move_ = 0;    ///< what one took in the last frame in the grid in which enough moved
+  double wasted_ = 0;  ///< by finding all pairs anew, since there was a grid
+  double usual_ = 0;   ///< for a move, twice that in the grid's first frame; 0: not known yet
+  double excess_ = 0;  ///< of moves beyond that
+};
+
+}  // namespace broadmark::tide
