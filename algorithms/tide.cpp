@@ -13,6 +13,7 @@
 // Source: Broadmark; for the grid see tide/loose_grid.h.
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -25,6 +26,7 @@
 #include "broadmark/pair_set.h"
 #include "columns.h"
 #include "marked_body.h"
+#include "sample.h"
 #include "tide/cost_model.h"
 #include "tide/loose_grid.h"
 #include "variants.h"
@@ -64,6 +66,7 @@ class Tide final : public BroadPhase {
   void findAnew(std::uint32_t frame, std::span<const Aabb> boxes);
   void beginAnew(const Frame& frame);
   void buildGrid(std::span<const Aabb> boxes);
+  void tryMoves(std::span<const Aabb> boxes);
   void searchGrid();
   void takePairs();
   void countPairs();
@@ -140,12 +143,24 @@ void Tide::buildGrid(std::span<const Aabb> boxes) {
   grid_->build(boxes);
   grid_is_ready_ = true;
   ++builds_;
-  tried_.clear();
-  const std::size_t step = boxes.size() / CostModel::kEnoughMoves + 1;
-  for (std::size_t body = 0; body < boxes.size(); body += step) {
-    tried_.push_back(static_cast<std::uint32_t>(body));
+  tryMoves(boxes);
+}
+
+/// Tells what moves cost by some of bodies that stay where they are.
+void Tide::tryMoves(std::span<const Aabb> boxes) {
+  constexpr std::size_t kTries = CostModel::kTries;
+  const std::size_t moves = std::min(boxes.size(), CostModel::kEnoughMoves) / kTries;
+  std::array<Work, kTries> tries;
+  for (std::size_t k = 0; k < kTries; ++k) {
+    tried_.resize(moves);
+    for (std::size_t i = 0; i < moves; ++i) {
+      tried_[i] = static_cast<std::uint32_t>(sampled(k * moves + i, kTries * moves, boxes.size()));
+    }
+    std::ranges::sort(tried_);
+    tried_.erase(std::ranges::unique(tried_).begin(), tried_.end());
+    tries[k] = grid_->tryMoves(tried_, boxes);
   }
-  costs_.setGrid(grid_->tryMoves(tried_, boxes), tried_.size());
+  costs_.setGrid(tries, moves);
 }
 
 /// From now on all pairs are found anew. Its last frame was some time ago.

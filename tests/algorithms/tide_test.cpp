@@ -184,19 +184,30 @@ TEST(Tide, BuildsAnotherGridWhereBodiesCrowd) {
   }
 }
 
-// A frame from scratch takes 12 ns a body here, one in the grid 71 for each of 50 that move, and a
-// grid 100 a body.
+// A frame from scratch takes 12 ns a body, one in the grid 71 for each that moves, and a grid 100 a
+// body.
+constexpr tide::Costs kRoundCosts = {
+    .build = 100, .move = 35, .look = 36, .test = 13, .sampled = 0, .body = 12};
+
+/// Of ten moves each; in one there was a giant.
+constexpr std::array<tide::Work, tide::CostModel::kTries> kTries = [] {
+  std::array<tide::Work, tide::CostModel::kTries> tries{};
+  for (tide::Work& work : tries) work.looks = 10;
+  tries[0].tests = 1'000'000;
+  return tries;
+}();
+
 TEST(TideCosts, AGridPaysOnceAsMuchWasWasted) {
   constexpr std::size_t kBodies = 1000;
   constexpr std::size_t kFew = 50;
-  tide::CostModel costs(tide::kCostsOfEvents, 1, kBodies);
-  costs.setGrid({.looks = 1000, .tests = 0}, 1000);
+  tide::CostModel costs(kRoundCosts, 1, kBodies);
+  costs.setGrid(kTries, 10);
   EXPECT_FALSE(costs.scratchIsQuicker(kFew));
   EXPECT_TRUE(costs.scratchIsQuicker(4 * kFew));
   for (int frame = 0; frame < 2; ++frame) {
     for (int quiet = 1; quiet <= 11; ++quiet) EXPECT_FALSE(costs.gridPays(kFew)) << quiet;
     EXPECT_TRUE(costs.gridPays(kFew));
-    costs.setGrid({.looks = 1000, .tests = 0}, 1000);
+    costs.setGrid(kTries, 10);
   }
   for (int quiet = 1; quiet <= 11; ++quiet) costs.gridPays(kFew);
   costs.gridPays(kBodies);
@@ -205,15 +216,30 @@ TEST(TideCosts, AGridPaysOnceAsMuchWasWasted) {
 
 TEST(TideCosts, AnotherGridPaysOnceMovesHaveBecomeDear) {
   constexpr std::size_t kBodies = 1000;
-  tide::CostModel costs(tide::kCostsOfEvents, 1, kBodies);
-  costs.setGrid({.looks = 1000, .tests = 0}, 1000);
+  tide::CostModel costs(kRoundCosts, 1, kBodies);
+  costs.setGrid(kTries, 10);
   for (int frame = 0; frame < 100; ++frame) {
-    EXPECT_FALSE(costs.anotherGridPays({.looks = 100, .tests = 500}, 0, 100));
+    EXPECT_FALSE(costs.anotherGridPays({.looks = 100, .tests = 900}, 0, 100)) << "not dear yet";
   }
-  EXPECT_FALSE(costs.scratchIsQuicker(100)) << "too few moved to tell";
-  EXPECT_FALSE(costs.anotherGridPays({.looks = 1000, .tests = 10000}, 0, 1000)) << "not dear yet";
-  EXPECT_TRUE(costs.scratchIsQuicker(100));
   EXPECT_TRUE(costs.anotherGridPays({.looks = 1000, .tests = 100'000}, 0, 1000));
+}
+
+TEST(TideCosts, LearnFromFramesInWhichManyMove) {
+  constexpr std::size_t kBodies = 1000;
+  constexpr tide::Work kDear = {.looks = 1000, .tests = 30'000};
+  tide::CostModel costs(kRoundCosts, 1, kBodies);
+  costs.setGrid(kTries, 10);
+  for (int frame = 0; frame < 100; ++frame) costs.anotherGridPays({.tests = 90'000}, 0, 10);
+  EXPECT_FALSE(costs.scratchIsQuicker(100)) << "too few moved to tell";
+  costs.anotherGridPays(kDear, 0, 1000);
+  EXPECT_FALSE(costs.scratchIsQuicker(100)) << "that may be a single giant";
+  for (int frame = 0; frame < 10; ++frame) costs.anotherGridPays(kDear, 0, 1000);
+  EXPECT_TRUE(costs.scratchIsQuicker(100));
+
+  int frames = 1;
+  while (!costs.gridPays(100) && frames < 10'000) ++frames;
+  EXPECT_GT(frames, 100) << "a grid is built in vain, and too often";
+  EXPECT_LT(frames, 1000) << "what was learnt is never forgotten";
 }
 
 /// Drives a grid through frames of its own.

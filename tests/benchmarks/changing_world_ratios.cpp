@@ -66,7 +66,7 @@ bool level(std::string_view part, std::uint32_t movers, double most_us, int fami
 bool traffic(int rounds) {
   constexpr std::uint32_t kBodies = 128'000;
   bool met = true;
-  SomeMove moving(kBodies, kBodies / 50);
+  SomeMove moving(inputs::uniform(kBodies, 0, 1), kBodies / 50);
   ComeAndGo changing(kBodies, kBodies / 100);
   for (const std::string id : {"tide", "kd", "tracy", "dbvt-f", "dbvt-d"}) {
     WorldContest contest;

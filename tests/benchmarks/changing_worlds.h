@@ -113,15 +113,21 @@ class StaticLevel final : public LivingWorld {
 /// In every frame other bodies move, and others stay where they are; or all move.
 class SomeMove final : public LivingWorld {
  public:
-  SomeMove(std::uint32_t bodies, std::uint32_t movers) : movers_(movers) {
-    begin("SomeMove", inputs::uniform(bodies, 0, 1), inputs::cubeRoot(10.0 * bodies));
+  SomeMove(std::span<const Aabb> boxes, std::uint32_t movers) : movers_(movers) {
+    begin("SomeMove", boxes, inputs::cubeRoot(10.0 * static_cast<double>(boxes.size())));
   }
 
  private:
   void change() override {
     for (std::uint32_t i = 0; i < movers_; ++i) {
       const std::uint32_t body = movers_ == size() ? i : anybody();
-      put(body, stepped(box(body), 0.5F));
+      Aabb to = box(body);
+      for (int axis = 0; axis < 3; ++axis) {
+        const float step = number(-0.5F, 0.5F);
+        to.min[axis] += step;
+        to.max[axis] += step;
+      }
+      put(body, to);
     }
   }
 

@@ -1,58 +1,65 @@
-// What a frame costs by how many bodies move: a curve, `tide` beside others, all with events.
-// Bodies are unit cubes, a tenth of the space; in each frame others move by up to half a unit on
-// each axis. The contestants take turns frame by frame.
+// What a frame costs by how many bodies move: a curve, `tide` beside others.
+// In each frame others move by up to half a unit on each axis, of unit cubes half their edge. The
+// contestants take turns frame by frame.
 //
-//   tide_ratios [BODIES [ROUNDS [ALGORITHM...]]]
+//   tide_ratios [BODIES [ROUNDS [KIND [ANSWER [ALGORITHM...]]]]]
+//
+// KIND: one of kinds_of_boxes.h; uniform where none is told. ANSWER: events, as where none is told,
+// or pairs.
 
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <map>
-#include <string>
+#include <span>
+#include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "benchmarks/changing_worlds.h"
+#include "benchmarks/kinds_of_boxes.h"
+#include "broadmark/names.h"
 
 namespace {
 
 using namespace broadmark;
 using namespace broadmark::benchmarks;
 
-struct Curve {
-  std::string id;
-  std::vector<double> us;  ///< by share of movers
-};
-
-void measure(std::uint32_t bodies, std::uint32_t movers, int rounds, std::vector<Curve>& curves) {
-  SomeMove world(bodies, movers);
+/// One point of each curve.
+void measure(std::span<const Aabb> boxes, std::uint32_t movers, int rounds,
+             std::span<const Case> cases) {
+  SomeMove world(boxes, movers);
   WorldContest contest;
-  for (const Curve& curve : curves) {
-    contest.add(curve.id, caseOf(curve.id, AnswerKind::events), world);
-  }
+  for (const Case& each : cases) contest.add(each.algorithm.id, each, world);
   contest.run(3, rounds);
-  fmt::print("{:>9} of {:>9}", movers, bodies);
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    curves[i].us.push_back(quantile(contest.entrants()[i].us, 0.5));
-    fmt::print("  {:>12.1f}", curves[i].us.back());
+  fmt::print("{:>9} of {:>9}", movers, boxes.size());
+  for (const WorldContest::Entrant& entrant : contest.entrants()) {
+    fmt::print("  {:>12.1f}", quantile(entrant.us, 0.5));
   }
   fmt::print("\n");
+}
+
+AnswerKind answerOf(std::string_view name) {
+  if (const auto answer = kAnswerKinds.find(name)) return *answer;
+  throw std::invalid_argument(unknownName("answer", name, kAnswerKinds.names()));
 }
 
 int run(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const auto bodies = static_cast<std::uint32_t>(argc > 1 ? std::atoi(argv[1]) : 1'000'000);
   const int rounds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 9;
-  std::vector<Curve> curves = {{"tide", {}}, {"columns", {}}};
-  for (int i = 3; i < argc; ++i) curves.push_back({argv[i], {}});
+  const std::vector<Aabb> boxes = kindOf(argc > 3 ? argv[3] : "uniform").boxes(bodies, 0, 1);
+  const AnswerKind answer = answerOf(argc > 4 ? argv[4] : "events");
+  std::vector<Case> cases = {caseOf("tide", answer), caseOf("columns", answer)};
+  for (int i = 5; i < argc; ++i) cases.push_back(caseOf(argv[i], answer));
   fmt::print("median us of a frame   ");
-  for (const Curve& curve : curves) fmt::print("  {:>12}", curve.id);
+  for (const Case& each : cases) fmt::print("  {:>12}", each.algorithm.id);
   fmt::print("\n");
 
   std::vector<std::uint32_t> movers = {0, 1, 10, 100};
   for (const double share : {0.001, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.24, 0.3, 0.5, 1.0}) {
     movers.push_back(static_cast<std::uint32_t>(share * bodies));
   }
-  for (const std::uint32_t count : movers) measure(bodies, count, rounds, curves);
+  for (const std::uint32_t count : movers) measure(boxes, count, rounds, cases);
   return EXIT_SUCCESS;
 }
 
