@@ -297,7 +297,7 @@ void Columns::updateObjects(const Frame& frame) {
   team().wake();  // while this thread chooses a layout
   boxes_.resize(frame.boxes.size());
   takeSample(
-      boxes_.size(), [&](std::size_t i) { return frame.boxes[i]; }, sample_);
+      boxes_.size(), [&](std::size_t i) -> const Aabb& { return frame.boxes[i]; }, sample_);
   layout_ = Layout(sample_, boxes_.size(), costs());
   while (!copyBoxes(frame)) layout_.widen();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "broadmark/aabb.h"
+#include "prefetch.h"
 
 namespace broadmark {
 
@@ -25,12 +26,16 @@ constexpr std::size_t sampled(std::size_t k, std::size_t of, std::size_t count) 
   return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
 }
 
-/// Takes a sample of `count` boxes, of which box_of(i) is the i-th.
+/// Takes a sample of `count` boxes, of which box_of(i) is the i-th, by reference.
 template <class BoxOf>
 void takeSample(std::size_t count, BoxOf box_of, std::vector<Aabb>& sample) {
   sample.resize(sampleSize(count));
+  const auto sampled_box = [&](std::size_t k) -> const Aabb& {
+    return box_of(sampled(k, sample.size(), count));
+  };
   for (std::size_t k = 0; k < sample.size(); ++k) {
-    sample[k] = box_of(sampled(k, sample.size(), count));
+    if (k + kPrefetchAhead < sample.size()) prefetch(&sampled_box(k + kPrefetchAhead));
+    sample[k] = sampled_box(k);
   }
 }
 

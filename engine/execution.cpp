@@ -163,7 +163,8 @@ void ThreadTeam::start(Job job) {
     tell((generation_ | 1U) + 1);
   }
   perform(0);
-  for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins_);
+  const int spins = spins_ > 0 ? kSpinsAwake : 0;  // it ends soon, and to wake up takes long
+  for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 

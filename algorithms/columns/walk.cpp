@@ -84,7 +84,10 @@ bool Walk::split(const Part& part) {
   const std::size_t count = sorted_.size;
   if (!crowded() || level_ + 1 == kMostLevels) return false;
   takeSample(
-      count, [&](std::size_t i) { return boxes_.boxes[bodyNumber(sorted_.copies[i].body)]; },
+      count,
+      [&](std::size_t i) -> const Aabb& {
+        return boxes_.boxes[bodyNumber(sorted_.copies[i].body)];
+      },
       sample_);
   const Layout layout(sample_, count, boxes_.costs);
   const double cost = layout.costPerBox() * static_cast<double>(count);
