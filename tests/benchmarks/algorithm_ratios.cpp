@@ -1,5 +1,5 @@
-// Measures what brute force and sweep and prune gain from vectors and threads, and prints each
-// ratio beside its target. The contestants take turns frame by frame, so that anything else that
+// Measures what brute force and sweep and prune gain from vectors, and prints each ratio
+// beside its target. The contestants take turns frame by frame, so that anything else that
 // slows the machine slows all of them. Exit status 1 if a target is missed.
 //
 //   algorithm_ratios [ROUNDS]
@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "benchmarks/contest.h"
@@ -21,12 +20,12 @@ using namespace broadmark;
 using broadmark::benchmarks::Contest;
 using broadmark::benchmarks::findAlgorithm;
 
-std::string nameOf(const std::string& id, Isa isa, int threads) {
-  return fmt::format("{}/{}/t{}", id, isaName(isa), threads);
+std::string nameOf(const std::string& id, Isa isa) {
+  return fmt::format("{}/{}", id, isaName(isa));
 }
 
-void add(Contest& contest, const std::string& id, Isa isa, int threads) {
-  contest.add(nameOf(id, isa, threads), makeCase(findAlgorithm(id).value(), isa, threads, "", {}));
+void add(Contest& contest, const std::string& id, Isa isa) {
+  contest.add(nameOf(id, isa), makeCase(findAlgorithm(id).value(), isa, 1, "", {}));
 }
 
 /// How many times faster `fast` is than `slow`.
@@ -39,46 +38,30 @@ bool compare(const Contest& contest, const std::string& slow, const std::string&
   return ratio >= target;
 }
 
-struct Targets {
-  double vectors;  ///< the vectorised variant over the plain one
-  double threads;  ///< two threads over one
-};
-
-/// All variants of a family ("bf", "sap"), on unit cubes with centres uniform in a cube of volume
-/// 10 n, elsewhere in every frame.
-bool measure(const std::string& family, std::size_t objects, int rounds, const Targets& targets) {
+/// The variants of a family ("bf", "sap") on one thread, on unit cubes with centres uniform in a
+/// cube of volume 10 n, elsewhere in every frame. The target is for the vectorised one over the
+/// plain one.
+bool measure(const std::string& family, std::size_t objects, int rounds, double target) {
   std::vector<std::vector<Aabb>> frames;
   for (std::uint32_t frame = 0; frame < 3; ++frame) {
     frames.push_back(inputs::uniform(objects, frame, 1));
   }
   Contest contest("Uniform", frames);
   const std::string simd = family + "-simd";
-  const bool two_threads = std::thread::hardware_concurrency() >= 2;
 
-  add(contest, family, Isa::scalar, 1);
+  add(contest, family, Isa::scalar);
   for (const auto& [isa, name] : kIsas.entries) {
-    if (isaSupported(isa)) add(contest, simd, isa, 1);
-  }
-  if (two_threads) {
-    add(contest, family + "-mt", Isa::scalar, 2);
-    add(contest, simd + "-mt", bestIsa(), 2);
+    if (isaSupported(isa)) add(contest, simd, isa);
   }
   contest.run(rounds);
 
-  bool met =
-      compare(contest, nameOf(family, Isa::scalar, 1), nameOf(simd, bestIsa(), 1), targets.vectors);
+  bool met = compare(contest, nameOf(family, Isa::scalar), nameOf(simd, bestIsa()), target);
   // Each wider set is worth having; for AVX-512, whose clock may be lower, a draw is enough.
-  for (const auto& [narrow, wide, target] :
+  for (const auto& [narrow, wide, gain] :
        {std::tuple{Isa::scalar, Isa::sse2, 1.0}, std::tuple{Isa::sse2, Isa::avx2, 1.05},
         std::tuple{Isa::avx2, Isa::avx512, 1.0}}) {
     if (!isaSupported(wide)) continue;
-    met &= compare(contest, nameOf(simd, narrow, 1), nameOf(simd, wide, 1), target);
-  }
-  if (two_threads) {
-    met &= compare(contest, nameOf(family, Isa::scalar, 1), nameOf(family + "-mt", Isa::scalar, 2),
-                   targets.threads);
-    met &= compare(contest, nameOf(simd, bestIsa(), 1), nameOf(simd + "-mt", bestIsa(), 2),
-                   targets.threads);
+    met &= compare(contest, nameOf(simd, narrow), nameOf(simd, wide), gain);
   }
   return met;
 }
@@ -87,7 +70,7 @@ bool measure(const std::string& family, std::size_t objects, int rounds, const T
 
 int main(int argc, char** argv) {
   const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 9;
-  bool met = measure("bf", 32'768, rounds, {.vectors = 5, .threads = 1.7});
-  met &= measure("sap", 131'072, rounds, {.vectors = 3, .threads = 1.5});
+  bool met = measure("bf", 32'768, rounds, 5);
+  met &= measure("sap", 131'072, rounds, 3);
   return met ? EXIT_SUCCESS : EXIT_FAILURE;
 }

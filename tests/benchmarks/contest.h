@@ -72,23 +72,13 @@ class Contest {
     contestants_.push_back(std::move(added));
   }
 
+  /// May be called again, to go on.
   void run(int rounds) {
-    std::vector<std::size_t> order(contestants_.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::mt19937 random;
-    for (int round = -1; round < rounds; ++round) {  // the first one warms up
-      const auto index = static_cast<std::uint32_t>(round + 2);
-      // Nobody always comes first.
-      std::ranges::shuffle(order, random);
-      const Frame frame = changed_bodies_.complete({index, boxesOf(index)});
-      for (const std::size_t turn : order) {
-        Contestant& contestant = contestants_[turn];
-        const FrameRun run = contestant.host->step(frame);
-        if (round < 0) continue;
-        const std::int64_t ns = run.times[Phase::total];
-        contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
-      }
+    if (next_frame_ == 1) {
+      playRound();  // warms up
+      for (Contestant& contestant : contestants_) contestant.milliseconds.clear();
     }
+    for (int round = 0; round < rounds; ++round) playRound();
   }
 
   [[nodiscard]] const Contestant& find(std::string_view name) const {
@@ -109,6 +99,20 @@ class Contest {
   }
 
  private:
+  void playRound() {
+    // Nobody always comes first.
+    std::vector<std::size_t> order(contestants_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::shuffle(order, random_);
+    const std::uint32_t index = next_frame_++;
+    const Frame frame = changed_bodies_.complete({index, boxesOf(index)});
+    for (const std::size_t turn : order) {
+      Contestant& contestant = contestants_[turn];
+      const std::int64_t ns = contestant.host->step(frame).times[Phase::total];
+      contestant.milliseconds.push_back(static_cast<double>(ns) * 1e-6);
+    }
+  }
+
   [[nodiscard]] std::span<const Aabb> boxesOf(std::uint32_t index) const {
     const std::size_t last = frames_.size() - 1;
     if (last == 0) return frames_[0];
@@ -120,6 +124,8 @@ class Contest {
   std::vector<LargeVector<Aabb>> frames_;
   ChangedBodies changed_bodies_;
   std::vector<Contestant> contestants_;
+  std::uint32_t next_frame_ = 1;
+  std::mt19937 random_;
 };
 
 /// What main() of a benchmark does: run(argc, argv) returns the exit status; an exception is
