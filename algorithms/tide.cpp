@@ -199,8 +199,8 @@ void Tide::searchGrid() {
   began_run_ = began_.run();
   ended_run_ = ended_.run();
   if (!reports_events_) {
-    for (const Pair pair : ended_run_) pairs_.erase(pair);
-    for (const Pair pair : began_run_) pairs_.insert(pair);
+    pairs_.erase(ended_run_);
+    pairs_.insert(began_run_);
     pairs_run_ = pairs_.run();
   }
   const std::size_t changes = began_.size() + ended_.size();
@@ -212,9 +212,7 @@ void Tide::searchGrid() {
 
 void Tide::takePairs() {
   pairs_.clear();
-  for (const PairRun run : anew_->overlaps()) {
-    for (const Pair pair : run) pairs_.insert(pair);
-  }
+  for (const PairRun run : anew_->overlaps()) pairs_.insert(run);
   pairs_run_ = pairs_.run();
 }
 

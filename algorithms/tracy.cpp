@@ -138,10 +138,10 @@ class Tracy final : public BroadPhase {
       const auto part = static_cast<std::size_t>(worker);
       PairSet& pairs = pairs_[part];
       for (const Worker& from : workers_) {
-        for (const Pair pair : from.work.ended[part].run()) pairs.erase(pair);
+        pairs.erase(from.work.ended[part].run());
       }
       for (const Worker& from : workers_) {
-        for (const Pair pair : from.work.begun[part].run()) pairs.insert(pair);
+        pairs.insert(from.work.begun[part].run());
       }
       if (reports_events_ && rebuilds_ > 0) compareWithBefore(part);
     });

@@ -28,7 +28,7 @@ struct Costs {
   double pair = 22;
 };
 inline constexpr Costs kCostsOfEvents;
-inline constexpr Costs kCostsOfPairs = {.change = 150, .pair = 5};
+inline constexpr Costs kCostsOfPairs = {.change = 80, .pair = 5};
 
 /// Of a world, frame by frame.
 class CostModel {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <set>
+#include <vector>
 
 #include "algorithms/runs.h"
 #include "broadmark/pair_set.h"
@@ -227,23 +228,29 @@ TEST(PairSet, DoesAsASetDoes) {
   std::set<Pair> expected;
   inputs::Random random(3, 0);
   for (int round = 0; round < 2; ++round) {
-    for (int i = 0; i < 20'000; ++i) {
-      const auto a = static_cast<std::uint32_t>(random.integer(0, 60));
-      const Pair pair{a, a + static_cast<std::uint32_t>(random.integer(1, 60))};
-      if (expected.erase(pair) != 0) {
-        pairs.erase(pair);
-      } else {
-        pairs.insert(pair);
-        expected.insert(pair);
+    for (int change = 0; change < 400; ++change) {
+      std::set<Pair> come;
+      std::set<Pair> gone;
+      for (int i = random.integer(0, 100); i > 0; --i) {
+        const auto a = static_cast<std::uint32_t>(random.integer(0, 60));
+        const Pair pair{a, a + static_cast<std::uint32_t>(random.integer(1, 60))};
+        (expected.contains(pair) ? gone : come).insert(pair);
       }
-      if (i % 100 != 0) continue;
+      for (const Pair pair : gone) expected.erase(pair);
+      expected.insert(come.begin(), come.end());
+      pairs.erase(std::vector<Pair>(gone.begin(), gone.end()));
+      pairs.insert(std::vector<Pair>(come.begin(), come.end()));
       const PairRun run = pairs.run();
       ASSERT_EQ(sorted({&run, 1}), std::vector<Pair>(expected.begin(), expected.end()));
+      for (const Pair pair : come) ASSERT_TRUE(pairs.contains(pair));
+      for (const Pair pair : gone) ASSERT_FALSE(pairs.contains(pair));
     }
-    EXPECT_THROW(pairs.insert(pairs.run().front()), std::logic_error);
-    EXPECT_THROW(pairs.erase({100, 200}), std::logic_error);
+    const Pair there = pairs.run().front();
+    const Pair nowhere = {100, 200};
+    EXPECT_THROW(pairs.insert({&there, 1}), std::logic_error);
+    EXPECT_THROW(pairs.erase({&nowhere, 1}), std::logic_error);
     pairs.clear();
-    EXPECT_THROW(pairs.erase({0, 1}), std::logic_error);
+    EXPECT_THROW(pairs.erase({&there, 1}), std::logic_error);
     expected.clear();
     EXPECT_TRUE(pairs.run().empty());
   }
