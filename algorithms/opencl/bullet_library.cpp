@@ -4,6 +4,7 @@
 #include <Bullet3OpenCL/Initialize/b3OpenCLUtils.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -37,6 +38,8 @@ void loadBulletLibrary() {
   static const int status = [] {
     gDebugSkipLoadingBinary = true;  // or it writes a cache of its own beside the program
     b3OpenCLUtils_setCachePath("/dev/null");
+    // Or PoCL's compiler tells on standard error how many warnings Bullet's kernels have.
+    ::setenv("POCL_EXTRA_BUILD_FLAGS", "-w", 0);
     const auto ignore = [](const char*) {};
     b3SetCustomPrintfFunc(ignore);
     b3SetCustomWarningMessageFunc(ignore);

@@ -70,6 +70,15 @@ TEST_F(Device, WithoutAPlaceForPoclsKernelsEverythingElseRuns) {
   }
 }
 
+// They have warnings; and nobody has asked for a count of them.
+TEST_F(Device, BulletsKernelsAreBuiltInSilence) {
+  const Ended ended = run({"--headless", "brownian", "--objects", "50", "--frames", "1",
+                           "--algorithm", "b3-sap", "--quiet"},
+                          {.environment = {{"POCL_CACHE_DIR", file("kernels").string()}}});
+  EXPECT_EQ(ended.status, 0);
+  EXPECT_EQ(ended.err, "");
+}
+
 TEST_F(Device, MemoryIsMeasured) {
   EXPECT_EQ(run(short_run_).status, 0);
   const Json results = readJson(file("r.json"));
