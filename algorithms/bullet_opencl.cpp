@@ -36,7 +36,7 @@
 #include <vector>
 
 #include "broadmark/error.h"
-#include "broadmark/oracle.h"
+#include "broadmark/reference_pairs.h"
 #include "opencl/bullet_library.h"
 #include "opencl/device_algorithm.h"
 #include "opencl/device_context.h"

@@ -10,10 +10,10 @@
 #include <system_error>
 
 #include "broadmark/error.h"
-#include "broadmark/memory_limit.h"
-#include "command_line.h"
-#include "exit_status.h"
-#include "interrupt.h"
+#include "broadmark/harness/memory_limit.h"
+#include "command_line/command_line.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
 
 namespace {
 

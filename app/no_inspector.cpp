@@ -1,10 +1,10 @@
 // Stands for the folder inspector/ in a build without it.
 
 #include "broadmark/error.h"
+#include "command_line/option_types.h"
+#include "command_line/session_options.h"
 #include "inspector/run_inspector.h"
-#include "option_types.h"
-#include "plan.h"
-#include "session_options.h"
+#include "run/plan.h"
 
 namespace broadmark {
 

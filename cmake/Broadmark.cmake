@@ -20,6 +20,27 @@ function(broadmark_configure target)
   endif()
 endfunction()
 
+# A room: a static library from SOURCES, with the public headers under include/ of the present folder.
+# It sees its own folder and the public headers of the rooms that it USES, so that any other include
+# does not compile.
+function(broadmark_room name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;USES" ${ARGN})
+  set(target broadmark_${name})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  broadmark_configure(${target})
+  target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  list(TRANSFORM ARG_USES PREPEND broadmark_)
+  target_link_libraries(${target} PUBLIC ${ARG_USES} PRIVATE fmt::fmt)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS *.cpp *.h *.inl)
+  foreach(file IN LISTS files)
+    file(STRINGS ${file} climbing REGEX "#include \"\\.\\./")
+    if(climbing)
+      message(FATAL_ERROR "${file}: ${climbing}: an include must not climb out of its folder")
+    endif()
+  endforeach()
+endfunction()
+
 # One list, stated once in CMake: every NAME adds FOLDER/NAME.cpp to the target and the line
 # MACRO(NAME) to the generated FILE, from which the target's C++ registry is built.
 function(broadmark_registry target file macro folder)

@@ -3,7 +3,8 @@
 # to link to.
 include(CMakePackageConfigHelpers)
 
-set(installed broadmark_engine broadmark_algorithms)
+set(installed broadmark_engine broadmark_core broadmark_statistics broadmark_recordings broadmark_harness
+  broadmark_algorithms)
 if(BROADMARK_APP)
   list(APPEND installed broadmark_scenes broadmark)
 endif()

@@ -7,7 +7,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/scene.h"
 #include "engines/chosen_engine.h"
 #include "engines/replay.h"

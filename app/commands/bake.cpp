@@ -11,17 +11,17 @@
 #include <optional>
 #include <set>
 
-#include "bake_plan.h"
-#include "batch.h"
+#include "bake/bake_plan.h"
+#include "bake/batch.h"
+#include "bake/movie.h"
 #include "broadmark/error.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "exit_status.h"
-#include "interrupt.h"
-#include "movie.h"
-#include "option_types.h"
-#include "plugins.h"
-#include "progress.h"
-#include "words.h"
+#include "request/plugins.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark::commands::bake {
 namespace {

@@ -9,11 +9,11 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "comparison.h"
-#include "exit_status.h"
-#include "option_types.h"
-#include "output.h"
+#include "compare/comparison.h"
+#include "support/exit_status.h"
+#include "support/output.h"
 
 namespace broadmark::commands::compare {
 namespace {

@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "command_line/option_types.h"
+#include "command_line/usage.h"
 #include "commands/command.h"
-#include "exit_status.h"
-#include "option_types.h"
-#include "usage.h"
+#include "support/exit_status.h"
 
 namespace broadmark::commands::completion {
 namespace {

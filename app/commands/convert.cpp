@@ -8,14 +8,14 @@
 #include <memory>
 
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "progress.h"
-#include "recordings.h"
-#include "words.h"
+#include "run/recordings.h"
+#include "support/interrupt.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark::commands::convert {
 namespace {

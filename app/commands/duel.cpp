@@ -1,6 +1,6 @@
 // broadmark duel: which of several variants is faster, and by how much.
 
-#include "broadmark/duel.h"
+#include "broadmark/analysis/duel.h"
 
 #include <fmt/format.h>
 
@@ -9,20 +9,20 @@
 #include <memory>
 
 #include "broadmark/error.h"
-#include "cases.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "duel_report.h"
-#include "exit_status.h"
-#include "hosts.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "output.h"
-#include "plugins.h"
-#include "progress.h"
-#include "recordings.h"
+#include "compare/duel_report.h"
+#include "request/cases.h"
+#include "request/hosts.h"
+#include "request/plugins.h"
+#include "run/recordings.h"
+#include "run/warnings.h"
 #include "sources/source.h"
-#include "warnings.h"
-#include "words.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
+#include "support/output.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark::commands::duel {
 namespace {

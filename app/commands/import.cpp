@@ -7,15 +7,15 @@
 #include <memory>
 
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
-#include "broadmark/swept_frames.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/swept_frames.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "progress.h"
-#include "recordings.h"
+#include "run/recordings.h"
 #include "sources/make_source.h"
-#include "words.h"
+#include "support/interrupt.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark::commands::import {
 namespace {

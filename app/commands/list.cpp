@@ -10,13 +10,13 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "broadmark/scenes/simulation.h"
-#include "cases.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "option_types.h"
 #include "original/ids.h"
-#include "plugins.h"
-#include "sdk_plugins.h"
-#include "table.h"
+#include "request/cases.h"
+#include "request/plugins.h"
+#include "request/sdk_plugins.h"
+#include "support/table.h"
 
 namespace broadmark::commands::list {
 namespace {

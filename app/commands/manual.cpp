@@ -4,10 +4,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include "broadmark/environment.h"
+#include "broadmark/harness/environment.h"
+#include "command_line/usage.h"
 #include "commands/command.h"
-#include "exit_status.h"
-#include "usage.h"
+#include "support/exit_status.h"
 
 namespace broadmark::commands::manual {
 namespace {

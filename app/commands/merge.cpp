@@ -1,6 +1,6 @@
 // broadmark merge: result files of shards and machines as one.
 
-#include "broadmark/merge.h"
+#include "broadmark/results/merge.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "option_types.h"
-#include "output.h"
-#include "result_files.h"
-#include "words.h"
+#include "run/result_files.h"
+#include "support/output.h"
+#include "support/words.h"
 
 namespace broadmark::commands::merge {
 namespace {

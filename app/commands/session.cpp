@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "export_case.h"
-#include "headless.h"
+#include "command_line/option_types.h"
 #include "inspector/run_inspector.h"
-#include "option_types.h"
-#include "plan.h"
-#include "plugins.h"
+#include "request/plugins.h"
+#include "run/export_case.h"
+#include "run/headless.h"
+#include "run/plan.h"
 
 namespace broadmark {
 namespace {

@@ -1,7 +1,7 @@
 // The main command.
 #pragma once
 
-#include "session_options.h"
+#include "command_line/session_options.h"
 
 namespace broadmark {
 

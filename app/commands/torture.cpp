@@ -1,6 +1,6 @@
 // broadmark torture: algorithms in random ways on random worlds, until one of them is wrong.
 
-#include "broadmark/torture.h"
+#include "broadmark/fuzz/torture.h"
 
 #include <fmt/format.h>
 
@@ -17,19 +17,19 @@
 #include <thread>
 
 #include "broadmark/error.h"
-#include "cases.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "exit_status.h"
-#include "export_case.h"
-#include "hosts.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "plugins.h"
-#include "progress.h"
-#include "recordings.h"
+#include "commands/torture_log.h"
+#include "request/cases.h"
+#include "request/hosts.h"
+#include "request/plugins.h"
+#include "run/export_case.h"
+#include "run/recordings.h"
 #include "sources/source.h"
-#include "torture_log.h"
-#include "words.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark::commands::torture {
 namespace {

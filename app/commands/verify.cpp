@@ -7,21 +7,21 @@
 #include <functional>
 #include <memory>
 
+#include "broadmark/analysis/scene_statistics.h"
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
-#include "broadmark/scene_statistics.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/swept_frames.h"
 #include "broadmark/scenes/simulation.h"
-#include "broadmark/swept_frames.h"
+#include "command_line/option_types.h"
 #include "commands/command.h"
-#include "exit_status.h"
-#include "interrupt.h"
-#include "option_types.h"
-#include "output.h"
-#include "progress.h"
-#include "recordings.h"
+#include "run/recordings.h"
 #include "sources/make_source.h"
-#include "table.h"
-#include "words.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
+#include "support/output.h"
+#include "support/progress.h"
+#include "support/table.h"
+#include "support/words.h"
 
 namespace broadmark::commands::verify {
 namespace {

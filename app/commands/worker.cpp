@@ -1,13 +1,13 @@
 // broadmark worker: runs a case for the process that started it.
 
-#include "broadmark/worker_process.h"
+#include "broadmark/harness/worker_process.h"
 
 #include <fmt/format.h>
 
 #include "broadmark/error.h"
-#include "cases.h"
 #include "commands/command.h"
-#include "plugins.h"
+#include "request/cases.h"
+#include "request/plugins.h"
 
 namespace broadmark::commands::worker {
 namespace {

@@ -11,7 +11,7 @@
 #include "broadmark/files.h"
 #include "broadmark/frame.h"
 #include "imports/mesh.h"
-#include "reading_options.h"
+#include "request/reading_options.h"
 
 namespace broadmark::imports {
 

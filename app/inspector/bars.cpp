@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "inspector/answer_text.h"
 #include "inspector/inspector.h"
-#include "words.h"
+#include "inspector/session/answer_text.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {

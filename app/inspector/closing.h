@@ -1,8 +1,8 @@
 // What is asked before the window closes while work goes on in the background.
 #pragma once
 
-#include "inspector/session.h"
-#include "inspector/ui.h"
+#include "inspector/session/session.h"
+#include "inspector/ui/ui.h"
 
 namespace broadmark {
 

@@ -13,7 +13,7 @@
 #include "broadmark/render/window.h"
 #include "inspector/inspector.h"
 #include "inspector/script.h"
-#include "recordings.h"
+#include "run/recordings.h"
 
 namespace broadmark {
 namespace {

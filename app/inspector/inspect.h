@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/case_host.h"
+#include "broadmark/harness/case_host.h"
 #include "broadmark/render/picture.h"
 
 namespace broadmark {

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <utility>
 
-#include "inspector/author_dialogs.h"
+#include "inspector/authoring/author_dialogs.h"
 #include "inspector/closing.h"
 
 namespace broadmark {

@@ -11,12 +11,12 @@
 #include "broadmark/render/gl.h"
 #include "broadmark/render/input_queue.h"
 #include "broadmark/render/ui_renderer.h"
-#include "inspector/file_dialog.h"
-#include "inspector/panel.h"
-#include "inspector/preferences.h"
-#include "inspector/session.h"
-#include "inspector/ui.h"
-#include "inspector/view.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/session.h"
+#include "inspector/ui/file_dialog.h"
+#include "inspector/ui/preferences.h"
+#include "inspector/ui/ui.h"
+#include "inspector/views/view.h"
 
 struct ImGuiContext;
 

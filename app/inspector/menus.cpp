@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "broadmark/environment.h"
 #include "broadmark/files.h"
-#include "broadmark/recording.h"
-#include "inspector/author_dialogs.h"
+#include "broadmark/harness/environment.h"
+#include "broadmark/recordings/recording.h"
+#include "inspector/authoring/author_dialogs.h"
 #include "inspector/inspector.h"
 
 namespace broadmark {

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "broadmark/error.h"
-#include "hosts.h"
+#include "command_line/session_options.h"
 #include "inspector/inspect.h"
-#include "inspector/session.h"
-#include "plan.h"
-#include "session_options.h"
+#include "inspector/session/session.h"
+#include "request/hosts.h"
+#include "run/plan.h"
 
 namespace broadmark {
 

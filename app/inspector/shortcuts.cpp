@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "inspector/author_dialogs.h"
+#include "inspector/authoring/author_dialogs.h"
 #include "inspector/inspector.h"
 
 namespace broadmark {

@@ -7,11 +7,11 @@
 #include <optional>
 #include <span>
 
-#include "duel_report.h"
-#include "inspector/answer_text.h"
+#include "compare/duel_report.h"
 #include "inspector/inspector.h"
-#include "inspector/span_statistics.h"
-#include "inspector/wrong_pair.h"
+#include "inspector/session/answer_text.h"
+#include "inspector/session/span_statistics.h"
+#include "inspector/session/wrong_pair.h"
 
 namespace broadmark {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "cases.h"
 #include "original/ids.h"
+#include "request/cases.h"
 
 namespace broadmark {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "broadmark/case.h"
+#include "broadmark/harness/case.h"
 #include "original/settings.h"
 
 namespace broadmark {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 
 namespace broadmark {
 

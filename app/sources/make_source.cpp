@@ -11,10 +11,10 @@
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "broadmark/recording.h"
-#include "broadmark/swept_frames.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/swept_frames.h"
 #include "imports/files.h"
-#include "sweep.h"
+#include "request/sweep.h"
 
 namespace broadmark {
 namespace {

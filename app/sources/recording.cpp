@@ -1,6 +1,6 @@
 // Recordings: every file that is not JSON.
 
-#include "recordings.h"
+#include "run/recordings.h"
 #include "sources/make_source.h"
 
 namespace broadmark::sources::recording {

@@ -7,8 +7,8 @@
 #include <algorithm>
 
 #include "broadmark/names.h"
-#include "broadmark/swept_frames.h"
-#include "cases.h"
+#include "broadmark/recordings/swept_frames.h"
+#include "request/cases.h"
 #include "sources/make_source.h"
 
 namespace broadmark {

@@ -7,7 +7,7 @@
 
 #include "broadmark/algorithm.h"
 #include "broadmark/error.h"
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 #include "sources/source.h"
 
 namespace broadmark {

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/case.h"
-#include "broadmark/oracle.h"
-#include "broadmark/results.h"
+#include "broadmark/harness/case.h"
+#include "broadmark/harness/oracle.h"
+#include "broadmark/results/results.h"
 #include "broadmark/scenes/simulation.h"
 #include "original/settings.h"
-#include "reading_options.h"
-#include "scene_options.h"
+#include "request/reading_options.h"
+#include "request/scene_options.h"
 
 namespace broadmark {
 

@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case_run.h"
 #include "broadmark/error.h"
 #include "broadmark/execution.h"
+#include "broadmark/harness/case_run.h"
 
 namespace py = pybind11;
 

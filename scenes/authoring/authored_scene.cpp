@@ -10,7 +10,7 @@
 
 #include "authoring/faults.h"
 #include "broadmark/error.h"
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/simulation.h"
 #include "entries.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {

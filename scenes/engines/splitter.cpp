@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "engines/replay.h"
 #include "entries.h"
 

@@ -1,7 +1,7 @@
 // Viewer: the frames of a recording as they are.
 
 #include "broadmark/error.h"
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "engines/replay.h"
 #include "entries.h"
 

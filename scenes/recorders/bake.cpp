@@ -9,7 +9,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "recorders/recorder.h"
 #include "scene_parameters.h"
 

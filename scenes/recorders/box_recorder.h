@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "recorders/recorder.h"
 
 namespace broadmark::scenes {

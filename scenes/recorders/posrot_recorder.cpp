@@ -1,6 +1,6 @@
 // Positions and rotations, as .posrot: what the engines viewer and splitter replay.
 
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "entries.h"
 #include "recorders/recorder.h"
 

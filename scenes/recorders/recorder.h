@@ -9,7 +9,7 @@
 
 #include "broadmark/frame.h"
 #include "broadmark/pose.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {

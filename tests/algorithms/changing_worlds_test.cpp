@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "algorithms/runs.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "support/changing_worlds.h"
 #include "support/places.h"
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "algorithms/runs.h"
-#include "broadmark/case_run.h"
 #include "broadmark/compute_devices.h"
+#include "broadmark/harness/case_run.h"
 
 namespace broadmark::tests {
 namespace {

@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
-#include "broadmark/followed_pairs.h"
-#include "broadmark/oracle.h"
+#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "torture/given_frames.h"
 #include "torture/inputs.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "app/import_files.h"
-#include "broadmark/swept_frames.h"
+#include "broadmark/recordings/swept_frames.h"
 #include "support/places.h"
 
 namespace broadmark::tests {

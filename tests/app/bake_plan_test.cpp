@@ -1,6 +1,6 @@
 // A batch as the inspector runs it: planned, started, watched, cancelled, with nothing printed.
 
-#include "bake_plan.h"
+#include "bake/bake_plan.h"
 
 #include <gmock/gmock.h>
 

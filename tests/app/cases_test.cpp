@@ -1,6 +1,6 @@
 // Which algorithms and cases selectors mean.
 
-#include "cases.h"
+#include "request/cases.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

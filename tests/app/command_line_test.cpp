@@ -1,12 +1,12 @@
 // What is understood on a command line, and what is refused. Nothing is run.
 
-#include "command_line.h"
+#include "command_line/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "command_line/option_types.h"
 #include "engine/helpers.h"
-#include "option_types.h"
 
 namespace broadmark::tests {
 namespace {

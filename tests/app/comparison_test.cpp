@@ -1,6 +1,6 @@
 // Two runs case by case: what is faster, slower, a regression, or not comparable.
 
-#include "comparison.h"
+#include "compare/comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // How commands end.
 
-#include "exit_status.h"
+#include "support/exit_status.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // From options to cases: all of them, filtered, divided among machines, for the inspector.
 
-#include "plan.h"
+#include "run/plan.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 
 #include "app/session_files.h"
 #include "broadmark/files.h"
-#include "broadmark/results.h"
-#include "session_options.h"
+#include "broadmark/results/results.h"
+#include "command_line/session_options.h"
 
 namespace broadmark::tests {
 namespace {

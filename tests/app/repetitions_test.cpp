@@ -1,6 +1,6 @@
 // When a case has been repeated often enough, and in which order cases take turns.
 
-#include "repetitions.h"
+#include "request/repetitions.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,8 +7,8 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
-#include "broadmark/recording.h"
-#include "broadmark/runner.h"
+#include "broadmark/harness/runner.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
 #include "engine/helpers.h"
 

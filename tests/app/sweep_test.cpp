@@ -1,6 +1,6 @@
 // Parameters with several values.
 
-#include "sweep.h"
+#include "request/sweep.h"
 
 #include <gmock/gmock.h>
 

@@ -1,12 +1,12 @@
 // Tables for people.
 
-#include "table.h"
+#include "support/table.h"
 
 #include <gmock/gmock.h>
 
 #include <sstream>
 
-#include "words.h"
+#include "support/words.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,6 +1,6 @@
 // Completion and manual have every option that help has.
 
-#include "usage.h"
+#include "command_line/usage.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 #include <set>
 
 #include "broadmark/files.h"
-#include "command_line.h"
+#include "command_line/command_line.h"
 #include "engine/helpers.h"
 
 namespace broadmark::tests {

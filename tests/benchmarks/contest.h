@@ -18,10 +18,10 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
+#include "broadmark/harness/case_host.h"
 #include "broadmark/large_array.h"
-#include "broadmark/statistics.h"
+#include "broadmark/statistics/statistics.h"
 
 namespace broadmark::benchmarks {
 

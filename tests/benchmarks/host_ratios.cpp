@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "benchmarks/contest.h"
-#include "broadmark/duel.h"
-#include "broadmark/worker_process.h"
+#include "broadmark/analysis/duel.h"
+#include "broadmark/harness/worker_process.h"
 #include "torture/inputs.h"
 
 namespace {

@@ -23,8 +23,8 @@
 
 #include "benchmarks/contest.h"
 #include "broadmark/algorithms.h"
+#include "broadmark/harness/runner.h"
 #include "broadmark/render/framebuffer.h"
-#include "broadmark/runner.h"
 #include "inspector/inspector.h"
 
 namespace {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "benchmarks/contest.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
 
 namespace {

@@ -2,7 +2,7 @@
 // and on a scene that Broadmark simulates.
 
 #include <broadmark/algorithms.h>
-#include <broadmark/runner.h>
+#include <broadmark/harness/runner.h>
 #include <broadmark/scenes/simulation.h>
 
 #include <cstdio>

@@ -1,6 +1,6 @@
 // Recordings of one kind made into another; .broadmark recordings wherever .aabbs ones go.
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
 
 namespace broadmark::tests {

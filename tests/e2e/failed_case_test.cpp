@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
 #include "support/changing_worlds.h"
 #include "support/places.h"

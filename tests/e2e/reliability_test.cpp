@@ -10,7 +10,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 #include "e2e/end_to_end.h"
 #include "parts.h"
 #include "support/places.h"

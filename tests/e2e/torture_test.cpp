@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
 #include "engine/helpers.h"
 #include "support/places.h"

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
 #include "support/changing_worlds.h"
 

@@ -1,7 +1,7 @@
 // The host in another process against the one in this: the same answers, and what is said when the
 // other process is no worker.
 
-#include "broadmark/worker_process.h"
+#include "broadmark/harness/worker_process.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 
 #include "algorithms/runs.h"
 #include "broadmark/algorithms.h"
-#include "broadmark/case_run.h"
+#include "broadmark/harness/case_run.h"
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 #include "support/places.h"

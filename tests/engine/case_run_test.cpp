@@ -1,6 +1,6 @@
 // One case, frame by frame: clock, limits, verdict, exclusivity.
 
-#include "broadmark/case_run.h"
+#include "broadmark/harness/case_run.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // What an algorithm that knows only boxes gets to see of a world that changes: as little as can be.
 
-#include "compacted_world.h"
+#include "adapters/compacted_world.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/oracle.h"
-#include "near_grid.h"
+#include "adapters/near_grid.h"
+#include "broadmark/harness/oracle.h"
 #include "support/changing_worlds.h"
 
 namespace broadmark::tests {

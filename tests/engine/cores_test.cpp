@@ -8,8 +8,8 @@
 
 #include <thread>
 
-#include "broadmark/case_host.h"
 #include "broadmark/execution.h"
+#include "broadmark/harness/case_host.h"
 #include "engine/made_up_system.h"
 #include "engine/spoilt_cases.h"
 

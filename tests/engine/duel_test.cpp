@@ -1,6 +1,6 @@
 // Duels: their statistics on machines that are made up, with all the noise that real ones have.
 
-#include "broadmark/duel.h"
+#include "broadmark/analysis/duel.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

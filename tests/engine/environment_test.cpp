@@ -1,6 +1,6 @@
 // What is said of the machine.
 
-#include "broadmark/environment.h"
+#include "broadmark/harness/environment.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

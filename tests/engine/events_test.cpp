@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "adapters/events_from_pairs.h"
 #include "broadmark/changed_bodies.h"
-#include "broadmark/followed_pairs.h"
+#include "broadmark/harness/followed_pairs.h"
 #include "engine/spoilt_cases.h"
-#include "events_from_pairs.h"
 #include "torture/inputs.h"
 
 namespace broadmark::tests {

@@ -1,6 +1,6 @@
 // What events lead to, and which of them cannot be.
 
-#include "broadmark/followed_pairs.h"
+#include "broadmark/harness/followed_pairs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Results of several runs as one.
 
-#include "broadmark/merge.h"
+#include "broadmark/results/merge.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The oracle against the definition, and how answers are compared with it.
 
-#include "broadmark/oracle.h"
+#include "broadmark/harness/oracle.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // .posrot recordings: the bytes, tight boxes against their definition, and what may be wrong.
 
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Processor counters: what is counted and when, and how results keep it. Few machines of tests
 // allow the processor's own; page faults are counted in the same way.
 
-#include "broadmark/processor_counters.h"
+#include "broadmark/harness/processor_counters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadmark/execution.h"
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 #include "engine/spoilt_cases.h"
 
 namespace broadmark::tests {

@@ -1,6 +1,6 @@
 // What is said of a machine that is not quiet, with made-up machines.
 
-#include "broadmark/quietness.h"
+#include "broadmark/harness/quietness.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // .broadmark recordings: what is written comes back, in any order; and everything that may be wrong
 // with a file.
 
-#include "broadmark/recording2.h"
+#include "broadmark/recordings/recording2.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <utility>
 
-#include "broadmark/sub_recording.h"
+#include "broadmark/recordings/sub_recording.h"
 #include "engine/recording_bytes.h"
 #include "support/changing_worlds.h"
 #include "torture/inputs.h"

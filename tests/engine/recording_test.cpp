@@ -1,6 +1,6 @@
 // .aabbs recordings: the bytes, reading, writing, and everything that may be wrong with a file.
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>

@@ -1,6 +1,6 @@
 // Results: JSON and back, the keys that others rely on, CSV.
 
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // The ratio of two runs: what it is of, and how often it claims what is not so.
 
-#include "broadmark/run_ratio.h"
+#include "broadmark/analysis/run_ratio.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The runner, with broad phases that are wrong or slow or fail on purpose: what it says of each,
 // and what it keeps.
 
-#include "broadmark/runner.h"
+#include "broadmark/harness/runner.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Statistics of scenes, on scenes small enough to be worked out by hand.
 
-#include "broadmark/scene_statistics.h"
+#include "broadmark/analysis/scene_statistics.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 // Shrinking failing cases: planted faults are found again in parts that are as small as they can
 // be.
 
-#include "broadmark/shrink.h"
+#include "broadmark/fuzz/shrink.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <functional>
 #include <numeric>
 
-#include "broadmark/recording.h"
-#include "broadmark/runner.h"
+#include "broadmark/harness/runner.h"
+#include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 #include "support/faulty_algorithm.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/runner.h"
+#include "broadmark/harness/runner.h"
 #include "engine/helpers.h"
 
 namespace broadmark::tests {

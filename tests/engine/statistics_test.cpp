@@ -1,7 +1,7 @@
 // Statistics against values worked out elsewhere: by hand where the sum is shown, otherwise from
 // tables of Student's t (as in R's qt(0.975, df)).
 
-#include "broadmark/statistics.h"
+#include "broadmark/statistics/statistics.h"
 
 #include <gtest/gtest.h>
 

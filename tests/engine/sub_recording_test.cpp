@@ -1,11 +1,11 @@
 // Parts of recordings: the right boxes, from any kind of source, in any order.
 
-#include "broadmark/sub_recording.h"
+#include "broadmark/recordings/sub_recording.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "support/changing_worlds.h"
 #include "support/wandering_boxes.h"

@@ -1,6 +1,6 @@
 // Swept boxes: exact bounds, absent bodies, what changed, in any order of frames.
 
-#include "broadmark/swept_frames.h"
+#include "broadmark/recordings/swept_frames.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Torture: rounds follow from their numbers, worlds are of all kinds, and what fails is found.
 
-#include "broadmark/torture.h"
+#include "broadmark/fuzz/torture.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,8 @@
 // Several worlds at one place, an instance for each: what each gets to see, and what becomes of
 // their answers.
 
-#include "worlds_apart.h"
+#include "adapters/worlds_apart.h"
+#include "broadmark/adapters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/case_host.h"
 #include "broadmark/changed_bodies.h"
-#include "broadmark/followed_pairs.h"
-#include "broadmark/oracle.h"
+#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "support/changing_worlds.h"
 
@@ -188,7 +189,7 @@ TEST(WorldsApart, AreAsManyAsBodiesAreIn) {
   const auto count = [](const CollisionFilter& filter) {
     SceneInfo scene;
     scene.filter = filter;
-    return WorldsApart::countIn(scene);
+    return worldCount(scene);
   };
   EXPECT_EQ(count({}), 1U);
   EXPECT_EQ(count(worldsOf({7, 7, 7})), 1U);

@@ -1,6 +1,6 @@
 // The yardsticks: they measure something, and not too often.
 
-#include "broadmark/yardsticks.h"
+#include "broadmark/harness/yardsticks.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Any bytes as a .posrot recording.
 
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "read_through.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

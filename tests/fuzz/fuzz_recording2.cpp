@@ -1,6 +1,6 @@
 // Any bytes as a .broadmark recording.
 
-#include "broadmark/recording2.h"
+#include "broadmark/recordings/recording2.h"
 #include "read_through.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

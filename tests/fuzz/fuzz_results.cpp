@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "broadmark/error.h"
-#include "broadmark/results.h"
+#include "broadmark/results/results.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;

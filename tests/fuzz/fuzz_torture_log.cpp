@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "broadmark/error.h"
-#include "torture_log.h"
+#include "commands/torture_log.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace broadmark;

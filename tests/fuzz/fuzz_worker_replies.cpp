@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/case.h"
 #include "broadmark/error.h"
-#include "broadmark/worker_process.h"
+#include "broadmark/harness/case.h"
+#include "broadmark/harness/worker_process.h"
 #include "fuzzed_file.h"
 
 namespace broadmark {

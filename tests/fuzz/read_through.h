@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "fuzzed_file.h"
 
 namespace broadmark::fuzz {

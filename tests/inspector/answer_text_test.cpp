@@ -1,5 +1,5 @@
 // Whose answer is shown, in words.
-#include "inspector/answer_text.h"
+#include "inspector/session/answer_text.h"
 
 #include <gtest/gtest.h>
 

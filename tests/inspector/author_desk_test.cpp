@@ -1,5 +1,5 @@
 // Authoring in the session, without any drawing.
-#include "inspector/author_desk.h"
+#include "inspector/authoring/author_desk.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "broadmark/files.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 
 namespace broadmark::tests {
 namespace {

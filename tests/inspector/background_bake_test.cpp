@@ -1,5 +1,5 @@
 // Baking in the background.
-#include "inspector/background_bake.h"
+#include "inspector/jobs/background_bake.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "inspector/background_report.h"
+#include "inspector/jobs/background_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
-#include "child_program.h"
 #include "engine/helpers.h"
+#include "support/child_program.h"
 
 namespace broadmark::tests {
 namespace {

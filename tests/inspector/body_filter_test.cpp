@@ -1,11 +1,11 @@
 // Who of a crowd is drawn.
-#include "inspector/body_filter.h"
+#include "inspector/session/body_filter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "broadmark/error.h"
-#include "inspector/body_selection.h"
+#include "inspector/session/body_selection.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,5 +1,5 @@
 // Exporting a failing case in the background, and the cases of a results file.
-#include "inspector/case_export.h"
+#include "inspector/jobs/case_export.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 
 namespace broadmark::tests {
 namespace {

@@ -1,4 +1,4 @@
-#include "inspector/draw_gate.h"
+#include "inspector/run/draw_gate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The gizmo's geometry: which handle is hit, and what a drag of it makes of the bodies.
-#include "inspector/gizmo.h"
+#include "inspector/authoring/gizmo.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/recording.h"
-#include "broadmark/results.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/results/results.h"
 #include "engine/helpers.h"
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 #include "support/changing_worlds.h"
 #include "support/faulty_algorithm.h"
 #include "support/wandering_boxes.h"

@@ -8,7 +8,7 @@
 
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 
 namespace broadmark::tests {
 namespace {

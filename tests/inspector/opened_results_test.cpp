@@ -1,4 +1,4 @@
-#include "inspector/opened_results.h"
+#include "inspector/session/opened_results.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

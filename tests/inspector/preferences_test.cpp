@@ -1,4 +1,4 @@
-#include "inspector/preferences.h"
+#include "inspector/ui/preferences.h"
 
 #include <gtest/gtest.h>
 

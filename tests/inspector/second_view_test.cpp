@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "inspector/helpers.h"
-#include "inspector/pair_comparison.h"
-#include "inspector/time_ratios.h"
+#include "inspector/session/pair_comparison.h"
+#include "inspector/session/time_ratios.h"
 
 namespace broadmark::tests {
 namespace {

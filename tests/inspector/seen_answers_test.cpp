@@ -1,4 +1,4 @@
-#include "inspector/seen_answers.h"
+#include "inspector/run/seen_answers.h"
 
 #include <gtest/gtest.h>
 

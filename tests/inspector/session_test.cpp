@@ -1,5 +1,5 @@
 // The session and its run thread, without any drawing.
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

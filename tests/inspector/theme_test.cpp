@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "inspector/curve_colours.h"
-#include "inspector/ui.h"
+#include "inspector/ui/curve_colours.h"
+#include "inspector/ui/ui.h"
 #include "support/colour_vision.h"
 
 namespace broadmark::tests {

@@ -1,5 +1,5 @@
 // What the timeline shows of a recording.
-#include "inspector/timeline.h"
+#include "inspector/session/timeline.h"
 
 #include <gtest/gtest.h>
 

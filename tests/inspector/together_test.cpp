@@ -10,10 +10,10 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/exclusive_use.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
-#include "inspector/session.h"
+#include "inspector/session/session.h"
 
 namespace broadmark::tests {
 namespace {

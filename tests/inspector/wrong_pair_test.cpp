@@ -1,5 +1,5 @@
 // What is told of a wrong pair.
-#include "inspector/wrong_pair.h"
+#include "inspector/session/wrong_pair.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "inspector/mismatches.h"
+#include "inspector/session/mismatches.h"
 
 namespace broadmark::tests {
 namespace {

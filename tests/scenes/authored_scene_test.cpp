@@ -8,7 +8,7 @@
 #include <random>
 
 #include "broadmark/error.h"
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "broadmark/scenes/registry.h"
 #include "engine/helpers.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "broadmark/error.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "scenes/scene_runs.h"
 

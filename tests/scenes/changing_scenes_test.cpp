@@ -5,7 +5,7 @@
 #include <set>
 
 #include "broadmark/error.h"
-#include "broadmark/oracle.h"
+#include "broadmark/harness/oracle.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "engine/helpers.h"
 #include "scenes/scene_runs.h"

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/oracle.h"
+#include "broadmark/harness/oracle.h"
 #include "parts.h"
 #include "scenes/scene_runs.h"
 

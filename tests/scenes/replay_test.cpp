@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "broadmark/posrot.h"
+#include "broadmark/recordings/posrot.h"
 #include "engine/helpers.h"
 #include "scenes/scene_runs.h"
 

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "broadmark/oracle.h"
+#include "broadmark/reference_pairs.h"
 #include "broadmark/plugin.h"
 
 namespace broadmark::unruly {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "inspector/panel.h"
+#include "inspector/panels/panel.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 

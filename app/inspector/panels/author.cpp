@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "broadmark/scenes/authored_simulation.h"
-#include "inspector/author_dialogs.h"
-#include "inspector/panel.h"
+#include "inspector/authoring/author_dialogs.h"
+#include "inspector/panels/panel.h"
 
 namespace broadmark::panels::author {
 namespace {

@@ -1,8 +1,8 @@
 // Long work: baking many recordings, running many cases.
 
-#include "inspector/bake_form.h"
-#include "inspector/benchmark_form.h"
-#include "inspector/panel.h"
+#include "inspector/panels/bake_form.h"
+#include "inspector/panels/benchmark_form.h"
+#include "inspector/panels/panel.h"
 
 namespace broadmark::panels::batch {
 namespace {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
-#include "child_program.h"
-#include "inspector/case_plots.h"
-#include "inspector/panel.h"
-#include "inspector/two_parts.h"
-#include "words.h"
+#include "inspector/panels/case_plots.h"
+#include "inspector/panels/panel.h"
+#include "inspector/ui/two_parts.h"
+#include "support/child_program.h"
+#include "support/words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
-#include "inspector/panel.h"
-#include "inspector/time_ratios.h"
-#include "inspector/two_parts.h"
-#include "inspector/wrong_pair.h"
-#include "words.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/time_ratios.h"
+#include "inspector/session/wrong_pair.h"
+#include "inspector/ui/two_parts.h"
+#include "support/words.h"
 
 namespace broadmark::panels::compare {
 namespace {

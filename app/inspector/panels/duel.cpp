@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/statistics.h"
-#include "duel_report.h"
-#include "inspector/histogram.h"
-#include "inspector/panel.h"
-#include "inspector/two_parts.h"
-#include "words.h"
+#include "broadmark/statistics/statistics.h"
+#include "compare/duel_report.h"
+#include "inspector/panels/panel.h"
+#include "inspector/ui/histogram.h"
+#include "inspector/ui/two_parts.h"
+#include "support/words.h"
 
 namespace broadmark::panels::duel {
 namespace {

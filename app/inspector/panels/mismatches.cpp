@@ -6,13 +6,13 @@
 #include <algorithm>
 #include <memory>
 
-#include "broadmark/recording.h"
-#include "broadmark/sub_recording.h"
-#include "inspector/pair_drawing.h"
-#include "inspector/panel.h"
-#include "inspector/view.h"
-#include "inspector/wrong_pair.h"
-#include "words.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/sub_recording.h"
+#include "inspector/panels/pair_drawing.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/wrong_pair.h"
+#include "inspector/views/view.h"
+#include "support/words.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 

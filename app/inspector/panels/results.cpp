@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
-#include "inspector/curve_colours.h"
-#include "inspector/panel.h"
+#include "inspector/panels/panel.h"
+#include "inspector/ui/curve_colours.h"
 
 namespace broadmark::panels::results {
 namespace {

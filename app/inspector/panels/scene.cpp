@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "inspector/answer_text.h"
-#include "inspector/panel.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/answer_text.h"
 
 namespace broadmark::panels::scene {
 namespace {

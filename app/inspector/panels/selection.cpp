@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "broadmark/scene_statistics.h"
-#include "inspector/panel.h"
-#include "inspector/wrong_pair.h"
-#include "words.h"
+#include "broadmark/analysis/scene_statistics.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/wrong_pair.h"
+#include "support/words.h"
 
 namespace broadmark::panels::selection {
 namespace {

@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
-#include "inspector/curve_colours.h"
-#include "inspector/histogram.h"
-#include "inspector/panel.h"
-#include "inspector/span_statistics.h"
-#include "inspector/two_parts.h"
-#include "words.h"
+#include "inspector/panels/panel.h"
+#include "inspector/session/span_statistics.h"
+#include "inspector/ui/curve_colours.h"
+#include "inspector/ui/histogram.h"
+#include "inspector/ui/two_parts.h"
+#include "support/words.h"
 
 namespace broadmark::panels::timeline {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "broadmark/recording.h"
-#include "inspector/panel.h"
-#include "inspector/view.h"
+#include "broadmark/recordings/recording.h"
+#include "inspector/panels/panel.h"
+#include "inspector/views/view.h"
 
 namespace broadmark::panels::view_options {
 namespace {

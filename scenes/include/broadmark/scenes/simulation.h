@@ -14,7 +14,7 @@
 #include "broadmark/frame.h"
 #include "broadmark/parameters.h"
 #include "broadmark/pose.h"
-#include "broadmark/recording.h"
+#include "broadmark/recordings/recording.h"
 
 namespace broadmark {
 

@@ -1,0 +1,146 @@
+// Planning is cheap except for existing recordings: each is read through once, for its hash.
+
+#include "bake/bake_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "request/cases.h"
+#include "run/recordings.h"
+#include "sources/make_source.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Throws InputError for a --param that no scene has.
+void requireUsedParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
+  std::vector<std::string> known;
+  for (const BakeJob& job : jobs) {
+    std::ranges::move(parameterNames(*job.simulation), std::back_inserter(known));
+  }
+  requireKnownParameters(options.parameters, std::move(known));
+}
+
+/// The scenes that are named, or all built-in ones.
+std::vector<std::string> scenesOf(const BakeOptions& options) {
+  std::vector<std::string> scenes = options.scenes;
+  if (!scenes.empty()) return scenes;
+  for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
+  return scenes;
+}
+
+/// Every combination, each once.
+std::vector<BakeJob> makeJobs(const BakeOptions& options) {
+  std::vector<BakeJob> jobs;
+  std::set<std::vector<fs::path>> taken;
+  for (const std::string& name : scenesOf(options)) {
+    NamedSource scene(name);
+    for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
+      BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
+      job.simulation = std::move(simulation);
+      job.paths = recordingPaths(options.output, job.scene, swept, options.scene.recorders);
+      requireBakeable(*job.simulation, job.paths);
+      if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
+    }
+  }
+  requireUsedParameters(options, jobs);
+  return jobs;
+}
+
+/// Throws InputError when the recordings would not fit on the disc.
+void requireRoom(const BakePlan& plan, const fs::path& output) {
+  // A sidecar beside each recording takes whole blocks.
+  constexpr std::uint64_t kSidecarBytes = 1 << 13;
+  fs::path there = fs::absolute(output);
+  while (!fs::exists(there) && there.has_relative_path()) there = there.parent_path();
+  std::error_code unknown;
+  const std::uint64_t free = fs::space(there, unknown).available;
+  const std::uint64_t needed = plan.bytes() + kSidecarBytes * plan.recordings();
+  if (unknown || needed <= free) return;
+  throw InputError(fmt::format("{}: not enough room: {} would take {} bytes, but only {} are free",
+                               output.string(), counted(plan.recordings(), "recording"), needed,
+                               free));
+}
+
+/// Throws InputError when a recording cannot be written.
+void requireWritable(const BakePlan& plan) {
+  for (const BakeJob& job : plan.pending) {
+    for (const fs::path& path : job.paths) {
+      makeDirectory(path.parent_path());
+      const AtomicFile probe(path);
+    }
+  }
+}
+
+}  // namespace
+
+std::uint64_t leastBytes(const fs::path& path, SceneInfo scene) {
+  // What changes from frame to frame is not known yet.
+  if (path.extension() == kBroadmarkExtension) scene.frames = 0;
+  return recordingBytes(scene);
+}
+
+std::size_t BakePlan::recordings() const {
+  std::size_t sum = 0;
+  for (const BakeJob& job : pending) sum += job.paths.size();
+  return sum;
+}
+
+std::uint64_t BakePlan::bytes() const {
+  std::uint64_t sum = 0;
+  for (const BakeJob& job : pending) {
+    for (const fs::path& path : job.paths) sum += leastBytes(path, job.scene);
+  }
+  return sum;
+}
+
+std::optional<BakePlan> planBake(const BakeOptions& options, const PlanProgress& progress) {
+  std::vector<BakeJob> jobs = makeJobs(options);
+  const auto to_check = [&](const fs::path& path) { return !options.force && fs::exists(path); };
+  std::uint64_t total = 0;
+  for (const BakeJob& job : jobs) {
+    total += static_cast<std::uint64_t>(std::ranges::count_if(job.paths, to_check));
+  }
+  BakePlan plan;
+  std::uint64_t number = 0;
+  for (BakeJob& job : jobs) {
+    std::vector<fs::path> missing;
+    for (const fs::path& path : job.paths) {
+      if (!to_check(path)) {
+        missing.push_back(path);
+        continue;
+      }
+      if (progress && !progress(path, ++number, total)) return {};
+      if (isBaked(path, *job.simulation)) {
+        plan.kept.push_back(path);
+        continue;
+      }
+      if (isIntact(path)) {
+        throw InputError(fmt::format(
+            "{}: baked before with other parameters (see its .json): --force replaces it, another "
+            "--output keeps it",
+            path.string()));
+      }
+      missing.push_back(path);
+    }
+    job.paths = std::move(missing);
+    if (!job.paths.empty()) plan.pending.push_back(std::move(job));
+  }
+  return plan;
+}
+
+void prepare(const BakePlan& plan, const fs::path& output) {
+  requireRoom(plan, output);
+  makeDirectory(output);
+  requireWritable(plan);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,187 @@
+// The main command with the others as its subcommands, and complaints about bad usage.
+
+#include "command_line/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+
+#include "broadmark/error.h"
+#include "broadmark/harness/environment.h"
+#include "broadmark/names.h"
+#include "command_line/usage.h"
+#include "commands/command.h"
+#include "commands/session.h"
+#include "parts.h"
+#include "sources/source.h"
+#include "support/exit_status.h"
+
+namespace broadmark {
+
+#define COMMAND(name)        \
+  namespace commands::name { \
+  Command command();         \
+  }
+#include "commands.inc"
+#undef COMMAND
+
+namespace {
+
+constexpr const char* kWithoutHeadless =
+    "\nWithout --headless and a command the inspector's window opens, on SOURCE if one is given.";
+constexpr const char* kFooter =
+    "\n'broadmark COMMAND --help' shows a command's options, --help-all everything.\n"
+    "Start with:  broadmark --headless freefall --objects 2000 --frames 60";
+
+std::string footer() {
+  std::string text = parts::kInspector.included ? kWithoutHeadless : "";
+  text += "\nExit status:\n";
+  for (const auto& [status, meaning] : kExitStatuses.entries) {
+    text += fmt::format("  {:<4}{}\n", static_cast<int>(status), meaning);
+  }
+  return text + kFooter;
+}
+
+std::vector<Command> allCommands() {
+  return {
+#define COMMAND(name) commands::name::command(),
+#include "commands.inc"
+#undef COMMAND
+  };
+}
+
+class HelpFormatter final : public CLI::Formatter {
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return isShown(*option) ? Formatter::make_option(option, is_positional) : "";
+  }
+};
+
+/// An argument that `app` does not know, with the nearest of its options.
+std::string unexpected(const CLI::App& app, const std::string& argument) {
+  if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
+  std::vector<std::string> known;
+  const auto shown = [](const CLI::Option* option) { return isShown(*option); };
+  for (const CLI::Option* option : app.get_options(shown)) known.push_back(option->get_name());
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::string nearest = nearestName(name, known);
+  return fmt::format("unknown option '{}'{}", name,
+                     nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
+}
+
+/// CLI11's complaint as one line.
+InputError usageError(const CLI::App& main, const CLI::ParseError& error) {
+  const auto chosen = main.get_subcommands();
+  const CLI::App& app = chosen.empty() ? main : *chosen.front();
+  std::string message = error.what();
+  std::ranges::replace(message, '\n', ' ');
+  if (!app.remaining().empty()) message = unexpected(app, app.remaining().front());
+  const std::string name = chosen.empty() ? "" : app.get_name();
+  return InputError(fmt::format("{}{} (see 'broadmark {}--help')", name.empty() ? "" : name + ": ",
+                                message, name.empty() ? "" : name + " "));
+}
+
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.footer(footer());
+    app_.set_help_all_flag("--help-all", "Print the help of all commands and exit");
+    app_.set_version_flag("--version", thisEnvironment().version);
+    app_.formatter(std::make_shared<HelpFormatter>());
+    app_.get_formatter()->column_width(34);
+    app_.require_subcommand(0, 1);
+    for (const Command& command : allCommands()) {
+      CLI::App* added = app_.add_subcommand(command.name, command.summary);
+      commands_.emplace_back(added, command.add(*added));
+    }
+  }
+
+  /// Whether there is anything to run; if not, `printed` is what was asked for.
+  bool parse(std::vector<std::string> arguments, std::string& printed) {
+    std::ranges::reverse(arguments);  // as CLI11 takes them
+    try {
+      app_.parse(std::move(arguments));
+    } catch (const CLI::Success& success) {
+      std::ostringstream out;
+      app_.exit(success, out, out);
+      printed = out.str();
+      return false;
+    } catch (const CLI::ParseError& error) {
+      throw usageError(app_, error);
+    }
+    requireNothingBeforeCommand();
+    return true;
+  }
+
+  /// What runs the command that was parsed; nothing for the main command.
+  [[nodiscard]] std::function<int()> command() const {
+    for (const auto& [app, run] : commands_) {
+      if (app->parsed()) return run;
+    }
+    return {};
+  }
+
+  [[nodiscard]] SessionOptions session() const {
+    requireNoMisspeltCommand(session_.sources());
+    return session_.options();
+  }
+
+ private:
+  /// Options before a command would have no effect on it.
+  void requireNothingBeforeCommand() const {
+    const auto chosen = app_.get_subcommands();
+    if (chosen.empty()) return;
+    const std::string command = chosen.front()->get_name();
+    for (const CLI::Option* option : app_.get_options()) {
+      if (option->count() == 0) continue;
+      throw InputError(fmt::format("{}: not an option of '{}' (see 'broadmark {} --help')",
+                                   option->get_name(), command, command));
+    }
+  }
+
+  /// A first argument that is not a source may be a misspelt command.
+  void requireNoMisspeltCommand(const std::vector<std::string>& sources) const {
+    if (sources.empty() || isSource(sources.front())) return;
+    std::vector<std::string> names;
+    for (const auto& [app, run] : commands_) names.push_back(app->get_name());
+    const std::string nearest = nearestName(sources.front(), names);
+    if (nearest.empty()) return;
+    throw InputError(fmt::format("'{}': did you mean the command '{}'?", sources.front(), nearest));
+  }
+
+  CLI::App app_{"Broadmark tests, compares and validates broad-phase collision detection.",
+                "broadmark"};
+  SessionParser session_{app_};
+  std::vector<std::pair<const CLI::App*, std::function<int()>>> commands_;
+};
+
+}  // namespace
+
+std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
+  const auto line = std::make_shared<CommandLine>();
+  std::string printed;
+  if (!line->parse(arguments, printed)) {
+    return [printed] {
+      std::fputs(printed.c_str(), stdout);
+      return 0;
+    };
+  }
+  if (auto run = line->command()) return [line, run = std::move(run)] { return run(); };
+  SessionOptions options = line->session();
+  options.command_line = arguments;
+  return [options = std::move(options)] { return runSession(options); };
+}
+
+SessionOptions parseSession(const std::vector<std::string>& arguments) {
+  CommandLine line;
+  std::string printed;
+  if (!line.parse(arguments, printed) || line.command()) {
+    throw InputError("not a command line of the main command");
+  }
+  return line.session();
+}
+
+}  // namespace broadmark

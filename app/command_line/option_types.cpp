@@ -1,0 +1,314 @@
+// Options that several commands share.
+
+#include "command_line/option_types.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <thread>
+
+#include "broadmark/scenes/simulation.h"
+#include "request/sweep.h"
+
+namespace broadmark {
+namespace {
+
+constexpr NameTable kGlSources{{NamedValue{GlSource::automatic, "auto"},
+                                {GlSource::egl, "egl"},
+                                {GlSource::osmesa, "osmesa"}}};
+
+std::vector<std::string> recorderIds() {
+  std::vector<std::string> ids;
+  for (const RecorderListing& recorder : builtinRecorders()) ids.push_back(recorder.id);
+  return ids;
+}
+
+/// Each once, in the order given.
+std::vector<std::string> parseRecorders(const std::vector<std::string>& names) {
+  const std::vector<std::string> known = recorderIds();
+  std::vector<std::string> recorders;
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--recorder: " + unknownName("recorder", name, known));
+    }
+    if (std::ranges::find(recorders, name) == recorders.end()) recorders.push_back(name);
+  }
+  return recorders;
+}
+
+/// Ascending, each once.
+std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& texts) {
+  std::vector<std::uint32_t> counts;
+  for (const std::string& text : texts) {
+    counts.push_back(static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMostBodies)));
+  }
+  std::ranges::sort(counts);
+  counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
+  return counts;
+}
+
+/// [ALGORITHM:]KEY=VALUE texts as parameter values; ALGORITHM is part of the key.
+ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
+  ParameterValues values;
+  for (const std::string& text : texts) {
+    const auto split = text.find('=');
+    const std::string key = text.substr(0, std::min(split, text.size()));
+    if (split == std::string::npos || key.empty() || key.front() == ':' || key.back() == ':') {
+      throw InputError(
+          fmt::format("--param: '{}' is not of the form KEY=VALUE or ALGORITHM:KEY=VALUE", text));
+    }
+    if (!values.emplace(key, text.substr(split + 1)).second) {
+      throw InputError(fmt::format("--param: '{}' is given twice", key));
+    }
+  }
+  return values;
+}
+
+void parseSize(const std::string& text, PictureOptions& options) {
+  constexpr int kMostPixels = 16384;
+  const auto x = text.find('x');
+  if (x == std::string::npos) {
+    throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
+  }
+  options.width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, kMostPixels));
+  options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMostPixels));
+}
+
+/// A scene parameter with an option of its own.
+struct SceneShortcut {
+  const char* parameter;
+  const char* type;
+  const char* doc;
+  bool list = true;  ///< of several values, each makes a recording
+};
+constexpr SceneShortcut kSceneShortcuts[] = {
+    {"frames", "F[,F...]", "frames to simulate, the initial pose not counted"},
+    {"seed", "S[,S...]", "seeds: same seed, same recording"},
+    {"density", "D[,D...]", "share of the world's volume that bodies fill"},
+    {"engine", "NAME[,NAME...]", "what moves the bodies (see 'broadmark list engines')"},
+    {"input", "PATH", "recording, or directory of those, that an engine replays", false}};
+
+}  // namespace
+
+double parseNumber(const std::string& text, std::string_view option, double min, bool open) {
+  // CLI11's own checks let NaN pass.
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool number =
+      error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+  if (!number || value < min || (open && value == min)) {
+    throw InputError(
+        fmt::format("{}: '{}' is not a number {} {}", option, text, open ? ">" : ">=", min));
+  }
+  return value;
+}
+
+double parseShare(const std::string& text, std::string_view option, bool open) {
+  if (!text.ends_with('%')) return parseNumber(text, option, 0, open);
+  return parseNumber(text.substr(0, text.size() - 1), option, 0, open) / 100;
+}
+
+int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int parseThreadCount(const std::string& text) {
+  constexpr long long kMostThreads = 1024;
+  return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
+}
+
+CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
+                      std::function<void(const std::string&)> set, const std::string& doc,
+                      const std::string& shown) {
+  CLI::Option* option = app.add_option_function<std::string>(name, set, doc)->type_name(type);
+  return shown.empty() ? option : option->default_str(shown);
+}
+
+CLI::Option* addPath(CLI::App& app, const std::string& name, const std::string& type,
+                     std::filesystem::path& target, const std::string& doc) {
+  return app.add_option(name, target, doc)->type_name(type);
+}
+
+CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& type,
+                     std::function<void(const std::vector<std::string>&)> set,
+                     const std::string& doc) {
+  const auto split = [set = std::move(set), name](const std::vector<std::string>& texts) {
+    const std::vector<std::string> parts = splitList(texts);
+    if (parts.empty()) throw InputError(fmt::format("{}: '{}' names nothing", name, texts.front()));
+    set(parts);
+  };
+  return app.add_option_function<std::vector<std::string>>(name, split, doc)
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::string& type,
+                           std::vector<std::string>& target, const std::string& doc) {
+  return app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
+}
+
+std::string leftOut(const BuildPart& part) {
+  return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
+}
+
+void requirePart(const BuildPart& part, std::string_view option) {
+  if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
+}
+
+void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {
+  if (part.included) return;
+  for (CLI::Option* option : options) option->description("");
+}
+
+CLI::Option* addPlugins(CLI::App& app, std::vector<std::string>& plugins, const std::string& more) {
+  return addRepeatable(app, "--plugin", "FILE", plugins,
+                       fmt::format("shared library with more {} (repeatable)", more));
+}
+
+CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
+  const auto set = [&](const std::vector<std::string>& texts) {
+    parameters = parseKeyValues(texts);
+  };
+  return app
+      .add_option_function<std::vector<std::string>>(
+          "--param", set,
+          "sets a parameter of scene or algorithm (see 'broadmark list'; repeatable); "
+          "KEY=A,B,C: a recording or case for each value, and for every combination; "
+          "ALGORITHM:KEY=VALUE: of these algorithms only, named as in --algorithm")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
+  std::vector<CLI::Option*> options;
+  for (const ResultWriter& writer : resultWriters()) {
+    options.push_back(
+        addPath(app, fmt::format("--{}", writer.name), "FILE", outputs[std::string(writer.name)],
+                fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
+  }
+  return options;
+}
+
+CLI::Option* addQuiet(CLI::App& app, bool& quiet) {
+  return app.add_flag("--quiet", quiet, "no progress");
+}
+
+CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
+  const auto set = [&](const std::vector<std::string>& names) {
+    recorders = parseRecorders(names);
+  };
+  return addList(app, "--recorder", "KIND[,KIND...]", set,
+                 fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
+                             "scene, else {})",
+                             fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
+}
+
+std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& options) {
+  CLI::Option* size = addValue(
+      app, "--size", "WxH", [&](const std::string& text) { parseSize(text, options); },
+      "size of the pictures", fmt::format("{}x{}", options.width, options.height));
+  CLI::Option* gl = addNamed(
+      app, "--gl", "SOURCE", options.gl, kGlSources,
+      fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
+  showWith(parts::kRenderer, {size, gl});
+  return {size, gl};
+}
+
+CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
+  return addNamed(app, "--answer", "KIND", answer, kAnswerKinds,
+                  "what algorithms report of a frame: pairs: all; events: those that began and "
+                  "those that ended since the frame before");
+}
+
+CLI::Option* addDevice(CLI::App& app, std::string& device) {
+  CLI::Option* option = app.add_option(
+      "--device", device,
+      "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
+      "first, GPUs before CPUs)");
+  showWith(parts::kOpenCl, {option->type_name("NAME")});
+  return option;
+}
+
+void addHosts(CLI::App& app, HostOptions& hosts) {
+  const auto number = [&app](const char* name, const char* type, auto& target, const char* doc,
+                             const std::string& shown) {
+    return addValue(
+        app, name, type,
+        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
+        doc, shown);
+  };
+  CLI::Option* in_process =
+      app.add_flag("--in-process", hosts.in_process,
+                   "run all cases in this process, for debuggers and profilers, instead of each in "
+                   "a worker process of its own: a crash or a hang then ends everything, and "
+                   "memory is not measured");
+  app.add_flag("--pin", hosts.pin,
+               "bind each thread of a case to a core of its own, the quietest ones for every "
+               "repetition; not if they are more than the cores, or of a device")
+      ->excludes(in_process);
+  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+         "limit on a single call into an algorithm: its process is then ended",
+         fmt::format("{}", hosts.hard_limit_seconds))
+      ->excludes(in_process);
+  number("--memory-limit", "GIB", hosts.memory_limit_gib,
+         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
+      ->excludes(in_process);
+}
+
+std::string readingOption(std::string parameter) {
+  std::ranges::replace(parameter, '_', '-');
+  return fmt::format("--{}", parameter);
+}
+
+std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& options) {
+  std::vector<CLI::Option*> added;
+  options.visitParameters([&](const Parameter& parameter) {
+    const std::string name = readingOption(std::string(parameter.name));
+    const std::string doc(parameter.doc);
+    if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
+      added.push_back(app.add_flag(name, **flag, doc));
+      return;
+    }
+    const auto set = [&options, key = std::string(parameter.name), name](const std::string& text) {
+      try {
+        setParameters(options, {{key, text}});
+      } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: {}", name, error.what()));
+      }
+    };
+    const bool choice = std::holds_alternative<Choice*>(parameter.value);
+    const std::string type = choice ? parameterRange(parameter) : "NUMBER";
+    added.push_back(addValue(app, name, type, set, doc, parameterText(parameter)));
+  });
+  return added;
+}
+
+std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) {
+  std::vector<CLI::Option*> added = {
+      addList(
+          app, "--objects", "N[,N...]",
+          [&](const std::vector<std::string>& texts) {
+            options.objects = parseObjectCounts(texts);
+          },
+          "numbers of bodies, e.g. 1000,8000,32000"),
+      addList(
+          app, "--object-type", "TYPE[,TYPE...]",
+          [&](const std::vector<std::string>& names) { options.object_types = names; },
+          "shapes of the bodies")};
+  for (const SceneShortcut& shortcut : kSceneShortcuts) {
+    const std::string name = fmt::format("--{}", shortcut.parameter);
+    const auto set = [&options, &shortcut](const std::string& text) {
+      options.parameters[shortcut.parameter] = text;
+    };
+    const auto set_list = [set](const std::vector<std::string>& texts) {
+      set(fmt::format("{}", fmt::join(texts, ",")));
+    };
+    added.push_back(shortcut.list ? addList(app, name, shortcut.type, set_list, shortcut.doc)
+                                  : addValue(app, name, shortcut.type, set, shortcut.doc));
+  }
+  return added;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,293 @@
+// The main command's options. Each states once, where it is added, what it cannot be combined with.
+
+#include "command_line/session_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+
+#include "broadmark/results/results.h"
+#include "command_line/option_types.h"
+#include "sources/source.h"
+
+namespace broadmark {
+namespace {
+
+/// What an option cannot be combined with.
+enum Conflict : unsigned {
+  kNone = 0,
+  kCase = 1,       ///< --case: a case of a results file states it already
+  kExport = 2,     ///< --export-case: it writes one recording and nothing else
+  kInspector = 4,  ///< the inspector: only a run without it uses the option
+  kWindow = 8,     ///< a window: only pictures drawn off-screen use the option
+};
+
+Shard parseShard(const std::string& text) {
+  const auto slash = text.find('/');
+  if (slash == std::string::npos) {
+    throw InputError(fmt::format("--shard: '{}' is not of the form I/N, e.g. 0/4", text));
+  }
+  Shard shard;
+  shard.count = static_cast<int>(parseInteger(text.substr(slash + 1), "--shard", 1, 1'000'000));
+  shard.index =
+      static_cast<int>(parseInteger(text.substr(0, slash), "--shard", 0, shard.count - 1));
+  return shard;
+}
+
+/// By size.
+std::vector<int> parseThreads(const std::vector<std::string>& texts) {
+  std::vector<int> threads;
+  for (const std::string& text : texts) threads.push_back(parseThreadCount(text));
+  std::ranges::sort(threads);
+  return threads;
+}
+
+std::vector<Isa> parseIsas(const std::vector<std::string>& names) {
+  std::vector<std::string> known = {"auto"};
+  for (const auto& entry : kIsas.entries) known.emplace_back(entry.name);
+  std::vector<Isa> isas;
+  for (const std::string& name : names) {
+    const auto isa = name == "auto" ? bestIsa() : kIsas.find(name);
+    if (!isa) throw InputError("--isa: " + unknownName("value", name, known));
+    isas.push_back(*isa);
+  }
+  return isas;
+}
+
+}  // namespace
+
+struct SessionParser::Parts {
+  explicit Parts(CLI::App& app_) : app(app_) {
+    addInspector();
+    addCases();
+    addRun();
+    addOutput();
+    addPictures();
+    addScene();
+    addCaseOfResults();
+  }
+
+  void tag(CLI::Option* option, unsigned conflicts) { tagged.emplace_back(option, conflicts); }
+
+  void addInspector();
+  void addCases();
+  void addRun();
+  void addOutput();
+  void addPictures();
+  void addScene();
+  void addCaseOfResults();
+  void requireNoConflict() const;
+
+  CLI::App& app;
+  SessionOptions options;
+  std::vector<std::pair<const CLI::Option*, unsigned>> tagged;
+  std::vector<const CLI::Option*> only_with_auto;
+};
+
+void SessionParser::Parts::addInspector() {
+  app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
+      ->type_name("SOURCE");
+  app.add_flag("--headless", options.headless, "run without a window");
+  CLI::Option* ui = app.add_flag("--ui", options.ui,
+                                 "with --headless: the inspector drawn off-screen (--screenshot)");
+  CLI::Option* script =
+      addPath(app, "--script", "FILE", options.script,
+              "what a user does in the inspector, line by line (see docs/inspector.md)");
+  showWith(parts::kInspector, {ui, script});
+}
+
+void SessionParser::Parts::addCases() {
+  CaseOptions& cases = options.cases;
+  using Texts = std::vector<std::string>;
+  tag(addList(
+          app, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
+          "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
+          "only by name)"),
+      kCase);
+  tag(addPlugins(app, options.plugins), kNone);
+  tag(addList(
+          app, "--threads", "T[,T...]",
+          [&](const Texts& texts) { cases.threads = parseThreads(texts); },
+          "threads of parallel variants (default: all cores)"),
+      kCase);
+  tag(addList(
+          app, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
+          fmt::format("instruction sets of vectorised variants: auto (default), {}",
+                      fmt::join(kIsas.names(), ", "))),
+      kCase);
+  tag(addAnswer(app, cases.answer), kCase);
+  tag(addDevice(app, cases.device), kCase);
+  tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
+          ->type_name("REGEX"),
+      kCase | kInspector);
+  tag(addValue(
+          app, "--shard", "I/N", [&](const std::string& text) { options.shard = parseShard(text); },
+          "run only every N-th case, from the I-th (from 0)", "0/1"),
+      kCase | kInspector);
+  tag(app.add_flag("--list", options.list_only, "print the cases, run nothing"),
+      kExport | kInspector);
+}
+
+void SessionParser::Parts::addRun() {
+  constexpr long long kMostPasses = 1'000'000;
+  RunPolicy& policy = options.policy;
+  RepetitionOptions& repetitions = options.repetitions;
+  const auto set_repetitions = [&](const std::string& text) {
+    repetitions.until_precise = text == "auto";
+    repetitions.most = repetitions.until_precise
+                           ? RepetitionOptions::kMostUntilPrecise
+                           : static_cast<int>(parseInteger(text, "--repetitions", 1, kMostPasses));
+  };
+  tag(addValue(
+          app, "--repetitions", "R|auto", set_repetitions,
+          fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
+                      "is known precisely",
+                      RepetitionOptions::kFewestUntilPrecise, RepetitionOptions::kMostUntilPrecise),
+          fmt::format("{}", repetitions.most)),
+      kInspector);
+  const auto tag_auto = [&](CLI::Option* option) {
+    tag(option, kInspector);
+    only_with_auto.push_back(option);
+  };
+  tag_auto(addValue(
+      app, "--precision", "SHARE",
+      [&](const std::string& text) {
+        repetitions.precision = parseShare(text, "--precision", true);
+      },
+      "of --repetitions auto: width of the mean's 95 % interval over the repetitions", "2%"));
+  tag_auto(addValue(
+      app, "--most-seconds", "S",
+      [&](const std::string& text) {
+        repetitions.most_seconds = parseNumber(text, "--most-seconds", 0, true);
+      },
+      fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
+                  "more than {} times",
+                  RepetitionOptions::kFewestUntilPrecise),
+      fmt::format("{}", repetitions.most_seconds)));
+  tag(addInteger(app, "--order-seed", "S", repetitions.order_seed, 0,
+                 std::numeric_limits<long long>::max(),
+                 "seed of the order in which cases take turns, another for each repetition"),
+      kInspector);
+  tag(addInteger(app, "--warmup", "W", options.warmup, 0, kMostPasses,
+                 "unmeasured repetitions before them"),
+      kInspector);
+  tag(addValue(
+          app, "--time-limit", "SECONDS",
+          [&](const std::string& text) {
+            policy.frame_limit_seconds = parseNumber(text, "--time-limit", 0, true);
+          },
+          "limit on the mean seconds per frame (the paper's cap)",
+          fmt::format("{}", policy.frame_limit_seconds)),
+      kInspector);
+  tag(app.add_flag("--allow-timeout", options.allow_timeout,
+                   "cases that cross a time limit do not make the run fail"),
+      kInspector);
+  tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
+               "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
+      kInspector);
+  addHosts(app, options.hosts);
+  tag(addQuiet(app, options.quiet), kNone);
+}
+
+void SessionParser::Parts::addOutput() {
+  for (const CLI::Option* option : addResultOutputs(app, options.outputs)) {
+    tagged.emplace_back(option, kExport | kInspector);
+  }
+  tag(addPath(app, "--record", "DIR", options.record,
+              "keep the simulated recordings in this directory"),
+      kExport | kInspector);
+  tag(addRecorders(app, options.scene.recorders), kInspector);
+}
+
+void SessionParser::Parts::addPictures() {
+  constexpr long long kMostFrame = std::numeric_limits<std::int32_t>::max();
+  CLI::Option* screenshot =
+      addPath(app, "--screenshot", "FILE", options.screenshot,
+              "draw a frame of each recording off-screen; with several recordings their names "
+              "are added to the file's");
+  tag(screenshot, kExport | kWindow);
+  const auto set_frame = [this](const std::string& text) {
+    options.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
+  };
+  std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
+  if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";
+  CLI::Option* frame = addValue(app, "--frame", "K", set_frame, frame_help);
+  tag(frame, kNone);
+  showWith(parts::kRenderer, {screenshot, frame});
+  for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
+    tagged.emplace_back(option, kWindow);
+  }
+}
+
+void SessionParser::Parts::addScene() {
+  for (CLI::Option* option : addSceneOptions(app, options.scene)) tag(option, kCase);
+  tag(addParameters(app, options.parameters), kCase);
+  for (CLI::Option* option : addReadingOptions(app, options.reading)) tag(option, kCase);
+}
+
+void SessionParser::Parts::addCaseOfResults() {
+  CLI::Option* id = app.add_option("--case", options.case_id,
+                                   "run only this case of the results file that is the source");
+  id->type_name("ID");
+  tag(addPath(app, "--export-case", "FILE", options.export_case,
+              "instead of running it, find the smallest recording on which that case still gives "
+              "a wrong answer, write it, and print the command that shows it")
+          ->needs(id),
+      kInspector);
+}
+
+void SessionParser::Parts::requireNoConflict() const {
+  struct Rule {
+    bool applies;
+    Conflict conflict;
+    const char* why;
+  };
+  const Rule rules[] = {
+      {!options.case_id.empty(), kCase, "cannot be combined with --case, which states it"},
+      {!options.export_case.empty(), kExport, "cannot be combined with --export-case"},
+      {options.ui, kInspector, "only for runs without the inspector: leave out --ui"},
+      {!options.headless, kInspector, "only for runs without the inspector: add --headless"},
+      {!options.headless, kWindow, "only for pictures drawn off-screen: add --headless"}};
+  for (const Rule& rule : rules) {
+    if (!rule.applies) continue;
+    for (const auto& [option, conflicts] : tagged) {
+      if (option->count() == 0 || (conflicts & rule.conflict) == 0) continue;
+      throw InputError(fmt::format("{}: {}", option->get_name(), rule.why));
+    }
+  }
+  if (options.repetitions.until_precise) return;
+  for (const CLI::Option* option : only_with_auto) {
+    if (option->count() == 0) continue;
+    throw InputError(fmt::format("{}: only with --repetitions auto", option->get_name()));
+  }
+}
+
+SessionParser::SessionParser(CLI::App& app) : parts_(std::make_unique<Parts>(app)) {}
+SessionParser::~SessionParser() = default;
+
+const std::vector<std::string>& SessionParser::sources() const { return parts_->options.sources; }
+
+SessionOptions SessionParser::options() const {
+  parts_->requireNoConflict();
+  SessionOptions options = parts_->options;
+  std::erase_if(options.outputs, [](const auto& output) { return output.second.empty(); });
+  if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
+    throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: name one .png",
+                                 options.screenshot.string()));
+  }
+  if (!options.case_id.empty() && options.sources.size() != 1) {
+    throw InputError("--case: the source must be one results file");
+  }
+  if (options.inspector() && options.sources.size() > 1) {
+    throw InputError(fmt::format("'{}': the inspector opens one source", options.sources[1]));
+  }
+  if (options.sources.empty() && !options.inspector()) {
+    throw InputError("no source; expected: " + sourceKindsText());
+  }
+  return options;
+}
+
+}  // namespace broadmark

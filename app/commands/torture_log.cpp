@@ -1,0 +1,177 @@
+#include "commands/torture_log.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/json_fields.h"
+#include "support/table.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+constexpr const char* kSchema = "broadmark-torture/1";
+
+Json toJson(const FoundFault& fault) {
+  return {{"algorithm", fault.algorithm}, {"kind", fault.kind},      {"case", fault.run},
+          {"world", fault.world},         {"text", fault.text},      {"round", fault.round},
+          {"file", fault.file},           {"bodies", fault.bodies},  {"frames", fault.frames},
+          {"minimal", fault.minimal},     {"command", fault.command}};
+}
+
+FoundFault foundFrom(const JsonFields& json) {
+  return {.algorithm = json.text("algorithm"),
+          .kind = json.text("kind"),
+          .run = json.text("case"),
+          .world = json.text("world"),
+          .text = json.text("text"),
+          .round = json.integer<std::uint64_t>("round"),
+          .file = json.text("file"),
+          .bodies = json.integer<std::size_t>("bodies"),
+          .frames = json.integer<std::size_t>("frames"),
+          .minimal = json.boolean("minimal"),
+          .command = json.text("command")};
+}
+
+Json toJson(const TortureKey& key, const TortureCount& count) {
+  return {{"algorithm", key.algorithm}, {"isa", key.isa},
+          {"threads", key.threads},     {"answer", key.answer},
+          {"world", key.world},         {"worlds", count.worlds},
+          {"frames", count.frames},     {"changing", count.changing},
+          {"filtered", count.filtered}};
+}
+
+void addCount(TortureCoverage& coverage, const JsonFields& json) {
+  coverage[{json.text("algorithm"), json.text("isa"), json.integer<int>("threads", 1),
+            json.text("answer"), json.text("world")}] +=
+      {.worlds = json.integer<std::uint64_t>("worlds"),
+       .frames = json.integer<std::uint64_t>("frames"),
+       .changing = json.integer<std::uint64_t>("changing"),
+       .filtered = json.integer<std::uint64_t>("filtered")};
+}
+
+/// What was covered of one algorithm.
+struct Covered {
+  TortureCount count;
+  std::uint64_t events = 0;  ///< frames
+  std::set<std::string> worlds;
+  std::set<std::string> isas;
+  std::set<int> threads;
+};
+
+std::map<std::string, Covered> coveredOf(const TortureCoverage& coverage) {
+  std::map<std::string, Covered> rows;
+  for (const auto& [key, count] : coverage) {
+    Covered& row = rows[key.algorithm];
+    row.count += count;
+    if (key.answer == kAnswerKinds.nameOf(AnswerKind::events)) row.events += count.frames;
+    row.worlds.insert(key.world);
+    row.isas.insert(key.isa);
+    row.threads.insert(key.threads);
+  }
+  return rows;
+}
+
+std::string share(std::uint64_t some, std::uint64_t all) {
+  if (all == 0) return "–";
+  return fmt::format("{:.0f} %", 100 * static_cast<double>(some) / static_cast<double>(all));
+}
+
+std::string coverageTable(const TortureLog& log) {
+  std::vector<std::vector<std::string>> table = {{"algorithm", "worlds", "frames", "kinds",
+                                                  "events", "come and go", "filtered", "threads",
+                                                  "instruction sets"}};
+  for (const auto& [algorithm, row] : coveredOf(log.coverage)) {
+    const TortureCount& count = row.count;
+    table.push_back({algorithm, fmt::format("{}", count.worlds), fmt::format("{}", count.frames),
+                     fmt::format("{} of {}", row.worlds.size(), tortureWorlds().size()),
+                     share(row.events, count.frames), share(count.changing, count.frames),
+                     share(count.filtered, count.frames),
+                     fmt::format("{}", fmt::join(row.threads, ", ")),
+                     fmt::format("{}", fmt::join(row.isas, ", "))});
+  }
+  return alignColumns(table, {false, true, true, true, true, true, true, false, false});
+}
+
+}  // namespace
+
+std::uint64_t TortureLog::frames() const {
+  std::uint64_t sum = 0;
+  for (const auto& [key, count] : coverage) sum += count.frames;
+  return sum;
+}
+
+TortureLog parseTortureLog(std::string_view text, const std::string& name) {
+  const Json json = parseJson(text, name);
+  const JsonFields fields(json, name);
+  if (fields.text("schema") != kSchema) {
+    throw InputError(fmt::format("{}: no log of a torture (\"{}\")", name, kSchema));
+  }
+  TortureLog log;
+  log.seed = fields.integer<std::uint64_t>("seed");
+  log.next = fields.integer<std::uint64_t>("next");
+  log.seconds = fields.number("seconds");
+  log.subjects = fields.texts("subjects");
+  log.builds = fields.texts("builds");
+  for (const Json& round : fields.array("left")) {
+    log.left.push_back(JsonFields::integerOf<std::uint64_t>(round, fields.path("left")));
+  }
+  fields.eachObject("found",
+                    [&](const JsonFields& found) { log.found.push_back(foundFrom(found)); });
+  fields.eachObject("times", [&](const JsonFields& times) {
+    log.times[{times.text("algorithm"), times.text("kind")}] =
+        times.integer<std::uint64_t>("times");
+  });
+  fields.eachObject("coverage", [&](const JsonFields& count) { addCount(log.coverage, count); });
+  return log;
+}
+
+std::string tortureLogText(const TortureLog& log) {
+  Json json = {{"schema", kSchema},        {"seed", log.seed},       {"subjects", log.subjects},
+               {"builds", log.builds},     {"next", log.next},       {"left", log.left},
+               {"seconds", log.seconds},   {"found", Json::array()}, {"times", Json::array()},
+               {"coverage", Json::array()}};
+  for (const FoundFault& fault : log.found) json["found"].push_back(toJson(fault));
+  for (const auto& [fault, times] : log.times) {
+    json["times"].push_back({{"algorithm", fault.first}, {"kind", fault.second}, {"times", times}});
+  }
+  for (const auto& [key, count] : log.coverage) json["coverage"].push_back(toJson(key, count));
+  return formatJson(json);
+}
+
+TortureLog readTortureLog(const std::filesystem::path& file) {
+  return parseTortureLog(readTextFile(file), file.string());
+}
+
+void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
+  writeTextFile(file, tortureLogText(log));
+}
+
+std::string formatFoundFault(const FoundFault& fault) {
+  return fmt::format("{}: {}: {} ({}{})", fault.run, fault.kind, fault.text,
+                     extentText(fault.bodies, fault.frames),
+                     fault.minimal ? "" : ", perhaps not the smallest");
+}
+
+std::string formatTortureLog(const TortureLog& log) {
+  std::string text = coverageTable(log);
+  const std::uint64_t frames = log.frames();
+  text +=
+      fmt::format("seed {}: {} of {} in {}: {:.0f} a second\n", log.seed, counted(frames, "frame"),
+                  counted(log.next - log.left.size(), "round"), waitingTime(log.seconds),
+                  static_cast<double>(frames) / std::max(log.seconds, 1e-9));
+  if (log.times.empty()) return text + "nothing went wrong\n";
+  for (const auto& [fault, times] : log.times) {
+    text += fmt::format("{}: {}: {}\n", fault.first, fault.second, counted(times, "time"));
+  }
+  for (const FoundFault& fault : log.found) {
+    text += fmt::format("{}\n  {}\n", formatFoundFault(fault), fault.command);
+  }
+  return text;
+}
+
+}  // namespace broadmark

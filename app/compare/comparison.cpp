@@ -1,0 +1,314 @@
+// Matching the cases of two runs, and judging each pair by the interval of its ratio.
+
+#include "compare/comparison.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "broadmark/analysis/duel.h"
+#include "broadmark/error.h"
+#include "broadmark/harness/runner.h"
+#include "broadmark/names.h"
+#include "support/words.h"
+
+namespace broadmark {
+
+#define COMPARISON_WRITER(name) \
+  namespace comparisons::name { \
+  ComparisonWriter writer();    \
+  }
+#include "comparison_writers.inc"
+#undef COMPARISON_WRITER
+
+namespace {
+
+/// A case of one run.
+struct Candidate {
+  const Results* results;
+  const CaseResult* result;
+
+  [[nodiscard]] const Environment& environment() const {
+    return results->environments[result->environment];
+  }
+  [[nodiscard]] CaseInRun inRun() const {
+    return {.result = result, .pace = paceOf(*results, result->recording.hash)};
+  }
+};
+
+/// Which cases belong together: the recording's hash, what is left of the case's name, and which of
+/// those that are alike in both.
+using CaseKey = std::tuple<std::string, std::string, int>;
+
+bool isThreads(const std::string& part) {
+  return part.size() > 1 && part[0] == 't' &&
+         std::all_of(part.begin() + 1, part.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Whether a part of a case's name, but the first, states this.
+bool states(const std::string& part, const std::string& what) {
+  if (what == "threads") return isThreads(part);
+  if (what == "isa") return kIsas.find(part).has_value();
+  return part.starts_with(what + '=');
+}
+
+/// The case's name without what is compared.
+std::string nameWithout(const CaseResult& result, const std::string& by) {
+  if (by == "algorithm") return {};
+  std::string name = caseNameOf(result);
+  if (by.empty()) return name;
+  std::string rest;
+  for (std::size_t from = 0; from <= name.size();) {
+    const std::size_t to = std::min(name.find('/', from), name.size());
+    const std::string part = name.substr(from, to - from);
+    if (from == 0 || !states(part, by)) rest += '/' + part;
+    from = to + 1;
+  }
+  return rest;
+}
+
+/// The cases of one run by what they are compared as, in their order.
+std::vector<std::pair<CaseKey, Candidate>> keysOf(const Results& results, const std::string& by) {
+  std::vector<std::pair<CaseKey, Candidate>> keys;
+  std::map<std::pair<std::string, std::string>, int> seen;
+  for (const CaseResult& result : results.cases) {
+    const std::string name = nameWithout(result, by);
+    // With --by several are compared with the first; else each with its like.
+    const int which = by.empty() ? seen[{result.recording.hash, name}]++ : 0;
+    keys.push_back({{result.recording.hash, name, which}, {&results, &result}});
+  }
+  return keys;
+}
+
+void requireKnown(const std::string& by, std::span<const NamedResults> runs) {
+  std::vector<std::string> known = {"algorithm", "isa", "threads"};
+  for (const NamedResults& run : runs) {
+    for (const CaseResult& result : run.results.cases) {
+      for (const auto& [name, value] : result.parameters) known.push_back(name);
+    }
+  }
+  std::ranges::sort(known);
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  if (std::ranges::find(known, by) == known.end()) {
+    throw InputError("--by: " + unknownName("name", by, known));
+  }
+}
+
+std::vector<ConditionDifference> differencesOf(const Candidate& before, const Candidate& after) {
+  std::vector<ConditionDifference> differences;
+  const auto compare = [&](std::string_view name, const auto& a, const auto& b, bool refused) {
+    if (a != b) differences.push_back({fmt::format("{}: {} -> {}", name, a, b), refused});
+  };
+  const Environment& a = before.environment();
+  const Environment& b = after.environment();
+  compare("processor", a.cpu, b.cpu, true);
+  compare("build type", a.build_type, b.build_type, true);
+  compare("compiler", a.compiler, b.compiler, false);
+  compare("compiler's options", a.compiler_flags, b.compiler_flags, false);
+  compare("governor", a.governor, b.governor, false);
+  const Conditions& c = before.result->conditions;
+  const Conditions& d = after.result->conditions;
+  compare("check", kCheckModes.nameOf(c.check), kCheckModes.nameOf(d.check), false);
+  compare("in process", c.in_process, d.in_process, false);
+  compare("plug-in's options", c.plugin.flags, d.plugin.flags, false);
+  return differences;
+}
+
+Verdict verdictOn(const Interval& ratio, const ComparisonOptions& options) {
+  switch (standingOf(ratio, options.margin)) {
+    case Standing::same:
+      return Verdict::same;
+    case Standing::faster:
+      return Verdict::faster;
+    case Standing::slower:
+      return ratio.low > 1 + options.fail_above ? Verdict::regressed : Verdict::slower;
+    case Standing::undecided:
+      break;
+  }
+  return Verdict::undecided;
+}
+
+/// `before` has one case or, of several baselines, that case of each.
+CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
+                           const ComparisonOptions& options) {
+  const CaseResult& a = *before.front().result;
+  const CaseResult& b = *after.result;
+  CaseComparison compared{.id = b.id,
+                          .baseline = a.id == b.id ? "" : a.id,
+                          .conditions = differencesOf(before.front(), after),
+                          .status_before = a.status,
+                          .status_after = b.status};
+  const auto refused = [](const ConditionDifference& one) { return one.refused; };
+  if (a.status != b.status) {
+    compared.verdict = a.status == Status::ok ? Verdict::regressed : Verdict::other_status;
+  } else if (b.status != Status::ok) {
+    compared.verdict = Verdict::not_ok;
+  } else if (!options.any_conditions && std::ranges::any_of(compared.conditions, refused)) {
+    compared.verdict = Verdict::other_conditions;
+  } else {
+    std::vector<CaseInRun> runs;
+    for (const Candidate& one : before) {
+      if (one.result->status == Status::ok) runs.push_back(one.inRun());
+    }
+    compared.ratio = ratioOfRuns(runs, after.inRun());
+    compared.verdict =
+        compared.ratio ? verdictOn(compared.ratio->ratio.ci95, options) : Verdict::not_timed;
+  }
+  return compared;
+}
+
+/// What is to be known of a run as a whole: that it is partial, and what may have disturbed it.
+void noteRun(const NamedResults& run, std::vector<std::string>& notes) {
+  const auto note = [&](const std::string& text) { notes.push_back(run.name + ": " + text); };
+  if (!run.results.complete) note("partial: the run did not come to its end");
+  std::set<std::string> warnings;
+  for (const CaseResult& result : run.results.cases) {
+    if (!result.isComplete()) {
+      note(fmt::format("{}: {} of {} repetitions", result.id, result.repetitions.size(),
+                       result.conditions.repetitions));
+    }
+    for (const std::string& warning : result.conditions.warnings) {
+      if (warnings.insert(warning).second) note(warning);
+    }
+  }
+}
+
+/// Finds for each case of B what it is compared with.
+class Matching {
+ public:
+  Matching(std::span<const NamedResults> before, const ComparisonOptions& options)
+      : options_(options) {
+    for (const NamedResults& run : before) {
+      std::set<CaseKey> first_ones;  // of this run
+      for (const auto& [key, candidate] : keysOf(run.results, options.by)) {
+        if (!first_ones.insert(key).second) continue;
+        if (!before_.contains(key)) order_.push_back(key);
+        before_[key].push_back(candidate);
+        if (options.by.empty()) by_id_[candidate.result->id] = key;
+      }
+    }
+  }
+
+  void take(const CaseKey& key, const Candidate& after, std::vector<CaseComparison>& cases) {
+    if (const auto found = before_.find(key); found != before_.end()) {
+      met_.insert(key);
+      const CaseResult& first = *found->second.front().result;
+      if (options_.by.empty() || first.id != after.result->id) {
+        cases.push_back(compareCase(found->second, after, options_));
+      }
+      return;
+    }
+    const auto namesake = by_id_.find(after.result->id);
+    const bool other =
+        namesake != by_id_.end() && std::get<0>(namesake->second) != after.result->recording.hash;
+    if (other) met_.insert(namesake->second);
+    cases.push_back(
+        {.id = after.result->id, .verdict = other ? Verdict::other_recording : Verdict::added});
+  }
+
+  void addMissing(std::vector<CaseComparison>& cases) const {
+    for (const CaseKey& key : order_) {
+      if (met_.contains(key)) continue;
+      cases.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
+    }
+  }
+
+ private:
+  const ComparisonOptions& options_;
+  std::map<CaseKey, std::vector<Candidate>> before_;
+  std::map<std::string, CaseKey> by_id_;
+  std::vector<CaseKey> order_;
+  std::set<CaseKey> met_;
+};
+
+/// "+5.3 %"
+std::string slowdownText(const Estimate& ratio) {
+  return fmt::format("{:+.1f} %", 100 * (ratio.value - 1));
+}
+
+}  // namespace
+
+std::size_t Comparison::count(Verdict verdict) const {
+  return static_cast<std::size_t>(std::ranges::count(cases, verdict, &CaseComparison::verdict));
+}
+
+bool Comparison::fails(const CaseComparison& compared) const {
+  return compared.verdict == Verdict::regressed ||
+         (compared.verdict == Verdict::missing && !options.allow_missing);
+}
+
+bool Comparison::comparable() const {
+  return std::ranges::any_of(cases, [](const CaseComparison& compared) {
+    return compared.verdict != Verdict::other_recording &&
+           compared.verdict != Verdict::other_conditions && compared.verdict != Verdict::missing &&
+           compared.verdict != Verdict::added;
+  });
+}
+
+std::optional<double> Comparison::drift() const {
+  std::optional<double> most;
+  for (const CaseComparison& compared : cases) {
+    if (!compared.ratio || !compared.ratio->drift) continue;
+    const double drift = *compared.ratio->drift;
+    if (!most || std::abs(drift) > std::abs(*most)) most = drift;
+  }
+  return most;
+}
+
+Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
+                          const ComparisonOptions& options) {
+  if (!options.by.empty()) requireKnown(options.by, {&after, 1});
+  Comparison comparison{.options = options, .cases = {}, .notes = {}};
+  for (const NamedResults& run : before) noteRun(run, comparison.notes);
+  noteRun(after, comparison.notes);
+  Matching matching(before, comparison.options);
+  for (const auto& [key, candidate] : keysOf(after.results, options.by)) {
+    matching.take(key, candidate, comparison.cases);
+  }
+  matching.addMissing(comparison.cases);
+  return comparison;
+}
+
+std::string verdictText(const CaseComparison& compared) {
+  std::string verdict(kVerdicts.nameOf(compared.verdict));
+  if (compared.status_before != compared.status_after) {
+    return fmt::format("{} -> {} {}", statusName(compared.status_before),
+                       statusName(compared.status_after), verdict);
+  }
+  if (compared.verdict == Verdict::not_ok) {
+    return fmt::format("{} in both", statusName(compared.status_after));
+  }
+  if (compared.verdict == Verdict::faster || compared.verdict == Verdict::slower ||
+      (compared.verdict == Verdict::regressed && compared.ratio)) {
+    return fmt::format("{} {}", verdict, slowdownText(compared.ratio->ratio));
+  }
+  return verdict;
+}
+
+std::string summaryText(const Comparison& comparison) {
+  std::vector<std::string> parts;
+  for (const auto& [verdict, name] : kVerdicts.entries) {
+    const std::size_t count = comparison.count(verdict);
+    if (count > 0) parts.push_back(fmt::format("{} {}", count, name));
+  }
+  std::string text =
+      fmt::format("{}: {}", counted(comparison.cases.size(), "case"), fmt::join(parts, ", "));
+  if (const auto drift = comparison.drift()) {
+    text += fmt::format("; the machine drifted by up to {:+.1f} %", 100 * *drift);
+  }
+  return text;
+}
+
+std::vector<ComparisonWriter> comparisonWriters() {
+  return {
+#define COMPARISON_WRITER(name) comparisons::name::writer(),
+#include "comparison_writers.inc"
+#undef COMPARISON_WRITER
+  };
+}
+
+}  // namespace broadmark

@@ -1,0 +1,113 @@
+// Two runs compared case by case.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/analysis/run_ratio.h"
+#include "broadmark/results/results.h"
+
+namespace broadmark {
+
+/// What became of a case from A to B.
+enum class Verdict {
+  same,          ///< the whole interval is within the margin
+  faster,        ///< the whole interval is below 1
+  slower,        ///< the whole interval is above 1, but not above what is tolerated
+  undecided,     ///< the interval is too wide to tell
+  regressed,     ///< slower than is tolerated, or no longer ok
+  other_status,  ///< another status, but it was not ok before
+  not_ok,        ///< the same status in both, not ok: its times say nothing
+  not_timed,
+  other_conditions,  ///< refused: times under such conditions are not to be compared
+  other_recording,
+  missing,  ///< only in A
+  added,    ///< only in B
+};
+inline constexpr NameTable kVerdicts{{NamedValue{Verdict::same, "same"},
+                                      {Verdict::faster, "faster"},
+                                      {Verdict::slower, "slower"},
+                                      {Verdict::undecided, "undecided"},
+                                      {Verdict::regressed, "REGRESSED"},
+                                      {Verdict::other_status, "other status"},
+                                      {Verdict::not_ok, "not ok"},
+                                      {Verdict::not_timed, "not timed"},
+                                      {Verdict::other_conditions, "other conditions"},
+                                      {Verdict::other_recording, "other recording"},
+                                      {Verdict::missing, "missing"},
+                                      {Verdict::added, "added"}}};
+
+/// Something that times depend on, and that is not the same for both.
+struct ConditionDifference {
+  std::string what;  ///< "build type: Release -> Debug"
+  bool refused = false;
+};
+
+/// A case of either run.
+struct CaseComparison {
+  std::string id;
+  std::string baseline;  ///< the id of the case in A; "": the same, or none
+  Verdict verdict = Verdict::same;
+  std::vector<ConditionDifference> conditions;
+  // Of a case on the same recording in both runs.
+  Status status_before = Status::ok;
+  Status status_after = Status::ok;
+  std::optional<RunRatio> ratio = {};  ///< of a case that is ok in both
+};
+
+struct ComparisonOptions {
+  double margin = 0.02;      ///< differences within it do not matter
+  double fail_above = 0.05;  ///< a slow-down by more than this share is a regression
+  /// "": each case is compared with itself. Else with the first case of A that differs at most in
+  /// this: "algorithm", "threads", "isa" or a parameter.
+  std::string by;
+  bool any_conditions = false;  ///< compares what is refused otherwise
+  bool allow_missing = false;   ///< cases that are only in A are no failure
+};
+
+struct Comparison {
+  ComparisonOptions options;
+  /// Those of B in their order, then those only in A.
+  std::vector<CaseComparison> cases;
+  std::vector<std::string> notes;  ///< on the runs as a whole
+
+  [[nodiscard]] std::size_t count(Verdict verdict) const;
+  /// Whether the case speaks against B.
+  [[nodiscard]] bool fails(const CaseComparison& compared) const;
+  /// Whether any case ran on the same recording in both runs.
+  [[nodiscard]] bool comparable() const;
+  /// The largest drift of any case, as RunRatio::drift.
+  [[nodiscard]] std::optional<double> drift() const;
+};
+
+/// One result file, or several that are judged together.
+struct NamedResults {
+  std::string name;
+  Results results;
+};
+
+/// Compares the cases on recordings of the same hash and of the same name; of several with the same
+/// name the k-th with the k-th. Throws InputError for an `options.by` that no case has.
+Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
+                          const ComparisonOptions& options);
+
+/// "ok -> timeout", "1.5 % slower": a verdict in words.
+std::string verdictText(const CaseComparison&);
+/// "12 cases: 10 same, 1 faster, 1 REGRESSED; the machine was up to 2 % slower"
+std::string summaryText(const Comparison&);
+
+/// One way to write a comparison: `broadmark::comparisons::NAME::writer()` for a NAME in the list
+/// in CMakeLists.txt.
+struct ComparisonWriter {
+  std::string_view name;  ///< of the command line option, without dashes: "junit"
+  std::string_view doc;
+  std::string (*format)(const Comparison&);
+};
+std::vector<ComparisonWriter> comparisonWriters();
+/// As a table for people.
+std::string formatComparison(const Comparison&);
+
+}  // namespace broadmark

@@ -1,0 +1,133 @@
+#include "compare/duel_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "broadmark/json_fields.h"
+#include "support/table.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+/// "5.3 % slower", "1.8 times as fast".
+std::string changeText(double ratio) {
+  if (ratio >= 2) return fmt::format("{:.2f} times as slow", ratio);
+  if (ratio <= 0.5) return fmt::format("{:.2f} times as fast", 1 / ratio);
+  return fmt::format("{:.1f} % {}", 100 * std::abs(ratio - 1), ratio > 1 ? "slower" : "faster");
+}
+
+std::string table(const DuelResult& result) {
+  std::vector<std::vector<std::string>> rows = {
+      {"", "variant", "median", "least", "ratio to the first named", "95 % interval"}};
+  for (const DuelPlace& place : result.places) {
+    const DuelResult::Side& side = result.sides[place.side];
+    const bool ties = std::ranges::count(result.places, place.place, &DuelPlace::place) > 1;
+    const bool first = place.side == 0;
+    rows.push_back(
+        {fmt::format("{}{}.", ties ? "=" : "", place.place), side.name,
+         durationText(quantile(side.seconds, 0.5)), durationText(quantile(side.seconds, 0)),
+         first ? "1" : fmt::format("{:.4f}", place.ratio.value),
+         first ? "" : fmt::format("{:.4f}…{:.4f}", place.ratio.ci95.low, place.ratio.ci95.high)});
+  }
+  return alignColumns(rows, {true, false, true, true, true, true});
+}
+
+/// Of how many rounds had which ratio, in a few lines.
+std::string histogram(const std::vector<double>& ratios) {
+  constexpr std::size_t kLines = 9;
+  constexpr std::size_t kWidest = 40;
+  const Histogram histogram = histogramOf(ratios, kLines);
+  std::string text;
+  for (std::size_t line = 0; line < histogram.counts.size(); ++line) {
+    const std::size_t most = *std::ranges::max_element(histogram.counts);
+    text += fmt::format("{:>8.3f} ", histogram.begin(line));
+    for (std::size_t i = 0; i < histogram.counts[line] * kWidest / most; ++i) text += "█";
+    text += fmt::format(" {}\n", histogram.counts[line]);
+  }
+  return text;
+}
+
+std::string verdictOnTwo(const DuelResult& result) {
+  const Estimate& ratio = std::ranges::find(result.places, 1U, &DuelPlace::side)->ratio;
+  const std::string& a = result.sides[0].name;
+  const std::string& b = result.sides[1].name;
+  switch (standingOf(ratio.ci95, result.margin)) {
+    case Standing::same:
+      return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * result.margin);
+    case Standing::undecided:
+      return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
+    case Standing::faster:
+    case Standing::slower:
+      break;
+  }
+  return fmt::format("{} is {} than {}", b, changeText(ratio.value), a);
+}
+
+std::string failures(const DuelResult& result) {
+  std::string text;
+  for (const DuelResult::Side& side : result.sides) {
+    if (side.status == Status::ok) continue;
+    text += fmt::format("{}: {}: {}\n", side.name, statusName(side.status), side.reason);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string verdictOf(const DuelResult& result) {
+  if (result.sides.size() == 2) return verdictOnTwo(result);
+  std::vector<std::string> best;
+  for (const DuelPlace& place : result.places) {
+    if (place.place == 1) best.push_back(result.sides[place.side].name);
+  }
+  return best.size() == 1 ? fmt::format("{} is the fastest", best.front())
+                          : fmt::format("{} are not told apart at the top", fmt::join(best, ", "));
+}
+
+std::string formatDuel(const DuelResult& result, const SceneInfo& scene) {
+  std::string text =
+      fmt::format("{} {} N{}: {} in {}{}\n", scene.name, scene.object_type, scene.objects,
+                  counted(result.rounds(), "round"), waitingTime(result.seconds),
+                  result.decided || !result.ok() ? "" : ", until time was up");
+  if (!result.ok()) return text + failures(result);
+  text += table(result);
+  if (result.sides.size() == 2) {
+    text += fmt::format("rounds by ratio {} / {}:\n{}", result.sides[1].name, result.sides[0].name,
+                        histogram(result.ratios(1, 0)));
+  }
+  return text + verdictOf(result);
+}
+
+std::string duelJson(const DuelResult& result, const RecordingReference& recording) {
+  const SceneInfo& scene = recording.scene;
+  Json json = {{"schema", "broadmark-duel/1"},
+               {"recording",
+                {{"name", scene.name},
+                 {"object_type", scene.object_type},
+                 {"objects", scene.objects},
+                 {"frames", scene.frames},
+                 {"hash", recording.hash}}},
+               {"margin", result.margin},
+               {"seconds", result.seconds},
+               {"decided", result.decided}};
+  for (const DuelResult::Side& side : result.sides) {
+    json["sides"].push_back({{"name", side.name},
+                             {"status", statusName(side.status)},
+                             {"reason", side.reason},
+                             {"seconds", side.seconds}});
+  }
+  for (const DuelPlace& place : result.places) {
+    json["ranking"].push_back({{"side", place.side},
+                               {"name", result.sides[place.side].name},
+                               {"place", place.place},
+                               {"ratio", place.ratio.value},
+                               {"ci95", {place.ratio.ci95.low, place.ratio.ci95.high}}});
+  }
+  return formatJson(json);
+}
+
+}  // namespace broadmark

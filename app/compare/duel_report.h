@@ -1,0 +1,20 @@
+// What a duel has found, for people and for programs.
+#pragma once
+
+#include <string>
+
+#include "broadmark/analysis/duel.h"
+#include "broadmark/results/results.h"
+
+namespace broadmark {
+
+/// Times, ranking, intervals, and, of two sides, a histogram of the ratios.
+std::string formatDuel(const DuelResult&, const SceneInfo&);
+
+/// Who is the fastest, in one line. Only of a duel that is ok(), with a round.
+std::string verdictOf(const DuelResult&);
+
+/// All times and ratios as JSON (schema "broadmark-duel/1").
+std::string duelJson(const DuelResult&, const RecordingReference&);
+
+}  // namespace broadmark

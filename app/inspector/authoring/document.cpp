@@ -1,0 +1,117 @@
+#include "inspector/authoring/document.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "broadmark/files.h"
+#include "support/words.h"
+
+namespace broadmark {
+
+namespace fs = std::filesystem;
+
+void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
+  desk.start(std::move(scene), std::move(path), unsaved);
+  scene_ = 0;
+  show();
+  notices_.bringUp("Author");
+}
+
+void Document::startFromFrame() {
+  if (!playback_.footage() || atRest()) return;
+  // What is looked at is opened anew and goes on to that frame: then its bodies are known wholly.
+  FrameToTake wanted{.former = playback_.footage(),
+                     .frame = playback_.frame(),
+                     .shown = {},
+                     .scene = std::make_shared<scenes::AuthoredScene>()};
+  playback_.show({.open =
+                      [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
+                        *scene = sceneFromFootage(*former, frame);
+                        return stillOf(*scene);
+                      },
+                  .source = FootageSource::authored,
+                  .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
+  wanted.shown = playback_.footage();
+  to_take_ = std::move(wanted);
+}
+
+void Document::advance(const RunProgress& progress) {
+  if (!to_take_ || to_take_->shown != progress.footage) return;
+  const FrameToTake wanted = *std::exchange(to_take_, {});
+  if (progress.failure.empty()) {
+    start(std::move(*wanted.scene), {}, true);
+  } else {
+    playback_.showAgain(wanted.former, wanted.frame);
+  }
+}
+
+void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
+  const std::uint64_t before = desk.editor.revision();
+  notices_.attempt([&] { change(desk.editor); });
+  if (desk.editor.revision() != before || !shown()) {
+    show();
+  } else {
+    selection_.follow(desk.editor.selection());
+  }
+}
+
+void Document::add(const std::function<scenes::Stroke()>& painted) {
+  std::optional<std::size_t> added;
+  std::size_t left_out = 0;
+  edit([&](scenes::SceneEditor& editor) {
+    scenes::Stroke stroke = painted();
+    left_out = stroke.left_out;
+    const std::size_t count = stroke.bodies.size();
+    editor.add(std::move(stroke.bodies));
+    added = count;
+  });
+  if (added && left_out == 0) {
+    notices_.say(fmt::format("{} added", counted(*added, "body", "bodies")));
+  } else if (added) {
+    notices_.say(fmt::format("no room for {}", counted(left_out, "body", "bodies")),
+                 Message::Kind::warning);
+  }
+}
+
+void Document::showAs(FootageOpener open, bool moves) {
+  // Another world is looked at from anew.
+  const Aabb& world = desk.editor.scene().world;
+  if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
+  world_ = world;
+  playback_.pause();
+  playback_.show({.open = std::move(open),
+                  .source = FootageSource::authored,
+                  .title = desk.title() + (moves ? ", simulated" : ", at its start"),
+                  .scene = scene_});
+  footage_ = playback_.footage();
+  moves_ = moves;
+  selection_.follow(desk.editor.selection());
+}
+
+void Document::show() { showAs(desk.still(), false); }
+
+void Document::simulate() { showAs(desk.live(), true); }
+
+bool Document::save(const fs::path& path) {
+  return notices_.attempt([&] {
+    desk.save(path);
+    notices_.say(fmt::format("saved: {}", desk.path().string()));
+    on_save(desk.path());
+  });
+}
+
+void Document::bake(fs::path path) {
+  if (!path.has_extension()) path += recordingExtension(desk.simulation()->scene());
+  notices_.attempt([&] { bake_.start(desk.simulation(), std::move(path)); });
+}
+
+void Document::leave(std::function<void()> then) {
+  if (desk.isModified()) {
+    leaving = std::move(then);
+  } else {
+    then();
+  }
+}
+
+}  // namespace broadmark

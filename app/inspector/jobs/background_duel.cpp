@@ -1,0 +1,50 @@
+#include "inspector/jobs/background_duel.h"
+
+#include <utility>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+/// What is known so far is copied no more often than it is looked at.
+constexpr double kBetweenReports = 0.2;
+
+}  // namespace
+
+void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<IndexedFrames> frames,
+                           double most_seconds, const HostMaker& make_host) {
+  if (cases.size() < 2) throw InputError("duel: one algorithm alone: add another one");
+  if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
+  Report first;
+  first.most_seconds = most_seconds;
+  first.bodies = frames->scene().objects;
+  std::vector<DuelSide> sides;
+  for (const Case& run : cases) {
+    sides.push_back({caseName(run), run, make_host});
+    first.result.sides.push_back({.name = sides.back().name});
+  }
+  task_.begin(std::move(first),
+              [this, sides = std::move(sides), frames = std::move(frames), most_seconds] {
+                double reported = 0;
+                DuelResult result = runDuel(sides, *frames,
+                                            {.most_seconds = most_seconds,
+                                             .progress =
+                                                 [&](const DuelResult& so_far, double seconds) {
+                                                   if (seconds < reported + kBetweenReports) return;
+                                                   reported = seconds;
+                                                   task_.update([&](Report& report) {
+                                                     report.result = so_far;
+                                                     report.seconds = seconds;
+                                                   });
+                                                 },
+                                             .cancelled = [this] { return task_.cancelled(); }});
+                task_.update([&](Report& report) {
+                  report.seconds = result.seconds;
+                  report.result = std::move(result);
+                });
+                return true;
+              });
+}
+
+}  // namespace broadmark

@@ -1,0 +1,81 @@
+#include "inspector/jobs/background_report.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <utility>
+#include <vector>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "support/child_program.h"
+#include "support/output.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Debian's, whose packages ours needs, before any other.
+constexpr const char* kDebiansPython = "/usr/bin/python3";
+
+bool holdsPackage(const fs::path& folder) { return fs::exists(folder / "broadmark/__main__.py"); }
+
+std::vector<std::pair<std::string, std::string>> variables(const fs::path& program) {
+  std::vector<std::pair<std::string, std::string>> variables = {
+      {"BROADMARK", program.string()},
+      {"PYTHONSAFEPATH", "1"}};  // nothing is imported from the current folder
+  const fs::path folder = packageFolder(program);
+  if (folder.empty()) return variables;
+  const char* const others = std::getenv("PYTHONPATH");
+  variables.emplace_back("PYTHONPATH",
+                         folder.string() + (others == nullptr ? "" : fmt::format(":{}", others)));
+  return variables;
+}
+
+/// Why there is no page, of what was printed.
+InputError refusal(const ProgramEnd& end) {
+  std::string last = end.printed;
+  while (!last.empty() && last.back() == '\n') last.pop_back();
+  last.erase(0, last.rfind('\n') + 1);
+  if (last.find("No module named broadmark") != last.npos) {
+    last =
+        "the Python package of Broadmark is not there: install it, or build with "
+        "BROADMARK_PYTHON=ON";
+  }
+  return InputError(fmt::format("no report page (status {}): {}", end.status, last));
+}
+
+}  // namespace
+
+fs::path packageFolder(const fs::path& program) {
+  for (fs::path above = program.parent_path(); above != above.root_path();
+       above = above.parent_path()) {
+    if (holdsPackage(above / "python")) return above / "python";
+    std::error_code none;
+    for (const fs::directory_entry& version : fs::directory_iterator(above / "lib", none)) {
+      fs::path packages = version.path() / "dist-packages";
+      if (globMatches("python3*", version.path().filename().string()) && holdsPackage(packages)) {
+        return packages;
+      }
+    }
+  }
+  return {};
+}
+
+void BackgroundReport::start(const fs::path& results, const fs::path& page) {
+  requireOutput(page);
+  Report first;
+  first.page = page;
+  task_.begin(std::move(first), [this, results, page] {
+    const bool debian = fs::exists(kDebiansPython);
+    const ProgramEnd end = runProgram(
+        {debian ? kDebiansPython : "python3", "-m", "broadmark", "report",
+         fs::absolute(results).string(), "-o", fs::absolute(page).string()},
+        variables(fs::read_symlink("/proc/self/exe")), [this] { return task_.cancelled(); });
+    if (end.status != 0) throw refusal(end);
+    return true;
+  });
+}
+
+}  // namespace broadmark

@@ -1,0 +1,176 @@
+#include "inspector/panels/bake_form.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <thread>
+
+#include "broadmark/error.h"
+#include "inspector/panels/batch_parts.h"
+#include "inspector/ui/text_lists.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+using Outcome = BackgroundBake::Outcome;
+namespace fs = std::filesystem;
+
+/// The choices of a parameter of built-in scenes.
+std::vector<std::string> optionsOf(std::string_view parameter) {
+  std::vector<std::string> options;
+  makeSimulation("freefall")->visitParameters([&](const Parameter& p) {
+    if (Choice* const* choice = std::get_if<Choice*>(&p.value); choice && p.name == parameter) {
+      options = (*choice)->options;
+    }
+  });
+  return options;
+}
+
+/// A checkbox for each of `all`; the marked ones are `chosen`. Returns whether they changed.
+bool chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
+                std::vector<std::string>& chosen) {
+  ui.heading(name);
+  const auto scope = ui.scope(name);
+  bool changed = false;
+  const float half = ImGui::GetContentRegionAvail().x / 2;
+  int column = 0;
+  for (const std::string& each : all) {
+    if (column++ % 2 == 1) ImGui::SameLine(half);
+    bool marked = std::ranges::find(chosen, each) != chosen.end();
+    if (!ui.checkbox(each.c_str(), marked)) continue;
+    changed = true;
+    if (marked) {
+      chosen.push_back(each);
+    } else {
+      std::erase(chosen, each);
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+BakeForm::BakeForm() {
+  for (const SceneListing& scene : builtinScenes()) scenes_.push_back(scene.id);
+  for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
+  types_ = optionsOf("object_type");
+  engines_ = optionsOf("engine");
+  options_.scenes = {scenes_.front()};
+  options_.scene.object_types = {types_.front()};
+  options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+}
+
+void BakeForm::draw(PanelContext& context) {
+  Ui& ui = context.ui;
+  Session& session = context.session;
+  const BackgroundBake::Report report = session.bake.report();
+  const bool running = session.bake.running();
+  if (running) {
+    if (drawProgress(ui, report, "Keeps what is finished")) session.bake.cancel();
+  } else {
+    if (ui.button("Start", "Bakes in the background; what is there already is kept",
+                  ImGui::GetContentRegionAvail().x)) {
+      update();
+      if (!preview_.fault.empty()) {
+        session.notices.complain(preview_.fault);
+      } else {
+        begun_ = session.notices.attempt([&] { session.bake.start(options_); });
+      }
+    }
+  }
+  ImGui::BeginDisabled(running);
+  drawOptions(context);
+  ImGui::EndDisabled();
+  if (stale_) update();
+  // What has just been baked is listed as that.
+  const bool listed = begun_ && report.state == TaskState::done;
+  if (report.state != TaskState::idle) drawItems(ui, session, report);
+  if (!running && !listed) drawPreview(ui);
+}
+
+void BakeForm::drawOptions(PanelContext& context) {
+  Ui& ui = context.ui;
+  stale_ |= chooseSome(ui, "scenes", scenes_, options_.scenes);
+  stale_ |= chooseSome(ui, "object types", types_, options_.scene.object_types);
+  stale_ |= chooseSome(ui, "recorders", recorders_, options_.scene.recorders);
+  ui.heading("Each of them");
+  stale_ |= ui.text("objects", counts_, "1000, 8000");
+  ui.tooltip("How many bodies: one recording for each number");
+  stale_ |= ui.integer("frames", frames_, 1, 1'000'000, "Frames after the initial pose");
+  stale_ |= ui.combo("engine", engine_, engines_, "Physics engine");
+  std::int64_t threads = options_.threads;
+  if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
+    options_.threads = static_cast<int>(threads);
+  }
+  drawFolder(context, "output", "Directory for recordings", directory_, stale_);
+}
+
+void BakeForm::update() {
+  stale_ = begun_ = false;
+  preview_ = {};
+  try {
+    if (options_.scenes.empty()) throw InputError("no scene is chosen");
+    if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
+    if (directory_.empty()) throw InputError("an output directory is needed");
+    options_.scene.objects = countsIn(counts_, "number of bodies", kMostBodies);
+    if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
+    options_.scene.parameters = {{"frames", std::to_string(frames_)},
+                                 {"engine", engines_.at(engine_)}};
+    options_.output = directory_;
+    BakeOptions all = options_;
+    all.force = true;  // reads no file
+    const auto plan = planBake(all);
+    preview_.bytes = plan->bytes();
+    for (const BakeJob& job : plan->pending) {
+      for (const fs::path& path : job.paths) {
+        preview_.recordings.emplace_back(path, leastBytes(path, job.scene));
+      }
+    }
+  } catch (const InputError& error) {
+    preview_.fault = error.what();
+  }
+}
+
+void BakeForm::drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report) {
+  ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
+  const auto scope = ui.scope("recordings");
+  for (const BackgroundBake::Item& item : report.items) {
+    const bool there = item.outcome == Outcome::kept || item.outcome == Outcome::baked;
+    const std::string name = item.path.filename().string();
+    ImGui::PushID(item.path.c_str());
+    ImGui::BeginDisabled(!there);
+    const Rgb rgb = item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good;
+    if (ui.selectable(
+            name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
+            there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
+      session.open(item.path);
+    }
+    ImGui::EndDisabled();
+    ImGui::PopID();
+  }
+}
+
+void BakeForm::drawPreview(Ui& ui) const {
+  if (!preview_.fault.empty()) {
+    ui.heading("To bake");
+    ImGui::PushTextWrapPos(0);
+    ui.coloured(ui.theme.warning, preview_.fault);
+    ImGui::PopTextWrapPos();
+    return;
+  }
+  ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
+                         bytesText(preview_.bytes))
+                 .c_str());
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(preview_.recordings.size()));
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
+      ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
+    }
+  }
+}
+
+}  // namespace broadmark

@@ -1,0 +1,171 @@
+#include "inspector/panels/benchmark_form.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "broadmark/error.h"
+#include "inspector/panels/batch_parts.h"
+#include "inspector/ui/text_lists.h"
+#include "request/cases.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The recordings of boxes below a folder, sorted; none where there is no such folder.
+std::vector<fs::path> recordingsBelow(const fs::path& folder) {
+  const std::vector<std::string> extensions = boxRecordingExtensions();
+  std::vector<fs::path> found;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const bool is_one =
+        std::ranges::find(extensions, entry->path().extension().string()) != extensions.end();
+    if (is_one && entry->is_regular_file(failed)) found.push_back(entry->path());
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+std::vector<std::string> checkModes() {
+  std::vector<std::string> modes;
+  for (const auto& [mode, name] : kCheckModes.entries) modes.emplace_back(name);
+  return modes;
+}
+
+}  // namespace
+
+void BenchmarkForm::draw(PanelContext& context) {
+  Ui& ui = context.ui;
+  Session& session = context.session;
+  const BackgroundBenchmark::Report report = session.benchmark.report();
+  const bool running = session.benchmark.running();
+  if (running) {
+    if (drawProgress(ui, report, "Keeps the cases that are finished")) session.benchmark.cancel();
+  } else if (ui.button("Start", "Runs in the background; best while nothing is played",
+                       ImGui::GetContentRegionAvail().x)) {
+    session.notices.attempt(
+        [&] { session.benchmark.start(options(), session.lanes.algorithms(), results_); });
+  }
+  ImGui::BeginDisabled(running);
+  drawOptions(context);
+  ImGui::EndDisabled();
+  if (report.state == TaskState::idle) {
+    drawPreview(ui, session);
+  } else {
+    drawItems(ui, session, report);
+  }
+}
+
+void BenchmarkForm::drawOptions(PanelContext& context) {
+  Ui& ui = context.ui;
+  ui.heading("Recordings");
+  drawFolder(context, "folder", "Folder of recordings", directory_, stale_);
+  if (stale_ || ImGui::IsWindowAppearing()) findRecordings();
+  drawRecordings(ui);
+  ui.heading("How they are run");
+  ui.text("algorithms", algorithms_, "sap*, kd, all");
+  ui.tooltip("Ids, families, patterns, or all, as --algorithm takes them");
+  if (ui.button("Those in Algorithms", "Takes what the panel Algorithms holds",
+                ImGui::GetContentRegionAvail().x)) {
+    algorithms_.clear();
+    for (const LaneEdit& lane : context.session.lanes.list) {
+      algorithms_ += (algorithms_.empty() ? "" : ", ") + lane.algorithm.id;
+    }
+  }
+  ui.text("threads", threads_, "1, 2");
+  ui.tooltip("Of parallel algorithms; each number makes a case");
+  ui.integer("repetitions", repetitions_, 1, 1000, "How often each case is run, in turns");
+  ui.combo("check", check_, checkModes(),
+           "full: exact pairs in every frame; hash: counts and hashes; off");
+  ui.text("results", results_, "results.json");
+}
+
+void BenchmarkForm::findRecordings() {
+  stale_ = false;
+  const auto before = std::exchange(recordings_, {});
+  for (const fs::path& path : recordingsBelow(directory_)) {
+    const auto known = std::ranges::find(before, path, &std::pair<fs::path, bool>::first);
+    recordings_.emplace_back(path, known == before.end() || known->second);
+  }
+}
+
+void BenchmarkForm::drawRecordings(Ui& ui) {
+  if (recordings_.empty()) {
+    ui.faintParagraph("There are none in this folder: bake some, or choose another one.");
+    return;
+  }
+  const auto scope = ui.scope("recordings");
+  for (auto& [path, marked] : recordings_) {
+    ui.checkbox(path.filename().string().c_str(), marked, path.string().c_str());
+  }
+}
+
+SessionOptions BenchmarkForm::options() const {
+  SessionOptions options;
+  for (const auto& [path, marked] : recordings_) {
+    if (marked) options.sources.push_back(path.string());
+  }
+  if (options.sources.empty()) throw InputError("no recording is chosen");
+  options.cases.algorithms = wordsIn(algorithms_);
+  if (options.cases.algorithms.empty()) throw InputError("no algorithm is chosen");
+  for (const std::uint32_t threads : countsIn(threads_, "number of threads", 256)) {
+    options.cases.threads.push_back(static_cast<int>(threads));
+  }
+  options.repetitions.most = static_cast<int>(repetitions_);
+  options.policy.check = kCheckModes.entries.at(check_).value;
+  if (results_.empty()) throw InputError("a file for the results is needed");
+  return options;
+}
+
+/// What would be run, or why nothing would.
+void BenchmarkForm::drawPreview(Ui& ui, const Session& session) {
+  ui.heading("To run");
+  try {
+    const SessionOptions options = this->options();
+    const auto cases = selectCases(options.cases, {}, session.lanes.algorithms());
+    ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
+                             counted(options.sources.size(), "recording")));
+  } catch (const InputError& error) {
+    ImGui::PushTextWrapPos(0);
+    ui.coloured(ui.theme.warning, error.what());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+void BenchmarkForm::drawItems(Ui& ui, Session& session, const BackgroundBenchmark::Report& report) {
+  ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
+  const bool any_kept = std::ranges::any_of(report.items, &BackgroundBenchmark::Item::kept);
+  if (report.state != TaskState::running && any_kept &&
+      ui.button("Open results", "Lists them in the panel Cases",
+                ImGui::GetContentRegionAvail().x)) {
+    session.open(report.file);
+  }
+  const auto scope = ui.scope("cases");
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(report.items.size()));
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      const BackgroundBenchmark::Item& item = report.items[static_cast<std::size_t>(i)];
+      const bool ok = item.status == Status::ok;
+      const bool opens = item.kept || report.state != TaskState::running;
+      ImGui::PushID(i);
+      ImGui::BeginDisabled(!opens);
+      const std::string right =
+          ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
+      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+        session.openCase(report.file, item.id);
+      }
+      if (i == 0) ui.note("first");
+      ImGui::EndDisabled();
+      ImGui::PopID();
+    }
+  }
+}
+
+}  // namespace broadmark

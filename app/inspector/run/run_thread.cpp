@@ -1,0 +1,428 @@
+#include "inspector/run/run_thread.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace broadmark {
+namespace {
+
+/// Bodies that all overlap by a mistake should not take all memory: this is half a gigabyte.
+constexpr std::size_t kMostPairs = std::size_t{1} << 26;
+
+/// Whether one wish's snapshot also serves the other.
+bool showSame(const Wish& a, const Wish& b) {
+  return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
+         a.tracked == b.tracked && a.second == b.second;
+}
+
+/// How many pairs overlap, by what an algorithm reported and how wrong that was.
+std::uint64_t rightPairs(const FrameRecord& record) {
+  return record.pairs + record.missed_count - record.false_count - record.allowed_extra_count -
+         record.invalid_count;
+}
+
+float fractionOf(std::uint32_t part, std::uint32_t whole) {
+  return whole == 0 ? 1.0F : static_cast<float>(part) / static_cast<float>(whole);
+}
+
+}  // namespace
+
+RunThread::RunThread(HostMaker make_host)
+    : make_host_(std::move(make_host)),
+      second_(make_host_, [this](const LaneSpec& spec) { return isUnwantedBeside(spec); }),
+      thread_([this] { loop(); }) {}
+
+RunThread::~RunThread() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void RunThread::wish(Wish wish) {
+  {
+    const std::lock_guard lock(mutex_);
+    wished_ = std::move(wish);
+    ++wishes_;
+  }
+  changed_.notify_all();
+}
+
+void RunThread::look(const std::function<void(const RunProgress&)>& at) {
+  const std::lock_guard lock(mutex_);
+  at(progress_);
+}
+
+bool RunThread::settled() {
+  const std::lock_guard lock(mutex_);
+  return idle_ && taken_ == wishes_;
+}
+
+bool RunThread::settle(std::chrono::milliseconds patience) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, patience, [this] { return idle_ && taken_ == wishes_; });
+}
+
+void RunThread::withFootage(const std::function<void(Footage*)>& act) {
+  std::exception_ptr failure;
+  const std::function<void(Footage*)> errand = [&](Footage* footage) {
+    try {
+      act(footage);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+  };
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return errand_ == nullptr; });
+  errand_ = &errand;
+  changed_.notify_all();
+  changed_.wait(lock, [&] { return errand_ != &errand; });
+  if (failure) std::rethrow_exception(failure);
+}
+
+void RunThread::loop() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    const bool anew = taken_ != wishes_;
+    if (stopping_) return;
+    if (errand_ != nullptr) {
+      const auto* errand = errand_;
+      lock.unlock();
+      (*errand)(footage_.get());
+      lock.lock();
+      errand_ = nullptr;
+      changed_.notify_all();
+      continue;
+    }
+    if (anew) takeWish();
+    if (idle_) {
+      changed_.wait(lock, [this] { return stopping_ || errand_ != nullptr || taken_ != wishes_; });
+      continue;
+    }
+    lock.unlock();
+    bool more = false;
+    try {
+      more = step();
+    } catch (const Cancelled&) {
+      more = true;  // another wish has come
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+    lock.lock();
+    if (more || taken_ != wishes_) continue;
+    idle_ = true;
+    progress_.doing.clear();
+    changed_.notify_all();
+  }
+}
+
+/// With mutex_ held.
+void RunThread::takeWish() {
+  if (!showSame(current_, wished_)) shown_ = false;
+  looked_back_ = false;
+  // One that rests after the shown frame goes on from there only if it was checked up to there.
+  if (wished_.check && footage_) {
+    for (const auto& lane : lanes_) lane->requireChecked(target());
+  }
+  current_ = wished_;
+  taken_ = wishes_;
+  idle_ = false;
+}
+
+/// Does one piece of work; false when there is none left.
+bool RunThread::step() {
+  if (current_.footage != opened_) {
+    openFootage();
+    return true;
+  }
+  if (footage_ == nullptr) return false;
+  if (reconcileLanes()) return true;
+  if (!std::exchange(looked_back_, true) && lookBack()) return true;
+  if (advance() || advanceSecond()) return true;
+  if (shown_) return false;
+  show();
+  return true;
+}
+
+void RunThread::fail(std::string reason) {
+  const std::lock_guard lock(mutex_);
+  progress_.failure = std::move(reason);
+}
+
+bool RunThread::isUnwanted(const LaneSpec& spec) {
+  const std::lock_guard lock(mutex_);
+  const auto is_same = [&](const LaneSpec& wished) { return wished.same(spec); };
+  return stopping_ || wished_.footage != opened_ || std::ranges::none_of(wished_.lanes, is_same);
+}
+
+bool RunThread::isUnwantedBeside(const LaneSpec& spec) {
+  if (isUnwanted(spec)) return true;
+  const std::lock_guard lock(mutex_);
+  return !wished_.second || wished_.second->lane != spec.number ||
+         wished_.second->footage != current_.second->footage;
+}
+
+void RunThread::tell(std::string doing, float fraction) {
+  const std::lock_guard lock(mutex_);
+  progress_.doing = std::move(doing);
+  progress_.fraction = fraction;
+}
+
+void RunThread::openFootage() {
+  tell(current_.footage ? fmt::format("opening {}", current_.footage->title) : "", 0);
+  lanes_.clear();
+  second_.clear();
+  footage_.reset();
+  oracle_ = Oracle(std::size_t{256} << 20, kMostPairs);
+  seen_.clear();
+  stop_.reset();
+  shown_ = false;
+  opened_ = current_.footage;
+  std::string failure;
+  try {
+    if (opened_) footage_ = opened_->open();
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  const std::lock_guard lock(mutex_);
+  progress_ = RunProgress{.footage = opened_, .failure = std::move(failure)};
+  if (footage_ == nullptr) return;
+  progress_.scene = footage_->scene();
+  progress_.known_frames = footage_->known();
+  progress_.live = footage_->live();
+}
+
+/// Brings the lanes in line with those wished for. Returns whether there was anything to do.
+bool RunThread::reconcileLanes() {
+  const auto stands = [&](std::size_t i) {
+    return i < lanes_.size() && lanes_[i]->spec().same(current_.lanes[i]);
+  };
+  bool same = lanes_.size() == current_.lanes.size();
+  for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
+  if (same) return false;
+
+  std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
+  lanes_.clear();
+  for (const LaneSpec& spec : current_.lanes) {
+    const auto found = std::ranges::find_if(
+        kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
+    lanes_.push_back(found != kept.end() ? std::move(*found)
+                                         : std::make_unique<Lane>(spec, make_host_, [this, spec] {
+                                             return isUnwanted(spec);
+                                           }));
+  }
+  for (const auto& gone : kept) {
+    if (gone) seen_.forget(gone->spec().number);
+  }
+  kept.clear();
+  shown_ = false;
+  stop_.reset();
+  const std::lock_guard lock(mutex_);
+  progress_.stop.reset();
+  std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
+  for (const auto& lane : lanes_) {
+    const auto report = std::ranges::find_if(
+        reports, [&](const LaneReport& known) { return known.spec.same(lane->spec()); });
+    if (report != reports.end()) {
+      progress_.lanes.push_back(std::move(*report));
+    } else {
+      progress_.lanes.push_back(lane->report());
+    }
+  }
+  return true;
+}
+
+std::uint32_t RunThread::target() const {
+  const std::uint32_t last = std::min(current_.frame, footage_->scene().frames);
+  return stop_ ? std::min(last, stop_->frame) : last;
+}
+
+/// A frame of the footage; takes note of its population.
+Frame RunThread::frameAt(std::uint32_t index) {
+  const Frame frame = footage_->at(index);
+  notePopulation(index, frame.boxes);
+  return frame;
+}
+
+void RunThread::notePopulation(std::uint32_t index, std::span<const Aabb> boxes) {
+  if (footage_->scene().all_present) return;
+  const auto present = static_cast<float>(presentIn(boxes));
+  const std::lock_guard lock(mutex_);
+  progress_.population.set(index, present);
+}
+
+/// Brings the footage and one lane a frame nearer to the target. Returns whether it had to.
+bool RunThread::advance() {
+  if (stop_ && (!current_.check || !current_.stop_at_mismatch ||
+                (current_.known_mismatch && *current_.known_mismatch >= stop_->frame))) {
+    stop_.reset();
+    const std::lock_guard lock(mutex_);
+    progress_.stop.reset();
+  }
+  const std::uint32_t beside =
+      current_.second ? SecondRun::frameOfFirst(*current_.second, footage_->scene()) : 0;
+  if (const std::uint32_t wanted = std::max(target(), beside); footage_->known() < wanted) {
+    tell(fmt::format("simulating frame {}", footage_->known() + 1),
+         fractionOf(footage_->known(), wanted));
+    footage_->extend();
+    if (!footage_->scene().all_present) frameAt(footage_->known());
+    const std::lock_guard lock(mutex_);
+    progress_.known_frames = footage_->known();
+    return true;
+  }
+  // The hindmost first: then all pass each frame before any goes on.
+  Lane* hindmost = nullptr;
+  for (const auto& lane : lanes_) {
+    if (lane->report().ended || lane->standsAt(target()) || mayRest(*lane)) continue;
+    const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
+    if (restarts) {
+      lane->restart(footage_->scene(), footage_->at(0));
+      report(*lane);
+      shown_ = false;
+      return true;
+    }
+    if (hindmost == nullptr || lane->report().frame < hindmost->report().frame) {
+      hindmost = lane.get();
+    }
+  }
+  if (hindmost == nullptr) {
+    const std::lock_guard lock(mutex_);
+    if (!progress_.snapshot || progress_.snapshot->footage != opened_ ||
+        progress_.snapshot->frame != target()) {
+      shown_ = false;
+    }
+    return false;
+  }
+  const std::uint32_t next = hindmost->report().frame + 1;
+  const std::string& id = hindmost->spec().run.algorithm.id;
+  tell(hindmost->report().record(next) != nullptr
+           ? fmt::format("running {} again up to frame {}", id, target())
+           : fmt::format("{}: frame {}", id, next),
+       fractionOf(next, target()));
+  return advanceLane(*hindmost, frameAt(next));
+}
+
+bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
+  shown_ = false;
+  lane.advance(frame, gate_);
+  std::optional<FrameDifference> difference;
+  if (current_.check && lane.standsAt(frame.index)) {
+    difference = lane.check(frame, oracle_);
+    const bool known = current_.known_mismatch && frame.index <= *current_.known_mismatch;
+    if (difference && difference->isMismatch() && !known && current_.stop_at_mismatch &&
+        (!stop_ || frame.index < stop_->frame)) {
+      stop_ = RunProgress::Stop{.frame = frame.index, .lane = lane.spec().number};
+      const std::lock_guard lock(mutex_);
+      progress_.stop = stop_;
+    }
+  }
+  // show() asks at the target.
+  if (&lane == shownLane() && frame.index != target() && lane.standsAt(frame.index) &&
+      !hasSeen(frame.index)) {
+    const SeenAnswer answer = answerOf(lane, frame, current_.check, std::move(difference),
+                                       footage_->scene().filter, oracle_);
+    if (lane.standsAt(frame.index)) seen_.remember(lane.spec().number, frame.index, answer);
+  }
+  report(lane);
+  return true;
+}
+
+void RunThread::report(const Lane& lane) {
+  const LaneReport& now = lane.report();
+  const std::lock_guard lock(mutex_);
+  const auto shown = std::ranges::find_if(progress_.lanes, [&](const LaneReport& report) {
+    return report.spec.number == now.spec.number;
+  });
+  if (shown == progress_.lanes.end()) return;
+  // Its history changes at the present frame only, and is too long to be copied every time.
+  std::vector<FrameRecord> frames = std::move(shown->frames);
+  LaneCurves curves = std::move(shown->curves);
+  frames.resize(now.frames.size());
+  if (now.frame > 0) {
+    const FrameRecord& record = now.frames[now.frame - 1];
+    frames[now.frame - 1] = record;
+    curves.set(now.frame, record);
+    if (now.spec.run.answer == AnswerKind::pairs && now.spec.run.algorithm.traits.finds_pairs) {
+      progress_.pairs.set(now.frame, static_cast<float>(rightPairs(record)));
+    }
+  }
+  *shown = {.spec = now.spec,
+            .status = now.status,
+            .reason = now.reason,
+            .ended = now.ended,
+            .frame = now.frame,
+            .initialize_ns = now.initialize_ns,
+            .margin = now.margin,
+            .frames = std::move(frames),
+            .curves = std::move(curves),
+            .setup = now.setup,
+            .counters = now.counters};
+}
+
+Lane* RunThread::shownLane() const {
+  for (const auto& lane : lanes_) {
+    if (lane->spec().number == current_.shown_lane && target() > 0) return lane.get();
+  }
+  return nullptr;
+}
+
+SecondRun::First RunThread::firstView() const {
+  return {.request = opened_,
+          .footage = *footage_,
+          .frame = target(),
+          .lanes = lanes_,
+          .check = current_.check,
+          .structure = current_.structure,
+          .tracked = current_.tracked};
+}
+
+/// Brings what the second view shows nearer to what it is to be. Returns whether it had to.
+bool RunThread::advanceSecond() {
+  if (!current_.second) return false;
+  if (!second_.advance(*current_.second, firstView(), gate_)) return false;
+  tell(second_.doing(), 1);
+  shown_ = false;
+  return true;
+}
+
+void RunThread::show() {
+  const std::uint32_t index = target();
+  const auto snapshot = takeSnapshot({.request = opened_,
+                                      .footage = *footage_,
+                                      .frame = index,
+                                      .lane = shownLane(),
+                                      .seen = &seen_,
+                                      .check = current_.check,
+                                      .structure = current_.structure,
+                                      .tracked = current_.tracked},
+                                     oracle_);
+  std::shared_ptr<const Snapshot> second;
+  if (!current_.second) second_.clear();
+  if (snapshot && current_.second) second = second_.take(*current_.second, firstView());
+  const bool lost = current_.second && !second && second_.failure().empty();
+  if (!snapshot || lost) {  // a lane was, on the way: shown without it
+    for (const auto& one : lanes_) report(*one);
+    return;
+  }
+  if (index > 0) notePopulation(index - 1, *snapshot->boxes_before);
+  notePopulation(index, *snapshot->boxes);
+  std::shared_ptr<const PairComparison> comparison;
+  if (second) {
+    comparison =
+        std::make_shared<const PairComparison>(comparePairs(snapshot->pairs, second->pairs));
+  }
+  shown_ = true;
+  const std::lock_guard lock(mutex_);
+  if (snapshot->lane == 0) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
+  progress_.snapshot = snapshot;
+  progress_.second = std::move(second);
+  progress_.comparison = std::move(comparison);
+  progress_.second_failure = current_.second ? second_.failure() : "";
+}
+
+}  // namespace broadmark

@@ -1,0 +1,162 @@
+// The thread that runs algorithms while the user interface stays free.
+//
+// The interface states a wish: what to look at, which algorithms, up to which frame. The thread
+// works towards it, one frame of one algorithm at a time, and takes up a changed wish in between.
+// Algorithms keep state from frame to frame, so each goes through all frames from the first: for an
+// earlier frame a fresh instance starts over. The answers of frames that have been seen are kept:
+// such a frame is shown at once, and algorithms are run again only where something else of them is
+// wanted.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "broadmark/harness/oracle.h"
+#include "inspector/run/draw_gate.h"
+#include "inspector/run/footage.h"
+#include "inspector/run/lane.h"
+#include "inspector/run/second_run.h"
+#include "inspector/run/seen_answers.h"
+#include "inspector/run/snapshot.h"
+#include "inspector/session/pair_comparison.h"
+
+namespace broadmark {
+
+/// What the interface wants.
+struct Wish {
+  std::shared_ptr<const FootageRequest> footage;
+  std::vector<LaneSpec> lanes;
+  std::uint32_t frame = 0;
+  bool playing = false;  ///< it goes on from there: what has been seen does not do
+  bool check = true;     ///< compare every answer with the oracle's
+  /// Stop at the first frame in which an algorithm is wrong…
+  bool stop_at_mismatch = true;
+  /// …after this one, up to which mismatches are known.
+  std::optional<std::uint32_t> known_mismatch;
+  int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
+  bool structure = false;              ///< whether its structure is looked at, too
+  std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
+  std::optional<SecondWish> second = {};  ///< what the second view shows, if there is one
+};
+
+/// How far the thread has got.
+struct RunProgress {
+  std::shared_ptr<const FootageRequest> footage;  ///< what is open
+  std::string failure;                            ///< why it could not be opened, or not be read on
+  SceneInfo scene;
+  std::uint32_t known_frames = 0;  ///< that exist already
+  bool live = false;               ///< more can be simulated
+  /// How many bodies are present in each frame that has been looked at. Empty where nobody is ever
+  /// absent.
+  FrameValues population;
+  /// Likewise how many pairs overlap, as far as the oracle was asked; else how many an algorithm
+  /// reported.
+  FrameValues pairs;
+  std::vector<LaneReport> lanes;
+  std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing has been shown yet
+  std::shared_ptr<const Snapshot> second;    ///< of the second view; null: there is none
+  std::string second_failure;                ///< why there is none
+  /// Of the answers in both views; null: there are not two.
+  std::shared_ptr<const PairComparison> comparison;
+  /// The frame at which all stay, as the lane of this number is wrong there.
+  struct Stop {
+    std::uint32_t frame = 0;
+    int lane = 0;
+  };
+  std::optional<Stop> stop;
+  std::string doing;   ///< "" when all is done
+  float fraction = 0;  ///< of what is being done
+};
+
+class RunThread {
+ public:
+  /// What the answers of seen frames may take.
+  static constexpr std::size_t kSeenBytes = std::size_t{512} << 20;
+
+  /// `make_host`: where algorithms run.
+  explicit RunThread(HostMaker make_host);
+  /// Ends soon: waits for the frame that is being run only where its host cannot be cancelled.
+  ~RunThread();
+  RunThread(const RunThread&) = delete;
+  RunThread& operator=(const RunThread&) = delete;
+
+  void wish(Wish wish);
+  /// Calls `at` with the progress, which does not change meanwhile.
+  void look(const std::function<void(const RunProgress&)>& at);
+  /// Whether everything wished for has been done (or has failed).
+  [[nodiscard]] bool settled();
+  /// Waits for that. Returns whether it came in time.
+  bool settle(std::chrono::milliseconds patience);
+  /// Calls `act` on the thread, between two frames, with the footage (null: nothing is open).
+  /// Returns when that has returned, and throws what it throws.
+  void withFootage(const std::function<void(Footage*)>& act);
+
+  DrawGate& gate() { return gate_; }
+
+ private:
+  void loop();
+  void takeWish();
+  bool step();
+  void openFootage();
+  bool reconcileLanes();
+  bool advance();
+  bool advanceLane(Lane& lane, const Frame& frame);
+  bool advanceSecond();
+  Frame frameAt(std::uint32_t index);
+  void notePopulation(std::uint32_t index, std::span<const Aabb> boxes);
+  void show();
+  void tell(std::string doing, float fraction);
+  void report(const Lane& lane);
+  void fail(std::string reason);
+  /// Whether to give up what a lane of this spec is at.
+  [[nodiscard]] bool isUnwanted(const LaneSpec& spec);
+  /// Likewise what the second view's instance of it is at.
+  [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
+  [[nodiscard]] std::uint32_t target() const;
+  [[nodiscard]] Lane* shownLane() const;
+  [[nodiscard]] SecondRun::First firstView() const;
+  /// Whether the answer of the shown lane, or the oracle's, is kept for a frame.
+  [[nodiscard]] bool hasSeen(std::uint32_t frame) const;
+  /// Whether nothing is wanted of a lane at the target but what is kept.
+  [[nodiscard]] bool mayRest(const Lane& lane) const;
+  bool lookBack();
+
+  const HostMaker make_host_;
+  DrawGate gate_;
+
+  // Used by the thread alone.
+  Wish current_;
+  std::shared_ptr<const FootageRequest> opened_;
+  std::unique_ptr<Footage> footage_;
+  std::vector<std::unique_ptr<Lane>> lanes_;
+  Oracle oracle_{std::size_t{256} << 20};
+  SeenAnswers seen_{kSeenBytes};
+  std::optional<RunProgress::Stop> stop_;
+  SecondRun second_;
+  bool shown_ = false;        ///< whether the snapshots are what current_ wants
+  bool looked_back_ = false;  ///< since that wish came: see lookBack()
+
+  // Guarded by mutex_.
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Wish wished_;
+  std::uint64_t wishes_ = 0;
+  std::uint64_t taken_ = 0;  ///< of the wishes
+  bool idle_ = false;
+  bool stopping_ = false;
+  const std::function<void(Footage*)>* errand_ = nullptr;
+  RunProgress progress_;
+
+  std::thread thread_;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,101 @@
+#include "inspector/session/answer_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "broadmark/pair.h"
+#include "inspector/session/wrong_pair.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number) {
+  const auto found = std::ranges::find_if(
+      lanes, [&](const LaneReport& lane) { return lane.spec.number == number; });
+  return found == lanes.end() ? nullptr : &*found;
+}
+
+/// Its id, with the parameters where another lane has the same.
+std::string ownerName(const std::vector<LaneReport>& lanes, const LaneReport& lane) {
+  const std::string& id = lane.spec.run.algorithm.id;
+  const auto alike = std::ranges::count_if(
+      lanes, [&](const LaneReport& other) { return other.spec.run.algorithm.id == id; });
+  return alike > 1 ? caseName(lane.spec.run) : id;
+}
+
+std::string differenceText(const FrameDifference& difference) {
+  std::string text;
+  for (const auto& [count, kind] : {std::pair{difference.missed_count, "missed"},
+                                    {difference.false_count, "false"},
+                                    {difference.invalid_count, "invalid"},
+                                    {difference.allowed_extra_count, "allowed extra"}}) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind);
+  }
+  return text;
+}
+
+void compareWithOracle(const Snapshot& snapshot, AnswerText& text) {
+  if (!snapshot.checked) {
+    text.verdict = AnswerText::Verdict::unchecked;
+    text.beside = "not compared with the oracle's answer";
+    return;
+  }
+  const FrameDifference& difference = snapshot.difference;
+  text.verdict = difference.isMismatch() ? AnswerText::Verdict::wrong : AnswerText::Verdict::right;
+  const std::string details = differenceText(difference);
+  text.beside = details.empty()
+                    ? "the oracle finds the same"
+                    : fmt::format("the oracle finds {}: {}", snapshot.right_pairs, details);
+}
+
+std::string pairText(const Snapshot& snapshot, const std::string& owner,
+                     std::span<const std::uint32_t> selection) {
+  if (selection.size() != 2 || selection[1] >= snapshot.boxes->size()) return "";
+  const Pair pair{selection[0], selection[1]};
+  const std::vector<Aabb>& boxes = *snapshot.boxes;
+  const bool right =
+      overlaps(boxes[pair.a], boxes[pair.b]) && snapshot.scene.filter.wanted(pair.a, pair.b);
+  const char* oracle = right ? "finds it" : "does not find it";
+  const std::string name = pairName(pair);
+  if (owner.empty()) return fmt::format("{}: the oracle {}", name, oracle);
+  const bool reported = std::ranges::find(snapshot.pairs, pair) != snapshot.pairs.end();
+  return fmt::format("{}: {} {} it, the oracle {}", name, owner,
+                     reported ? "reports" : "does not report", oracle);
+}
+
+}  // namespace
+
+AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& lanes, int chosen,
+                      std::span<const std::uint32_t> selection) {
+  AnswerText text;
+  const std::string pairs = counted(snapshot.pairs.size(), "pair");
+  if (const LaneReport* lane = laneOf(lanes, snapshot.lane)) {
+    text.owner = ownerName(lanes, *lane);
+    text.answer = fmt::format("{} reports {}", text.owner, pairs);
+    compareWithOracle(snapshot, text);
+  } else {
+    text.answer = fmt::format("the oracle finds {}", pairs);
+    const LaneReport* silent = laneOf(lanes, chosen);
+    if (silent != nullptr) {
+      text.beside =
+          fmt::format("{} has no answer for frame {}", ownerName(lanes, *silent), snapshot.frame);
+    } else if (!lanes.empty()) {
+      text.beside = "no algorithm's answer is shown";
+    }
+  }
+  text.pair = pairText(snapshot, text.owner, selection);
+  return text;
+}
+
+std::string whereText(const Snapshot& snapshot) {
+  return fmt::format("frame {}, {}", snapshot.frame, sourceText(snapshot.footage.get()));
+}
+
+std::string sourceText(const FootageRequest* footage) {
+  if (footage == nullptr) return "";
+  return fmt::format("{}: {}", kFootageSources.nameOf(footage->source), footage->title);
+}
+
+}  // namespace broadmark

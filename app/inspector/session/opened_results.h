@@ -1,0 +1,103 @@
+// A results file that has been opened: which of its cases are listed, in which order, and which are
+// marked to be plotted.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadmark/algorithm.h"
+#include "broadmark/names.h"
+#include "broadmark/render/frame_values.h"
+#include "broadmark/results/results.h"
+#include "inspector/session/scaling.h"
+
+namespace broadmark {
+
+/// What is told of each case.
+enum class CaseColumn {
+  algorithm,
+  recording,
+  status,
+  median,
+  mean,
+  p95,
+  pairs,
+  mismatches,
+  isa,
+  threads
+};
+inline constexpr NameTable kCaseColumns{{NamedValue{CaseColumn::algorithm, "algorithm"},
+                                         {CaseColumn::recording, "recording"},
+                                         {CaseColumn::status, "status"},
+                                         {CaseColumn::median, "median"},
+                                         {CaseColumn::mean, "mean"},
+                                         {CaseColumn::p95, "95 %"},
+                                         {CaseColumn::pairs, "pairs"},
+                                         {CaseColumn::mismatches, "mismatches"},
+                                         {CaseColumn::isa, "isa"},
+                                         {CaseColumn::threads, "threads"}}};
+
+class OpenedResults {
+ public:
+  struct Row {
+    CaseResult result;
+    std::string algorithm;           ///< as caseNameOf(), without what other columns tell
+    std::string recording;           ///< as recordingId()
+    std::optional<Summary> summary;  ///< nothing without any time
+    std::size_t mismatches = 0;      ///< frames
+    std::string obstacle;            ///< why it cannot be opened; "": nothing is known
+    bool marked = false;             ///< set by mark()
+  };
+  /// A marked case over its frames.
+  struct Curve {
+    std::size_t row = 0;
+    FrameValues seconds;     ///< of a phase: the median of the repetitions
+    FrameValues mismatches;  ///< 1 in frames that are one, unknown in others
+  };
+
+  /// Marks a few cases of one recording to begin with. `algorithms`: those that can be run.
+  OpenedResults(std::filesystem::path file, Results results,
+                const std::vector<Algorithm>& algorithms);
+
+  [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+  /// Whether the run came to its end.
+  [[nodiscard]] bool complete() const { return complete_; }
+  [[nodiscard]] std::vector<Row>& rows() { return rows_; }
+  [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
+  /// How many cases gave a wrong answer.
+  [[nodiscard]] std::size_t wrong() const;
+  void mark(std::size_t row, bool on);
+  /// Of the marked rows that have times, in the order of the file. Made when first asked for.
+  const std::vector<Curve>& curves(Phase phase);
+  /// Of the listed rows, in the order of the file; likewise.
+  const std::vector<ScalingCurve>& scaling(Phase phase);
+
+  /// The numbers of the rows to be shown, in order.
+  [[nodiscard]] const std::vector<std::size_t>& listed() const { return listed_; }
+  /// Nothing: as in the file. Cases that have no such number come last, either way.
+  void sort(std::optional<CaseColumn> by, bool descending);
+  /// Lists only cases whose id contains the text, and, if `only_wrong`, that gave a wrong answer.
+  void filter(const std::string& text, bool only_wrong);
+
+ private:
+  [[nodiscard]] bool before(std::size_t a, std::size_t b) const;
+  void list();
+
+  std::filesystem::path file_;
+  bool complete_ = false;
+  std::vector<Row> rows_;
+  std::vector<std::size_t> listed_;
+  std::optional<CaseColumn> sorted_by_;  ///< nothing: as in the file
+  bool descending_ = false;
+  std::string text_;
+  bool only_wrong_ = false;
+  std::vector<Curve> curves_;
+  std::optional<Phase> curves_of_;  ///< nothing: they are to be made anew
+  std::vector<ScalingCurve> scaling_;
+  std::optional<Phase> scaling_of_;  ///< likewise
+};
+
+}  // namespace broadmark

@@ -1,0 +1,31 @@
+#include "inspector/session/time_ratios.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "broadmark/statistics/statistics.h"
+
+namespace broadmark {
+
+TimeRatios ratiosOf(const LaneReport& first, const LaneReport& second) {
+  TimeRatios of;
+  std::vector<double> all;
+  const std::size_t frames = std::min(first.frames.size(), second.frames.size());
+  for (std::uint32_t frame = 1; frame <= frames; ++frame) {
+    const FrameRecord* const a = first.record(frame);
+    const FrameRecord* const b = second.record(frame);
+    if (a == nullptr || b == nullptr || a->disturbed || b->disturbed) continue;
+    const double ratio = static_cast<double>(std::max<std::int64_t>(a->times[Phase::total], 1)) /
+                         static_cast<double>(std::max<std::int64_t>(b->times[Phase::total], 1));
+    of.ratios.set(frame, static_cast<float>(ratio));
+    all.push_back(ratio);
+    if (ratio > 1) ++of.first_slower;
+    if (ratio < 1) ++of.second_slower;
+    if (!of.highest || ratio > of.highest->ratio) of.highest = {frame, ratio};
+    if (!of.lowest || ratio < of.lowest->ratio) of.lowest = {frame, ratio};
+  }
+  if (!all.empty()) of.median = quantile(all, 0.5);
+  return of;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,72 @@
+#include "inspector/session/wrong_pair.h"
+
+#include <fmt/format.h>
+
+namespace broadmark {
+
+std::string pairName(Pair pair) { return fmt::format("{}-{}", pair.a, pair.b); }
+
+std::vector<WrongPair> wrongPairs(const FrameDifference& difference) {
+  std::vector<WrongPair> wrong;
+  const auto add = [&](WrongPair::Kind kind, const std::vector<Pair>& pairs) {
+    for (const Pair pair : pairs) wrong.push_back({kind, pair});
+  };
+  add(WrongPair::Kind::missed, difference.missed_pairs);
+  add(WrongPair::Kind::false_pair, difference.false_pairs);
+  add(WrongPair::Kind::invalid, difference.invalid_pairs);
+  add(WrongPair::Kind::allowed_extra, difference.allowed_extra_pairs);
+  return wrong;
+}
+
+AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b) {
+  // In doubles the difference of two floats never vanishes unless they are equal.
+  const double gap = std::max(static_cast<double>(a.min[axis]) - static_cast<double>(b.max[axis]),
+                              static_cast<double>(b.min[axis]) - static_cast<double>(a.max[axis]));
+  AxisRelation relation{.gap = gap};
+  if (gap < 0) relation.kind = AxisRelation::Kind::overlap;
+  if (gap == 0) relation.kind = AxisRelation::Kind::touch;
+  return relation;
+}
+
+std::size_t decidingAxis(const Aabb& a, const Aabb& b) {
+  std::size_t widest = 0;
+  for (std::size_t axis = 1; axis < 3; ++axis) {
+    if (relationOn(axis, a, b).gap > relationOn(widest, a, b).gap) widest = axis;
+  }
+  return widest;
+}
+
+std::string absenceText(const Track& track) {
+  std::size_t absent = 0;
+  while (absent < track.boxes.size() && isEmpty(track.boxes[track.boxes.size() - 1 - absent])) {
+    ++absent;
+  }
+  const std::size_t since = track.first + track.boxes.size() - absent;
+  if (absent < track.boxes.size()) return fmt::format("absent: vanished in frame {}", since);
+  return since == 0 ? "absent since frame 0"
+                    : fmt::format("absent since frame {} or earlier", since);
+}
+
+std::string unwantedText(const CollisionFilter& filter, Pair pair) {
+  if (filter.wanted(pair.a, pair.b)) return "";
+  const BodyGroups a = filter.groupsOf(pair.a);
+  const BodyGroups b = filter.groupsOf(pair.b);
+  if (!filter.matrix().collide(a.layer, b.layer)) {
+    return a.layer == b.layer
+               ? fmt::format("not wanted: layer {} does not collide with itself", a.layer)
+               : fmt::format("not wanted: layers {} and {} do not collide", a.layer, b.layer);
+  }
+  if (a.world != b.world) {
+    return fmt::format("not wanted: one in world {}, one in world {}", a.world, b.world);
+  }
+  return "not wanted: they share a tag";
+}
+
+std::optional<std::uint32_t> PairTrack::overlapBegan() const {
+  std::size_t first = size();
+  while (first > 0 && overlapsAt(first - 1)) --first;
+  if (first == size()) return {};
+  return a.first + static_cast<std::uint32_t>(first);
+}
+
+}  // namespace broadmark

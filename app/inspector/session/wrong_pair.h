@@ -1,0 +1,77 @@
+// What is known of a wrong pair: how it is wrong, how its two boxes lie on every axis, and since
+// when they overlap.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "broadmark/aabb.h"
+#include "broadmark/harness/oracle.h"
+#include "broadmark/names.h"
+#include "inspector/run/run_thread.h"
+
+namespace broadmark {
+
+struct WrongPair {
+  /// As in FrameDifference. An allowed extra pair is no mismatch.
+  enum class Kind { missed, false_pair, invalid, allowed_extra };
+  Kind kind = Kind::missed;
+  Pair pair;
+};
+inline constexpr NameTable kWrongPairs{{NamedValue{WrongPair::Kind::missed, "missed"},
+                                        {WrongPair::Kind::false_pair, "false"},
+                                        {WrongPair::Kind::invalid, "invalid"},
+                                        {WrongPair::Kind::allowed_extra, "allowed extra"}}};
+/// "3-17".
+std::string pairName(Pair pair);
+
+/// All that are listed, kind by kind in the order above.
+std::vector<WrongPair> wrongPairs(const FrameDifference& difference);
+
+inline constexpr std::array kAxes = {"x", "y", "z"};
+
+/// How two boxes lie on one axis.
+struct AxisRelation {
+  enum class Kind { overlap, touch, gap };
+  Kind kind = Kind::gap;
+  /// The distance between the intervals; below 0: by how much they overlap.
+  double gap = 0;
+};
+inline constexpr NameTable kRelations{{NamedValue{AxisRelation::Kind::overlap, "overlap"},
+                                       {AxisRelation::Kind::touch, "touch"},
+                                       {AxisRelation::Kind::gap, "gap"}}};
+AxisRelation relationOn(std::size_t axis, const Aabb& a, const Aabb& b);
+/// The axis that decides whether they overlap: the one with the widest gap, or, if there is none,
+/// with the least overlap.
+std::size_t decidingAxis(const Aabb& a, const Aabb& b);
+
+/// Of a body that is absent at the end of its track: "absent: vanished in frame 41".
+std::string absenceText(const Track& track);
+
+/// Why the overlap of two bodies would not count: "not wanted: layers 1 and 2 do not collide". ""
+/// if it would.
+std::string unwantedText(const CollisionFilter& filter, Pair pair);
+
+/// Two tracked bodies, side by side; both tracks span the same frames.
+struct PairTrack {
+  const Track& a;
+  const Track& b;
+
+  [[nodiscard]] std::size_t size() const { return std::min(a.boxes.size(), b.boxes.size()); }
+  [[nodiscard]] bool overlapsAt(std::size_t i) const { return overlaps(a.boxes[i], b.boxes[i]); }
+  /// The frame since which they have overlapped up to the last one without a break; nothing when
+  /// they do not overlap there.
+  [[nodiscard]] std::optional<std::uint32_t> overlapBegan() const;
+};
+
+/// Whether a body's box differs from that of the frame before.
+inline bool movedAt(const Track& track, std::size_t i) {
+  return i > 0 && track.boxes[i] != track.boxes[i - 1];
+}
+
+}  // namespace broadmark

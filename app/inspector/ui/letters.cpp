@@ -1,0 +1,161 @@
+#include "inspector/ui/letters.h"
+
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <string>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/render/fonts.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Latin, and the dashes, arrows, dots and signs that our texts use.
+constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x2010, 0x2026, 0x2190, 0x2193, 0x2212,
+                               0x2212, 0x2248, 0x2248, 0x2264, 0x2265, 0};
+/// So many fonts are looked through for a letter.
+constexpr std::size_t kMostTried = 40;
+constexpr std::uintmax_t kLargestFont = 64 << 20;  // bytes
+
+bool isInRanges(ImWchar letter) {
+  for (std::size_t i = 0; kRanges[i] != 0; i += 2) {
+    if (letter >= kRanges[i] && letter <= kRanges[i + 1]) return true;
+  }
+  return false;
+}
+
+/// The lower, the sooner it is tried; below 0: not at all.
+int rankOf(const fs::path& font) {
+  const std::string extension = font.extension().string();
+  if (extension != ".ttf" && extension != ".otf" && extension != ".ttc") return -1;
+  const std::string name = font.stem().string();
+  const auto has = [&](const char* part) { return name.find(part) != std::string::npos; };
+  for (const char* style : {"Bold", "Italic", "Oblique", "Thin", "Light", "Black", "Condensed"}) {
+    if (has(style)) return -1;
+  }
+  constexpr std::array kFirst = {"DejaVuSans", "NotoSans", "DroidSans", "wqy", "unifont"};
+  for (std::size_t i = 0; i < kFirst.size(); ++i) {
+    if (has(kFirst[i])) return static_cast<int>(i);
+  }
+  return static_cast<int>(kFirst.size());
+}
+
+std::vector<fs::path> fontsIn(const std::vector<fs::path>& directories) {
+  std::vector<std::pair<int, fs::path>> found;
+  for (const fs::path& directory : directories) {
+    std::error_code error;
+    for (fs::recursive_directory_iterator it(directory, error), end; !error && it != end;
+         it.increment(error)) {
+      std::error_code unknown;
+      const int rank = rankOf(it->path());
+      if (rank >= 0 && it->file_size(unknown) <= kLargestFont) found.emplace_back(rank, it->path());
+    }
+  }
+  std::ranges::sort(found);
+  std::vector<fs::path> fonts;
+  for (auto& [rank, path] : found) {
+    if (fonts.size() < kMostTried) fonts.push_back(std::move(path));
+  }
+  return fonts;
+}
+
+}  // namespace
+
+Letters::Letters(std::vector<fs::path> directories) : directories_(std::move(directories)) {}
+
+std::vector<fs::path> Letters::systemFontDirectories() {
+  std::vector<fs::path> directories = {"/usr/share/fonts", "/usr/local/share/fonts"};
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
+    directories.push_back(fs::path(home) / ".local/share/fonts");
+    directories.push_back(fs::path(home) / ".fonts");
+  }
+  return directories;
+}
+
+void Letters::need(std::string_view text) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at < end) {
+    if (static_cast<unsigned char>(*at) < 0x80) {
+      ++at;
+      continue;
+    }
+    unsigned letter = 0;
+    const int length = ImTextCharFromUtf8(&letter, at, end);
+    if (length <= 0) return;
+    at += length;
+    const auto known = static_cast<ImWchar>(letter);
+    if (letter > IM_UNICODE_CODEPOINT_MAX || isInRanges(known)) continue;
+    stale_ |= needed_.insert(known).second;
+  }
+}
+
+ImFont* Letters::build(ImFontAtlas& atlas, float size, float large_size) const {
+  atlas.Clear();
+  ImFontGlyphRangesBuilder builder;
+  for (const ImWchar letter : needed_) builder.AddChar(letter);
+  ImVector<ImWchar> others;
+  builder.BuildRanges(&others);
+  builder.AddRanges(kRanges);
+  ImVector<ImWchar> all;
+  builder.BuildRanges(&all);
+  const std::string_view own = interfaceFont();
+  const auto add = [&](float pixels) {
+    ImFontConfig config;
+    config.FontDataOwnedByAtlas = false;
+    return atlas.AddFontFromMemoryTTF(const_cast<char*>(own.data()), static_cast<int>(own.size()),
+                                      pixels, &config, all.Data);
+  };
+  add(size);
+  std::vector<std::string> files;  // until the atlas is built
+  files.reserve(fallbacks_.size());
+  for (const fs::path& fallback : fallbacks_) {
+    std::string& file = files.emplace_back(readTextFile(fallback));
+    ImFontConfig config;
+    config.FontDataOwnedByAtlas = false;
+    config.MergeMode = true;
+    atlas.AddFontFromMemoryTTF(file.data(), static_cast<int>(file.size()), size, &config,
+                               others.Data);
+  }
+  ImFont* const large = add(large_size);
+  if (!atlas.Build()) return nullptr;
+  atlas.ClearInputData();
+  return large;
+}
+
+std::size_t Letters::missingFrom(const ImFont& font) const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      needed_, [&](ImWchar letter) { return font.FindGlyphNoFallback(letter) == nullptr; }));
+}
+
+ImFont* Letters::load(ImFontAtlas& atlas, float size, float large_size) {
+  const bool anew = std::exchange(stale_, false);
+  ImFont* large = build(atlas, size, large_size);
+  if (missingFrom(*atlas.Fonts[0]) == missing_ || !anew) return large;
+  missing_ = missingFrom(*atlas.Fonts[0]);
+  for (const fs::path& font : fontsIn(directories_)) {
+    if (missing_ == 0) break;
+    if (std::ranges::find(fallbacks_, font) != fallbacks_.end()) continue;
+    fallbacks_.push_back(font);
+    bool helps = false;
+    try {
+      if (build(atlas, size, large_size) != nullptr) {
+        const std::size_t left = missingFrom(*atlas.Fonts[0]);
+        helps = left < missing_;
+        missing_ = std::min(left, missing_);
+      }
+    } catch (const InputError&) {  // a font that cannot be read is none
+    }
+    if (!helps) fallbacks_.pop_back();
+  }
+  return build(atlas, size, large_size);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,451 @@
+#include "inspector/ui/ui.h"
+
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace broadmark {
+namespace {
+
+/// Inputs are as wide as this share of their panel; their labels take the rest.
+constexpr float kInputShare = 0.52F;
+constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
+constexpr float kTooltipDelay = 0.45F;  // seconds
+
+/// The name in a label: of "Add##popup" it is "Add", of "##speed" "speed"; of a label that changes,
+/// "Pause###Play", what stays the same, "Play".
+std::string_view nameOf(std::string_view label) {
+  if (const std::size_t lasting = label.find("###"); lasting != label.npos) {
+    return label.substr(lasting + 3);
+  }
+  const std::size_t split = label.find("##");
+  if (split == 0) return label.substr(2);
+  return label.substr(0, split);
+}
+
+/// Puts the tooltip of the last item beside its window, or above it where the window is wide: under
+/// the mouse it would hide the next widget.
+void placeTooltip() {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 item = ImGui::GetItemRectMin();
+  const ImRect window = ImGui::GetCurrentWindowRead()->RootWindow->Rect();
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+  if (window.GetWidth() > 0.45F * screen.x || window.GetWidth() < 1) {
+    ImGui::SetNextWindowPos({item.x, item.y - gap}, ImGuiCond_Always, {0, 1});
+  } else if (window.GetCenter().x < screen.x / 2) {
+    ImGui::SetNextWindowPos({window.Max.x + gap, item.y});
+  } else {
+    ImGui::SetNextWindowPos({window.Min.x - gap, item.y}, ImGuiCond_Always, {1, 0});
+  }
+}
+
+}  // namespace
+
+std::string fittingText(std::string text, float room, ImFont* font) {
+  if (font == nullptr) font = ImGui::GetFont();
+  const auto width = [&](const std::string& some) {
+    return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, some.c_str()).x;
+  };
+  if (width(text) <= room) return text;
+  while (!text.empty() && width(text + "…") > room) {
+    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
+    text.pop_back();
+  }
+  return text + "…";
+}
+
+float widthOfWholeColumns(const char* table, int always) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  const ImGuiTable* const before = ImGui::TableFindByID(ImGui::GetID(table));
+  if (before == nullptr) return room;
+  float whole = before->InnerWindow->ScrollbarY ? ImGui::GetStyle().ScrollbarSize : 0;
+  for (int column = 0; column < before->ColumnsCount; ++column) {
+    const float width = before->Columns[column].MaxX - before->Columns[column].MinX;
+    if (column >= always && whole + width > room) return whole;
+    whole += width;
+  }
+  return room;
+}
+
+Ui::Scope::Scope(Ui& ui, std::string_view name) : ui_(&ui), length_(ui.scope_.size()) {
+  ui.scope_ += name;
+  ui.scope_ += '/';
+}
+
+Ui::Scope::~Scope() { ui_->scope_.resize(length_); }
+
+bool Ui::inDialog() {
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  return !popups.empty() && popups.back().Window != nullptr &&
+         (popups.back().Window->Flags & ImGuiWindowFlags_Modal) != 0;
+}
+
+void Ui::beforePicture() {
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  taken_ = (!popups.empty() && !inDialog()) || ImGui::GetIO().WantTextInput;
+}
+
+void Ui::begin() {
+  places_.clear();
+  focus_.clear();
+  const bool pressed = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
+  escaped_ = pressed && !taken_;
+  const ImVector<ImGuiPopupData>& popups = GImGui->OpenPopupStack;
+  if (pressed && taken_ && !popups.empty() && !inDialog()) {
+    ImGui::ClosePopupToLevel(popups.Size - 1, true);
+  }
+}
+
+bool Ui::entered() {
+  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter), false) ||
+         ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_KeyPadEnter), false);
+}
+
+std::string Ui::fullName(std::string_view label) const {
+  return scope_ + std::string(nameOf(label));
+}
+
+void Ui::note(std::string_view label) {
+  letters.need(label);
+  const std::string name = fullName(label);
+  if (name == revealed_) {
+    ImGui::SetScrollHereY();
+    revealed_.clear();
+  }
+  if (ImGui::IsItemFocused() && !GImGui->NavDisableHighlight) focus_ = name;
+  // Of what is partly clipped away, the rest: that is what can be pressed.
+  ImRect rect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+  const bool visible = ImGui::IsItemVisible();
+  if (visible) rect.ClipWithFull(ImGui::GetCurrentWindowRead()->ClipRect);
+  const bool disabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) != 0;
+  places_[name] = {.min = rect.Min,
+                   .max = rect.Max,
+                   .enabled = !disabled,
+                   .visible = visible && rect.GetWidth() >= 1 && rect.GetHeight() >= 1};
+}
+
+void Ui::noteAt(std::string_view name, ImVec2 min, ImVec2 max) {
+  places_[fullName(name)] = {.min = min, .max = max};
+}
+
+const WidgetPlace* Ui::find(const std::string& name) const {
+  const auto found = places_.find(name);
+  return found == places_.end() ? nullptr : &found->second;
+}
+
+void Ui::tooltip(const char* text) {
+  if (text == nullptr || *text == '\0') return;
+  if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  if (GImGui->HoveredIdTimer < kTooltipDelay) return;
+  placeTooltip();
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
+}
+
+void Ui::labelledWidth() const {
+  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
+}
+
+bool Ui::button(const char* label, const char* tip, float width) {
+  const bool pressed = ImGui::Button(label, {width, 0});
+  note(label);
+  tooltip(tip);
+  return pressed;
+}
+
+bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
+  const bool was_on = on;
+  if (was_on) {
+    ImGui::PushStyleColor(ImGuiCol_Button, colourVector(theme.fill));
+    ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colourVector(theme.fill));
+    ImGui::PushStyleColor(ImGuiCol_Text, colourVector(0xFFFFFF));
+  }
+  const bool pressed = button(label, tip, width);
+  if (was_on) ImGui::PopStyleColor(3);
+  if (pressed) on = !on;
+  return pressed;
+}
+
+bool Ui::checkbox(const char* label, bool& value, const char* tip) {
+  const bool changed = ImGui::Checkbox(label, &value);
+  note(label);
+  tooltip(tip);
+  return changed;
+}
+
+bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
+               const char* tip, float width) {
+  if (width > 0) {
+    ImGui::SetNextItemWidth(width);
+  } else {
+    labelledWidth();
+  }
+  const char* shown = chosen < options.size() ? options[chosen].c_str() : "";
+  const bool open = ImGui::BeginCombo(label, shown, ImGuiComboFlags_HeightLarge);
+  note(label);
+  if (!open) {
+    tooltip(tip);
+    return false;
+  }
+  bool changed = false;
+  const Scope inside = scope(nameOf(label));
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    if (ImGui::Selectable(options[i].c_str(), i == chosen)) {
+      changed = i != chosen;
+      chosen = i;
+    }
+    note(options[i]);
+    if (i == chosen) ImGui::SetItemDefaultFocus();
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+bool Ui::selectable(const char* label, bool selected, const char* tip) {
+  const bool pressed = ImGui::Selectable(label, selected);
+  note(label);
+  tooltip(tip);
+  return pressed;
+}
+
+bool Ui::selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                    const char* tip) {
+  const std::string shown = fittingText(label, roomBefore(right));
+  ImGui::PushID(label);
+  const bool pressed = ImGui::Selectable(fmt::format("{}##row", shown).c_str(), selected,
+                                         ImGuiSelectableFlags_AllowDoubleClick);
+  ImGui::PopID();
+  note(label);
+  tooltip(tip == nullptr && shown != label ? label : tip);
+  atRightEnd(right, right_colour);
+  return pressed;
+}
+
+bool Ui::text(const char* label, std::string& value, const char* hint) {
+  labelledWidth();
+  letters.need(value);
+  ImGui::InputTextWithHint(label, hint, &value);
+  note(label);
+  return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+template <class Number>
+bool Ui::enterNumber(const char* label, std::string_view name, Number& value, Number min,
+                     Number max, const char* tip) {
+  constexpr bool kWhole = std::is_integral_v<Number>;
+  Number entered = value;
+  ImGui::InputScalar(label, kWhole ? ImGuiDataType_S64 : ImGuiDataType_Double, &entered, nullptr,
+                     nullptr, kWhole ? "%lld" : "%.6g");
+  note(name);
+  tooltip(tip);
+  // While it is typed the number may be out of range.
+  if (ImGui::IsItemActive()) {
+    value = entered;
+    return false;
+  }
+  const bool in_range = value >= min && value <= max;  // false for NaN
+  const bool changed = ImGui::IsItemDeactivatedAfterEdit() || !in_range;
+  if (!changed) return false;
+  value = entered >= min ? std::min(entered, max) : min;
+  if (value != entered && on_correction) {
+    on_correction(
+        fmt::format("{}: {} is not from {} to {}; {} was taken", name, entered, min, max, value));
+  }
+  return true;
+}
+
+bool Ui::integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
+                 const char* tip) {
+  labelledWidth();
+  return enterNumber(label, label, value, min, max, tip);
+}
+
+bool Ui::number(const char* label, double& value, double min, double max, const char* tip) {
+  labelledWidth();
+  return enterNumber(label, label, value, min, max, tip);
+}
+
+bool Ui::entry(const char* name, double& value, double min, double max, const char* tip) {
+  return enterNumber(fmt::format("##{}", name).c_str(), name, value, min, max, tip);
+}
+
+bool Ui::vector(const char* label, std::array<double, 3>& value, double min, double max,
+                const char* tip) {
+  constexpr const char* kComponents[] = {"x", "y", "z"};
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x / 2;
+  // Three numbers need more room than one; they end where other inputs do not.
+  const float width = std::floor((ImGui::GetContentRegionAvail().x * kVectorShare - 2 * gap) / 3);
+  bool changed = false;
+  ImGui::PushID(label);
+  for (std::size_t axis = 0; axis < value.size(); ++axis) {
+    if (axis > 0) ImGui::SameLine(0, gap);
+    ImGui::SetNextItemWidth(std::max(width, 1.0F));
+    changed |=
+        enterNumber(fmt::format("##{}", kComponents[axis]).c_str(),
+                    fmt::format("{} {}", label, kComponents[axis]), value[axis], min, max, tip);
+  }
+  ImGui::PopID();
+  ImGui::SameLine(0, ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::TextUnformatted(label);
+  return changed;
+}
+
+bool Ui::slider(const char* label, int& value, int min, int max) {
+  // Of whole numbers Dear ImGui makes the grab as wide as a step: of few it would look half full.
+  auto real = static_cast<float>(value);
+  const bool changed =
+      ImGui::SliderFloat(label, &real, static_cast<float>(min), static_cast<float>(max), "",
+                         ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat);
+  value = static_cast<int>(std::lround(real));
+  note(label);
+  return changed;
+}
+
+bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool enabled) {
+  const bool pressed = ImGui::MenuItem(label, shortcut, selected, enabled);
+  note(label);
+  return pressed;
+}
+
+bool Ui::beginMenu(const char* label) {
+  const bool open = ImGui::BeginMenu(label);
+  // Inside the menu the last item is not its title any more.
+  if (!open) note(label);
+  return open;
+}
+
+bool Ui::parameter(const Parameter& parameter) {
+  const std::string name(parameter.name);
+  const std::string tip = fmt::format("{}\n{}", parameter.doc, parameterRange(parameter));
+  if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
+    return checkbox(name.c_str(), **flag, tip.c_str());
+  }
+  const auto with_unit = [&](bool changed) {
+    const std::string_view unit = parameterUnit(parameter);
+    if (unit.empty()) return changed;
+    ImGui::SameLine();
+    // Where there is no room for it the tooltip says it.
+    const ImVec2 wanted = ImGui::CalcTextSize(unit.data(), unit.data() + unit.size());
+    if (ImGui::GetContentRegionAvail().x >= wanted.x) {
+      faint(unit);
+    } else {
+      ImGui::NewLine();
+    }
+    return changed;
+  };
+  if (std::int64_t* const* whole = std::get_if<std::int64_t*>(&parameter.value)) {
+    return with_unit(integer(name.c_str(), **whole, static_cast<std::int64_t>(parameter.min),
+                             static_cast<std::int64_t>(std::min(parameter.max, 9.2e18)),
+                             tip.c_str()));
+  }
+  if (double* const* real = std::get_if<double*>(&parameter.value)) {
+    return with_unit(number(name.c_str(), **real, parameter.min, parameter.max, tip.c_str()));
+  }
+  if (Choice* const* choice = std::get_if<Choice*>(&parameter.value)) {
+    const auto& options = (*choice)->options;
+    auto chosen =
+        static_cast<std::size_t>(std::ranges::find(options, (*choice)->value) - options.begin());
+    if (!combo(name.c_str(), chosen, options, tip.c_str())) return false;
+    (*choice)->value = options[chosen];
+    return true;
+  }
+  const bool changed = text(name.c_str(), *std::get<std::string*>(parameter.value));
+  tooltip(tip.c_str());
+  return changed;
+}
+
+bool Ui::parameters(Parametrised& object) {
+  bool changed = false;
+  object.visitParameters([&](const Parameter& p) { changed |= parameter(p); });
+  return changed;
+}
+
+void Ui::placeInMiddle(ImVec2 size) const {
+  const float margin = 16;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Always, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize(
+      {std::min(size.x * scale, screen.x - margin), std::min(size.y * scale, screen.y - margin)});
+}
+
+bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
+  placeInMiddle(size);
+  return ImGui::BeginPopupModal(title, keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
+}
+
+bool Ui::cancel(float width) {
+  const bool pressed = button("Cancel", nullptr, width);
+  return pressed || escaped();
+}
+
+void Ui::besideIfRoom(float width) {
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  if (ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width <= right) {
+    ImGui::SameLine();
+  }
+}
+
+float Ui::roomBefore(std::string_view right) {
+  return ImGui::GetContentRegionAvail().x -
+         ImGui::CalcTextSize(right.data(), right.data() + right.size()).x -
+         ImGui::GetStyle().ItemSpacing.x;
+}
+
+void Ui::atRightEnd(std::string_view words, Rgb rgb) {
+  ImGui::SameLine(ImGui::GetContentRegionMax().x -
+                  ImGui::CalcTextSize(words.data(), words.data() + words.size()).x);
+  coloured(rgb, words);
+}
+
+void Ui::line(std::string_view left, std::string_view right, Rgb right_colour) {
+  const std::string shown = fittingText(std::string(left), roomBefore(right));
+  plain(shown);
+  if (shown != left) tooltip(std::string(left).c_str());
+  atRightEnd(right, right_colour);
+}
+
+void Ui::fact(const char* name, std::string_view value) {
+  faint(name);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
+  plain(value);
+}
+
+void Ui::plain(std::string_view words) {
+  letters.need(words);
+  ImGui::TextUnformatted(words.data(), words.data() + words.size());
+}
+
+void Ui::faint(std::string_view words) { coloured(theme.faint, words); }
+
+void Ui::coloured(Rgb rgb, std::string_view words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, colourVector(rgb));
+  plain(words);
+  ImGui::PopStyleColor();
+}
+
+void Ui::heading(const char* words) {
+  ImGui::Dummy({0, ImGui::GetStyle().ItemSpacing.y / 2});
+  faint(words);
+  ImGui::Separator();
+}
+
+void Ui::paragraph(std::string_view words) {
+  ImGui::PushTextWrapPos(0);
+  plain(words);
+  ImGui::PopTextWrapPos();
+}
+
+void Ui::faintParagraph(std::string_view words) {
+  ImGui::PushTextWrapPos(0);
+  faint(words);
+  ImGui::PopTextWrapPos();
+}
+
+}  // namespace broadmark

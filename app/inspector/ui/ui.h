@@ -1,0 +1,184 @@
+// Widgets, by name: Dear ImGui's, each noted with its place, so that scripts and tests find them;
+// and the look of all of them.
+#pragma once
+
+#include <imgui.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/debug_draw.h"
+#include "broadmark/parameters.h"
+#include "inspector/ui/letters.h"
+
+namespace broadmark {
+
+/// Where a widget was in the last picture.
+struct WidgetPlace {
+  ImVec2 min;
+  ImVec2 max;
+  bool enabled = true;
+  bool visible = true;  ///< not scrolled or clipped away
+};
+
+/// Colours that stand for something.
+struct Theme {
+  bool dark = true;
+  Rgb accent = 0;
+  Rgb fill = 0;  ///< behind the white text of what is switched on
+  Rgb good = 0;
+  Rgb bad = 0;
+  Rgb warning = 0;
+  Rgb first = 0;       ///< of two bodies
+  Rgb second = 0;      ///< likewise
+  Rgb faint = 0;       ///< text of less importance
+  Rgb background = 0;  ///< of the view
+};
+
+ImVec4 colourVector(Rgb rgb, float alpha = 1);
+ImU32 colour(Rgb rgb, float alpha = 1);
+
+/// The widgets of one picture. A widget's name is its label, after the names of the scopes around
+/// it: "Scene/objects". Every method that is called as a Dear ImGui widget behaves like it.
+class Ui {
+ public:
+  /// Until destroyed, names are in this scope. (Dear ImGui does not see it.)
+  class Scope {
+   public:
+    Scope(Ui& ui, std::string_view name);
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+
+   private:
+    Ui* ui_;
+    std::size_t length_;
+  };
+  [[nodiscard]] Scope scope(std::string_view name) { return {*this, name}; }
+
+  /// To be called before and after a picture is begun: forgets the places of the last one.
+  void beforePicture();
+  void begin();
+  /// Whether Escape was pressed, for what is in front: a list that is open or text that is being
+  /// typed takes it first.
+  [[nodiscard]] bool escaped() const { return escaped_; }
+  /// Whether a dialog is in front.
+  [[nodiscard]] static bool inDialog();
+  /// The widget that keys have moved to; "": none.
+  [[nodiscard]] const std::string& focused() const { return focus_; }
+  /// Likewise Enter, which text being typed does not take.
+  [[nodiscard]] static bool entered();
+
+  bool button(const char* label, const char* tooltip = nullptr, float width = 0);
+  /// A button that stays pressed while `on`.
+  bool toggle(const char* label, bool& on, const char* tooltip = nullptr, float width = 0);
+  bool checkbox(const char* label, bool& value, const char* tooltip = nullptr);
+  /// Chooses one of `options`; returns whether it changed.
+  bool combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
+             const char* tooltip = nullptr, float width = 0);
+  bool selectable(const char* label, bool selected, const char* tooltip = nullptr);
+  /// The same with words at the right end of its line; what does not fit of the label is cut.
+  bool selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                  const char* tooltip = nullptr);
+  bool text(const char* label, std::string& value, const char* hint = "");
+  /// Numbers count when they are entered (Enter, Tab, or a click elsewhere), within their range.
+  bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
+               const char* tooltip = nullptr);
+  bool number(const char* label, double& value, double min, double max,
+              const char* tooltip = nullptr);
+  /// The same without a label beside it, as wide as has been set.
+  bool entry(const char* name, double& value, double min, double max, const char* tooltip);
+  /// Three numbers side by side, called "LABEL x", "LABEL y" and "LABEL z".
+  bool vector(const char* label, std::array<double, 3>& value, double min, double max,
+              const char* tooltip = nullptr);
+  /// Without the number, which the grab would cover: that belongs into the label.
+  bool slider(const char* label, int& value, int min, int max);
+  bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
+                bool enabled = true);
+  bool beginMenu(const char* label);
+  /// The widget that suits a parameter, its explanation as a tooltip.
+  bool parameter(const Parameter& parameter);
+  /// All parameters of an object. Returns whether one changed.
+  bool parameters(Parametrised& object);
+
+  /// Puts the next window in the middle of the screen, of this size (in units; 0: what its contents
+  /// need) or as large as the screen allows.
+  void placeInMiddle(ImVec2 size) const;
+  /// A dialog, placed likewise, whose popup has been opened. Its cross makes `keep` false.
+  /// Returns whether it is drawn: then ImGui::EndPopup() follows.
+  bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
+  /// A dialog's button "Cancel", which Escape presses, too.
+  bool cancel(float width = 0);
+
+  /// Puts what is `width` wide beside the last item, or, without room for it, into the next line.
+  static void besideIfRoom(float width);
+  /// Words on the left, which are cut if need be, and on the right end of the line others.
+  void line(std::string_view left, std::string_view right, Rgb right_colour);
+  /// What remains of the line once there is room on its right for these words.
+  [[nodiscard]] static float roomBefore(std::string_view right);
+  /// Writes at the right end of the line that an item has begun.
+  void atRightEnd(std::string_view words, Rgb rgb);
+  /// A table row "name: value" in two columns.
+  void fact(const char* name, std::string_view value);
+  void plain(std::string_view text);
+  void faint(std::string_view text);
+  void coloured(Rgb rgb, std::string_view text);
+  void heading(const char* text);
+  // Wrapped text.
+  void paragraph(std::string_view text);
+  void faintParagraph(std::string_view text);
+  void tooltip(const char* text);
+
+  /// Notes the item drawn last under a name of its own.
+  void note(std::string_view name);
+  /// Notes a place that is not an item's.
+  void noteAt(std::string_view name, ImVec2 min, ImVec2 max);
+  /// The place of a widget in the last picture, until the next one; or null.
+  [[nodiscard]] const WidgetPlace* find(const std::string& name) const;
+  [[nodiscard]] const std::map<std::string, WidgetPlace>& places() const { return places_; }
+  /// Scrolls to this widget when it is drawn next.
+  void reveal(std::string name) { revealed_ = std::move(name); }
+
+  /// Called when a number that was entered is not taken as it is, with why.
+  std::function<void(const std::string&)> on_correction;
+
+  Letters letters;  ///< of all texts that pass through here
+  Theme theme;
+  float scale = 1;          ///< pixels per unit
+  ImFont* large = nullptr;  ///< for what is to be seen first
+
+ private:
+  [[nodiscard]] std::string fullName(std::string_view label) const;
+  /// An input for a number, noted as `name`, as wide as has been set.
+  template <class Number>
+  bool enterNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
+                   const char* tooltip);
+  /// Width of an input whose label stands to its right.
+  void labelledWidth() const;
+
+  std::string scope_;
+  std::map<std::string, WidgetPlace> places_;
+  std::string revealed_;
+  std::string focus_;
+  bool taken_ = false;  ///< Escape, by what is open before the picture
+  bool escaped_ = false;
+};
+
+/// The text; of one that is wider than `room` as much of its beginning as fits, and "…". `font`:
+/// the present one if null.
+std::string fittingText(std::string text, float room, ImFont* font = nullptr);
+
+/// How wide a table may be here so that of its columns, as they were in the last picture, each one
+/// in sight is seen wholly: half a number would be a wrong one. The first `always` are shown
+/// anyhow.
+float widthOfWholeColumns(const char* table, int always);
+
+/// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
+void applyTheme(Ui& ui, bool dark, float scale);
+
+}  // namespace broadmark

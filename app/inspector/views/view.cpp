@@ -1,0 +1,306 @@
+#include "inspector/views/view.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "broadmark/render/input_queue.h"
+#include "broadmark/render/ui_renderer.h"
+#include "inspector/views/view_overlay.h"
+
+namespace broadmark {
+namespace {
+
+constexpr float kFlightSeconds = 0.45F;
+constexpr float kRadiansPerHeight = 3.2F;  // of a drag across the whole view
+constexpr float kZoomPerTurn = 0.86F;
+constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
+constexpr float kClickPixels = 3;   // a press that moves less is a click
+constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
+
+Aabb enlargedBy(const Aabb& box, float factor) {
+  float longest = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, box.max[axis] - box.min[axis]);
+  }
+  return enlarged(box, (factor - 1) * longest / 2);
+}
+
+/// Whole groups, unless Alt is down.
+BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
+  return ImGui::GetIO().KeyAlt ? bodies : session.selection.whole(std::move(bodies));
+}
+
+}  // namespace
+
+std::span<const FlyKey> flyKeys() {
+  static constexpr std::array<FlyKey, 6> kKeys = {{{GLFW_KEY_W, {1, 0, 0}, "forwards"},
+                                                   {GLFW_KEY_S, {-1, 0, 0}, "backwards"},
+                                                   {GLFW_KEY_A, {0, -1, 0}, "to the left"},
+                                                   {GLFW_KEY_D, {0, 1, 0}, "to the right"},
+                                                   {GLFW_KEY_Q, {0, 0, -1}, "down"},
+                                                   {GLFW_KEY_E, {0, 0, 1}, "up"}}};
+  return kKeys;
+}
+
+View::View(const Gl& gl, Role role) : role_(role), scene_(gl) {}
+
+double View::aspect() const { return static_cast<double>(width_) / height_; }
+
+void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); }
+
+void View::lookAtAll() {
+  if (!content_.snapshot()) return;
+  const Aabb all = shownBox(content_.snapshot()->scene.world, *content_.snapshot()->boxes);
+  OrbitCamera whole = focusedOn(camera_, space_.toView(all), aspect());
+  whole.cut = OrbitCamera::kUncut;
+  fly(whole);
+}
+
+void View::fly(const OrbitCamera& to) { flight_ = Flight{.from = camera_, .to = to}; }
+
+void View::moveOn(float seconds) {
+  if (!flight_) return;
+  flight_->part += seconds / kFlightSeconds;
+  camera_ = between(flight_->from, flight_->to, std::min(flight_->part, 1.0F));
+  if (flight_->part >= 1) flight_.reset();
+}
+
+void View::takeFlightRequest(Session& session) {
+  if (!session.selection.fly_to) return;
+  std::vector<std::uint32_t> bodies = *std::exchange(session.selection.fly_to, {});
+  std::erase_if(bodies,
+                [&](std::uint32_t body) { return body >= content_.snapshot()->boxes->size(); });
+  if (bodies.empty()) {
+    lookAtAll();
+    return;
+  }
+  const Aabb bounds = content_.boundsOf(bodies);
+  if (isEmpty(bounds)) return;  // all of them are absent
+  const Aabb surroundings = space_.toView(enlargedBy(bounds, kSurroundings));
+  // What stands before them would hide them.
+  fly(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
+}
+
+void View::update(Session& session, const RunProgress& progress, bool dark) {
+  const auto& snapshot = role_ == Role::first ? progress.snapshot : progress.second;
+  if (!snapshot || !content_.update(snapshot, progress.comparison, session, dark)) return;
+  placeCamera(*snapshot);
+  const int chosen =
+      role_ == Role::second && session.second ? session.second->lane : session.lanes.shown();
+  answer_ = answerText(*snapshot, progress.lanes, chosen, content_.selection());
+}
+
+void View::placeCamera(const Snapshot& snapshot) {
+  const auto seen = std::exchange(footage_, snapshot.footage);
+  const bool new_scene =
+      !seen || (seen != footage_ && (seen->scene == 0 || seen->scene != footage_->scene));
+  if (!new_scene) return;
+  const Aabb all = shownBox(snapshot.scene.world, *snapshot.boxes);
+  space_ = viewSpaceOf(all);
+  camera_ = focusedOn(lookedFrom({}, Direction::figure), space_.toView(all), aspect());
+  flight_.reset();
+}
+
+void View::follow(const View& leader) {
+  camera_ = leader.camera_;
+  space_ = leader.space_;
+  flight_.reset();
+}
+
+void View::drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size) {
+  ImGui::InvisibleButton("scene", size);
+  ui.note("scene");
+  const std::string shown = fittingText(hint, size.x);
+  const ImVec2 text = ImGui::CalcTextSize(shown.c_str());
+  ImGui::GetWindowDrawList()->AddText(
+      {corner.x + (size.x - text.x) / 2, corner.y + (size.y - text.y) / 2}, colour(ui.theme.faint),
+      shown.c_str());
+}
+
+void View::drawScene(const Ui& ui, ImVec2 corner, ImVec2 size) {
+  SceneViewContent picture = content_.picture();
+  picture.space = space_;
+  picture.scale = ui.scale;
+  scene_.resize(width_, height_);
+  scene_.draw(picture, camera_);
+  ImGui::GetWindowDrawList()->AddImage(uiTexture(scene_.texture()), corner,
+                                       {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
+}
+
+void View::draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader) {
+  const bool first = role_ == Role::first;
+  const auto scope = ui.scope(first ? "View" : "Second view");
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
+  width_ = static_cast<int>(size.x);
+  height_ = static_cast<int>(size.y);
+  moved_ = false;
+  update(session, progress, ui.theme.dark);
+  if (!content_.snapshot() || (!first && !progress.second)) {
+    const char* hint = first ? "Simulate a scene, or drop a recording here"
+                       : progress.second_failure.empty() ? "Nothing is shown yet"
+                                                         : progress.second_failure.c_str();
+    drawEmpty(ui, hint, corner, size);
+    return;
+  }
+  if (leader != nullptr) {
+    follow(*leader);
+  } else {
+    takeFlightRequest(session);
+  }
+  const OrbitCamera before = camera_;
+  moveOn(ImGui::GetIO().DeltaTime);
+  drawScene(ui, corner, size);
+  ImGui::SetCursorScreenPos(corner);
+  ImGui::InvisibleButton("scene", size,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  ui.note("scene");
+  const ImGuiIO& io = ImGui::GetIO();
+  Hands::Seen seen{.session = session,
+                   .snapshot = content_.snapshot(),
+                   .visible = content_.picture().visible,
+                   .sight = Sight(space_, scene_.viewpoint()),
+                   .scale = ui.scale,
+                   .mouse = {},
+                   .ctrl = io.KeyCtrl};
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    seen.mouse = Pixel{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  }
+  if (first) hands_.look(seen);
+  handleMouse(ui, seen, corner, size);
+  if (first) hands_.draw(ui, seen, corner);
+  moved_ = camera_ != before;
+  answer_.where = session.second ? whereText(*content_.snapshot()) : "";
+  const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
+  const bool tools = first && session.document.shown();
+  const float free = tools ? drawTools(ui, session, corner, size) : size.y;
+  drawLegend(ui,
+             {.legend = content_.legend(),
+              .oracle = content_.oracleLegend(),
+              .owner = answer_.owner,
+              .cells = content_.cellLegend(),
+              .left_out = content_.leftOut()},
+             corner, {size.x, free}, taken);
+  if (session.view.axes) drawAxisNames(corner, ui.scale);
+}
+
+void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
+  const ImGuiIO& io = ImGui::GetIO();
+  drag_from_ = mouse;
+  dragged_ = false;
+  drag_ = !io.MouseDown[0]                             ? Drag::pan
+          : io.KeyShift                                ? Drag::rectangle
+          : role_ == Role::first && hands_.press(seen) ? Drag::hands
+                                                       : Drag::orbit;
+  flight_.reset();
+}
+
+void View::handleRelease(const Hands::Seen& seen, ImVec2 mouse) {
+  const Drag drag = std::exchange(drag_, Drag::none);
+  if (drag == Drag::hands && !hands_.busy()) return;  // given up
+  if (hands_.busy() && (dragged_ || hands_.painting())) {
+    hands_.release(seen);
+  } else if (drag == Drag::rectangle && dragged_) {
+    selectWithin(seen.session, drag_from_, mouse);
+  } else if (!dragged_ && drag != Drag::pan) {
+    hands_.cancel();
+    click(seen.session, mouse, ImGui::GetIO().MouseDoubleClicked[0]);
+  }
+}
+
+void View::handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  if (ImGui::IsItemActivated()) beginDrag(seen, mouse);
+  if (ImGui::IsItemActive()) handleDrag(corner, size);
+  if (ImGui::IsItemDeactivated()) handleRelease(seen, mouse);
+  // While a body is in hand, the camera stays where it is.
+  if (!ImGui::IsItemHovered() || hands_.busy()) return;
+  if (ImGui::IsMouseDoubleClicked(0)) click(seen.session, mouse, true);
+  if (io.MouseWheel != 0) {
+    flight_.reset();
+    const float x = 2 * mouse.x / size.x - 1;
+    const float y = 1 - 2 * mouse.y / size.y;
+    camera_ =
+        zoomed(camera_, std::pow(kZoomPerTurn, io.MouseWheel), pointUnder(camera_, aspect(), x, y));
+  }
+  if (!io.WantTextInput && !io.KeyCtrl) handleKeys();
+  if (drag_ == Drag::rectangle && dragged_) {
+    const ImVec2 from{corner.x + drag_from_.x, corner.y + drag_from_.y};
+    ImGui::GetWindowDrawList()->AddRectFilled(from, io.MousePos, colour(ui.theme.accent, 0.15F));
+    ImGui::GetWindowDrawList()->AddRect(from, io.MousePos, colour(ui.theme.accent));
+  }
+}
+
+void View::handleDrag(ImVec2 corner, ImVec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+  if (!dragged_ && std::hypot(mouse.x - drag_from_.x, mouse.y - drag_from_.y) <= kClickPixels) {
+    return;
+  }
+  const ImVec2 moved =
+      dragged_ ? io.MouseDelta : ImVec2{mouse.x - drag_from_.x, mouse.y - drag_from_.y};
+  dragged_ = true;
+  if (drag_ == Drag::orbit) {
+    camera_ = orbited(camera_, -moved.x / size.y * kRadiansPerHeight,
+                      moved.y / size.y * kRadiansPerHeight);
+  } else if (drag_ == Drag::pan) {
+    camera_ = panned(camera_, moved.x / size.y, -moved.y / size.y);
+  }
+}
+
+void View::handleKeys() {
+  const float step = kFlySpeed * ImGui::GetIO().DeltaTime;
+  std::array<float, 3> way{};
+  bool any = false;
+  for (const FlyKey& fly : flyKeys()) {
+    if (!ImGui::IsKeyDown(fly.key)) continue;
+    any = true;
+    for (std::size_t i = 0; i < way.size(); ++i) way[i] += step * fly.direction[i];
+  }
+  if (!any) return;
+  flight_.reset();
+  camera_ = flown(camera_, way[0], way[1], way[2]);
+}
+
+void View::click(Session& session, ImVec2 at, bool fly_there) {
+  const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), at.x, at.y,
+                               content_.picture().visible);
+  if (!picked) {
+    if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
+    return;
+  }
+  const BodySelection::Bodies bodies = withGroups(session, {picked->body});
+  if (ImGui::GetIO().KeyCtrl) {
+    session.selection.toggle(bodies);
+  } else {
+    session.selection.select(bodies);
+  }
+  if (fly_there) session.selection.fly_to = std::vector<std::uint32_t>{picked->body};
+}
+
+void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
+  session.selection.select(withGroups(
+      session, bodiesWithin(*content_.snapshot()->boxes, space_, scene_.viewpoint(),
+                            {{from.x, from.y}, {to.x, to.y}}, content_.picture().visible)));
+}
+
+void View::drawAxisNames(ImVec2 corner, float scale) const {
+  const auto tips = axisTips(scene_.viewpoint(), scale);
+  constexpr const char* kNames[] = {"x", "y", "z"};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const ImVec2 text = ImGui::CalcTextSize(kNames[axis]);
+    ImGui::GetWindowDrawList()->AddText(
+        {corner.x + tips[axis][0] - text.x / 2, corner.y + tips[axis][1] - text.y / 2},
+        ImGui::GetColorU32(ImGuiCol_Text), kNames[axis]);
+  }
+}
+
+}  // namespace broadmark

@@ -1,0 +1,96 @@
+// The view of the scene: its camera, and what the mouse does in it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "broadmark/render/gl.h"
+#include "broadmark/render/input_queue.h"
+#include "broadmark/render/orbit_camera.h"
+#include "broadmark/render/scene_view.h"
+#include "inspector/authoring/hands.h"
+#include "inspector/session/answer_text.h"
+#include "inspector/session/session.h"
+#include "inspector/ui/ui.h"
+#include "inspector/views/view_content.h"
+
+namespace broadmark {
+
+/// Keys that fly while they are held and the mouse is over the view.
+struct FlyKey {
+  Key key = 0;
+  std::array<float, 3> direction{};  ///< forward, right, up
+  const char* doc = "";
+};
+std::span<const FlyKey> flyKeys();
+
+class View {
+ public:
+  /// Whether it shows what is played, where the hands are, or what stands beside that.
+  enum class Role { first, second };
+  explicit View(const Gl& gl, Role role = Role::first);
+
+  /// Fills the current window. `leader`: whose camera it takes over; null: it has its own.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader = nullptr);
+  /// Takes over the other one's camera.
+  void follow(const View& leader);
+  /// Whether the user has moved the camera in the last picture.
+  [[nodiscard]] bool moved() const { return moved_; }
+  /// Whether it moves by itself.
+  [[nodiscard]] bool lively() const { return flight_.has_value(); }
+  [[nodiscard]] const ViewContent& content() const { return content_; }
+  /// Whose answer is seen.
+  [[nodiscard]] const AnswerText& answer() const { return answer_; }
+  [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
+  /// What the mouse does with bodies.
+  [[nodiscard]] Hands& hands() { return hands_; }
+
+  void lookFrom(Direction direction);
+  void lookAtAll();
+
+ private:
+  struct Flight {
+    OrbitCamera from;
+    OrbitCamera to;
+    float part = 0;
+  };
+
+  void update(Session& session, const RunProgress& progress, bool dark);
+  void drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size);
+  void drawScene(const Ui& ui, ImVec2 corner, ImVec2 size);
+  /// Of a scene that has not been looked at so far.
+  void placeCamera(const Snapshot& snapshot);
+  void takeFlightRequest(Session& session);
+  void fly(const OrbitCamera& to);
+  void moveOn(float seconds);
+  void handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size);
+  void handleRelease(const Hands::Seen& seen, ImVec2 mouse);
+  void handleDrag(ImVec2 corner, ImVec2 size);
+  void handleKeys();
+  void beginDrag(const Hands::Seen& seen, ImVec2 mouse);
+  void click(Session& session, ImVec2 at, bool fly_there);
+  void selectWithin(Session& session, ImVec2 from, ImVec2 to);
+  void drawAxisNames(ImVec2 corner, float scale) const;
+  [[nodiscard]] double aspect() const;
+
+  const Role role_;
+  SceneView scene_;
+  ViewContent content_;
+  ViewSpace space_;
+  OrbitCamera camera_;
+  std::optional<Flight> flight_;
+  bool moved_ = false;
+  std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
+  AnswerText answer_;
+  Hands hands_;
+  int width_ = 1;
+  int height_ = 1;
+  enum class Drag { none, orbit, pan, rectangle, hands } drag_ = Drag::none;
+  ImVec2 drag_from_;
+  bool dragged_ = false;  ///< the mouse has moved since the button went down
+};
+
+}  // namespace broadmark

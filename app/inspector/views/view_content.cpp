@@ -1,0 +1,185 @@
+#include "inspector/views/view_content.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+namespace broadmark {
+namespace {
+
+constexpr std::size_t kMostXrayed = 2000;
+
+constexpr Rgb kMissed = 0xE5484D;
+constexpr Rgb kLine = 0x4C8DFF;
+
+}  // namespace
+
+Aabb ViewContent::boundsOf(std::span<const std::uint32_t> bodies) const {
+  Aabb bounds = kEmptyBox;
+  for (const std::uint32_t body : bodies) bounds = merged(bounds, (*shown_.snapshot->boxes)[body]);
+  return bounds;
+}
+
+bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
+                         const std::shared_ptr<const PairComparison>& comparison,
+                         const Session& session, bool dark) {
+  // What has just been added is selected already, but not to be seen yet.
+  std::vector<std::uint32_t> selection = session.selection.bodies();
+  std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
+  const bool same = snapshot == shown_.snapshot && comparison == shown_.comparison &&
+                    selection == shown_.selection && session.view == shown_.options &&
+                    dark == shown_.dark;
+  if (same) return false;
+  shown_ = {snapshot, comparison, std::move(selection), session.view, dark};
+  picture_.world = snapshot->scene.world;
+  picture_.shows_world = session.view.world_box;
+  picture_.shows_grid = session.view.ground;
+  picture_.shows_axes = session.view.axes;
+  picture_.theme = dark ? kDarkScene : kLightScene;
+  ++revision_;
+  updateBodies();
+  updateVisible();
+  picture_.visible = visible_;
+  updateLines();
+  return true;
+}
+
+void ViewContent::updateBodies() {
+  const Snapshot& snapshot = *shown_.snapshot;
+  const ColourMode& mode = shown_.options.colourMode();
+  ColouringInput input{
+      .boxes = *snapshot.boxes,
+      .previous = snapshot.boxes_before ? std::span<const Aabb>(*snapshot.boxes_before)
+                                        : std::span<const Aabb>(),
+      .overlaps = snapshot.overlaps,
+      .tests = snapshot.structure ? std::span<const std::uint32_t>(snapshot.structure->tests())
+                                  : std::span<const std::uint32_t>(),
+      .layers = snapshot.scene.filter.layers(),
+      .missed = snapshot.difference.missed_pairs,
+      .false_pairs = snapshot.difference.false_pairs,
+      .comparison = nullptr,
+      .dark = shown_.dark};
+  ColouringInput::Comparison comparison;
+  if (shown_.comparison) {
+    comparison = {shown_.comparison->first_only, shown_.comparison->second_only};
+    input.comparison = &comparison;
+  }
+  oracle_legend_.clear();
+  if (mode.of_answer && snapshot.checked) {
+    input.overlaps = snapshot.right_overlaps;
+    mode.colour(input, colouring_);
+    oracle_legend_ = std::move(colouring_.legend);
+    input.overlaps = snapshot.overlaps;
+  }
+  mode.colour(input, colouring_);
+  picture_.boxes = *snapshot.boxes;
+  picture_.colours = colouring_.colours;
+  picture_.selected = shown_.selection;
+  picture_.bodies_revision = revision_;
+}
+
+void ViewContent::updateVisible() {
+  const Snapshot& snapshot = *shown_.snapshot;
+  const ViewOptions& options = shown_.options;
+  visible_.clear();
+  if (!options.hide_free && !options.filter.hides()) return;
+  visible_.assign(snapshot.boxes->size(), 1);
+  if (options.hide_free) {
+    for (std::size_t body = 0; body < visible_.size(); ++body) {
+      visible_[body] = snapshot.overlaps[body] > 0 ? 1 : 0;
+    }
+    // What is missing is what one looks for.
+    for (const Pair& pair : snapshot.difference.missed_pairs) {
+      visible_[pair.a] = visible_[pair.b] = 1;
+    }
+  }
+  hideBodies(options.filter,
+             {.boxes = *snapshot.boxes,
+              .layers = snapshot.scene.filter.layers(),
+              .classes = colouring_.classes,
+              .world = snapshot.scene.world},
+             visible_);
+  for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
+}
+
+std::size_t ViewContent::hiddenBodies() const {
+  return static_cast<std::size_t>(std::ranges::count(visible_, 0));
+}
+
+void ViewContent::addXray() {
+  for (const std::uint32_t body :
+       std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
+    wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
+                           .colour = picture_.theme.selection,
+                           .width = 2.5F,
+                           .behind = Behind::shown});
+  }
+}
+
+void ViewContent::add(Overlay overlay) {
+  lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
+  wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
+  left_out_ += overlay.left_out;
+  if (!overlay.legend.empty()) cell_legend_ = std::move(overlay.legend);
+}
+
+void ViewContent::addTracks(std::span<const Track> tracks) {
+  for (const Track& track : tracks) {
+    for (std::size_t i = 1; i < track.boxes.size(); ++i) {
+      if (isEmpty(track.boxes[i - 1]) || isEmpty(track.boxes[i])) continue;
+      const auto middle = [&](const Aabb& box) {
+        std::array<float, 3> centre{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          centre[axis] = static_cast<float>(centreOf(box, axis));
+        }
+        return centre;
+      };
+      lines_.push_back({.from = middle(track.boxes[i - 1]),
+                        .to = middle(track.boxes[i]),
+                        .colour = picture_.theme.selection,
+                        .behind = Behind::faint});
+    }
+  }
+}
+
+void ViewContent::updateLines() {
+  const Snapshot& snapshot = *shown_.snapshot;
+  const std::span<const Aabb> boxes = *snapshot.boxes;
+  const ViewOptions& options = shown_.options;
+  lines_.clear();
+  wire_boxes_.clear();
+  left_out_ = 0;
+  cell_legend_.clear();
+  const std::optional<std::span<const std::uint32_t>> selected =
+      options.lines_of_all ? std::nullopt
+                           : std::optional<std::span<const std::uint32_t>>(shown_.selection);
+  if (options.pair_lines) {
+    const PairRun run = snapshot.pairs;
+    add(pairLines(boxes, {&run, 1}, {.colour = kLine}, selected));
+  }
+  if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
+    add(pairLines(boxes, {&missed, 1},
+                  {.colour = kMissed, .width = 2.5F, .behind = Behind::shown}));
+  }
+  if (snapshot.structure && options.structure) {
+    StructureLook look{.by_population = options.structure_population, .dark = shown_.dark};
+    if (options.structure_level >= 0) {
+      look.first_level = look.last_level = options.structure_level;
+    }
+    const Aabb selected_box = boundsOf(shown_.selection);
+    if (options.structure_near && !isEmpty(selected_box)) look.near = selected_box;
+    add(structureOverlay(*snapshot.structure, look));
+  }
+  addTracks(snapshot.tracks);
+  if (options.xray) addXray();
+  if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
+    wire_boxes_.push_back(
+        {.box = *plane, .colour = picture_.theme.world, .width = 2, .behind = Behind::faint});
+  }
+  picture_.lines = lines_;
+  picture_.wire_boxes = wire_boxes_;
+  picture_.lines_revision = revision_;
+}
+
+}  // namespace broadmark

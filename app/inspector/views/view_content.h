@@ -1,0 +1,75 @@
+// What a view of the scene shows: bodies with their colours, lines and boxes over them, legends.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "broadmark/render/colouring.h"
+#include "broadmark/render/overlays.h"
+#include "broadmark/render/scene_view.h"
+#include "inspector/session/session.h"
+
+namespace broadmark {
+
+class ViewContent {
+ public:
+  ViewContent() = default;
+  ViewContent(const ViewContent&) = delete;
+  ViewContent& operator=(const ViewContent&) = delete;
+
+  /// Takes over what is to be seen, with the session's options and selection. `comparison`: with
+  /// the other view; null: none. Returns whether anything is otherwise than before.
+  bool update(const std::shared_ptr<const Snapshot>& snapshot,
+              const std::shared_ptr<const PairComparison>& comparison, const Session& session,
+              bool dark);
+
+  /// Null before the first update(); all that follows is only there after it.
+  [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return shown_.snapshot; }
+  [[nodiscard]] const std::vector<std::uint32_t>& selection() const { return shown_.selection; }
+  /// To be drawn, once it is said in which space and at what scale.
+  [[nodiscard]] const SceneViewContent& picture() const { return picture_; }
+  /// What the colours mean.
+  [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
+  /// The same of the oracle's answer, where the colours tell of another one.
+  [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
+  /// What the colours of the shown structure mean, and how many of its cells have each.
+  [[nodiscard]] const std::vector<LegendEntry>& cellLegend() const { return cell_legend_; }
+  /// Lines and boxes that were too many.
+  [[nodiscard]] std::size_t leftOut() const { return left_out_; }
+  /// How many bodies are not drawn because the user does not want to see them.
+  [[nodiscard]] std::size_t hiddenBodies() const;
+  /// Of those that are present; empty if there are none.
+  [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
+
+ private:
+  /// What all was made from.
+  struct Shown {
+    std::shared_ptr<const Snapshot> snapshot;
+    std::shared_ptr<const PairComparison> comparison;
+    std::vector<std::uint32_t> selection;
+    ViewOptions options;
+    bool dark = false;
+  };
+
+  void updateBodies();
+  void updateVisible();
+  void updateLines();
+  void add(Overlay overlay);
+  void addTracks(std::span<const Track> tracks);
+  void addXray();
+
+  Shown shown_;
+  SceneViewContent picture_;  ///< of what follows
+  Colouring colouring_;
+  std::vector<LegendEntry> oracle_legend_;
+  std::vector<LegendEntry> cell_legend_;
+  std::vector<std::uint8_t> visible_;
+  std::vector<SceneLine> lines_;
+  std::vector<SceneWireBox> wire_boxes_;
+  std::size_t left_out_ = 0;
+  std::uint64_t revision_ = 0;
+};
+
+}  // namespace broadmark

@@ -1,0 +1,192 @@
+#include "inspector/views/view_overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace broadmark {
+namespace {
+
+constexpr float kBackdrop = 0.82F;  // opacity behind what is written
+
+Rgb verdictColour(const Theme& theme, AnswerText::Verdict verdict) {
+  switch (verdict) {
+    case AnswerText::Verdict::right:
+      return theme.good;
+    case AnswerText::Verdict::wrong:
+      return theme.bad;
+    case AnswerText::Verdict::unchecked:
+      return theme.warning;
+    case AnswerText::Verdict::oracle:
+      return theme.faint;
+  }
+  return theme.faint;
+}
+
+/// A row of the legend; columns: what it means, the count by the shown answer, by the oracle's.
+struct LegendRow {
+  std::optional<Rgb> swatch;  ///< nothing: a heading
+  std::array<std::string, 3> texts;
+};
+
+std::vector<LegendRow> legendRows(const ViewLegend& legend) {
+  std::vector<LegendRow> rows;
+  if (!legend.oracle.empty()) rows.push_back({{}, {"", legend.owner, "oracle"}});
+  for (std::size_t i = 0; i < legend.legend.size(); ++i) {
+    const LegendEntry& entry = legend.legend[i];
+    rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
+    if (!legend.oracle.empty()) rows.back().texts[2] = std::to_string(legend.oracle[i].count);
+  }
+  if (!legend.cells.empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
+  for (const LegendEntry& entry : legend.cells) {
+    rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 size) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float pad = 6 * ui.scale;
+  const float room = size.x - 4 * pad;
+  if (room < 60 * ui.scale || size.y < 120 * ui.scale) return corner;
+  struct Line {
+    ImFont* font;
+    std::string text;
+    ImU32 colour;
+  };
+  std::vector<Line> lines;
+  // All of one size: large, if there is room for that.
+  const auto fits = [&](const std::string& text) {
+    return ui.large->CalcTextSizeA(ui.large->FontSize, FLT_MAX, 0, text.c_str()).x <= room;
+  };
+  ImFont* const normal = ImGui::GetFont();
+  ImFont* const large =
+      fits(answer.where) && fits(answer.answer) && fits(answer.beside) ? ui.large : normal;
+  const auto add = [&](ImFont* font, const std::string& text, ImU32 rgb) {
+    if (!text.empty()) lines.push_back({font, fittingText(text, room, font), rgb});
+  };
+  const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
+  add(large, answer.where, plain);
+  add(large, answer.answer, plain);
+  add(large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
+  add(normal, answer.pair, plain);
+
+  float width = 0;
+  float height = 0;
+  for (const Line& line : lines) {
+    const ImVec2 extent =
+        line.font->CalcTextSizeA(line.font->FontSize, FLT_MAX, 0, line.text.c_str());
+    width = std::max(width, extent.x);
+    height += extent.y;
+  }
+  const ImVec2 at{corner.x + pad, corner.y + pad};
+  const ImVec2 end{at.x + width + 2 * pad, at.y + height + pad};
+  draw.AddRectFilled(at, end, colour(ui.theme.background, kBackdrop), 4 * ui.scale);
+  float y = at.y + pad / 2;
+  for (const Line& line : lines) {
+    draw.AddText(line.font, line.font->FontSize, {at.x + pad, y}, line.colour, line.text.c_str());
+    y += line.font->FontSize;
+  }
+  return end;
+}
+
+void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 size, ImVec2 taken) {
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float line = ImGui::GetTextLineHeightWithSpacing();
+  const float pad = 0.5F * line;
+  const std::vector<LegendRow> rows = legendRows(legend);
+  std::array<float, 3> widths{};
+  const std::size_t columns = legend.oracle.empty() ? 2 : widths.size();
+  float width = line;
+  for (std::size_t column = 0; column < columns; ++column) {
+    for (const LegendRow& row : rows) {
+      widths[column] = std::max(widths[column], ImGui::CalcTextSize(row.texts[column].c_str()).x);
+    }
+    width += widths[column] + pad;
+  }
+  const std::string left_out =
+      legend.left_out > 0 ? fmt::format("{} lines left out", legend.left_out) : "";
+  const auto height = static_cast<float>(rows.size() + (left_out.empty() ? 0 : 1)) * line;
+  const float left = corner.x + size.x - width - 2 * pad;
+  const float top = left > taken.x + pad ? corner.y : taken.y;
+  const ImVec2 at{left, top + pad / 2};
+  if (at.x < corner.x || at.y + height + pad > corner.y + size.y) return;
+  draw.AddRectFilled(at, {at.x + width + pad, at.y + height + pad},
+                     colour(ui.theme.background, kBackdrop), 4 * ui.scale);
+  const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
+  float y = at.y + pad / 2;
+  for (const LegendRow& row : rows) {
+    if (row.swatch) {
+      draw.AddRectFilled({at.x + pad, y + 0.15F * line},
+                         {at.x + pad + 0.6F * line, y + 0.75F * line}, colour(*row.swatch),
+                         3 * ui.scale);
+    }
+    float x = at.x + pad + line;
+    for (std::size_t column = 0; column < columns; ++column) {
+      // Numbers stand below each other by their last digits.
+      const char* text = row.texts[column].c_str();
+      const float shift = column == 0 ? 0 : widths[column] - ImGui::CalcTextSize(text).x;
+      draw.AddText({x + shift, y}, row.swatch ? plain : colour(ui.theme.faint), text);
+      x += widths[column] + pad;
+    }
+    y += line;
+  }
+  if (!left_out.empty()) {
+    draw.AddText({at.x + pad, y}, colour(ui.theme.warning), left_out.c_str());
+  }
+}
+
+float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
+  constexpr std::pair<Tool, const char*> kButtons[] = {
+      {Tool::move, "Moves the selected bodies by their handles (M)"},
+      {Tool::turn, "Turns the selected bodies about their common centre (T)"},
+      {Tool::scale, "Scales the selected bodies about their common centre (R)"},
+      {Tool::brush, "Paints bodies where one clicks and drags (B)"}};
+  Tools& tools = session.document.desk.tools;
+  const bool brush = tools.tool == Tool::brush;
+  const char* hint = "Click or drag to paint; Escape ends it";
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float button = 54 * ui.scale;
+  const float pad = 6 * ui.scale;
+  const float gap = style.ItemSpacing.x;
+  const float line = ImGui::GetFrameHeightWithSpacing();
+  const float width = 4 * button + 3 * gap + 2 * pad;
+  const float height = (brush ? 3 : 2) * line + 2 * pad - style.ItemSpacing.y;
+  if (width > size.x || height + 2 * line > size.y) return size.y;
+  const auto scope = ui.scope("Tools");
+  ImGui::SetCursorScreenPos({corner.x + size.x - width - pad, corner.y + size.y - height - pad});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {pad, pad});
+  ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 4 * ui.scale);
+  ImGui::PushStyleColor(ImGuiCol_ChildBg, colourVector(ui.theme.background, kBackdrop));
+  ImGui::BeginChild("Tools", {width, height}, false,
+                    ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoScrollbar |
+                        ImGuiWindowFlags_NavFlattened);
+  if (brush) ui.coloured(ui.theme.accent, fittingText(hint, width - 2 * pad));
+  ImGui::BeginDisabled(!session.document.atRest());
+  for (const auto& [tool, tip] : kButtons) {
+    if (tool != Tool::move) ImGui::SameLine();
+    std::string label(kTools.nameOf(tool));
+    label[0] = static_cast<char>(label[0] - 'a' + 'A');
+    bool on = tools.tool == tool;
+    if (ui.toggle(label.c_str(), on, tip, button)) tools.toggle(tool);
+  }
+  const float half = (width - 2 * pad - gap) / 2;
+  ui.toggle("Local", tools.local, "The axes of the first selected body, not the world's (L)", half);
+  ImGui::SameLine();
+  ui.toggle("Snap", tools.snaps, "Drags go by steps; with Ctrl down it is the other way round",
+            half);
+  ImGui::EndDisabled();
+  ImGui::EndChild();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar(2);
+  return size.y - height - pad;
+}
+
+}  // namespace broadmark

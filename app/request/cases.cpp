@@ -1,0 +1,269 @@
+// Selecting algorithms and making cases of them.
+
+#include "request/cases.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <iterator>
+#include <map>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "command_line/option_types.h"
+#include "original/ids.h"
+#include "request/plugins.h"
+#include "request/sdk_plugins.h"
+#include "request/sweep.h"
+
+namespace broadmark {
+namespace {
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// Whether `selector` names `algorithm`, one of `known`.
+bool selects(const std::string& selector, const Algorithm& algorithm,
+             const std::vector<Algorithm>& known) {
+  if (selector == "all") return algorithm.traits.finds_pairs;
+  if (globMatches(selector, algorithm.id)) return true;
+  // An id is that algorithm alone, even where a whole family is called the same ("sap").
+  return findAlgorithm(selector, known) == nullptr && lower(selector) == lower(algorithm.family);
+}
+
+/// A key of --param: the parameter, and whose.
+struct ParameterKey {
+  std::string selector;  ///< of algorithms; "": of anything that has it
+  std::string parameter;
+};
+
+ParameterKey parseKey(const std::string& key) {
+  const auto colon = key.rfind(':');
+  if (colon == std::string::npos) return {{}, key};
+  return {key.substr(0, colon), key.substr(colon + 1)};
+}
+
+/// An id of the original as the id that it stands for; anything else as it is.
+std::string ownSelector(const std::string& selector, const std::vector<Algorithm>& known) {
+  const OriginalId* original = findOriginalId(selector);
+  if (original == nullptr) return selector;
+  const std::string id(original->algorithm);
+  return findAlgorithm(id, known) == nullptr ? selector : id;
+}
+
+/// Those of the parameters that are for an algorithm, by their own names. What is given for it
+/// alone wins over what is given for all.
+ParameterValues parametersOf(const Algorithm& algorithm, const ParameterValues& given,
+                             const std::vector<Algorithm>& known) {
+  ParameterValues own;
+  std::map<std::string, std::string> stated;  // parameter to key
+  for (const auto& [key, text] : given) {
+    const auto [selector, parameter] = parseKey(key);
+    if (selector.empty()) {
+      if (!stated.contains(parameter)) own[parameter] = text;
+    } else if (selects(ownSelector(selector, known), algorithm, known)) {
+      const auto [other, first] = stated.emplace(parameter, key);
+      if (!first) {
+        throw InputError(fmt::format("--param: '{}' and '{}' both set {} of {}", other->second, key,
+                                     parameter, algorithm.id));
+      }
+      own[parameter] = text;
+    }
+  }
+  return applicableValues(*algorithm.create(), own);
+}
+
+/// Throws InputError unless `key`, which names algorithms, sets a parameter of one of the `cases`.
+void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
+                    const std::vector<Algorithm>& known) {
+  const auto [selector, parameter] = parseKey(key);
+  const std::vector<Algorithm> named =
+      selectAlgorithms({ownSelector(selector, known)}, known, "--param");
+  std::vector<std::string> parameters;
+  bool any = false;
+  for (const Case& run : cases) {
+    if (findAlgorithm(run.algorithm.id, named) == nullptr) continue;
+    any = true;
+    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(parameters));
+  }
+  if (!any) {
+    throw InputError(fmt::format("--param: '{}': no case is of '{}'", key, selector));
+  }
+  requireKnownParameters({{parameter, ""}}, std::move(parameters));
+}
+
+/// The cases, each once.
+class CaseList {
+ public:
+  void add(Case made) {
+    const auto same = [name = caseName(made)](const Case& other) {
+      return caseName(other) == name;
+    };
+    if (std::ranges::none_of(cases_, same)) cases_.push_back(std::move(made));
+  }
+  std::vector<Case> take() { return std::move(cases_); }
+
+ private:
+  std::vector<Case> cases_;
+};
+
+/// Takes over a part of a case's name: "avx2", "t4", "margin=0.1". Throws InputError.
+void takeCasePart(Case& made, const std::string& part, const std::string& name) {
+  const AlgorithmTraits& traits = made.algorithm.traits;
+  const auto isa = kIsas.find(part);
+  const auto answer = kAnswerKinds.find(part);
+  const std::size_t equals = part.find('=');
+  if (isa && traits.vectorised) {
+    made.isa = *isa;
+  } else if (answer) {
+    made.answer = *answer;
+  } else if (equals != std::string::npos && equals > 0) {
+    made.parameters[part.substr(0, equals)] = part.substr(equals + 1);
+  } else if (part.size() > 1 && part[0] == 't' && part[1] >= '0' && part[1] <= '9' &&
+             traits.parallel) {
+    made.threads = parseThreadCount(part.substr(1));
+  } else {
+    throw InputError(fmt::format(
+        "'{}': '{}' is not {}{}an answer ({}), KEY=VALUE", name, part,
+        traits.vectorised ? fmt::format("an instruction set ({}), ", fmt::join(kIsas.names(), ", "))
+                          : "",
+        traits.parallel ? "a number of threads (t4), " : "",
+        fmt::join(kAnswerKinds.names(), ", ")));
+  }
+}
+
+}  // namespace
+
+const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known) {
+  const auto found = std::ranges::find(known, id, &Algorithm::id);
+  return found == known.end() ? nullptr : &*found;
+}
+
+const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known) {
+  if (const Algorithm* found = findAlgorithm(id, known)) return *found;
+  throw InputError(unknownName("algorithm", id, algorithmIds(known)));
+}
+
+std::vector<std::string> algorithmIds(const std::vector<Algorithm>& known) {
+  std::vector<std::string> ids;
+  for (const Algorithm& algorithm : known) ids.push_back(algorithm.id);
+  return ids;
+}
+
+std::vector<Algorithm> selectAlgorithms(const std::vector<std::string>& selectors,
+                                        const std::vector<Algorithm>& known,
+                                        std::string_view option) {
+  std::vector<bool> selected(known.size());
+  for (const std::string& selector : selectors) {
+    bool names_any = false;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      if (!selects(selector, known[i], known)) continue;
+      selected[i] = true;
+      names_any = true;
+    }
+    if (!names_any) {
+      throw InputError(
+          fmt::format("{}: {}", option, unknownName("algorithm", selector, algorithmIds(known))));
+    }
+  }
+  std::vector<Algorithm> algorithms;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (selected[i]) algorithms.push_back(known[i]);
+  }
+  return algorithms;
+}
+
+std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues& parameters,
+                              const std::vector<Algorithm>& known) {
+  const std::vector<int> threads =
+      options.threads.empty() ? std::vector{allCores()} : options.threads;
+  const std::vector<Isa> isas = options.isas.empty() ? std::vector{bestIsa()} : options.isas;
+  CaseList cases;
+  const auto add = [&](const Algorithm& algorithm, Isa isa, int count) {
+    const ParameterValues own = parametersOf(algorithm, parameters, known);
+    for (ParameterValues& values : combinations(*algorithm.create(), own)) {
+      cases.add(makeCase(algorithm, isa, count, options.device, std::move(values), options.answer));
+    }
+  };
+
+  std::vector<std::string> selectors;
+  for (const std::string& selector : options.algorithms) {
+    // The original's ids state an instruction set of their own.
+    const OriginalId* original = findOriginalId(selector);
+    const Algorithm* algorithm =
+        original == nullptr ? nullptr : findAlgorithm(std::string(original->algorithm), known);
+    if (algorithm == nullptr) {
+      selectors.push_back(selector);
+      continue;
+    }
+    for (const int count : threads) add(*algorithm, original->isa.value_or(isas.front()), count);
+  }
+  if (options.algorithms.empty()) selectors.emplace_back("all");
+  for (const Algorithm& algorithm : selectAlgorithms(selectors, known, "--algorithm")) {
+    for (const int count : threads) {
+      for (const Isa isa : isas) add(algorithm, isa, count);
+    }
+  }
+  return cases.take();
+}
+
+/// How much of a case's name is that of a plug-in: "FILE.so:", or "NAME:" of one of ours.
+static std::size_t lengthOfPlugin(const std::string& name) {
+  constexpr std::string_view kLibraryEnd = ".so:";
+  const auto library = name.find(kLibraryEnd);
+  if (library != std::string::npos) return library + kLibraryEnd.size();
+  for (const SdkPlugin& plugin : sdkPlugins()) {
+    if (name.starts_with(plugin.name + ":")) return plugin.name.size() + 1;
+  }
+  return 0;
+}
+
+Case caseNamed(const std::string& name, const std::string& device, AnswerKind answer) {
+  const std::size_t begin = lengthOfPlugin(name);
+  std::vector<std::string> plugins;
+  if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
+  const std::size_t end = std::min(name.find('/', begin), name.size());
+  const Algorithm algorithm =
+      requireAlgorithm(name.substr(begin, end - begin), availableAlgorithms(plugins));
+
+  Case made = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
+  for (std::size_t from = end + 1; from < name.size();) {
+    const std::size_t to = std::min(name.find('/', from), name.size());
+    takeCasePart(made, name.substr(from, to - from), name);
+    from = to + 1;
+  }
+  makeInstance(made);  // throws for bad parameters
+  return made;
+}
+
+void requireUsedParameters(const ParameterValues& given, const std::vector<Case>& cases,
+                           std::vector<std::string> names, const std::vector<Algorithm>& known) {
+  ParameterValues unqualified;
+  for (const auto& [key, text] : given) {
+    if (parseKey(key).selector.empty()) {
+      unqualified.emplace(key, text);
+    } else {
+      requireUsedKey(key, cases, known);
+    }
+  }
+  for (const Case& run : cases) {
+    std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(names));
+  }
+  requireKnownParameters(unqualified, std::move(names));
+}
+
+void requireKnownParameters(const ParameterValues& given, std::vector<std::string> known) {
+  std::ranges::sort(known);
+  known.erase(std::unique(known.begin(), known.end()), known.end());
+  for (const auto& [name, value] : given) {
+    if (std::ranges::find(known, name) == known.end()) {
+      throw InputError("--param: " + unknownName("parameter", name, known));
+    }
+  }
+}
+
+}  // namespace broadmark

@@ -1,0 +1,180 @@
+// Loading algorithms and physics engines from shared libraries.
+
+#include "request/plugins.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "broadmark/algorithms.h"
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/hasher.h"
+#include "broadmark/plugin.h"
+#include "broadmark/scenes/engine_plugin.h"
+#include "broadmark/scenes/simulation.h"
+#include "request/cases.h"
+#include "request/sdk_plugins.h"
+
+namespace broadmark {
+namespace {
+
+/// Why the last call of the dynamic loader failed, without the path in front.
+std::string reason(const std::string& path) {
+  const char* text = ::dlerror();
+  std::string_view message = text == nullptr ? "unknown" : text;
+  if (message.starts_with(path + ": ")) message.remove_prefix(path.size() + 2);
+  return std::string(message);
+}
+
+/// The library that `named` means, which stays loaded.
+void* load(const std::string& named) {
+  const std::string file = pluginFile(named);
+  openForReading(file);  // throws unless it is a regular file
+  // A path with a slash is not searched for in the loader's directories.
+  const std::string path = std::filesystem::absolute(file).string();
+  void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, reason(path)));
+  }
+  if (::dlsym(library, kAlgorithmPluginSymbol) == nullptr &&
+      ::dlsym(library, scenes::kEnginePluginSymbol) == nullptr) {
+    throw InputError(fmt::format(
+        "--plugin: {}: exports neither '{}' nor '{}': a library with BROADMARK_PLUGIN or "
+        "BROADMARK_ENGINE_PLUGIN is expected",
+        file, kAlgorithmPluginSymbol, scenes::kEnginePluginSymbol));
+  }
+  return library;
+}
+
+/// What the library in `file` exports under this name; null: nothing.
+template <class Entry>
+const Plugin<Entry>* exportOf(const std::string& file, const char* symbol) {
+  const auto* plugin = static_cast<const Plugin<Entry>*>(::dlsym(load(file), symbol));
+  if (plugin != nullptr && std::string_view(plugin->interface) != kPluginInterface) {
+    throw InputError(fmt::format("--plugin: {}: built for Broadmark {}, this is {}: build it again",
+                                 file, plugin->interface, kPluginInterface));
+  }
+  return plugin;
+}
+
+/// Whether an id can be typed in a list of ids without meaning something else.
+bool isId(std::string_view id) {
+  constexpr std::string_view kAllowed = "abcdefghijklmnopqrstuvwxyz0123456789-_.";
+  return !id.empty() && id != "all" && id.find_first_not_of(kAllowed) == std::string_view::npos;
+}
+
+/// Says what is wrong with an entry of a plug-in.
+[[noreturn]] void refuse(const std::string& file, std::string_view kind, std::string_view id,
+                         std::string_view what) {
+  throw InputError(fmt::format("--plugin: {}: {} '{}': {}", file, kind, id, what));
+}
+
+void requireId(const std::string& file, std::string_view kind, std::string_view id) {
+  if (isId(id)) return;
+  refuse(file, kind, id,
+         "its id must be made of lower-case letters, digits and -_., and must not be 'all'");
+}
+
+/// `plugin`: of the one that has the id already.
+[[noreturn]] void refuseTaken(const std::string& file, std::string_view kind, std::string_view id,
+                              const std::string& plugin) {
+  refuse(file, kind, id,
+         fmt::format("its id is already taken by one {}",
+                     plugin.empty() ? "built in" : "of " + plugin));
+}
+
+/// Throws InputError for an algorithm that cannot be chosen or made.
+void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& known,
+                  const std::string& file) {
+  constexpr std::string_view kKind = "algorithm";
+  requireId(file, kKind, algorithm.id);
+  if (!algorithm.create || !algorithm.create()) {
+    refuse(file, kKind, algorithm.id, "creates no instance");
+  }
+  if (const Algorithm* other = findAlgorithm(algorithm.id, known)) {
+    refuseTaken(file, kKind, algorithm.id, other->plugin);
+  }
+}
+
+/// Throws InputError for an engine that cannot be chosen or made, or whose parameters would hide
+/// those of a scene.
+void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
+  constexpr std::string_view kKind = "engine";
+  const std::string& id = engine.listing.id;
+  requireId(file, kKind, id);
+  for (const EngineListing& other : availableEngines()) {
+    if (other.id == id) refuseTaken(file, kKind, id, other.plugin);
+  }
+  const auto instance = engine.create == nullptr ? nullptr : engine.create({});
+  if (!instance) refuse(file, kKind, id, "creates no instance");
+  const std::vector<std::string> own = parameterNames(*instance);
+  for (const SceneListing& scene : builtinScenes()) {
+    const std::vector<std::string> taken = parameterNames(*makeSimulation(scene.id));
+    for (const std::string& name : own) {
+      if (std::ranges::find(taken, name) == taken.end()) continue;
+      refuse(
+          file, kKind, id,
+          fmt::format("its parameter '{}' needs another name: scene '{}' has one", name, scene.id));
+    }
+  }
+}
+
+PluginBuild buildOf(const Plugin<Algorithm>& plugin, const std::string& file) {
+  Hasher hasher;
+  const std::string bytes = readTextFile(pluginFile(file));
+  hasher.add(std::as_bytes(std::span(bytes)));
+  return {.hash = hasher.hex(),
+          .flags = plugin.build == nullptr ? "" : plugin.build,
+          .unoptimised = !plugin.optimised};
+}
+
+/// Calls add(entry) for what a library exports under this name.
+template <class Entry, class Add>
+void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add) {
+  try {
+    std::vector<Entry> entries = plugin.entries();
+    for (Entry& entry : entries) add(entry);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw InputError(fmt::format("--plugin: {}: {}", file, error.what()));
+  }
+}
+
+}  // namespace
+
+std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
+  std::vector<Algorithm> algorithms = builtinAlgorithms();
+  for (const std::string& file : plugins) {
+    const auto* plugin = exportOf<Algorithm>(file, kAlgorithmPluginSymbol);
+    if (plugin == nullptr) continue;
+    const PluginBuild build = buildOf(*plugin, file);
+    forEachEntry(*plugin, file, [&](Algorithm& algorithm) {
+      requireSound(algorithm, algorithms, file);
+      algorithm.plugin = file;
+      algorithm.plugin_build = build;
+      algorithms.push_back(std::move(algorithm));
+    });
+  }
+  return algorithms;
+}
+
+void addEnginesOf(const std::vector<std::string>& plugins) {
+  for (const std::string& file : plugins) {
+    const auto* plugin = exportOf<scenes::EngineEntry>(file, scenes::kEnginePluginSymbol);
+    if (plugin == nullptr) continue;
+    forEachEntry(*plugin, file, [&](scenes::EngineEntry& engine) {
+      requireSound(engine, file);
+      engine.listing.plugin = file;
+      scenes::addEngine(std::move(engine));
+    });
+  }
+}
+
+}  // namespace broadmark

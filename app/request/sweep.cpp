@@ -1,0 +1,84 @@
+#include "request/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace broadmark {
+namespace {
+
+std::optional<double> numberIn(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return {};
+  return value;
+}
+
+/// By size, each once, however it is written.
+void sortNumbers(std::vector<std::string>& texts) {
+  std::ranges::stable_sort(texts, {}, numberIn);
+  const auto same = std::ranges::unique(texts, {}, numberIn);
+  texts.erase(same.begin(), same.end());
+}
+
+void dropRepeated(std::vector<std::string>& texts) {
+  std::vector<std::string> seen;
+  std::erase_if(texts, [&](const std::string& text) {
+    if (std::ranges::find(seen, text) != seen.end()) return true;
+    seen.push_back(text);
+    return false;
+  });
+}
+
+}  // namespace
+
+std::vector<std::string> splitList(const std::vector<std::string>& texts) {
+  std::vector<std::string> parts;
+  for (const std::string& text : texts) {
+    for (std::size_t start = 0; start <= text.size();) {
+      const std::size_t end = std::min(text.find(',', start), text.size());
+      if (end > start) parts.push_back(text.substr(start, end - start));
+      start = end + 1;
+    }
+  }
+  return parts;
+}
+
+std::vector<std::string> valuesIn(const std::string& text) {
+  std::vector<std::string> values = splitList({text});
+  if (values.empty()) return {text};
+  if (std::ranges::all_of(values, [](const auto& value) { return numberIn(value).has_value(); })) {
+    sortNumbers(values);
+  } else {
+    dropRepeated(values);
+  }
+  return values;
+}
+
+std::vector<ParameterValues> combinations(Parametrised& object, const ParameterValues& texts) {
+  std::map<std::string, std::vector<std::string>> several;
+  object.visitParameters([&](const Parameter& parameter) {
+    const auto text = texts.find(std::string(parameter.name));
+    if (text == texts.end() || std::holds_alternative<std::string*>(parameter.value)) return;
+    several[text->first] = valuesIn(text->second);
+  });
+  std::vector<ParameterValues> all = {texts};
+  for (const auto& [name, values] : several) {
+    std::vector<ParameterValues> longer;
+    for (const ParameterValues& one : all) {
+      for (const std::string& value : values) longer.emplace_back(one)[name] = value;
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::string sweptText(const ParameterValues& swept) {
+  std::string text;
+  for (const auto& [name, value] : swept) text += fmt::format(" {}={}", name, value);
+  return text;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,120 @@
+// Exporting a failing case.
+
+#include "run/export_case.h"
+
+#include <fmt/format.h>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "broadmark/fuzz/shrink.h"
+#include "command_line/session_options.h"
+#include "run/plan.h"
+#include "run/recordings.h"
+#include "support/interrupt.h"
+#include "support/progress.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A word as the shell takes it.
+std::string quoted(const std::string& word) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+/// A path that is not taken for an option.
+std::string pathWord(const fs::path& path) {
+  const std::string text = path.string();
+  return quoted(text.starts_with('-') ? "./" + text : text);
+}
+
+/// What is left, in one line.
+std::string summaryOf(const ShrunkCase& shrunk, const SceneInfo& whole) {
+  return fmt::format("{}: {} of {} ({}): {}", partName(whole),
+                     extentText(shrunk.part.bodies.size(), shrunk.part.frames.size() - 1),
+                     extentText(whole.objects, whole.frames), counted(shrunk.trials, "run"),
+                     mismatchText(shrunk.difference));
+}
+
+}  // namespace
+
+void requireExportable(const fs::path& file, const fs::path& original, const SceneInfo& scene) {
+  requireRecordingName(file);
+  requireHolds(file, scene);
+  if (!original.empty() && fs::weakly_canonical(file) == fs::weakly_canonical(original)) {
+    throw InputError(fmt::format("cannot export to {}: it is the recording itself", file.string()));
+  }
+  AtomicFile probe(file);
+}
+
+std::string reproducingCommand(const Case& run, const fs::path& recording) {
+  std::string command = "broadmark --headless " + pathWord(recording);
+  const auto add = [&](std::string_view option, const std::string& word) {
+    command += fmt::format(" {} {}", option, word);
+  };
+  const Algorithm& algorithm = run.algorithm;
+  if (!algorithm.plugin.empty()) add("--plugin", pathWord(algorithm.plugin));
+  add("--algorithm", quoted(algorithm.id));
+  if (algorithm.traits.vectorised) add("--isa", std::string(isaName(run.isa)));
+  if (algorithm.traits.parallel) add("--threads", fmt::format("{}", run.threads));
+  if (!run.device.empty()) add("--device", quoted(run.device));
+  if (run.answer != AnswerKind::pairs) {
+    add("--answer", std::string(kAnswerKinds.nameOf(run.answer)));
+  }
+  for (const auto& [key, value] : run.parameters)
+    add("--param", quoted(fmt::format("{}={}", key, value)));
+  add("--check", "full");
+  return command;
+}
+
+std::string torturingCommand(const Case& run, const fs::path& recording) {
+  const std::string plugin = run.algorithm.plugin.empty() ? "" : run.algorithm.plugin + ":";
+  return fmt::format("broadmark torture {} --only-sources --case {} --rounds 1 --output {}",
+                     pathWord(recording), quoted(plugin + caseName(run)),
+                     pathWord(recording.parent_path() / "again"));
+}
+
+int runExportCase(Plan plan, const SessionOptions& options) {
+  PlanEntry& entry = plan.entries.front();
+  const auto difference = entry.knownDifference();
+  if (!difference) {
+    throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
+                                 options.case_id, statusName(entry.known->status)));
+  }
+  requireExportable(options.export_case, entry.source.reference.path, entry.source.reference.scene);
+  const InterruptGuard guard;
+  const auto recording = openRecording(entry.source, {}, {}, options.quiet);
+  if (!recording) throw Interrupted();
+
+  const Case& run = entry.cases.front();
+  const SceneInfo& whole = recording->scene();
+  const std::uint64_t size = std::uint64_t{whole.objects} * difference->frame;
+  Progress progress("shrinking " + whole.name, size, options.quiet);
+  const ShrunkCase shrunk = shrinkCase(
+      run, *recording, *difference,
+      {.progress =
+           [&](const ShrinkProgress& now) {
+             progress.detail(extentText(now.bodies, now.frames));
+             progress.update(size - std::min<std::uint64_t>(size, now.bodies * now.frames));
+           },
+       .cancelled = InterruptGuard::requested,
+       .make_host = hostMaker(options.hosts)});
+  if (shrunk.trials == 0) throw Interrupted();
+  if (shrunk.minimal) progress.update(size);
+
+  writePart(options.export_case, *recording, shrunk.part);
+  progress.print(summaryOf(shrunk, whole));
+  progress.print("written: " + options.export_case.string());
+  progress.print(reproducingCommand(run, options.export_case));
+  if (!shrunk.minimal) throw Interrupted("the smallest part so far is written");
+  return 0;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,157 @@
+// What a run tells and writes beside its results: progress, tables, pictures, the original's logs.
+
+#include "run/headless.h"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "broadmark/error.h"
+#include "broadmark/files.h"
+#include "run/plan_run.h"
+#include "run/recordings.h"
+#include "run/screenshot.h"
+#include "support/exit_status.h"
+#include "support/interrupt.h"
+#include "support/output.h"
+#include "support/progress.h"
+#include "support/table.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Tells of a plan while it is run.
+class HeadlessRun final : public RunWatcher {
+ public:
+  explicit HeadlessRun(const SessionOptions& options) : options_(options) {}
+
+  bool cancelled() override { return InterruptGuard::requested(); }
+  void begins(const SceneInfo& scene, std::uint64_t steps) override {
+    progress_.emplace(fmt::format("running {} N{}", scene.name, scene.objects), steps,
+                      options_.quiet);
+  }
+  void advances(std::uint64_t done, const std::string& algorithm) override {
+    progress_->detail(algorithm);
+    progress_->update(done);
+  }
+  void ran(const PlanEntry& entry, std::span<const CaseResult> results) override {
+    progress_.reset();
+    if (!prints_results_) std::cout << formatTable(results) << std::endl;
+    if (!entry.original) return;
+    const fs::path log = entry.original->output_log;
+    writeTextFile(log, formatOriginalLog(*entry.original, results.front()));
+    written_.push_back(log);
+  }
+  void leaves(const PlanEntry& entry, IndexedFrames& recording, Oracle& oracle) override {
+    if (!entry.screenshot.empty()) draw(recording, oracle, entry.screenshot);
+  }
+
+  /// Prints the results that go to standard output, and says what has been written. Returns the
+  /// exit status. Throws Interrupted.
+  int finish(const Results& results) {
+    progress_.reset();
+    if (!options_.record.empty()) written_.push_back(options_.record);
+    if (!results.cases.empty()) {
+      for (const auto& [name, path] : options_.outputs) {
+        if (!isStandardOutput(path)) written_.push_back(path);
+      }
+    }
+    for (const fs::path& path : written_) {
+      fmt::print(prints_results_ ? stderr : stdout, "written: {}\n", path.string());
+    }
+    if (!results.complete || InterruptGuard::requested()) {
+      throw Interrupted(fmt::format("{} kept", counted(results.cases.size(), "finished case")));
+    }
+    const int status = exitStatusOf(judgedStatuses(results));
+    return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
+  }
+
+ private:
+  /// Those that tell how the run ends.
+  [[nodiscard]] std::vector<Status> judgedStatuses(const Results& results) const {
+    std::vector<Status> statuses;
+    for (const CaseResult& result : results.cases) statuses.push_back(result.status);
+    if (options_.allow_timeout) std::erase(statuses, Status::timeout);
+    return statuses;
+  }
+
+  void draw(IndexedFrames& recording, Oracle& oracle, const fs::path& path) {
+    try {
+      takeScreenshot(recording, options_.frame.value_or(recording.scene().frames), oracle,
+                     options_.picture, path);
+      written_.push_back(path);
+    } catch (const RenderError& error) {
+      std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
+      picture_failed_ = true;
+    }
+  }
+
+  const SessionOptions& options_;
+  /// Results go to standard output: then nothing else does.
+  const bool prints_results_ = std::ranges::any_of(
+      options_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
+  std::optional<Progress> progress_;  ///< of a recording
+  bool picture_failed_ = false;
+  std::vector<fs::path> written_;
+};
+
+/// Every file that the run will write, with the option that asks for it.
+std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions& options,
+                                                           const Plan& plan) {
+  std::vector<std::pair<std::string, fs::path>> files;
+  for (const auto& [name, path] : options.outputs) files.emplace_back("--" + name, path);
+  for (const PlanEntry& entry : plan.entries) {
+    if (!entry.screenshot.empty()) files.emplace_back("--screenshot", entry.screenshot);
+    if (entry.original) files.emplace_back("m_outputLog", entry.original->output_log);
+  }
+  return files;
+}
+
+/// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
+fs::path oneName(const fs::path& path) {
+  if (isStandardOutput(path)) return "-";
+  std::error_code failed;
+  fs::path name = fs::weakly_canonical(path, failed);
+  return failed ? path : name;
+}
+
+/// Fails now rather than after a long run: a file cannot be written, or would overwrite a source or
+/// another file of this run.
+void requireWritable(const SessionOptions& options, const Plan& plan) {
+  std::map<fs::path, std::string> taken;
+  for (const PlanEntry& entry : plan.entries) {
+    // This is named by a file, not by who runs it.
+    if (entry.original) requireBelow(fs::current_path(), entry.original->output_log);
+    const Source& source = entry.source;
+    const fs::path file =
+        source.simulation ? source.simulation->input() : fs::path(source.reference.path);
+    if (!file.empty()) taken[oneName(file)] = "a source";
+  }
+  for (const auto& [option, path] : plannedFiles(options, plan)) {
+    const auto [other, free] = taken.emplace(oneName(path), option);
+    if (!free) {
+      throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
+                                   path.string(), other->second));
+    }
+    requireOutput(path);
+  }
+}
+
+}  // namespace
+
+int runHeadless(Plan plan, const SessionOptions& options) {
+  if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
+  requireWritable(options, plan);
+  if (!options.record.empty()) makeDirectory(options.record);
+  const InterruptGuard guard;
+  HeadlessRun run(options);
+  return run.finish(runPlan(plan, options, hostMaker(options.hosts), run));
+}
+
+}  // namespace broadmark

@@ -1,0 +1,23 @@
+#include "support/output.h"
+
+#include <cstdio>
+
+#include "broadmark/files.h"
+
+namespace broadmark {
+
+bool isStandardOutput(const std::filesystem::path& path) {
+  return path == "-" || path == "/dev/stdout";
+}
+
+void requireOutput(const std::filesystem::path& path) {
+  if (!isStandardOutput(path)) AtomicFile probe(path);
+}
+
+void writeOutput(const std::filesystem::path& path, std::string_view text) {
+  if (!isStandardOutput(path)) return writeTextFile(path, text);
+  // main() says so if it cannot be written.
+  std::fwrite(text.data(), 1, text.size(), stdout);
+}
+
+}  // namespace broadmark

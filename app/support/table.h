@@ -1,0 +1,31 @@
+// Results as tables for people.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "broadmark/results/results.h"
+
+namespace broadmark {
+
+/// The cases of one recording, sorted by their medians, the fastest right one marked.
+std::string formatTable(std::span<const CaseResult>);
+
+/// Lines of lists have at most so many characters, if their words allow it.
+inline constexpr std::size_t kWidestLine = 100;
+
+/// A text whose first line begins in column `begun` and whose further lines in column `indent`,
+/// broken between words.
+std::string wrapped(const std::string& text, std::size_t begun, std::size_t indent);
+
+enum class LastColumn { whole, wrapped };
+
+/// Rows with aligned columns, to the right where `right_aligned` says so. The last one may be
+/// wrapped, below itself.
+std::string alignColumns(const std::vector<std::vector<std::string>>& rows,
+                         const std::vector<bool>& right_aligned,
+                         LastColumn last = LastColumn::whole);
+
+}  // namespace broadmark

@@ -1,0 +1,193 @@
+#include "broadmark/analysis/duel.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// So many rounds are run, whatever is known.
+constexpr std::size_t kFewestRounds = 60;
+/// After so many times more rounds the intervals are looked at again: they narrow with the root.
+constexpr double kNextLook = 1.3;
+
+/// All sides, by the median of the ratios to the first one.
+std::vector<std::size_t> fastestFirst(const DuelResult& result) {
+  std::vector<double> medians;
+  for (std::size_t side = 0; side < result.sides.size(); ++side) {
+    medians.push_back(quantile(result.ratios(side, 0), 0.5));
+  }
+  std::vector<std::size_t> sides(medians.size());
+  std::iota(sides.begin(), sides.end(), 0);
+  std::ranges::stable_sort(sides, {}, [&](std::size_t side) { return medians[side]; });
+  return sides;
+}
+
+std::vector<DuelPlace> ranking(const DuelResult& result) {
+  std::vector<DuelPlace> places;
+  for (const std::size_t side : fastestFirst(result)) {
+    places.push_back({.side = side, .ratio = {1, {1, 1}}});
+    if (side != 0) places.back().ratio = result.ratio(side, 0);
+  }
+  std::size_t first = 0;  // of the present place
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    const Interval ratio = result.ratio(places[i].side, places[first].side).ci95;
+    if (standingOf(ratio, result.margin) == Standing::slower) first = i;
+    places[i].place = first + 1;
+  }
+  return places;
+}
+
+class Duel {
+ public:
+  Duel(const std::vector<DuelSide>& sides, const DuelOptions& options)
+      : options_(options), order_(sides.size()), random_(options.seed) {
+    std::iota(order_.begin(), order_.end(), 0);
+    RunPolicy policy = RunPolicy::unlimited(options.check);
+    for (const DuelSide& side : sides) {
+      runs_.push_back(
+          std::make_unique<CaseRun>(side.run, policy, side.make_host, options.cancelled));
+      result_.sides.push_back({.name = side.name});
+    }
+  }
+
+  DuelResult run(FrameSource& frames) {
+    for (bool first = true; !ended_; first = false) {
+      runPass(frames, first);
+      for (const auto& run : runs_) run->stopChecking();
+      if (frames.scene().frames == 0) ended_ = true;
+    }
+    for (const auto& run : runs_) run->stop();
+    result_.seconds = elapsed();
+    result_.margin = 2 * options_.precision;
+    if (result_.ok() && result_.rounds() > 0) result_.places = ranking(result_);
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double elapsed() const {
+    return std::chrono::duration<double>(Clock::now() - begin_).count();
+  }
+
+  /// Calls act(side) in random order; ends the duel when that is false.
+  template <class Act>
+  void takeTurns(Act&& act) {
+    std::ranges::shuffle(order_, random_);
+    for (const std::size_t side : order_) {
+      if (options_.cancelled && options_.cancelled()) throw Cancelled();
+      if (!act(side)) return fail(side);
+    }
+  }
+
+  void fail(std::size_t side) {
+    ended_ = true;
+    result_.sides[side].status = runs_[side]->status();
+    result_.sides[side].reason = runs_[side]->reason();
+  }
+
+  void runPass(FrameSource& frames, bool checked) {
+    const Frame initial = frames.rewind();
+    takeTurns([&](std::size_t side) { return runs_[side]->start(frames.scene(), initial); });
+    while (!ended_) {
+      const std::optional<Frame> frame = frames.next();
+      if (!frame) return;
+      runRound(*frame);
+      if (!ended_ && checked) check(*frame);
+      if (!ended_) look();
+    }
+  }
+
+  void runRound(const Frame& frame) {
+    std::vector<double> seconds(runs_.size());
+    takeTurns([&](std::size_t side) {
+      const bool running = runs_[side]->step(frame);
+      // A time below the clock's resolution must still have a ratio.
+      const auto ns = std::max<std::int64_t>(runs_[side]->times()[Phase::total], 1);
+      seconds[side] = static_cast<double>(ns) * 1e-9;
+      return running;
+    });
+    if (ended_) return;  // a round counts when all have run
+    for (std::size_t side = 0; side < seconds.size(); ++side) {
+      result_.sides[side].seconds.push_back(seconds[side]);
+    }
+  }
+
+  void check(const Frame& frame) {
+    takeTurns([&](std::size_t side) {
+      runs_[side]->check(frame, oracle_);
+      return runs_[side]->status() == Status::ok;
+    });
+  }
+
+  /// Whether to go on.
+  void look() {
+    const std::size_t rounds = result_.rounds();
+    if (options_.progress) options_.progress(result_, elapsed());
+    const bool time_is_up = elapsed() >= options_.most_seconds;
+    if (rounds < next_look_ && !time_is_up) return;
+    next_look_ = static_cast<std::size_t>(static_cast<double>(rounds) * kNextLook) + 1;
+    const bool narrow = rounds >= kFewestRounds && isNarrow();
+    // Twice in a row: an interval may be narrow by chance once.
+    result_.decided = std::exchange(was_narrow_, narrow) && narrow;
+    ended_ = result_.decided || time_is_up;
+  }
+
+  /// Whether every side's ratio to the next faster one is known well enough.
+  [[nodiscard]] bool isNarrow() const {
+    const std::vector<std::size_t> sides = fastestFirst(result_);
+    for (std::size_t i = 1; i < sides.size(); ++i) {
+      const Interval ratio = result_.ratio(sides[i], sides[i - 1]).ci95;
+      if (ratio.high - ratio.low > options_.precision * ratio.low) return false;
+    }
+    return true;
+  }
+
+  const DuelOptions& options_;
+  std::vector<std::size_t> order_;
+  std::mt19937_64 random_;
+  std::vector<std::unique_ptr<CaseRun>> runs_;
+  Oracle oracle_;
+  DuelResult result_;
+  Clock::time_point begin_ = Clock::now();
+  std::size_t next_look_ = kFewestRounds;
+  bool was_narrow_ = false;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Standing standingOf(const Interval& ratio, double margin) {
+  if (ratio.low >= 1 / (1 + margin) && ratio.high <= 1 + margin) return Standing::same;
+  if (ratio.low > 1) return Standing::slower;
+  if (ratio.high < 1) return Standing::faster;
+  return Standing::undecided;
+}
+
+bool DuelResult::ok() const {
+  return std::ranges::all_of(sides, [](const Side& side) { return side.status == Status::ok; });
+}
+
+std::vector<double> DuelResult::ratios(std::size_t a, std::size_t b) const {
+  std::vector<double> ratios(rounds());
+  std::ranges::transform(sides[a].seconds, sides[b].seconds, ratios.begin(), std::divides());
+  return ratios;
+}
+
+Estimate DuelResult::ratio(std::size_t a, std::size_t b) const {
+  return medianOfSeries(ratios(a, b));
+}
+
+DuelResult runDuel(const std::vector<DuelSide>& sides, FrameSource& frames,
+                   const DuelOptions& options) {
+  return Duel(sides, options).run(frames);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,284 @@
+// Statistics of scenes: O(n log n + candidate pairs) for each frame.
+
+#include "broadmark/analysis/scene_statistics.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "broadmark/execution.h"
+#include "broadmark/harness/oracle.h"
+#include "broadmark/json_fields.h"
+#include "broadmark/statistics/statistics.h"
+
+namespace broadmark {
+namespace {
+
+std::array<double, 3> edges(const Aabb& box) {
+  std::array<double, 3> lengths{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    lengths[axis] = double{box.max[axis]} - double{box.min[axis]};
+  }
+  return lengths;
+}
+
+double volume(const Aabb& box) {
+  const auto [x, y, z] = edges(box);
+  return x * y * z;
+}
+
+bool holdsCentre(const Aabb& world, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double centre = (double{box.min[axis]} + double{box.max[axis]}) / 2;
+    if (centre < world.min[axis] || centre > world.max[axis]) return false;
+  }
+  return true;
+}
+
+double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+/// The mean of one figure over frames.
+template <class Figure>
+double meanOf(std::span<const FrameStatistics> frames, Figure figure) {
+  double sum = 0;
+  for (const FrameStatistics& frame : frames) sum += frame.*figure;
+  return sum / static_cast<double>(frames.size());
+}
+
+Changes meanOf(std::span<const Changes> frames) {
+  Changes sum;
+  for (const Changes& frame : frames) {
+    sum.appeared += frame.appeared;
+    sum.vanished += frame.vanished;
+    sum.changed += frame.changed;
+  }
+  const auto count = static_cast<double>(frames.size());
+  return {sum.appeared / count, sum.vanished / count, sum.changed / count};
+}
+
+FrameStatistics statisticsOf(const SceneInfo& scene, const Frame& frame,
+                             std::span<const Aabb> before, std::size_t pairs) {
+  FrameStatistics figures{.frame = frame.index};
+  std::vector<double> extents;
+  double filled = 0;
+  for (const Aabb& box : frame.boxes) {
+    if (isEmpty(box)) continue;
+    extents.push_back(std::ranges::max(edges(box)));
+    filled += volume(box);
+    if (!holdsCentre(scene.world, box)) ++figures.outside;
+  }
+  figures.bodies = static_cast<std::uint32_t>(extents.size());
+  if (!before.empty()) {
+    const Changes changes = changesBetween(before, frame.boxes);
+    figures.changes = changes;
+    const double stayed = figures.bodies - changes.appeared;
+    const double moved = changes.changed - changes.appeared - changes.vanished;
+    if (stayed > 0) figures.moving_share = moved / stayed;
+  }
+  if (extents.empty()) return figures;
+  figures.density = ratio(filled, volume(scene.world));
+  const auto [min, max] = std::ranges::minmax(extents);
+  figures.min_extent = min;
+  figures.median_extent = quantile(extents, 0.5);
+  figures.max_extent = max;
+  figures.pairs_per_body = static_cast<double>(pairs) / figures.bodies;
+  return figures;
+}
+
+/// Bodies and pairs by layer, added up over frames.
+class FilterTally {
+ public:
+  explicit FilterTally(const CollisionFilter& filter) : filter_(filter) {}
+
+  void add(const Frame& frame, std::span<const Pair> pairs) {
+    ++frames_;
+    for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
+      bodies_[layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
+    }
+    for (const Pair pair : pairs) {
+      const auto [a, b] = std::minmax({layerOf(pair.a), layerOf(pair.b)});
+      pairs_[a][b] += 1;
+    }
+  }
+
+  [[nodiscard]] FilterStatistics statistics(std::uint32_t objects) const {
+    FilterStatistics figures;
+    std::array<bool, LayerMatrix::kLayers> is_used{};
+    std::map<std::uint32_t, std::uint32_t> worlds;
+    for (std::uint32_t body = 0; body < objects; ++body) {
+      is_used[layerOf(body)] = true;
+      const BodyGroups groups = filter_.groupsOf(body);
+      figures.largest_world = std::max(figures.largest_world, ++worlds[groups.world]);
+      figures.tagged += groups.tags == BodyGroups::kNoTags ? 0 : 1;
+    }
+    figures.worlds = static_cast<std::uint32_t>(worlds.size());
+    const LayerMatrix matrix = filter_.matrix();
+    for (std::size_t a = 0; a < is_used.size(); ++a) {
+      if (!is_used[a]) continue;
+      figures.layers.push_back({a, bodies_[a] / frames_});
+      for (std::size_t b = a; b < is_used.size(); ++b) {
+        if (!is_used[b] || !matrix.collide(a, b)) continue;
+        figures.layer_pairs.push_back({a, b, pairs_[a][b] / frames_});
+      }
+    }
+    return figures;
+  }
+
+ private:
+  template <class T>
+  using ByLayer = std::array<T, LayerMatrix::kLayers>;
+
+  [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
+    return filter_.layers().empty() ? 0 : filter_.layers()[body];
+  }
+
+  CollisionFilter filter_;
+  double frames_ = 0;
+  ByLayer<double> bodies_{};
+  ByLayer<ByLayer<double>> pairs_{};
+};
+
+Json toJson(const RangeStatistics& range, const SceneInfo& scene) {
+  Json json = {{"first_frame", range.first},
+               {"last_frame", range.last},
+               {"density", range.density},
+               {"pairs_per_body", range.pairs_per_body},
+               {"moving_share", orNull(range.moving_share)},
+               {"max_outside", range.max_outside},
+               {"min_extent", range.min_extent},
+               {"median_extent", range.median_extent},
+               {"max_extent", range.max_extent},
+               {"size_ratio", orNull(range.sizeRatio())}};
+  if (scene.all_present) return json;
+  json["bodies"] = {
+      {"min", range.min_bodies}, {"mean", range.mean_bodies}, {"max", range.max_bodies}};
+  const auto change = [&](double Changes::*which) {
+    return range.changes ? Json((*range.changes).*which) : Json(nullptr);
+  };
+  json["appeared"] = change(&Changes::appeared);
+  json["vanished"] = change(&Changes::vanished);
+  json["changed"] = change(&Changes::changed);
+  return json;
+}
+
+Json toJson(const FilterStatistics& filter) {
+  Json layers = Json::array();
+  for (const auto& [layer, bodies] : filter.layers) {
+    layers.push_back({{"layer", layer}, {"bodies", bodies}});
+  }
+  Json pairs = Json::array();
+  for (const auto& [a, b, count] : filter.layer_pairs) {
+    pairs.push_back({{"layers", {a, b}}, {"pairs", count}});
+  }
+  return {{"layers", std::move(layers)},
+          {"layer_pairs", std::move(pairs)},
+          {"worlds", filter.worlds},
+          {"largest_world", filter.largest_world},
+          {"tagged", filter.tagged}};
+}
+
+}  // namespace
+
+Changes changesBetween(std::span<const Aabb> before, std::span<const Aabb> boxes) {
+  Changes changes;
+  for (std::size_t body = 0; body < boxes.size(); ++body) {
+    if (boxes[body] == before[body]) continue;
+    changes.changed += 1;
+    if (isEmpty(before[body])) changes.appeared += 1;
+    if (isEmpty(boxes[body])) changes.vanished += 1;
+  }
+  return changes;
+}
+
+FrameStatistics frameStatistics(const SceneInfo& scene, const Frame& frame,
+                                std::span<const Aabb> before) {
+  return statisticsOf(scene, frame, before, sweptPairs(frame.boxes, scene.filter).size());
+}
+
+std::optional<double> RangeStatistics::sizeRatio() const {
+  if (min_extent == 0) return std::nullopt;
+  return max_extent / min_extent;
+}
+
+RangeStatistics rangeStatistics(std::span<const FrameStatistics> frames) {
+  RangeStatistics range{.first = frames.front().frame,
+                        .last = frames.back().frame,
+                        .min_bodies = frames.front().bodies,
+                        .mean_bodies = meanOf(frames, &FrameStatistics::bodies),
+                        .density = meanOf(frames, &FrameStatistics::density),
+                        .pairs_per_body = meanOf(frames, &FrameStatistics::pairs_per_body)};
+  std::vector<Changes> changes;
+  std::vector<double> moving;
+  std::vector<double> medians;
+  for (const FrameStatistics& frame : frames) {
+    if (frame.changes) changes.push_back(*frame.changes);
+    if (frame.moving_share) moving.push_back(*frame.moving_share);
+    range.max_outside = std::max(range.max_outside, frame.outside);
+    range.min_bodies = std::min(range.min_bodies, frame.bodies);
+    range.max_bodies = std::max(range.max_bodies, frame.bodies);
+    if (frame.bodies == 0) continue;  // nothing has a size there
+    range.min_extent =
+        medians.empty() ? frame.min_extent : std::min(range.min_extent, frame.min_extent);
+    range.max_extent = std::max(range.max_extent, frame.max_extent);
+    medians.push_back(frame.median_extent);
+  }
+  if (!changes.empty()) range.changes = meanOf(changes);
+  if (!moving.empty()) range.moving_share = mean(moving);
+  range.median_extent = quantile(medians, 0.5);
+  return range;
+}
+
+std::optional<SceneDescription> describe(FrameSource& source, int parts,
+                                         const FrameProgress& progress) {
+  const SceneInfo& scene = source.scene();
+  std::vector<FrameStatistics> frames;
+  std::vector<Aabb> before;
+  FilterTally tally(scene.filter);
+  for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
+    const std::vector<Pair> pairs = sweptPairs(frame->boxes, scene.filter);
+    frames.push_back(statisticsOf(scene, *frame, before, pairs.size()));
+    if (!scene.filter.wantsAll() && (frame->index > 0 || scene.frames == 0)) {
+      tally.add(*frame, pairs);
+    }
+    before.assign(frame->boxes.begin(), frame->boxes.end());
+    if (progress && !progress(frame->index)) return std::nullopt;
+  }
+  const std::span all(frames);
+  SceneDescription description{
+      .initial = rangeStatistics(all.first(1)), .parts = {}, .overall = {}};
+  if (!scene.filter.wantsAll()) description.filter = tally.statistics(scene.objects);
+  const auto updated = all.subspan(1);
+  if (updated.empty()) return description;
+  const int count = static_cast<int>(std::min<std::size_t>(updated.size(), parts));
+  for (int part = 0; part < count; ++part) {
+    const auto [begin, end] = share(updated.size(), count, part);
+    description.parts.push_back(rangeStatistics(updated.subspan(begin, end - begin)));
+  }
+  description.overall = rangeStatistics(updated);
+  return description;
+}
+
+std::string formatDescriptions(std::span<const DescribedRecording> recordings) {
+  Json list = Json::array();
+  for (const DescribedRecording& recording : recordings) {
+    const SceneInfo& scene = recording.scene;
+    const auto& [initial, parts, overall, filter] = recording.description;
+    Json ranges = Json::array();
+    for (const RangeStatistics& part : parts) ranges.push_back(toJson(part, scene));
+    list.push_back({{"source", recording.path},
+                    {"hash", recording.hash},
+                    {"name", scene.name},
+                    {"object_type", scene.object_type},
+                    {"objects", scene.objects},
+                    {"frames", scene.frames},
+                    {"initial", toJson(initial, scene)},
+                    {"parts", std::move(ranges)},
+                    {"overall", overall ? toJson(*overall, scene) : Json(nullptr)}});
+    if (filter) list.back()["filter"] = toJson(*filter);
+  }
+  const Json json = {{"schema", "broadmark-descriptions/1"}, {"recordings", std::move(list)}};
+  // A path need not be UTF-8.
+  return formatJson(json);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,170 @@
+// The sweep: bodies go into strips along the second-longest axis (a body into every strip it
+// touches); within a strip they are sorted along the longest axis and swept. A pair that shares
+// several strips is reported only in the one that holds the larger of its two lower ends, so
+// nothing is reported twice and nothing is lost: that strip belongs to both bodies whenever they
+// overlap. Each world is swept for itself. O(n log n) plus the candidates of the sweeps.
+
+#include "broadmark/reference_pairs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+/// A bijective mixer (splitmix64's finaliser): sums of mixed pairs hardly ever collide.
+std::uint64_t mixed(Pair pair) {
+  std::uint64_t x = (std::uint64_t{pair.a} << 32 | pair.b) + 0x9e3779b97f4a7c15U;
+  x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ x >> 27) * 0x94d049bb133111ebU;
+  return x ^ x >> 31;
+}
+
+/// Equal-width strips over [low, high] of one axis. Monotone, so overlapping intervals share the
+/// strips that their ends fall into; ends are clamped, never dropped.
+class Strips {
+ public:
+  /// Of the boxes that are not empty, of which there is one.
+  Strips(std::span<const Aabb> boxes, int axis) : axis_(axis) {
+    double edges = 0;
+    std::size_t count = 0;
+    double high = -std::numeric_limits<double>::infinity();
+    low_ = -high;
+    for (const Aabb& box : boxes) {
+      if (isEmpty(box)) continue;
+      ++count;
+      low_ = std::min<double>(low_, box.min[axis]);
+      high = std::max<double>(high, box.max[axis]);
+      edges += static_cast<double>(box.max[axis]) - box.min[axis];
+    }
+    // Wide enough that a typical body touches little more than one strip.
+    const double mean_edge = edges / static_cast<double>(count);
+    const double wanted =
+        std::min((high - low_) / std::max(4 * mean_edge, 1e-300), static_cast<double>(count) / 32);
+    count_ = static_cast<std::uint32_t>(std::clamp(wanted, 1.0, 65536.0));
+    scale_ = high > low_ ? count_ / (high - low_) : 0;
+  }
+
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::uint32_t of(float coordinate) const {
+    const double strip = (coordinate - low_) * scale_;
+    return static_cast<std::uint32_t>(std::clamp(strip, 0.0, count_ - 1.0));
+  }
+  [[nodiscard]] std::uint32_t first(const Aabb& box) const { return of(box.min[axis_]); }
+  [[nodiscard]] std::uint32_t last(const Aabb& box) const { return of(box.max[axis_]); }
+  /// The strip that reports the pair.
+  [[nodiscard]] std::uint32_t reporting(const Aabb& a, const Aabb& b) const {
+    return of(std::max(a.min[axis_], b.min[axis_]));
+  }
+
+ private:
+  int axis_;
+  double low_ = 0;
+  double scale_ = 0;
+  std::uint32_t count_ = 1;
+};
+
+/// The axes, longest extent of all boxes first.
+std::array<int, 3> axesByExtent(std::span<const Aabb> boxes) {
+  Aabb bounds = kEmptyBox;
+  for (const Aabb& box : boxes) bounds = merged(bounds, box);  // an empty one changes nothing
+  std::array<int, 3> axes = {0, 1, 2};
+  std::ranges::stable_sort(axes, std::ranges::greater{}, [&](int axis) {
+    return static_cast<double>(bounds.max[axis]) - bounds.min[axis];
+  });
+  return axes;
+}
+
+/// Contents of all strips: bodies of strip s at [start[s], start[s + 1]).
+struct StripContents {
+  std::vector<std::size_t> start;
+  std::vector<std::uint32_t> bodies;
+};
+
+StripContents fill(const Strips& strips, std::span<const Aabb> boxes) {
+  StripContents contents;
+  contents.start.resize(strips.count() + 1);
+  for (const Aabb& box : boxes) {
+    if (isEmpty(box)) continue;
+    for (auto s = strips.first(box); s <= strips.last(box); ++s) ++contents.start[s + 1];
+  }
+  std::partial_sum(contents.start.begin(), contents.start.end(), contents.start.begin());
+  contents.bodies.resize(contents.start.back());
+  std::vector<std::size_t> next(contents.start.begin(), contents.start.end() - 1);
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    if (isEmpty(boxes[body])) continue;
+    for (auto s = strips.first(boxes[body]); s <= strips.last(boxes[body]); ++s) {
+      contents.bodies[next[s]++] = body;
+    }
+  }
+  return contents;
+}
+
+}  // namespace
+
+PairDigest digest(PairRuns runs) {
+  PairDigest result;
+  for (const PairRun run : runs) {
+    result.count += run.size();
+    for (const Pair pair : run) result.hash += mixed(pair);
+  }
+  return result;
+}
+
+std::vector<Pair> bruteForcePairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  std::vector<Pair> pairs;
+  for (std::uint32_t a = 0; a < boxes.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < boxes.size(); ++b) {
+      if (overlaps(boxes[a], boxes[b]) && filter.wanted(a, b)) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+std::vector<Pair> sweptPairs(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                             std::size_t most) {
+  std::vector<Pair> pairs;
+  if (std::ranges::all_of(boxes, isEmpty)) return pairs;
+  const std::array<int, 3> axes = axesByExtent(boxes);
+  const int sweep_axis = axes[0];
+  const Strips strips(boxes, axes[1]);
+  StripContents contents = fill(strips, boxes);
+  const std::span<const std::uint32_t> worlds = filter.worlds();
+  const auto world_of = [&](std::uint32_t body) { return worlds.empty() ? 0 : worlds[body]; };
+
+  for (std::uint32_t s = 0; s < strips.count(); ++s) {
+    const std::span bodies(contents.bodies.data() + contents.start[s],
+                           contents.start[s + 1] - contents.start[s]);
+    std::ranges::sort(bodies, {}, [&](std::uint32_t body) {
+      return std::pair(world_of(body), boxes[body].min[sweep_axis]);
+    });
+    for (auto i = bodies.begin(); i != bodies.end(); ++i) {
+      const Aabb& a = boxes[*i];
+      for (auto j = i + 1; j != bodies.end() && world_of(*j) == world_of(*i) &&
+                           boxes[*j].min[sweep_axis] <= a.max[sweep_axis];
+           ++j) {
+        if (overlaps(a, boxes[*j]) && strips.reporting(a, boxes[*j]) == s &&
+            filter.wanted(*i, *j)) {
+          if (pairs.size() == most) {
+            throw InputError(
+                fmt::format("more than {} pairs overlap: too many to be looked at", most));
+          }
+          pairs.push_back(orderedPair(*i, *j));
+        }
+      }
+    }
+  }
+  std::ranges::sort(pairs);
+  return pairs;
+}
+
+}  // namespace broadmark

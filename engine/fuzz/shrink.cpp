@@ -1,0 +1,409 @@
+// Shrinking a failing case, by delta debugging (delta_debugging.h): parts are left out, large ones
+// first, as long as what is left still fails, until nothing can go: no single body, no frame, no
+// absence (the body is put where it was, or will be, instead), nothing of the collision filter.
+//
+// That alone would begin with the whole recording. But wrong answers mostly have causes nearby. So
+// the wrong pair is tried first with few neighbours, then with more and more (and with a short
+// history of frames, then a longer one), all in memory. If the pair and k neighbours fail, that
+// takes O(log k) passes on up to 2k bodies, and O(k log k) small ones to shrink them; if only the
+// whole recording fails, O(n log n) passes on nearly n bodies.
+
+#include "broadmark/fuzz/shrink.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/harness/case_run.h"
+#include "delta_debugging.h"
+#include "simpler_filter.h"
+
+namespace broadmark {
+namespace {
+
+/// The memory that a part takes.
+std::size_t bytesOf(std::size_t bodies, std::size_t frames) {
+  return bodies * frames * sizeof(Aabb);
+}
+
+/// Whether all of `part` is in `whole`; both ascend.
+bool isWithin(const Part& part, const Part& whole) {
+  return std::ranges::includes(whole.bodies, part.bodies) &&
+         std::ranges::includes(whole.frames, part.frames);
+}
+
+/// The position of the first of `all`, which ascend, that is not below `number`.
+std::uint32_t positionOf(std::uint32_t number, const std::vector<std::uint32_t>& all) {
+  return static_cast<std::uint32_t>(std::ranges::lower_bound(all, number) - all.begin());
+}
+
+/// The position of each of `numbers` in `all`; both ascend.
+std::vector<std::uint32_t> positions(const std::vector<std::uint32_t>& numbers,
+                                     const std::vector<std::uint32_t>& all) {
+  std::vector<std::uint32_t> found;
+  for (const std::uint32_t number : numbers) found.push_back(positionOf(number, all));
+  return found;
+}
+
+/// Some of a part's bodies.
+Part withBodies(const Part& part, std::vector<std::uint32_t> bodies) {
+  Part fewer = part;
+  fewer.filter = part.filter.of(positions(bodies, part.bodies));
+  fewer.bodies = std::move(bodies);
+  std::erase_if(fewer.filled, [&](const Filling& filling) {
+    return !std::ranges::binary_search(fewer.bodies, filling.body);
+  });
+  return fewer;
+}
+
+/// Some of a part's frames.
+Part withFrames(const Part& part, std::vector<std::uint32_t> frames) {
+  Part fewer = part;
+  fewer.frames = std::move(frames);
+  return fewer;
+}
+
+/// The part in the numbers of another one that it is within.
+Part renumbered(const Part& part, const Part& origin) {
+  Part same = part;
+  same.bodies = positions(part.bodies, origin.bodies);
+  same.frames = positions(part.frames, origin.frames);
+  same.filled.clear();
+  for (const Filling& filling : part.filled) {
+    const std::uint32_t begin = positionOf(filling.first, origin.frames);
+    const std::uint32_t end = positionOf(filling.last + 1, origin.frames);
+    if (begin == end) continue;
+    same.filled.push_back({positionOf(filling.body, origin.bodies), begin, end - 1, filling.box});
+  }
+  return same;
+}
+
+/// Squared distance of two boxes, 0 when they overlap; infinite if one is empty.
+double squaredGap(const Aabb& a, const Aabb& b) {
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double gap = std::max({0.0, static_cast<double>(a.min[axis]) - b.max[axis],
+                                 static_cast<double>(b.min[axis]) - a.max[axis]});
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+/// Squared distance of two boxes' centres; infinite if one is empty.
+double squaredDistance(const Aabb& a, const Aabb& b) {
+  if (isEmpty(a) || isEmpty(b)) return std::numeric_limits<double>::infinity();
+  double sum = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double twice = (static_cast<double>(a.min[axis]) + a.max[axis]) -
+                         (static_cast<double>(b.min[axis]) + b.max[axis]);
+    sum += twice * twice / 4;
+  }
+  return sum;
+}
+
+/// The `count` bodies nearest to the suspects, these first.
+std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
+                                   std::span<const Aabb> boxes, std::size_t count) {
+  using Key = std::tuple<bool, double, double, std::uint32_t>;
+  std::vector<Key> keys;
+  for (std::uint32_t body = 0; body < boxes.size(); ++body) {
+    Key key = {true, std::numeric_limits<double>::infinity(), 0, body};
+    for (const std::uint32_t suspect : suspects) {
+      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]),
+                              squaredDistance(boxes[body], boxes[suspect]), body});
+    }
+    keys.push_back(key);
+  }
+  count = std::min(count, keys.size());
+  std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count));
+  std::vector<std::uint32_t> bodies;
+  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<3>(keys[i]));
+  return bodies;
+}
+
+class Shrinker {
+ public:
+  Shrinker(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
+           const FailingTrial& trial, const ShrinkOptions& options)
+      : suspects_(suspects), trial_(trial), options_(options), whole_(source), last_(last) {
+    best_.part = wholePart(source.scene(), last);
+  }
+
+  ShrunkPart shrink() {
+    try {
+      if (!failsAmongNeighbours()) {
+        requireFailure();
+        shortenHistory();
+        failsAmongNeighbours();  // more of them fit into memory now
+      }
+      shrinkToMinimum();
+      best_.minimal = true;
+    } catch (const Cancelled&) {
+    }
+    return std::move(best_);
+  }
+
+ private:
+  /// A part of the recording that is held in memory, as it is there.
+  struct Held {
+    Part origin;
+    FrameList frames;
+
+    Held(Part part, FrameSource& source) : origin(std::move(part)), frames(source) {}
+  };
+
+  /// Holds a part in memory, if it fits. Whether it is held now.
+  bool hold(const Part& part) {
+    if (isHeld(part)) return true;
+    if (bytesOf(part.bodies.size(), part.frames.size()) > options_.memory_bytes) {
+      return false;
+    }
+    held_.reset();
+    Part origin = partOf(whole_.scene(), part.bodies, part.frames);
+    SubRecording frames(whole_, origin, partName(whole_.scene()));
+    held_ = std::make_unique<Held>(std::move(origin), frames);
+    return true;
+  }
+
+  [[nodiscard]] bool isHeld(const Part& part) const {
+    return held_ && isWithin(part, held_->origin);
+  }
+
+  SubRecording framesOf(const Part& part) {
+    const std::string name = partName(whole_.scene());
+    if (!isHeld(part)) return {whole_, part, name};
+    return {held_->frames, renumbered(part, held_->origin), name};
+  }
+
+  /// Tries a part, which becomes the best when it fails.
+  bool fails(const Part& part) {
+    SubRecording source = framesOf(part);
+    const bool failed = trial_(source);
+    ++best_.trials;
+    if (failed) best_.part = part;
+    if (options_.progress) {
+      options_.progress({.trials = best_.trials,
+                         .bodies = best_.part.bodies.size(),
+                         .frames = best_.part.frames.size() - 1});
+    }
+    throwIfCancelled();
+    return failed;
+  }
+
+  void throwIfCancelled() const {
+    if (options_.cancelled && options_.cancelled()) throw Cancelled();
+  }
+
+  /// Tries the suspects with more and more of their neighbours, as many as fit into memory. Whether
+  /// any of that failed.
+  bool failsAmongNeighbours() {
+    const Part before = best_.part;
+    const std::vector<std::uint32_t> seeds = suspects_();
+    const std::size_t limit = options_.memory_bytes / bytesOf(1, before.frames.size());
+    if (seeds.empty() || limit < seeds.size()) return false;
+    const std::vector<std::uint32_t> order = nearest(seeds, whole_.at(last_).boxes, limit);
+    const auto first = [&](std::size_t count) {
+      std::vector bodies(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count));
+      std::ranges::sort(bodies);
+      return withBodies(before, std::move(bodies));
+    };
+    hold(first(order.size()));
+    for (std::size_t count = seeds.size(); count < order.size(); count *= 2) {
+      if (fails(first(count))) return true;
+    }
+    return fails(first(order.size()));
+  }
+
+  void requireFailure() {
+    if (fails(best_.part)) return;
+    throw InputError(fmt::format("{}: {} does not fail in frame {} when it is run again",
+                                 whole_.scene().name, options_.subject, last_));
+  }
+
+  /// Tries longer and longer histories before the last frame.
+  void shortenHistory() {
+    const Part before = best_.part;
+    const auto frames = static_cast<std::ptrdiff_t>(before.frames.size());
+    for (std::ptrdiff_t history = 2; history < frames; history *= 2) {
+      if (fails(withFrames(before, {before.frames.end() - history, before.frames.end()}))) return;
+    }
+  }
+
+  void shrinkToMinimum() {
+    bool smaller = true;
+    while (smaller) {
+      hold(best_.part);
+      smaller = removeFrames();
+      smaller = removeBodies() || smaller;
+      smaller = fillAbsences() || smaller;
+      smaller = simplifyFilterOfBest() || smaller;
+    }
+  }
+
+  bool removeBodies() {
+    return leaveOut(best_.part.bodies, 0, [&](const std::vector<std::uint32_t>& bodies) {
+      return fails(withBodies(best_.part, bodies));
+    });
+  }
+
+  /// The last frame stays, and one before it: the initial pose.
+  bool removeFrames() {
+    return leaveOut(best_.part.frames, 1, [&](const std::vector<std::uint32_t>& frames) {
+      return frames.size() > 1 && fails(withFrames(best_.part, frames));
+    });
+  }
+
+  enum class PutWhere { it_was, it_will_be };
+
+  /// Fills each absence that is not needed. A part from which nobody is absent any more need not
+  /// say that somebody may be.
+  bool fillAbsences() {
+    if (best_.part.all_present) return false;
+    bool fewer = false;
+    for (const PutWhere where : {PutWhere::it_was, PutWhere::it_will_be}) {
+      const Part before = best_.part;
+      std::vector<Filling> all = absences(before, where);
+      std::erase_if(all, [](const Filling& absence) { return isEmpty(absence.box); });
+      fewer = leaveOut(all, 0,
+                       [&](const std::vector<Filling>& left) {
+                         Part part = before;
+                         std::ranges::set_difference(all, left, std::back_inserter(part.filled), {},
+                                                     placeOf, placeOf);
+                         return fails(part);
+                       }) ||
+              fewer;
+    }
+    if (!absences(best_.part, PutWhere::it_was).empty()) return fewer;
+    Part steady = best_.part;
+    steady.all_present = true;
+    return fails(steady) || fewer;
+  }
+
+  static std::pair<std::uint32_t, std::uint32_t> placeOf(const Filling& filling) {
+    return {filling.body, filling.first};
+  }
+
+  /// Each time that a body is absent from a part, and its box just before or just after: the other
+  /// one if there is only that, empty if it is absent throughout. By body and frame.
+  std::vector<Filling> absences(const Part& part, PutWhere where) {
+    struct Body {
+      Aabb before = kEmptyBox;
+      std::optional<Filling> absence;
+    };
+    std::vector<Body> bodies(part.bodies.size());
+    std::vector<Filling> found;
+    const auto end_absence = [&](Body& body, const Aabb& after) {
+      if (!body.absence) return;
+      const bool is_ahead = where == PutWhere::it_will_be && !isEmpty(after);
+      body.absence->box = is_ahead || isEmpty(body.before) ? after : body.before;
+      found.push_back(*body.absence);
+      body.absence.reset();
+    };
+    SubRecording source = framesOf(part);
+    for (std::uint32_t index = 0; index < part.frames.size(); ++index) {
+      const std::span<const Aabb> boxes = source.at(index).boxes;
+      const std::uint32_t frame = part.frames[index];
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        Body& body = bodies[i];
+        if (!isEmpty(boxes[i])) {
+          end_absence(body, boxes[i]);
+          body.before = boxes[i];
+        } else if (body.absence) {
+          body.absence->last = frame;
+        } else {
+          body.absence = Filling{part.bodies[i], frame, frame, kEmptyBox};
+        }
+      }
+    }
+    for (Body& body : bodies) end_absence(body, kEmptyBox);
+    std::ranges::sort(found, {}, placeOf);
+    return found;
+  }
+
+  bool simplifyFilterOfBest() {
+    return simplifyFilter(best_.part.filter, best_.part.bodies.size(),
+                          [&](const CollisionFilter& filter) {
+                            Part part = best_.part;
+                            part.filter = filter;
+                            return fails(part);
+                          });
+  }
+
+  const SuspectQuery& suspects_;
+  const FailingTrial& trial_;
+  const ShrinkOptions& options_;
+  IndexedFrames& whole_;
+  std::uint32_t last_;  ///< frame
+  ShrunkPart best_;
+  std::unique_ptr<Held> held_;
+};
+
+/// How a case's answer for the last frame differs from the right one; nothing when it does not get
+/// that far.
+std::optional<FrameDifference> lastDifference(CaseRun& run, IndexedFrames& source,
+                                              const CancelQuery& cancelled) {
+  const std::uint32_t last = source.scene().frames;
+  run.start(source.scene(), source.rewind());
+  for (std::uint32_t index = 1; index <= last && run.running(); ++index) {
+    if (cancelled && cancelled()) throw Cancelled();
+    const Frame frame = source.at(index);
+    if (!run.step(frame) || index < last) continue;
+    Oracle oracle(0);
+    return run.check(frame, oracle);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> suspectsOf(const FrameDifference& difference, std::size_t bodies) {
+  for (const auto* pairs :
+       {&difference.missed_pairs, &difference.false_pairs, &difference.invalid_pairs}) {
+    for (const Pair pair : *pairs) {
+      if (pair.a >= bodies || pair.b >= bodies) continue;
+      if (pair.a == pair.b) return {pair.a};
+      return {pair.a, pair.b};
+    }
+  }
+  return {};
+}
+
+ShrunkPart shrinkPart(IndexedFrames& source, std::uint32_t last, const SuspectQuery& suspects,
+                      const FailingTrial& fails, const ShrinkOptions& options) {
+  return Shrinker(source, last, suspects, fails, options).shrink();
+}
+
+ShrunkCase shrinkCase(const Case& run, IndexedFrames& source, const FrameDifference& known,
+                      const ShrinkOptions& options) {
+  const SceneInfo& scene = source.scene();
+  if (known.frame < 1 || known.frame > scene.frames) {
+    throw InputError(fmt::format("{}: no frame {} to shrink: frames 1 to {} are checked",
+                                 scene.name, known.frame, scene.frames));
+  }
+  if (!run.algorithm.traits.finds_pairs) {
+    throw InputError(
+        fmt::format("{} finds no pairs: there is nothing to shrink", run.algorithm.id));
+  }
+  CaseRun trial(run, RunPolicy::unlimited(CheckMode::full), options.make_host, options.cancelled);
+  FrameDifference last = known;
+  const auto fails = [&](IndexedFrames& part) {
+    std::optional<FrameDifference> difference = lastDifference(trial, part, options.cancelled);
+    if (!difference || !difference->isMismatch()) return false;
+    last = std::move(*difference);
+    return true;
+  };
+  const auto look_first = [&] { return suspectsOf(last, scene.objects); };
+  ShrinkOptions of_case = options;
+  of_case.subject = caseName(run);
+  const ShrunkPart shrunk = shrinkPart(source, known.frame, look_first, fails, of_case);
+  return {shrunk, std::move(last)};
+}
+
+}  // namespace broadmark

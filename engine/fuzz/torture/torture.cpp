@@ -1,0 +1,202 @@
+#include "broadmark/fuzz/torture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/fuzz/shrink.h"
+#include "torture/random_world.h"
+#include "torture/trial.h"
+
+namespace broadmark {
+namespace {
+
+using inputs::Random;
+
+/// Worlds of a round: so many that to start its process hardly counts.
+constexpr int kWorlds = 40;
+
+/// Somewhere between: each order of magnitude above the least is as likely.
+double between(Random& random, double min, double max) {
+  const int side = random.integer(0, 9);
+  if (side == 0) return min;
+  if (side == 1) return max;
+  const double share = static_cast<double>(random.uniform(0, 1));
+  return std::min(max, min + std::expm1(share * std::log1p(max - min)));
+}
+
+void setAnyhow(Random& random, const Parameter& parameter) {
+  if (const auto* value = std::get_if<bool*>(&parameter.value)) **value = random.onceIn(2);
+  if (const auto* value = std::get_if<std::int64_t*>(&parameter.value)) {
+    **value = static_cast<std::int64_t>(between(random, parameter.min, parameter.max));
+  }
+  if (const auto* value = std::get_if<double*>(&parameter.value)) {
+    **value = between(random, parameter.min, parameter.max);
+  }
+  if (const auto* value = std::get_if<Choice*>(&parameter.value)) {
+    (*value)->value = random.anyOf((*value)->options);
+  }
+}
+
+/// Every other time the defaults.
+ParameterValues randomParameters(Random& random, const Algorithm& algorithm) {
+  if (random.onceIn(2)) return {};
+  const std::unique_ptr<BroadPhase> instance = algorithm.create();
+  instance->visitParameters([&](const Parameter& parameter) {
+    if (random.onceIn(2)) setAnyhow(random, parameter);
+  });
+  return changedValues(parameterValues(*instance), *algorithm.create());
+}
+
+Case randomCase(Random& random, const std::vector<Algorithm>& algorithms) {
+  constexpr std::array kThreads = {1, 2, 3, 5};
+  const Algorithm& algorithm = random.anyOf(algorithms);
+  const Isa isa = random.anyOf(supportedIsas());
+  const int threads = random.anyOf(kThreads);
+  const AnswerKind answer = random.anyOf(kAnswerKinds.entries).value;
+  return makeCase(algorithm, isa, threads, "", randomParameters(random, algorithm), answer);
+}
+
+class Round {
+ public:
+  Round(const TortureOptions& options, std::uint64_t number)
+      : options_(options),
+        random_(options.seed, static_cast<std::uint32_t>(number)),
+        case_(options.only_case ? *options.only_case : randomCase(random_, options.algorithms)),
+        is_exact_(makeInstance(case_)->margin() == 0),
+        trial_(case_, options.make_host, options.cancelled) {}
+
+  TortureRound run() {
+    TortureRound round;
+    RandomWorld world;
+    for (int i = 0; i < kWorlds; ++i) {
+      world = randomWorld(random_, options_);
+      const std::optional<Fault> fault = runOnce(world, round.coverage);
+      if (fault) return finished(std::move(round), std::move(world), *fault);
+    }
+    const std::optional<Fault> fault = leak(*world.frames);
+    if (fault) return finished(std::move(round), std::move(world), *fault);
+    return round;
+  }
+
+ private:
+  /// One that shows in a new process, too: malloc and libraries keep memory as they like.
+  std::optional<Fault> leak(IndexedFrames& world) {
+    const AlgorithmTraits& traits = case_.algorithm.traits;
+    if (traits.library_leaks || traits.on_device || !trial_.leak(world)) return std::nullopt;
+    return Trial(case_, options_.make_host, options_.cancelled).leak(world);
+  }
+
+  /// And sometimes once more.
+  std::optional<Fault> runOnce(RandomWorld& world, TortureCoverage& coverage) {
+    constexpr int kSeldom = 8;
+    // An exact answer is the same one every time, or wrong.
+    std::vector<PairDigest> first;
+    std::vector<PairDigest> second;
+    if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &first)) return fault;
+    if (!trial_.supported()) return std::nullopt;
+    count(world, coverage);
+    if (random_.onceIn(kSeldom)) {
+      if (auto fault = trial_.run(*world.frames, is_exact_ ? nullptr : &second)) return fault;
+      if (first != second) return Fault{FaultKind::unsteady, 0, "another answer the second time"};
+    }
+    if (random_.onceIn(kSeldom)) {
+      world.frames = shuffled(random_, *world.frames);
+      return trial_.run(*world.frames);
+    }
+    return std::nullopt;
+  }
+
+  void count(const RandomWorld& world, TortureCoverage& coverage) const {
+    const SceneInfo& scene = world.frames->scene();
+    coverage[{case_.algorithm.id, std::string(isaName(case_.isa)), case_.threads,
+              std::string(kAnswerKinds.nameOf(case_.answer)), world.name}] +=
+        {.worlds = 1,
+         .frames = scene.frames,
+         .changing = scene.all_present ? 0 : scene.frames,
+         .filtered = scene.filter.wantsAll() ? 0 : scene.frames};
+  }
+
+  TortureRound finished(TortureRound round, RandomWorld world, const Fault& fault) {
+    round.finding = TortureFinding{.run = case_,
+                                   .world = world.name,
+                                   .fault = fault,
+                                   .frames = std::move(world.frames),
+                                   .part = {}};
+    shrink(*round.finding);
+    return round;
+  }
+
+  /// The fault, if it shows on these frames as it did, in the last one.
+  std::optional<Fault> again(Trial& trial, IndexedFrames& frames, FaultKind kind) const {
+    auto fault = kind == FaultKind::leak ? trial.leak(frames) : trial.run(frames);
+    if (!fault || fault->kind != kind) return std::nullopt;
+    // One of the initial pose is told of the first frame, which no recording is without.
+    if (std::max(fault->frame, 1U) < frames.scene().frames) return std::nullopt;
+    return fault;
+  }
+
+  /// Anew in a process of its own: what is left behind there by other worlds is no longer a cause.
+  void shrink(TortureFinding& finding) const {
+    const std::uint32_t last = finding.fault.kind == FaultKind::unsteady
+                                   ? finding.frames->scene().frames
+                                   : std::max(finding.fault.frame, 1U);
+    finding.part = wholePart(finding.frames->scene(), last);
+    if (finding.fault.kind == FaultKind::unsteady || !isNews(finding.fault.kind)) return;
+    Trial trial(case_, options_.make_host, options_.cancelled);
+    const FaultKind kind = finding.fault.kind;
+    const auto fails = [&](IndexedFrames& part) {
+      const std::optional<Fault> fault = again(trial, part, kind);
+      if (fault) finding.fault = *fault;
+      return fault.has_value();
+    };
+    const auto suspects = [&] { return finding.fault.suspects; };
+    const ShrinkOptions limits{.progress = {}, .cancelled = untilTimeIsUp()};
+    try {
+      const ShrunkPart shrunk = shrinkPart(*finding.frames, last, suspects, fails, limits);
+      finding.part = shrunk.part;
+      finding.minimal = shrunk.minimal;
+    } catch (const InputError&) {  // none of the trials failed
+      finding.fault.text += ", but not when it was run again";
+      finding.fault.kind = FaultKind::unsteady;
+    }
+  }
+
+  [[nodiscard]] bool isNews(FaultKind kind) const {
+    return !options_.is_news || options_.is_news(case_.algorithm.id, kind);
+  }
+
+  [[nodiscard]] CancelQuery untilTimeIsUp() const {
+    const auto end = std::chrono::steady_clock::now() +
+                     std::chrono::duration<double>(options_.most_shrink_seconds);
+    return [this, end] {
+      return std::chrono::steady_clock::now() > end || (options_.cancelled && options_.cancelled());
+    };
+  }
+
+  const TortureOptions& options_;
+  Random random_;
+  Case case_;
+  bool is_exact_;
+  Trial trial_;
+};
+
+}  // namespace
+
+TortureCount& TortureCount::operator+=(const TortureCount& other) {
+  worlds += other.worlds;
+  frames += other.frames;
+  changing += other.changing;
+  filtered += other.filtered;
+  return *this;
+}
+
+TortureRound runTortureRound(const TortureOptions& options, std::uint64_t number) {
+  return Round(options, number).run();
+}
+
+}  // namespace broadmark

@@ -1,0 +1,92 @@
+#include "torture/trial.h"
+
+#include <fmt/format.h>
+
+#include "broadmark/error.h"
+#include "broadmark/fuzz/shrink.h"
+
+namespace broadmark {
+
+Trial::Trial(Case run, const HostMaker& make_host, const CancelQuery& cancelled)
+    : case_(std::move(run)), make_host_(make_host), cancelled_(cancelled) {}
+
+std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* answers) {
+  supported_ = true;
+  if (!run_) {
+    run_.emplace(case_, RunPolicy::unlimited(CheckMode::hash), make_host_, cancelled_);
+  }
+  std::optional<Fault> fault = runFrames(world, answers);
+  if (fault || !supported_) run_.reset();
+  return fault;
+}
+
+std::optional<Fault> Trial::runFrames(IndexedFrames& world, std::vector<PairDigest>* answers) {
+  if (!run_->start(world.scene(), world.rewind())) return ended(0);
+  while (const std::optional<Frame> frame = world.next()) {
+    if (cancelled_ && cancelled_()) throw Cancelled();
+    if (!run_->step(*frame)) return ended(frame->index);
+    if (std::optional<Fault> fault = judge(*frame)) return fault;
+    if (answers != nullptr) answers->push_back(digest(run_->answer()));
+    if (!run_->hasInstance()) return ended(frame->index);
+  }
+  run_->stop();
+  return ended(world.scene().frames);
+}
+
+std::optional<Fault> Trial::judge(const Frame& frame) {
+  Oracle oracle(0);
+  const std::optional<FrameDifference> difference = run_->check(frame, oracle);
+  if (difference && difference->isMismatch()) {
+    return Fault{FaultKind::wrong_answer, frame.index, mismatchText(*difference),
+                 suspectsOf(*difference, frame.boxes.size())};
+  }
+  if (!run_->hasInstance()) return std::nullopt;
+  const std::string broken = run_->validate();
+  if (broken.empty()) return std::nullopt;
+  return Fault{FaultKind::unsound, frame.index, broken};
+}
+
+std::optional<Fault> Trial::ended(std::uint32_t frame) {
+  switch (run_->status()) {
+    case Status::ok:
+      return std::nullopt;
+    case Status::unsupported:
+      supported_ = false;
+      return std::nullopt;
+    case Status::timeout:
+      return Fault{FaultKind::hang, frame, run_->reason()};
+    default:
+      return Fault{FaultKind::failure, frame, run_->reason()};
+  }
+}
+
+std::optional<std::uint64_t> Trial::heapAfter(IndexedFrames& world, int passes) {
+  for (int i = 0; i < passes; ++i) {
+    if (run(world) || !supported_) return std::nullopt;
+  }
+  return run_->heapBytes();
+}
+
+std::optional<Fault> Trial::leak(IndexedFrames& world) {
+  // What libraries and malloc itself keep for the next time grows less and less. A leak grows with
+  // the passes.
+  constexpr int kFirstPasses = 10;
+  constexpr std::array kPasses = {8, 16, 32, 64};
+  constexpr std::uint64_t kLeastBytes = 16;  // that an allocation takes
+  constexpr double kGrows = 1.5;
+  std::optional<std::uint64_t> before = heapAfter(world, kFirstPasses);
+  std::uint64_t grown = 0;
+  for (const int passes : kPasses) {
+    const std::optional<std::uint64_t> now = heapAfter(world, passes);
+    if (!before || !now || *now < *before + kLeastBytes * static_cast<std::uint64_t>(passes) ||
+        static_cast<double>(*now - *before) < kGrows * static_cast<double>(grown)) {
+      return std::nullopt;
+    }
+    grown = *now - *before;
+    before = now;
+  }
+  return Fault{FaultKind::leak, world.scene().frames,
+               fmt::format("each pass keeps about {} bytes", grown / kPasses.back())};
+}
+
+}  // namespace broadmark

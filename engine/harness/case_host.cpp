@@ -1,0 +1,198 @@
+// The clock, and the calls into an algorithm.
+
+#include "broadmark/harness/case_host.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "broadmark/adapters.h"
+#include "broadmark/cores.h"
+#include "broadmark/exclusive_use.h"
+
+namespace broadmark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+std::int64_t nanoseconds(Clock::duration duration) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+/// Runs the four phases and times them. Nothing else happens inside the clock.
+FrameTimes runPhases(BroadPhase& algorithm, const Frame& frame) {
+  FrameTimes times;
+  const auto start = Clock::now();
+  algorithm.updateObjects(frame);
+  const auto updated = Clock::now();
+  algorithm.cleanCache();
+  const auto cleaned = Clock::now();
+  algorithm.updateStructures();
+  const auto structured = Clock::now();
+  algorithm.searchOverlaps();
+  const auto end = Clock::now();
+  times[Phase::update_objects] = nanoseconds(updated - start);
+  times[Phase::clean_cache] = nanoseconds(cleaned - updated);
+  times[Phase::update_structures] = nanoseconds(structured - cleaned);
+  times[Phase::search_overlaps] = nanoseconds(end - structured);
+  const TransferTimes transfers = algorithm.transfers();
+  times[Phase::upload] = transfers.upload_ns;
+  times[Phase::download] = transfers.download_ns;
+  times[Phase::total] = nanoseconds(end - start);
+  return times;
+}
+
+void requireRunnable(const Case& run, const SceneInfo& scene) {
+  const AlgorithmTraits& traits = run.algorithm.traits;
+  if (traits.vectorised && !isaSupported(run.isa)) {
+    throw UnsupportedError(fmt::format("this processor has no {}", isaName(run.isa)));
+  }
+  if (scene.objects > traits.max_objects) {
+    throw UnsupportedError(
+        fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
+  }
+  if (isChangingWorld(scene) && traits.changing_worlds == ChangingWorlds::unknown) {
+    throw UnsupportedError(scene.all_present ? "does not know which pairs are wanted"
+                                             : "does not know bodies that come and go");
+  }
+}
+
+/// Whether the bodies' numbers that the algorithm sees change from frame to frame.
+bool isCompacted(const Case& run, const SceneInfo& scene) {
+  return run.algorithm.traits.changing_worlds == ChangingWorlds::compacted &&
+         isChangingWorld(scene);
+}
+
+/// Whether each of several worlds is for an instance of its own.
+bool isApart(const Case& run, const SceneInfo& scene) {
+  // From here on this is quicker than to put them side by side, where bodies share an axis or a
+  // column of cells with those of other worlds.
+  constexpr std::size_t kManyBodies = 100;
+  const AlgorithmTraits& traits = run.algorithm.traits;
+  const std::size_t worlds = worldCount(scene);
+  if (worlds < 2) return false;
+  if (traits.instance_per_world) return true;
+  return traits.changing_worlds == ChangingWorlds::compacted && !traits.on_device &&
+         scene.objects / worlds >= kManyBodies;
+}
+
+std::unique_ptr<BroadPhase> makeForOneWorld(const Case& run, const SceneInfo& scene) {
+  std::unique_ptr<BroadPhase> instance = makeInstance(run);
+  if (!isCompacted(run, scene)) return instance;
+  return compacted(std::move(instance));
+}
+
+CounterVisitor into(Counts& counts) {
+  return [&counts](std::string_view name, std::uint64_t count) { counts.emplace(name, count); };
+}
+
+}  // namespace
+
+LocalHost::~LocalHost() {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  instance_.reset();
+  execution_.reset();
+}
+
+std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
+  stop();
+  requireRunnable(case_, scene);
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  processor_counts_ = {};
+  if (!processor_) processor_.emplace();
+  processor_->restart();
+  if (usable_cores_.empty()) usable_cores_ = usableCores();
+  if (!execution_) execution_.emplace(case_.threads, case_.isa, case_.device);
+  if (pin_) pinThreads();
+  instance_ = makeInstanceFor(scene);
+  bodies_ = scene.objects;
+  const auto start = Clock::now();
+  instance_->initialize(scene, first, *execution_);
+  const auto end = Clock::now();
+  if (case_.answer == AnswerKind::events) takeAnswer();
+  return nanoseconds(end - start);
+}
+
+std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) const {
+  const AlgorithmTraits& traits = case_.algorithm.traits;
+  const auto make = [this](const SceneInfo& world) { return makeForOneWorld(case_, world); };
+  std::unique_ptr<BroadPhase> instance =
+      isApart(case_, scene) ? perWorld(scene, make, traits.exclusive.empty()) : make(scene);
+  if (case_.answer == AnswerKind::pairs) return instance;
+  if (!traits.events || isCompacted(case_, scene)) {
+    return withEvents(std::move(instance));
+  }
+  instance->reportEvents();
+  return instance;
+}
+
+/// Asked once a frame: whoever looks at the answer sees the same one. Returns its size.
+std::uint64_t LocalHost::takeAnswer() {
+  if (case_.answer == AnswerKind::events) {
+    events_ = instance_->events();
+    return eventCount(events_);
+  }
+  answer_ = instance_->overlaps();
+  return pairCount(answer_);
+}
+
+void LocalHost::pinThreads() {
+  // A library that starts threads would have them all on one core.
+  if (case_.algorithm.traits.on_device) return;
+  constexpr std::chrono::milliseconds kMoment{60};
+  const bool is_choice = execution_->threads() < static_cast<int>(usable_cores_.size());
+  const std::vector<int> cores =
+      quietestCores(execution_->threads(), usable_cores_,
+                    is_choice ? watchCores(kMoment) : BusyShares(), coreSiblings());
+  pinned_ = execution_->team().pin(cores, usable_cores_);
+}
+
+FrameTimes LocalHost::runCounted(const Frame& frame) {
+  const ProcessorCounters::Counting counting(*processor_);
+  return runPhases(*instance_, frame);
+}
+
+FrameRun LocalHost::step(const Frame& frame) {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  FrameRun run{.times = runCounted(frame)};
+  run.pairs = takeAnswer();
+  return run;
+}
+
+void LocalHost::stop() {
+  answer_ = {};
+  events_ = {};
+  if (instance_ == nullptr) return;
+  processor_counts_ = processor_->counts();
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  instance_.reset();
+}
+
+Counts LocalHost::counters() {
+  Counts counts;
+  instance_->visitCounters(into(counts));
+  return counts;
+}
+
+Counts LocalHost::setup() {
+  Counts counts;
+  instance_->visitSetup(into(counts));
+  return counts;
+}
+
+RecordedDrawing LocalHost::structure() {
+  RecordedDrawing drawing(bodies_);
+  instance_->drawStructure(drawing);
+  return drawing;
+}
+
+std::string LocalHost::validate() {
+  const ExclusiveUse alone(case_.algorithm.traits.exclusive);
+  return instance_->validate();
+}
+
+std::unique_ptr<CaseHost> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
+  return std::make_unique<LocalHost>(run);
+}
+
+}  // namespace broadmark

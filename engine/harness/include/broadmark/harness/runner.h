@@ -1,0 +1,41 @@
+// Running a case over a whole recording, and keeping what came of it.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "broadmark/harness/case_result.h"
+#include "broadmark/harness/case_run.h"
+
+namespace broadmark {
+
+/// "FreeFall/Cubes/N2000/F100"; with the seed "/s7" when it is known.
+std::string recordingId(const RecordingReference&);
+/// recordingId() + '/' + caseName().
+std::string caseId(const RecordingReference&, const Case&);
+/// caseName() of the case that gave this result: its id without the recording's.
+std::string caseNameOf(const CaseResult&);
+
+/// A result with everything but measurements.
+CaseResult beginCase(const Case&, const RecordingReference&);
+
+/// Who looks on while a repetition runs.
+struct RunHooks {
+  /// Asked between frames; true ends the repetition without a result.
+  std::function<bool()> cancelled;
+  /// Told after each frame.
+  std::function<void(std::uint32_t frame)> progress;
+};
+
+/// One pass over `source`, added to `result`: times, pairs, differences, status. Throws InputError
+/// (bad recording, no such device). Returns false when cancelled: the repetition is then dropped.
+/// `measured` = false: a warm-up, checked but with its times dropped.
+bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle&,
+                   const RunHooks& hooks = {}, bool measured = true);
+
+/// Runs a few repetitions of one case: the short way for programs of your own.
+CaseResult runCase(const Case&, FrameSource&, const RunPolicy& = {}, int repetitions = 1);
+
+}  // namespace broadmark

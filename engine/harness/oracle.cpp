@@ -1,0 +1,106 @@
+// The oracle: brute force for few bodies, an exact sweep for many (broadmark/reference_pairs.h).
+
+#include "broadmark/harness/oracle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "broadmark/error.h"
+
+namespace broadmark {
+namespace {
+
+constexpr std::size_t kBruteForceLimit = 300;
+
+/// Keeps count of every difference and lists the first of each kind.
+void note(std::uint64_t& count, std::vector<Pair>& listed, Pair pair) {
+  ++count;
+  if (listed.size() < FrameDifference::kListed) listed.push_back(pair);
+}
+
+}  // namespace
+
+Oracle::Answer& Oracle::find(std::span<const Aabb> boxes, const CollisionFilter& filter,
+                             bool with_pairs) {
+  // An answer keeps its filter, so no other can get the same address.
+  const std::pair key(hashOf(std::as_bytes(boxes)), filter.address());
+  const auto known = answers_.find(key);
+  if (known != answers_.end() && (known->second.pairs || !with_pairs)) return known->second;
+  scratch_ = boxes.size() <= kBruteForceLimit ? bruteForcePairs(boxes, filter)
+                                              : sweptPairs(boxes, filter, most_pairs_);
+  Answer& answer = answers_.try_emplace(key, Answer{.filter = filter}).first->second;
+  const PairRun run = scratch_;
+  answer.digest = digest({&run, 1});
+  const std::size_t bytes = scratch_.size() * sizeof(Pair);
+  if (bytes <= budget_bytes_) {
+    budget_bytes_ -= bytes;
+    answer.pairs.emplace(scratch_.begin(), scratch_.end());
+  }
+  return answer;
+}
+
+std::span<const Pair> Oracle::pairs(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  const Answer& answer = find(boxes, filter, true);
+  return answer.pairs ? *answer.pairs : scratch_;
+}
+
+PairDigest Oracle::pairDigest(std::span<const Aabb> boxes, const CollisionFilter& filter) {
+  return find(boxes, filter, false).digest;
+}
+
+void FrameDifference::addInvalid(PairRun pairs) {
+  for (const Pair pair : pairs) note(invalid_count, invalid_pairs, pair);
+}
+
+std::string mismatchText(const FrameDifference& difference) {
+  return fmt::format("{} missed, {} false, {} invalid", difference.missed_count,
+                     difference.false_count, difference.invalid_count);
+}
+
+FrameDifference findDifference(PairRuns answer, std::span<const Pair> right, const Frame& frame,
+                               float margin, const CollisionFilter& filter) {
+  FrameDifference difference{.frame = frame.index};
+  std::vector<Pair> given;
+  given.reserve(pairCount(answer));
+  for (const PairRun run : answer) {
+    for (const Pair pair : run) {
+      if (pair.a < pair.b && pair.b < frame.boxes.size()) {
+        given.push_back(pair);
+      } else {
+        note(difference.invalid_count, difference.invalid_pairs, pair);
+      }
+    }
+  }
+  std::ranges::sort(given);
+
+  auto expected = right.begin();
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    const Pair pair = given[i];
+    if (i > 0 && pair == given[i - 1]) {
+      note(difference.invalid_count, difference.invalid_pairs, pair);
+      continue;
+    }
+    for (; expected != right.end() && *expected < pair; ++expected) {
+      note(difference.missed_count, difference.missed_pairs, *expected);
+    }
+    if (expected != right.end() && *expected == pair) {
+      ++expected;
+      continue;
+    }
+    if (filter.wanted(pair.a, pair.b) &&
+        overlaps(enlarged(frame.boxes[pair.a], margin), enlarged(frame.boxes[pair.b], margin))) {
+      note(difference.allowed_extra_count, difference.allowed_extra_pairs, pair);
+    } else {
+      note(difference.false_count, difference.false_pairs, pair);
+    }
+  }
+  for (; expected != right.end(); ++expected) {
+    note(difference.missed_count, difference.missed_pairs, *expected);
+  }
+  return difference;
+}
+
+}  // namespace broadmark

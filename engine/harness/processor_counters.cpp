@@ -1,0 +1,92 @@
+// Linux's performance events, one descriptor each. They are not one group: a group counts only
+// while the processor has room for all of it, and reading one does not reach the threads.
+
+#include "broadmark/harness/processor_counters.h"
+
+#include <linux/perf_event.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace broadmark {
+namespace {
+
+constexpr ProcessorCounters::Events kHardware = {{
+    {PERF_TYPE_HARDWARE, PERF_COUNT_HW_CPU_CYCLES},
+    {PERF_TYPE_HARDWARE, PERF_COUNT_HW_INSTRUCTIONS},
+    {PERF_TYPE_HARDWARE, PERF_COUNT_HW_CACHE_MISSES},
+    {PERF_TYPE_HARDWARE, PERF_COUNT_HW_BRANCH_INSTRUCTIONS},
+    {PERF_TYPE_HARDWARE, PERF_COUNT_HW_BRANCH_MISSES},
+}};
+
+}  // namespace
+
+FileDescriptor ProcessorCounters::open(const Event& event) {
+  perf_event_attr wanted{};
+  wanted.size = sizeof wanted;
+  wanted.type = event.type;
+  wanted.config = event.config;
+  wanted.disabled = 1;
+  wanted.inherit = 1;
+  wanted.exclude_kernel = 1;  // what everybody may count, where anything may be counted
+  wanted.exclude_hv = 1;
+  wanted.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
+  constexpr int kThisThread = 0;
+  constexpr int kAnyCore = -1;
+  constexpr int kNoGroup = -1;
+  return FileDescriptor(static_cast<int>(::syscall(SYS_perf_event_open, &wanted, kThisThread,
+                                                   kAnyCore, kNoGroup, PERF_FLAG_FD_CLOEXEC)));
+}
+
+ProcessorCounters::ProcessorCounters() : ProcessorCounters(kHardware) {}
+
+ProcessorCounters::ProcessorCounters(const Events& events) {
+  for (std::size_t i = 0; i < events.size(); ++i) counters_[i].file = open(events[i]);
+}
+
+std::optional<ProcessorCounters::Reading> ProcessorCounters::read(const Counter& counter) {
+  Reading reading;  // as the kernel lays it out for our read_format
+  static_assert(sizeof reading == 3 * sizeof(std::uint64_t));
+  if (counter.file.get() < 0) return std::nullopt;
+  if (::read(counter.file.get(), &reading, sizeof reading) != sizeof reading) return std::nullopt;
+  return reading;
+}
+
+void ProcessorCounters::tellAll(unsigned long request) const {
+  for (const Counter& counter : counters_) {
+    if (counter.file.get() >= 0) ::ioctl(counter.file.get(), request, 0);
+  }
+}
+
+ProcessorCounters::Counting::Counting(const ProcessorCounters& counters) : counters_(counters) {
+  counters_.tellAll(PERF_EVENT_IOC_ENABLE);
+}
+
+ProcessorCounters::Counting::~Counting() { counters_.tellAll(PERF_EVENT_IOC_DISABLE); }
+
+void ProcessorCounters::restart() {
+  for (Counter& counter : counters_) counter.before = read(counter).value_or(Reading());
+}
+
+ProcessorCounts ProcessorCounters::counts() const {
+  ProcessorCounts counts;
+  for (std::size_t i = 0; i < counters_.size(); ++i) {
+    const std::optional<Reading> now = read(counters_[i]);
+    if (!now) continue;
+    const Reading& before = counters_[i].before;
+    const auto wanted = static_cast<double>(now->wanted_ns - before.wanted_ns);
+    const auto done = static_cast<double>(now->done_ns - before.done_ns);
+    const std::uint64_t count = now->count - before.count;
+    if (wanted == done) {
+      counts.values[i] = count;
+    } else if (done > 0) {
+      counts.values[i] =
+          static_cast<std::uint64_t>(std::llround(static_cast<double>(count) * (wanted / done)));
+    }
+  }
+  return counts;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,110 @@
+// Each warning has a function of its own, which adds to the list.
+
+#include "broadmark/harness/quietness.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <optional>
+#include <utility>
+
+namespace broadmark {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+/// As much of a core as may be busy unmentioned. A tick in a short moment is no news.
+constexpr double kLittle = 0.25;
+
+double busyShareOf(const MachineState& machine, int core) {
+  const auto found = machine.busy.find(core);
+  return found == machine.busy.end() ? 0 : found->second;
+}
+
+/// What a file holds first; nothing if there is none.
+std::optional<int> numberIn(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  int number = 0;
+  return file >> number ? std::optional(number) : std::nullopt;
+}
+
+bool hasTurbo(const SystemFolders& folders) {
+  const auto cpu = folders.sys / "devices/system/cpu";
+  // Intel's driver says whether it is off, the others whether it is on.
+  if (const auto off = numberIn(cpu / "intel_pstate/no_turbo")) return *off == 0;
+  return numberIn(cpu / "cpufreq/boost").value_or(0) != 0;
+}
+
+void warnOfLoad(Texts& warnings, const MachineState& machine) {
+  double busy = 0;
+  for (const int core : machine.usable_cores) busy += busyShareOf(machine, core);
+  if (busy < kLittle) return;
+  warnings.push_back(
+      fmt::format("other programs keep {:.1f} of {} cores busy: times are longer and vary more",
+                  busy, machine.usable_cores.size()));
+}
+
+/// A busy core slows the one with which it shares its units, even if the case stays off it.
+void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
+  if (std::cmp_greater_equal(threads, machine.usable_cores.size())) return;  // it needs all of them
+  for (const int core : machine.usable_cores) {
+    const auto beside = machine.siblings.find(core);
+    if (beside == machine.siblings.end()) continue;
+    for (const int sibling : beside->second) {
+      if (busyShareOf(machine, sibling) < kLittle) continue;
+      warnings.push_back(
+          fmt::format("core {} is busy: it shares its units with core {}, which is slower then",
+                      sibling, core));
+    }
+  }
+}
+
+void warnOfFrequency(Texts& warnings, const Environment& environment, const MachineState& machine) {
+  if (!environment.governor.empty() && environment.governor != "performance") {
+    warnings.push_back(fmt::format(
+        "the frequency governor is '{}': with 'performance' the cores keep their frequency",
+        environment.governor));
+  }
+  if (machine.turbo) {
+    warnings.push_back("turbo is on: the cores are the slower the warmer they are");
+  }
+}
+
+void warnOfThreads(Texts& warnings, const MachineState& machine, int threads) {
+  if (std::cmp_less_equal(threads, machine.usable_cores.size())) return;
+  warnings.push_back(
+      fmt::format("{} threads take turns on {} cores", threads, machine.usable_cores.size()));
+}
+
+void warnOfBuilds(Texts& warnings, const Environment& environment, const Algorithm& algorithm) {
+  if (environment.build_type == "Debug") {
+    warnings.push_back("this is a Debug build of Broadmark: its algorithms are slow");
+  }
+  if (algorithm.plugin_build.unoptimised) {
+    warnings.push_back(
+        fmt::format("{} was built without optimisation: build it with -DCMAKE_BUILD_TYPE=Release",
+                    algorithm.plugin));
+  }
+}
+
+}  // namespace
+
+MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders& folders) {
+  return {.usable_cores = usableCores(),
+          .busy = watchCores(moment, folders),
+          .siblings = coreSiblings(folders),
+          .turbo = hasTurbo(folders)};
+}
+
+std::vector<std::string> disturbances(const Environment& environment, const MachineState& machine,
+                                      const Case& run) {
+  Texts warnings;
+  warnOfLoad(warnings, machine);
+  warnOfSiblings(warnings, machine, run.threads);
+  warnOfFrequency(warnings, environment, machine);
+  warnOfThreads(warnings, machine, run.threads);
+  warnOfBuilds(warnings, environment, run.algorithm);
+  return warnings;
+}
+
+}  // namespace broadmark

@@ -1,0 +1,236 @@
+// The worker's side: a LocalHost whose calls come by messages.
+
+#include <malloc.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/harness/memory_limit.h"
+#include "broadmark/harness/worker_process.h"
+#include "broadmark/headers_hash.h"
+#include "broadmark/large_array.h"
+#include "worker/protocol.h"
+#include "worker/server.h"
+
+namespace broadmark {
+namespace {
+
+using worker::SharedMemory;
+
+/// The peak of the memory that this process has had resident.
+std::optional<std::uint64_t> peakBytes() { return statusBytes("VmHWM"); }
+
+/// What is allocated and not freed.
+std::uint64_t heapBytes() {
+  const auto heap = ::mallinfo2();
+  return heap.uordblks + heap.hblkhd;
+}
+
+/// Should memory run out nonetheless, this process is to go, not the one that waits for it.
+void beFirstToGo() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
+
+/// What an algorithm has no use for. A crash is told of by its signal, and a dump of all that
+/// memory would fill the disc; nobody runs programs with more rights than the user's (sudo) from
+/// here.
+void dropRights() {
+  const rlimit none{0, 0};
+  ::setrlimit(RLIMIT_CORE, &none);
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+}
+
+class Server {
+ public:
+  Server(SharedMemory frames, SharedMemory answers, const AlgorithmFinder& find)
+      : find_(find), frames_(std::move(frames)), answers_(std::move(answers)) {}
+
+  /// The answer to a call.
+  Json answer(const Json& message) {
+    try {
+      const auto call = calls().find(message.at("call").get<std::string>());
+      if (call == calls().end()) throw std::runtime_error("unknown call");
+      return (this->*call->second)(message);
+    } catch (const InputError& error) {
+      return failure("input", error.what());
+    } catch (const UnsupportedError& error) {
+      return failure("unsupported", error.what());
+    } catch (...) {
+      return failure("error", currentErrorText());
+    }
+  }
+
+ private:
+  using Call = Json (Server::*)(const Json&);
+  static const std::map<std::string, Call>& calls() {
+    static const std::map<std::string, Call> all = {{"case", &Server::takeCase},
+                                                    {"start", &Server::start},
+                                                    {"step", &Server::step},
+                                                    {"digest", &Server::digest},
+                                                    {"answer", &Server::pairs},
+                                                    {"events", &Server::events},
+                                                    {"counters", &Server::counters},
+                                                    {"setup", &Server::setup},
+                                                    {"structure", &Server::structure},
+                                                    {"validate", &Server::validate},
+                                                    {"stop", &Server::stop}};
+    return all;
+  }
+
+  static Json failure(const char* kind, std::string text) {
+    constexpr std::size_t kLongest = 10'000;
+    text.resize(std::min(text.size(), kLongest));
+    return {{"error", text}, {"kind", kind}};
+  }
+
+  Json takeCase(const Json& message) {
+    started_ = false;
+    host_.emplace(worker::caseFrom(message, find_), message.value("pin", false));
+    limitMemory(message.at("memory_limit_bytes").get<std::uint64_t>(), /*for_good=*/true);
+    return Json::object();
+  }
+
+  LocalHost& host() {
+    if (!host_) throw std::runtime_error("no case has been named");
+    return *host_;
+  }
+
+  /// In a pass: with an instance.
+  LocalHost& startedHost() {
+    if (!started_) throw std::runtime_error("no pass has been started");
+    return host();
+  }
+
+  Json start(const Json& message) {
+    SceneInfo scene = worker::sceneFrom(message.at("scene"));
+    frames_.read(boxes_, scene.objects);
+    scene.filter = worker::readFilter(message.at("filter"), frames_, boxes_.size() * sizeof(Aabb),
+                                      scene.objects);
+    changed_.resize(boxes_.size());  // now, as it is none of the algorithm's memory
+    changed_boxes_.resize(boxes_.size());
+    if (!measured_) peak_before_ = peakBytes();
+    const Frame first{0, boxes_, std::span<const std::uint32_t>()};
+    started_ = false;
+    const std::int64_t initialize_ns = host().start(scene, first);
+    started_ = true;
+    return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
+  }
+
+  /// The frame in shared memory, in this process's own.
+  Frame takeFrame(const Json& message) {
+    frames_.read(changed_, message.at("changed").get<std::size_t>());
+    frames_.read(changed_boxes_, changed_.size(), changed_.size() * sizeof(std::uint32_t));
+    for (std::size_t i = 0; i < changed_.size(); ++i) {
+      boxes_.at(changed_[i]) = changed_boxes_[i];
+    }
+    return {message.at("frame").get<std::uint32_t>(), boxes_, changed_};
+  }
+
+  Json step(const Json& message) {
+    const FrameRun run = startedHost().step(takeFrame(message));
+    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
+  }
+
+  Json digest(const Json& /*message*/) {
+    const PairDigest digest = startedHost().digest();
+    return {{"count", digest.count}, {"hash", digest.hash}};
+  }
+
+  Json pairs(const Json& /*message*/) {
+    const PairRuns runs = startedHost().answer();
+    sharePairs(runs, 0);
+    return {{"pairs", pairCount(runs)}};
+  }
+
+  Json events(const Json& /*message*/) {
+    const PairEvents events = startedHost().events();
+    sharePairs(events.ended, sharePairs(events.began, 0));
+    return {{"began", pairCount(events.began)}, {"ended", pairCount(events.ended)}};
+  }
+
+  /// Returns the offset behind them.
+  std::uint64_t sharePairs(PairRuns runs, std::uint64_t offset) {
+    for (const PairRun run : runs) offset = answers_.write(run, offset);
+    return offset;
+  }
+
+  Json counters(const Json& /*message*/) { return {{"counts", startedHost().counters()}}; }
+  Json setup(const Json& /*message*/) { return {{"counts", startedHost().setup()}}; }
+
+  Json structure(const Json& /*message*/) {
+    const RecordedDrawing drawing = startedHost().structure();
+    std::uint64_t end = answers_.write(std::span(drawing.boxes()));
+    end = answers_.write(std::span(drawing.lines()), end);
+    answers_.write(std::span(drawing.tests()), end);
+    return {{"boxes", drawing.boxes().size()},
+            {"lines", drawing.lines().size()},
+            {"tests", drawing.tests().size()},
+            {"left_out", drawing.leftOut()}};
+  }
+
+  Json validate(const Json& /*message*/) { return {{"broken", startedHost().validate()}}; }
+
+  Json stop(const Json& /*message*/) {
+    if (!measured_) measure();
+    started_ = false;
+    host().stop();
+    // Others run while this waits for its next pass.
+    LargeVector<Aabb>().swap(boxes_);
+    std::vector<Aabb>().swap(changed_boxes_);
+    std::vector<std::uint32_t>().swap(changed_);
+    return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
+            {"heap_bytes", heapBytes()},
+            {"processor", worker::toJson(host().processorCounts())}};
+  }
+
+  /// Only the first pass tells: later ones use memory again that the first has freed.
+  void measure() {
+    measured_ = true;
+    const auto peak = peakBytes();
+    if (peak && peak_before_) growth_ = *peak - *peak_before_;
+  }
+
+  const AlgorithmFinder& find_;
+  SharedMemory frames_;
+  SharedMemory answers_;
+  LargeVector<Aabb> boxes_;  ///< of the last frame
+  std::vector<std::uint32_t> changed_;
+  std::vector<Aabb> changed_boxes_;
+  std::optional<LocalHost> host_;
+  bool started_ = false;
+  bool measured_ = false;
+  std::optional<std::uint64_t> peak_before_;
+  std::optional<std::uint64_t> growth_;
+};
+
+}  // namespace
+
+void serveCase(const AlgorithmFinder& find) {
+  // Ctrl-C is for the process that started this one. When that is gone, so is the reason to go on.
+  std::signal(SIGINT, SIG_IGN);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  beFirstToGo();
+  dropRights();
+  worker::Channel channel{FileDescriptor(worker::kChannelDescriptor)};
+  if (!channel.send(
+          {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {
+    throw InputError("nobody to work for: only Broadmark itself starts a worker process");
+  }
+  worker::answerCalls(channel, SharedMemory(FileDescriptor(worker::kFramesDescriptor)),
+                      SharedMemory(FileDescriptor(worker::kAnswersDescriptor)), find);
+}
+
+void worker::answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
+                         const AlgorithmFinder& find) {
+  Server server(std::move(frames), std::move(answers), find);
+  while (const std::optional<Json> message = channel.receive()) {
+    if (!channel.send(server.answer(*message))) return;
+  }
+}
+
+}  // namespace broadmark

@@ -1,0 +1,233 @@
+// This side: starts the process, talks to it, and says how it ended.
+
+#include "broadmark/harness/worker_process.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "broadmark/error.h"
+#include "worker/child_process.h"
+#include "worker/protocol.h"
+
+namespace broadmark {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using worker::SharedMemory;
+
+/// How often somebody is asked whether to go on waiting.
+constexpr int kPollMilliseconds = 50;
+
+}  // namespace
+
+class WorkerProcess::Link {
+ public:
+  explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
+  ~Link() {
+    // Without a channel it ends, unless it hangs.
+    channel_.reset();
+    if (!process_.ended()) process_.wait();
+  }
+  Link(const Link&) = delete;
+  Link& operator=(const Link&) = delete;
+
+  SharedMemory frames;
+  SharedMemory answers;
+
+  [[nodiscard]] bool alive() const { return !process_.ended(); }
+
+  /// Introduces both sides, and names the case.
+  void begin(const Json& case_message) {
+    greet();
+    call(case_message, options_.begin_limit);
+  }
+
+  /// The answer to a call into the algorithm. Throws what that threw, and as CaseHost says.
+  Json call(const Json& message) { return call(message, options_.hard_limit); }
+
+ private:
+  using Seconds = std::chrono::duration<double>;
+
+  void greet() {
+    const std::optional<Json> hello = receive(options_.begin_limit);
+    const int version = hello ? hello->value("protocol", 0) : 0;
+    if (version == worker::kProtocolVersion) return;
+    const std::string& program = options_.command.front();
+    if (!hello) {
+      throw InputError(
+          fmt::format("{}: not fit as a worker process: {}", program, process_.wait()));
+    }
+    throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
+                                 program, version, worker::kProtocolVersion));
+  }
+
+  Json call(const Json& message, Seconds limit) {
+    if (!channel_->send(message)) fail();
+    std::optional<Json> answer = receive(limit);
+    if (!answer) fail();
+    if (!answer->contains("error")) return std::move(*answer);
+    const auto text = answer->at("error").get<std::string>();
+    const std::string kind = answer->value("kind", "error");
+    if (kind == "input") throw InputError(text);
+    if (kind == "unsupported") throw UnsupportedError(text);
+    throw std::runtime_error(text);
+  }
+
+  Link(const WorkerOptions& options, worker::ChannelEnds ends)
+      : options_(options),
+        process_(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()}),
+        channel_(std::in_place, std::move(ends.here)) {}
+
+  /// The next message; nothing once the process has hung up.
+  std::optional<Json> receive(Seconds limit) {
+    const auto end = Clock::now() + limit;
+    while (!channel_->wait(kPollMilliseconds)) {
+      if (options_.cancelled && options_.cancelled()) {
+        process_.kill();
+        throw Cancelled();
+      }
+      if (Clock::now() < end) continue;
+      process_.kill();
+      throw HardLimitError(
+          fmt::format("no answer within the hard limit of {:.3g} s", limit.count()));
+    }
+    try {
+      return channel_->receive();
+    } catch (const HostError&) {
+      process_.kill();
+      throw;
+    }
+  }
+
+  /// The process has hung up.
+  [[noreturn]] void fail() { throw HostError(process_.wait()); }
+
+  const WorkerOptions& options_;
+  worker::ChildProcess process_;
+  std::optional<worker::Channel> channel_;
+};
+
+WorkerProcess::WorkerProcess(Case run, WorkerOptions options)
+    : case_(std::move(run)), options_(std::move(options)) {}
+
+WorkerProcess::~WorkerProcess() = default;
+
+/// A call that says nothing more.
+static auto calling(const char* name) {
+  return [name](auto& link) { return link.call({{"call", name}}); };
+}
+
+template <class Talk>
+auto WorkerProcess::talk(Talk&& talk) {
+  try {
+    return talk(*link_);
+  } catch (...) {
+    if (!link_->alive()) link_.reset();
+    throw;
+  }
+}
+
+void WorkerProcess::open() {
+  if (link_) return;
+  link_ = std::make_unique<Link>(options_);
+  talk([&](Link& link) {
+    Json message = worker::toJson(case_);
+    message["call"] = "case";
+    message["memory_limit_bytes"] = options_.memory_limit_bytes;
+    message["pin"] = options_.pin;
+    link.begin(message);
+  });
+}
+
+std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
+  processor_counts_ = {};
+  open();
+  return talk([&](Link& link) {
+    const std::uint64_t end = link.frames.write(first.boxes);
+    const Json started =
+        link.call({{"call", "start"},
+                   {"scene", worker::toJson(scene)},
+                   {"filter", worker::writeFilter(scene.filter, link.frames, end)}});
+    pinned_ = started.value("pinned", false);
+    return started.at("initialize_ns").get<std::int64_t>();
+  });
+}
+
+FrameRun WorkerProcess::step(const Frame& frame) {
+  return talk([&](Link& link) {
+    shareChanged(link.frames, frame);
+    const Json run =
+        link.call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
+    return FrameRun{.times = worker::timesFrom(run.at("times_ns")),
+                    .pairs = run.at("pairs").get<std::uint64_t>()};
+  });
+}
+
+void WorkerProcess::shareChanged(const SharedMemory& memory, const Frame& frame) {
+  changed_boxes_.clear();
+  for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
+  memory.write(std::span<const Aabb>(changed_boxes_), memory.write(*frame.changed));
+}
+
+void WorkerProcess::stop() {
+  answer_ = {};
+  ended_ = {};
+  if (!link_) return;
+  const Json stopped = talk(calling("stop"));
+  if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
+    peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
+  }
+  heap_bytes_.reset();
+  if (stopped.contains("heap_bytes")) heap_bytes_ = stopped.at("heap_bytes").get<std::uint64_t>();
+  processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
+  link_->frames.clear();
+  link_->answers.clear();
+}
+
+PairDigest WorkerProcess::digest() {
+  const Json digest = talk(calling("digest"));
+  return {.count = digest.at("count").get<std::uint64_t>(),
+          .hash = digest.at("hash").get<std::uint64_t>()};
+}
+
+PairRuns WorkerProcess::answer() {
+  const auto count = talk(calling("answer")).at("pairs").get<std::size_t>();
+  link_->answers.read(answer_, count);
+  answer_run_ = answer_;
+  return {&answer_run_, 1};
+}
+
+PairEvents WorkerProcess::events() {
+  const Json counts = talk(calling("events"));
+  link_->answers.read(answer_, counts.at("began").get<std::size_t>());
+  link_->answers.read(ended_, counts.at("ended").get<std::size_t>(), answer_.size() * sizeof(Pair));
+  answer_run_ = answer_;
+  ended_run_ = ended_;
+  return {{&answer_run_, 1}, {&ended_run_, 1}};
+}
+
+Counts WorkerProcess::counters() { return talk(calling("counters")).at("counts").get<Counts>(); }
+
+Counts WorkerProcess::setup() { return talk(calling("setup")).at("counts").get<Counts>(); }
+
+std::string WorkerProcess::validate() {
+  return talk(calling("validate")).at("broken").get<std::string>();
+}
+
+RecordedDrawing WorkerProcess::structure() {
+  const Json drawn = talk(calling("structure"));
+  std::vector<RecordedDrawing::Box> boxes;
+  std::vector<RecordedDrawing::Line> lines;
+  std::vector<std::uint32_t> tests;
+  link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
+  link_->answers.read(lines, drawn.at("lines").get<std::size_t>(),
+                      boxes.size() * sizeof(RecordedDrawing::Box));
+  const std::uint64_t end =
+      boxes.size() * sizeof(RecordedDrawing::Box) + lines.size() * sizeof(RecordedDrawing::Line);
+  link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
+  return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
+          std::move(tests)};
+}
+
+}  // namespace broadmark

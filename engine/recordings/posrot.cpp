@@ -1,0 +1,91 @@
+// Reading and writing .posrot recordings.
+
+#include "broadmark/recordings/posrot.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "recording_file.h"
+
+namespace broadmark {
+namespace {
+
+static_assert(sizeof(Pose) == kRecordBytes && offsetof(Pose, rotation) == 16,
+              "poses are read as they lie in the file");
+
+/// The distance from |x| to the next float.
+float spacing(float x) {
+  return std::nextafter(std::abs(x), std::numeric_limits<float>::infinity()) - std::abs(x);
+}
+
+/// Half an edge of a body that was recorded as reaching from `low` to `high`. Either end is
+/// rounded, so that the same edge comes out a little different at different places; sizes that
+/// people give are whole thousandths more often than chance has it.
+float halfEdge(float low, float high) {
+  const double half = (double{high} - double{low}) / 2;
+  const double usual = std::round(half * 1000) / 1000;
+  const double uncertain = 2 * double{spacing(std::max(std::abs(low), std::abs(high)))};
+  return static_cast<float>(usual > 0 && std::abs(usual - half) <= uncertain ? usual : half);
+}
+
+Vec3 halfExtentsOf(const Aabb& box) {
+  return {halfEdge(box.min[0], box.max[0]), halfEdge(box.min[1], box.max[1]),
+          halfEdge(box.min[2], box.max[2])};
+}
+
+}  // namespace
+
+PosrotReader::PosrotReader(const std::filesystem::path& path)
+    : PosrotReader(openForReading(path), path.string()) {}
+
+PosrotReader::PosrotReader(FileDescriptor file, std::string name)
+    : OriginalRecording(std::move(file), std::move(name)),
+      balls_(scene().object_type == "Spheres") {}
+
+void PosrotReader::readSizes() {
+  unturned_.resize(scene().objects);
+  readSet(0, std::as_writable_bytes(std::span(unturned_)));
+  requireSound<Aabb>(unturned_, 0, scene(), name(), "box");
+  half_extents_.resize(scene().objects);
+  std::ranges::transform(unturned_, half_extents_.begin(), halfExtentsOf);
+}
+
+std::span<const Aabb> PosrotReader::readBoxes(std::uint32_t index) {
+  if (half_extents_.empty()) readSizes();
+  if (index == 0) return unturned_;
+  poses_.resize(scene().objects);
+  boxes_.resize(scene().objects);
+  readSet(index, std::as_writable_bytes(std::span(poses_)));
+  requireSound<Pose>(poses_, index, scene(), name(), "pose");
+  for (std::size_t body = 0; body < poses_.size(); ++body) {
+    const Pose& pose = poses_[body];
+    boxes_[body] = boxAround(pose.position, extents(body, pose.rotation));
+  }
+  requireSound<Aabb>(boxes_, index, scene(), name(), "box");  // at the edge of what floats hold
+  return boxes_;
+}
+
+PosrotWriter::PosrotWriter(const std::filesystem::path& path, const SceneInfo& scene)
+    : file_(std::make_unique<RecordingFile>(path, scene)) {}
+
+PosrotWriter::~PosrotWriter() = default;
+
+void PosrotWriter::writeBoxes(std::span<const Aabb> unturned) { file_->append(unturned, "box"); }
+
+void PosrotWriter::write(std::span<const Pose> poses) {
+  // Not as they lie in memory: there the fourth component of a position may be anything.
+  records_.resize(poses.size());
+  std::ranges::transform(poses, records_.begin(), [](const Pose& pose) {
+    const auto& [x, y, z] = pose.position;
+    const auto& q = pose.rotation;
+    return std::array<float, 8>{x, y, z, 0, q[0], q[1], q[2], q[3]};
+  });
+  file_->append(poses, "pose", std::as_bytes(std::span(records_)));
+}
+
+std::string PosrotWriter::finish() { return file_->finish(); }
+
+}  // namespace broadmark

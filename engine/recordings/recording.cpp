@@ -1,0 +1,241 @@
+// The kinds of recordings; reading and writing .aabbs recordings.
+
+#include "broadmark/recordings/recording.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
+
+#include "broadmark/error.h"
+#include "broadmark/recordings/posrot.h"
+#include "broadmark/recordings/recording2.h"
+#include "recording_file.h"
+
+namespace broadmark {
+namespace {
+
+class AabbsFile final : public BoxRecordingFile {
+ public:
+  AabbsFile(const std::filesystem::path& path, const SceneInfo& scene) : file_(path, scene) {}
+
+  void write(const Frame& frame) override { file_.append(frame.boxes, "box"); }
+  std::string finish() override { return file_.finish(); }
+  std::unique_ptr<Recording> finishTemporary() override {
+    return std::make_unique<RecordingReader>(file_.finishTemporary(), file_.name());
+  }
+
+ private:
+  RecordingFile file_;
+};
+
+std::unique_ptr<BoxRecordingFile> makeAabbsFile(const std::filesystem::path& path,
+                                                const SceneInfo& scene, const RecordingOrigin&) {
+  return std::make_unique<AabbsFile>(path, scene);
+}
+
+template <class Reader>
+std::unique_ptr<Recording> open(const std::filesystem::path& path) {
+  return std::make_unique<Reader>(path);
+}
+
+/// A kind of recording.
+struct Kind {
+  std::string_view extension;
+  std::unique_ptr<Recording> (*open)(const std::filesystem::path&);
+  /// Null: does not hold boxes. Without a path: an unnamed file.
+  std::unique_ptr<BoxRecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
+                                             const RecordingOrigin&);
+};
+
+constexpr Kind kKinds[] = {
+    {kAabbsExtension, open<RecordingReader>, makeAabbsFile},
+    {kBroadmarkExtension, open<Recording2Reader>, makeRecording2File},
+    {kPosrotExtension, open<PosrotReader>, nullptr},
+};
+
+/// The first one unless the extension is another's.
+const Kind& kindOf(const std::filesystem::path& extension) {
+  const auto* kind = std::ranges::find(kKinds, extension, &Kind::extension);
+  return kind == std::end(kKinds) ? kKinds[0] : *kind;
+}
+
+struct stat statusOf(const FileDescriptor& file, const std::string& name) {
+  struct stat status {};
+  if (::fstat(file.get(), &status) == 0) return status;
+  throw InputError(fmt::format("{}: cannot read: {}", name, std::strerror(errno)));
+}
+
+}  // namespace
+
+std::uint64_t recordingBytes(const SceneInfo& scene) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t boxes = std::uint64_t{scene.objects} * (std::uint64_t{1} + scene.frames);
+  // Absurd counts must not wrap around to a size that looks right.
+  if (boxes > (kMost - kRecordingHeaderBytes) / kRecordBytes) return kMost;
+  return kRecordingHeaderBytes + kRecordBytes * boxes;
+}
+
+std::vector<std::string> recordingExtensions() {
+  std::vector<std::string> all;
+  for (const Kind& kind : kKinds) all.emplace_back(kind.extension);
+  return all;
+}
+
+std::vector<std::string> boxRecordingExtensions() {
+  std::vector<std::string> all;
+  for (const Kind& kind : kKinds) {
+    if (kind.write != nullptr) all.emplace_back(kind.extension);
+  }
+  return all;
+}
+
+bool fitsAabbs(const SceneInfo& scene) { return scene.all_present && scene.filter.wantsAll(); }
+
+std::string_view recordingExtension(const SceneInfo& scene) {
+  return fitsAabbs(scene) ? kAabbsExtension : kBroadmarkExtension;
+}
+
+void requireHolds(const std::filesystem::path& path, const SceneInfo& scene) {
+  const Kind& kind = kindOf(path.extension());
+  if (kind.extension == kBroadmarkExtension || fitsAabbs(scene)) return;
+  throw InputError(fmt::format(
+      "{}: {} recordings hold neither absent bodies nor layers, worlds or tags: {} ones do",
+      path.string(), kind.extension, kBroadmarkExtension));
+}
+
+std::string recordingFileName(const SceneInfo& scene) {
+  return recordingFileName(scene, recordingExtension(scene));
+}
+
+std::string recordingFileName(const SceneInfo& scene, std::string_view extension) {
+  return fmt::format("{} {} N{} F{}frames{}", scene.name, scene.object_type, scene.objects,
+                     scene.frames, extension);
+}
+
+Recording::Recording(FileDescriptor file, std::string name)
+    : name_(std::move(name)), file_(std::move(file)) {
+  const struct stat status = statusOf(file_, name_);
+  size_ = static_cast<std::uint64_t>(status.st_size);
+  written_ = status.st_mtim;
+}
+
+void Recording::read(std::uint64_t offset, std::span<std::byte> bytes) const {
+  const std::uint64_t end = offset + readAll(file_.get(), bytes, offset);
+  if (end < offset + bytes.size()) {
+    if (errno == 0) throw InputError(fmt::format("{}: ends at byte {}", name_, end));
+    throw InputError(
+        fmt::format("{}: cannot read at byte {}: {}", name_, end, std::strerror(errno)));
+  }
+  requireUnchanged();
+}
+
+void Recording::requireUnchanged() const {
+  const struct stat status = statusOf(file_, name_);
+  if (static_cast<std::uint64_t>(status.st_size) == size_ &&
+      status.st_mtim.tv_sec == written_.tv_sec && status.st_mtim.tv_nsec == written_.tv_nsec) {
+    return;
+  }
+  throw InputError(fmt::format("{}: was written to while it was read", name_));
+}
+
+const RecordingOrigin& Recording::origin() const {
+  static const RecordingOrigin unknown;
+  return unknown;
+}
+
+const std::string& Recording::hash() {
+  if (!hash_.empty()) return hash_;
+  Hasher hasher;
+  constexpr std::uint64_t kMostAtOnce = 1 << 20;
+  std::vector<std::byte> chunk(std::min(size_, kMostAtOnce));
+  for (std::uint64_t offset = 0; offset < size_; offset += chunk.size()) {
+    const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size_ - offset));
+    read(offset, part);
+    hasher.add(part);
+  }
+  return hash_ = hasher.hex();
+}
+
+std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path) {
+  return kindOf(path.extension()).open(path);
+}
+
+OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
+    : Recording(std::move(file), std::move(name)) {
+  if (bytes() < kRecordingHeaderBytes) {
+    throw InputError(fmt::format("{}: {} bytes is too short: a recording has a header of {} bytes",
+                                 this->name(), bytes(), kRecordingHeaderBytes));
+  }
+  RecordingHeader header{};
+  read(0, std::as_writable_bytes(std::span(&header, 1)));
+  setScene(parseHeader(header, this->name()));
+  const std::uint64_t expected = recordingBytes(scene());
+  if (bytes() != expected) {
+    throw InputError(fmt::format(
+        "{}: {} bytes is too {}: {} objects and {} frames take 304 + 32·{}·(1 + {}) = {} bytes",
+        this->name(), bytes(), bytes() < expected ? "short" : "long", scene().objects,
+        scene().frames, scene().objects, scene().frames, expected));
+  }
+}
+
+void OriginalRecording::readSet(std::uint32_t index, std::span<std::byte> bytes) const {
+  read(setOffset(scene(), index), bytes);
+}
+
+RecordingReader::RecordingReader(const std::filesystem::path& path)
+    : RecordingReader(openForReading(path), path.string()) {}
+
+RecordingReader::RecordingReader(FileDescriptor file, std::string name)
+    : OriginalRecording(std::move(file), std::move(name)), boxes_(scene().objects) {}
+
+std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
+  readSet(index, std::as_writable_bytes(std::span(boxes_)));
+  requireSound<Aabb>(boxes_, index, scene(), name(), "box");
+  return boxes_;
+}
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const SceneInfo& scene,
+                                 const RecordingOrigin& origin) {
+  const Kind& kind = kindOf(path.extension());
+  if (kind.write == nullptr) {
+    throw InputError(fmt::format("{}: the name of a recording of boxes ends in {}", path.string(),
+                                 fmt::join(boxRecordingExtensions(), " or ")));
+  }
+  requireHolds(path, scene);
+  file_ = kind.write(path, scene, origin);
+}
+
+RecordingWriter::RecordingWriter(const SceneInfo& scene)
+    : file_(kindOf(recordingExtension(scene)).write({}, scene, {})) {}
+
+RecordingWriter::~RecordingWriter() = default;
+
+void RecordingWriter::write(std::span<const Aabb> boxes) { file_->write({.boxes = boxes}); }
+
+void RecordingWriter::write(const Frame& frame) { file_->write(frame); }
+
+std::string RecordingWriter::finish() { return file_->finish(); }
+
+std::unique_ptr<Recording> RecordingWriter::finishTemporary() { return file_->finishTemporary(); }
+
+bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress) {
+  std::optional<Frame> frame = source.rewind();
+  for (; frame; frame = source.next()) {
+    sink(*frame);
+    if (progress && !progress(frame->index)) return false;
+  }
+  return true;
+}
+
+bool recordAll(FrameSource& source, RecordingWriter& writer, const FrameProgress& progress) {
+  return recordAll(
+      source, [&](const Frame& frame) { writer.write(frame); }, progress);
+}
+
+}  // namespace broadmark

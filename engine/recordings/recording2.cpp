@@ -1,0 +1,259 @@
+// Reading recording 2: the boxes are kept, and what changed is put in their places.
+
+#include "broadmark/recordings/recording2.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "broadmark/error.h"
+#include "packed_box.h"
+#include "recording2_header.h"
+#include "recording_file.h"
+
+namespace broadmark {
+namespace {
+
+/// Rows that are read at once: their bytes fit in the cache.
+constexpr std::uint64_t kPieceRows = 1 << 13;
+
+template <class... Arguments>
+[[noreturn]] void refuse(const std::string& name, fmt::format_string<Arguments...> text,
+                         Arguments&&... arguments) {
+  throw InputError(
+      fmt::format("{}: {}", name, fmt::format(text, std::forward<Arguments>(arguments)...)));
+}
+
+}  // namespace
+
+Recording2Reader::Recording2Reader(const std::filesystem::path& path)
+    : Recording2Reader(openForReading(path), path.string()) {}
+
+Recording2Reader::Recording2Reader(FileDescriptor file, std::string name)
+    : Recording(std::move(file), std::move(name)) {
+  open();
+  boxes_.resize(scene().objects);
+  ids_.resize(alignedBytes(sizeof(std::uint32_t) * scene().objects) / sizeof(std::uint32_t));
+  piece_.resize(
+      alignedBytes(sizeof(PackedBox) * std::min<std::uint64_t>(kPieceRows, boxes_.size())));
+}
+
+void Recording2Reader::open() {
+  constexpr std::uint64_t kLeast = sizeof(RecordingStart) + sizeof(RecordingEnd);
+  if (bytes() < kLeast) {
+    refuse(name(), "{} bytes is too short: a recording 2 has at least {}", bytes(), kLeast);
+  }
+  RecordingStart start;
+  read(0, std::as_writable_bytes(std::span(&start, 1)));
+  if (start.magic != kRecording2Magic) {
+    refuse(name(), "byte 0: is not '{}': not a recording 2", fmt::join(kRecording2Magic, ""));
+  }
+  const std::uint64_t last = bytes() - sizeof(RecordingEnd);
+  RecordingEnd end;
+  read(last, std::as_writable_bytes(std::span(&end, 1)));
+  if (end.magic != kRecording2Magic) {
+    refuse(name(), "byte {}: does not end as a recording 2: cut short, or not finished?", last);
+  }
+  constexpr std::uint64_t kMostHeaderBytes = 1 << 28;  // scene parameters may be some millions
+  if (start.header_bytes > std::min(kMostHeaderBytes, last - sizeof start) ||
+      (sizeof start + start.header_bytes) % kRecordingAlignment != 0) {
+    refuse(name(), "byte 8: a header of {} bytes cannot be: it ends at a multiple of {}",
+           start.header_bytes, kRecordingAlignment);
+  }
+  hasher_.restart();
+  hasher_.add(std::as_bytes(std::span(&start, 1)));
+  const std::uint64_t frames_offset = readHeader(start.header_bytes, end.index_offset);
+  readIndex(end.index_offset);
+  if (hasher_.value() != end.hash) {
+    refuse(name(), "header or index: damaged: their checksum is another");
+  }
+  checkIndex(frames_offset, end.index_offset);
+}
+
+std::uint64_t Recording2Reader::readHeader(std::uint64_t size, std::uint64_t index_offset) {
+  std::string text(size, ' ');
+  read(sizeof(RecordingStart), std::as_writable_bytes(std::span(text)));
+  hasher_.add(std::as_bytes(std::span(text)));
+  const Recording2Header fields(text, name() + ": header");
+  SceneInfo scene = fields.scene();
+  origin_ = fields.origin();
+
+  // The initial pose takes 24 bytes a body: the file's length bounds all that follows.
+  const std::uint64_t offset = sizeof(RecordingStart) + size;
+  const std::uint64_t last = bytes() - sizeof(RecordingEnd);
+  const std::uint64_t index_bytes = sizeof(RecordedFrame) * (std::uint64_t{1} + scene.frames);
+  if (offset + sizeof(PackedBox) * std::uint64_t{scene.objects} + index_bytes > last) {
+    refuse(name(), "{} bytes is too short for {} objects and {} frames", bytes(), scene.objects,
+           scene.frames);
+  }
+  if (index_offset != last - index_bytes) {
+    refuse(name(), "byte {}: the index of {} frames begins at byte {}, not {}", last, scene.frames,
+           last - index_bytes, index_offset);
+  }
+  std::vector<std::byte> groups(fields.groupBytes());
+  if (groups.size() > index_offset - offset) {
+    refuse(name(), "byte {}: ends within the groups of the bodies", index_offset);
+  }
+  read(offset, groups);
+  hasher_.add(groups);
+  scene.filter = fields.filter(groups);
+  setScene(std::move(scene));
+  return offset + groups.size();
+}
+
+void Recording2Reader::readIndex(std::uint64_t offset) {
+  index_.resize(std::size_t{1} + scene().frames);
+  const auto raw = std::as_writable_bytes(std::span(index_));
+  read(offset, raw);
+  hasher_.add(raw);
+}
+
+void Recording2Reader::checkIndex(std::uint64_t begin, std::uint64_t end) const {
+  std::uint64_t offset = begin;
+  for (std::uint32_t i = 0; i < index_.size(); ++i) {
+    const auto& [place, changed, key, hash] = index_[i];
+    const bool whole = key == i;
+    const bool right = place == offset && changed <= scene().objects &&
+                       (i > 0 || (whole && changed == 0)) && (whole || key == index_[i - 1].key);
+    if (!right) {
+      throw InputError(
+          fmt::format("{}: byte {}: index: frame {} cannot be at "
+                      "byte {} with {} changed bodies and "
+                      "key frame {}",
+                      name(), end + sizeof(RecordedFrame) * i, i, place, changed, key));
+    }
+    offset += FrameLayout(changed, whole, scene().objects).bytes();
+    if (offset > end) break;
+  }
+  if (offset != end) {
+    throw InputError(fmt::format("{}: the frames end at byte {}, but the index begins at byte {}",
+                                 name(), offset, end));
+  }
+}
+
+std::span<const Aabb> Recording2Reader::readBoxes(std::uint32_t index) {
+  if (current_ == index) return boxes_;
+  const std::uint32_t key = index_[index].key;
+  const bool onward = current_ && key <= *current_ && *current_ < index;
+  const bool next = current_ && *current_ + 1 == index;
+  for (std::uint32_t i = onward || next ? *current_ + 1 : key; i <= index; ++i) readFrame(i);
+  return boxes_;
+}
+
+void Recording2Reader::readFrame(std::uint32_t index) {
+  const bool follows = current_ && *current_ + 1 == index;
+  current_.reset();  // until all is read
+  hasher_.restart();
+  readIds(index);
+  if (index_[index].key == index) {
+    readAllBoxes(index, follows);
+  } else {
+    readChangedBoxes(index);
+  }
+  if (hasher_.value() != index_[index].hash) fail(index, "");
+  current_ = index;
+}
+
+void Recording2Reader::readIds(std::uint32_t index) {
+  const RecordedFrame& frame = index_[index];
+  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
+  changed_ = frame.changed;
+  const auto raw = std::as_writable_bytes(std::span(ids_)).first(layout.idBytes());
+  read(frame.offset, raw);
+  hasher_.add(raw);
+  if (layout.ids == 0) {
+    std::iota(ids_.begin(), ids_.begin() + changed_, 0U);
+    return;
+  }
+  std::uint32_t unordered = 0;
+  for (std::uint32_t i = 1; i < changed_; ++i) {
+    unordered |= static_cast<std::uint32_t>(ids_[i] <= ids_[i - 1]);
+  }
+  if (unordered == 0 && ids_[changed_ - 1] < scene().objects) return;
+  for (std::uint32_t i = 0; i < changed_; ++i) {
+    if (ids_[i] < scene().objects && (i == 0 || ids_[i - 1] < ids_[i])) continue;
+    fail(index, fmt::format("byte {}: body {} among the changed ones: they are "
+                            "expected to ascend "
+                            "and to be below {}",
+                            frame.offset + sizeof(std::uint32_t) * i, ids_[i], scene().objects));
+  }
+}
+
+template <class Take>
+void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
+  const RecordedFrame& frame = index_[index];
+  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
+  const bool may_be_empty = !scene().all_present;
+  std::uint64_t offset = frame.offset + layout.idBytes();
+  for (std::uint64_t first = 0; first < layout.rows; first += kPieceRows) {
+    const std::uint64_t rows = std::min(kPieceRows, layout.rows - first);
+    const auto raw = std::span(piece_).first(alignedBytes(sizeof(PackedBox) * rows));
+    read(offset, raw);
+    hasher_.add(raw);
+    offset += raw.size();
+    for (std::uint64_t row = 0; row < rows; ++row) {
+      const BoxCorners box(raw.data() + sizeof(PackedBox) * row);
+      if (!box.isRight(may_be_empty)) failAt(index, first + row, box);
+      take(first + row, box);
+    }
+  }
+}
+
+void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
+  // Who relies on `changed` misses what changed without being named.
+  if (follows && changed_ < scene().objects) {
+    readRows(index,
+             [&, listed = std::uint32_t{0}](std::uint64_t body, const BoxCorners& box) mutable {
+               if (listed < changed_ && ids_[listed] == body) {
+                 ++listed;
+               } else if (!box.is(boxes_[body])) {
+                 failAt(index, body,
+                        "differs from the frame before, but is not among the changed "
+                        "bodies");
+               }
+               box.put(boxes_[body]);
+             });
+  } else {
+    readRows(index, [&](std::uint64_t body, const BoxCorners& box) { box.put(boxes_[body]); });
+  }
+}
+
+void Recording2Reader::readChangedBoxes(std::uint32_t index) {
+  readRows(index, [&](std::uint64_t row, const BoxCorners& box) { box.put(boxes_[ids_[row]]); });
+}
+
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box) {
+  Aabb unpacked;
+  box.put(unpacked);
+  failAt(index, row, "the box " + recordingFault(unpacked, scene().all_present));
+}
+
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const std::string& what) {
+  const RecordedFrame& frame = index_[index];
+  const bool whole = frame.key == index;
+  const FrameLayout layout(frame.changed, whole, scene().objects);
+  fail(index, fmt::format("body {} (byte {}): {}", whole ? row : ids_[row],
+                          frame.offset + layout.idBytes() + sizeof(PackedBox) * row, what));
+}
+
+void Recording2Reader::fail(std::uint32_t index, const std::string& what) {
+  const RecordedFrame& frame = index_[index];
+  const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
+  hasher_.restart();
+  for (std::uint64_t done = 0; done < layout.bytes(); done += piece_.size()) {
+    const auto raw =
+        std::span(piece_).first(std::min<std::uint64_t>(piece_.size(), layout.bytes() - done));
+    read(frame.offset + done, raw);
+    hasher_.add(raw);
+  }
+  if (hasher_.value() == frame.hash) {
+    throw InputError(fmt::format("{}: frame {}, {}", name(), index, what));
+  }
+  throw InputError(fmt::format("{}: frame {} (bytes {} to {}): damaged: its checksum is another",
+                               name(), index, frame.offset, frame.offset + layout.bytes() - 1));
+}
+
+}  // namespace broadmark

@@ -1,0 +1,93 @@
+// How a recording 2 is laid out, and its header; docs/recordings.md describes the bytes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "broadmark/hasher.h"
+#include "broadmark/json_fields.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/recording2.h"
+#include "packed_box.h"
+
+namespace broadmark {
+
+inline constexpr std::array<char, 8> kRecording2Magic = {'B', 'R', 'D', 'M', 'A', 'R', 'K', '2'};
+
+/// Before the header, which is JSON.
+struct RecordingStart {
+  std::array<char, 8> magic = kRecording2Magic;
+  std::uint64_t header_bytes = 0;
+};
+
+/// The last bytes of the file.
+struct RecordingEnd {
+  std::uint64_t index_offset = 0;
+  HashValue hash;  ///< of the index, after all that comes before the first frame
+  std::array<char, 8> magic = kRecording2Magic;
+};
+
+inline constexpr std::uint64_t kRecordingAlignment = 32;
+static_assert(sizeof(RecordingStart) == 16 && sizeof(RecordedFrame) == kRecordingAlignment &&
+              sizeof(RecordingEnd) == kRecordingAlignment && sizeof(PackedBox) == 24);
+
+constexpr std::uint64_t alignedBytes(std::uint64_t bytes) {
+  return (bytes + kRecordingAlignment - 1) / kRecordingAlignment * kRecordingAlignment;
+}
+
+/// What lies where in a frame: its ids, then its boxes. Where all changed, no ids.
+struct FrameLayout {
+  std::uint64_t ids;
+  std::uint64_t rows;
+
+  FrameLayout(std::uint32_t changed, bool whole, std::uint32_t objects)
+      : ids(changed < objects ? changed : 0), rows(whole ? objects : changed) {}
+
+  [[nodiscard]] std::uint64_t idBytes() const { return alignedBytes(sizeof(std::uint32_t) * ids); }
+  [[nodiscard]] std::uint64_t bytes() const {
+    return idBytes() + alignedBytes(sizeof(PackedBox) * rows);
+  }
+};
+
+/// "" or what is wrong with a box.
+std::string recordingFault(const Aabb& box, bool all_present);
+
+template <class T>
+void appendBytes(std::vector<std::byte>& bytes, std::span<const T> values) {
+  if (values.empty()) return;
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + values.size_bytes());
+  std::memcpy(bytes.data() + begin, values.data(), values.size_bytes());
+}
+
+/// All bytes before the first frame.
+std::vector<std::byte> recording2Header(const SceneInfo&, const RecordingOrigin&);
+
+/// The JSON of a header. All functions throw InputError naming the key and what would be right.
+class Recording2Header {
+ public:
+  /// `name` stands for it in messages.
+  Recording2Header(std::string_view text, const std::string& name);
+
+  /// But for the filter.
+  [[nodiscard]] SceneInfo scene() const;
+  [[nodiscard]] RecordingOrigin origin() const;
+  /// Of what lies between header and first frame: the numbers of all bodies.
+  [[nodiscard]] std::uint64_t groupBytes() const;
+  /// What these bytes mean.
+  [[nodiscard]] CollisionFilter filter(std::span<const std::byte> groups) const;
+
+ private:
+  [[nodiscard]] std::uint32_t objects() const { return fields_.integer<std::uint32_t>("objects"); }
+
+  Json json_;
+  JsonFields fields_;
+};
+
+}  // namespace broadmark

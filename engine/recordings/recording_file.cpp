@@ -1,0 +1,204 @@
+#include "recording_file.h"
+
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "broadmark/recordings/recording.h"
+
+namespace broadmark {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "recordings are read and written as is");
+static_assert(sizeof(RecordingHeader) == kRecordingHeaderBytes);
+static_assert(sizeof(Aabb) == kRecordBytes);
+
+constexpr std::size_t kTextBytes = 128;
+
+/// Frames of no objects take no bytes, so the file's length does not bound their number.
+constexpr std::uint32_t kMostEmptyFrames = 1'000'000;
+
+/// A NUL-padded text of the header.
+std::string headerText(const char (&field)[kTextBytes], std::string_view what, std::size_t offset,
+                       const std::string& name) {
+  const auto* end = std::find(std::begin(field), std::end(field), '\0');
+  std::string text(std::begin(field), end);
+  if (!isName(text)) {
+    throw InputError(
+        fmt::format("{}: byte {}: the {} is not printable ASCII ended by a NUL: not a "
+                    "recording?",
+                    name, offset, what));
+  }
+  return text;
+}
+
+std::uint32_t headerCount(std::int32_t value, std::string_view what, std::size_t offset,
+                          const std::string& name) {
+  if (value < 0) {
+    throw InputError(
+        fmt::format("{}: byte {}: negative number of {} ({})", name, offset, what, value));
+  }
+  return static_cast<std::uint32_t>(value);
+}
+
+RecordingHeader makeHeader(const SceneInfo& scene) {
+  constexpr auto kMost = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
+  requireNames(scene);
+  if (scene.objects > kMost || scene.frames > kMost) {
+    throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
+                                 scene.objects, scene.frames, kMost));
+  }
+  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+    throw InputError(fmt::format("cannot record {} frames of no objects: at most {} are allowed",
+                                 scene.frames, kMostEmptyFrames));
+  }
+  RecordingHeader header{};
+  std::ranges::copy(scene.name, header.name);
+  std::ranges::copy(scene.object_type, header.object_type);
+  header.objects = static_cast<std::int32_t>(scene.objects);
+  header.frames = static_cast<std::int32_t>(scene.frames);
+  header.world = scene.world;
+  return header;
+}
+
+}  // namespace
+
+bool isName(std::string_view text) {
+  return text.size() <= kLongestName &&
+         std::ranges::all_of(text, [](char c) { return c >= ' ' && c <= '~'; });
+}
+
+void requireNames(const SceneInfo& scene) {
+  const auto require = [](const std::string& text, std::string_view what) {
+    if (isName(text)) return;
+    throw InputError(
+        fmt::format("cannot record the {} '{}': at most {} printable ASCII characters are allowed",
+                    what, text, kLongestName));
+  };
+  require(scene.name, "scene name");
+  require(scene.object_type, "object type");
+}
+
+SceneInfo parseHeader(const RecordingHeader& header, const std::string& name) {
+  SceneInfo scene;
+  scene.name = headerText(header.name, "scene name", offsetof(RecordingHeader, name), name);
+  scene.object_type =
+      headerText(header.object_type, "object type", offsetof(RecordingHeader, object_type), name);
+  scene.objects = headerCount(header.objects, "objects", offsetof(RecordingHeader, objects), name);
+  scene.frames = headerCount(header.frames, "frames", offsetof(RecordingHeader, frames), name);
+  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+    throw InputError(fmt::format("{}: byte {}: {} frames of no objects: at most {} are allowed",
+                                 name, offsetof(RecordingHeader, frames), scene.frames,
+                                 kMostEmptyFrames));
+  }
+  scene.world = header.world;
+  if (const std::string wrong = fault(scene.world); !wrong.empty()) {
+    throw InputError(fmt::format("{}: byte {}: the world box {}", name,
+                                 offsetof(RecordingHeader, world), wrong));
+  }
+  return scene;
+}
+
+std::uint64_t setOffset(const SceneInfo& scene, std::uint64_t set) {
+  return kRecordingHeaderBytes + sizeof(Aabb) * std::uint64_t{scene.objects} * set;
+}
+
+std::string fault(const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = box.min[axis];
+    const float high = box.max[axis];
+    if (std::isnan(low) || std::isnan(high)) return "is not a number (NaN)";
+    if (std::isinf(low) || std::isinf(high)) return "is infinite";
+    if (low > high) return "is inverted (min > max)";
+  }
+  return {};
+}
+
+std::string fault(const Pose& pose) {
+  const auto any = [&](auto&& is) {
+    return std::ranges::any_of(pose.position, is) || std::ranges::any_of(pose.rotation, is);
+  };
+  if (any([](float value) { return std::isnan(value); })) return "is not a number (NaN)";
+  if (any([](float value) { return std::isinf(value); })) return "is infinite";
+  const float squared = squaredLength(pose.rotation);
+  if (std::abs(squared - 1) <= kRotationTolerance) return {};
+  return fmt::format("has a quaternion of length {:.6g} (1 is right)", std::sqrt(squared));
+}
+
+void GrowingFile::append(std::vector<std::byte>& block) {
+  settle();
+  std::swap(block, handed_);
+  constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
+  if (handed_.size() < kLarge) return write(handed_);
+  // Deferred, that is in settle(), where the system grants no more threads.
+  writing_ = std::async(std::launch::async | std::launch::deferred, [this] { write(handed_); });
+}
+
+std::string GrowingFile::finish() {
+  settle();
+  named_->commit();
+  return hasher_.hex();
+}
+
+FileDescriptor GrowingFile::finishTemporary() {
+  settle();
+  return std::move(unnamed_);
+}
+
+void GrowingFile::settle() {
+  if (writing_.valid()) writing_.get();
+}
+
+void GrowingFile::write(std::span<const std::byte> bytes) {
+  // In pieces, so that what was hashed is still in the cache when it is written.
+  constexpr std::size_t kPiece = 1 << 18;
+  for (std::size_t start = 0; start < bytes.size(); start += kPiece) {
+    const auto piece = bytes.subspan(start, std::min(kPiece, bytes.size() - start));
+    hasher_.add(piece);
+    if (named_) {
+      named_->write(piece);
+    } else {
+      writeAll(unnamed_.get(), piece, name_);
+    }
+  }
+}
+
+std::unique_ptr<GrowingFile> growingFile(const std::filesystem::path& path,
+                                         const SceneInfo& scene) {
+  if (!path.empty()) return std::make_unique<GrowingFile>(path);
+  return std::make_unique<GrowingFile>(recordingFileName(scene) + " (temporary)");
+}
+
+void requireBodies(std::size_t bodies, const SceneInfo& scene, const std::string& name) {
+  if (bodies == scene.objects) return;
+  throw std::logic_error(
+      fmt::format("{}: a set of {} bodies instead of {}", name, bodies, scene.objects));
+}
+
+void requireWhole(std::uint64_t sets, const SceneInfo& scene, const std::string& name) {
+  if (sets == std::uint64_t{1} + scene.frames) return;
+  throw std::logic_error(
+      fmt::format("{}: {} sets written instead of 1 + {}", name, sets, scene.frames));
+}
+
+RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene)
+    : scene_(scene) {
+  const RecordingHeader header = makeHeader(scene);
+  file_ = growingFile(path, scene);
+  const auto bytes = std::as_bytes(std::span(&header, 1));
+  filling_.assign(bytes.begin(), bytes.end());
+  file_->append(filling_);
+}
+
+std::string RecordingFile::finish() {
+  requireWhole(sets_, scene_, name());
+  return file_->finish();
+}
+
+FileDescriptor RecordingFile::finishTemporary() {
+  requireWhole(sets_, scene_, name());
+  return file_->finishTemporary();
+}
+
+}  // namespace broadmark

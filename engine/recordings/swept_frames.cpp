@@ -1,0 +1,111 @@
+// Swept boxes around any frames. Where these know which bodies changed, a frame costs only as much
+// as the bodies that changed in it and in the frame before: one that stopped changes once more, as
+// its box shrinks to where it is.
+
+#include "broadmark/recordings/swept_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string_view>
+
+#include "broadmark/hasher.h"
+
+namespace broadmark {
+namespace {
+
+constexpr float kLargest = std::numeric_limits<float>::max();
+
+// The next number; the largest ones stay, as boxes are finite.
+float below(float value) { return std::nextafter(value, -kLargest); }
+float above(float value) { return std::nextafter(value, kLargest); }
+
+}  // namespace
+
+Aabb sweptBox(const Aabb& before, const Aabb& now) {
+  if (isEmpty(now)) return kEmptyBox;
+  Aabb box = merged(before, now);  // the empty box adds nothing
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min[axis] = below(box.min[axis]);
+    box.max[axis] = above(box.max[axis]);
+  }
+  return box;
+}
+
+std::string sweptName(const SceneInfo& scene) {
+  return scene.name.substr(0, kLongestName - kSweptSuffix.size()).append(kSweptSuffix);
+}
+
+std::string sweptHash(const std::string& hash) {
+  Hasher hasher;
+  hasher.add(std::as_bytes(std::span(std::string_view("swept "))));
+  hasher.add(std::as_bytes(std::span(hash)));
+  return hasher.hex();
+}
+
+SweptFrames::SweptFrames(std::unique_ptr<IndexedFrames> frames)
+    : frames_(std::move(frames)), scene_(frames_->scene()), boxes_(scene_.objects) {
+  scene_.name = sweptName(scene_);
+}
+
+std::span<const Aabb> SweptFrames::readBoxes(std::uint32_t index) {
+  if (index == 0 || last_ != index - 1) {
+    // To know what changed, the swept boxes of the frame before are needed.
+    std::uint32_t first = index - std::min(index, 2U);
+    last_.reset();  // should reading fail
+    begin(first);
+    while (first < index) advance(++first);
+  } else {
+    last_.reset();
+    advance(index);
+  }
+  last_ = index;
+  return boxes_;
+}
+
+std::optional<std::span<const std::uint32_t>> SweptFrames::changed() const {
+  if (!knows_changed_) return {};
+  return changed_;
+}
+
+void SweptFrames::begin(std::uint32_t index) {
+  const Frame frame = frames_->at(index);
+  knows_changed_ = frame.changed.has_value();
+  before_.assign(frame.boxes.begin(), frame.boxes.end());
+  for (std::size_t body = 0; body < boxes_.size(); ++body) {
+    boxes_[body] = sweptBox(before_[body], before_[body]);
+  }
+  changed_.clear();
+  // Of these boxes any may be another in the next frame, unless this is the initial pose.
+  moved_.resize(index == 0 ? 0 : boxes_.size());
+  std::iota(moved_.begin(), moved_.end(), 0U);
+}
+
+void SweptFrames::advance(std::uint32_t index) {
+  const Frame frame = frames_->at(index);
+  if (!frame.changed) {
+    for (std::size_t body = 0; body < boxes_.size(); ++body) {
+      boxes_[body] = sweptBox(before_[body], frame.boxes[body]);
+    }
+    std::ranges::copy(frame.boxes, before_.begin());
+    return;
+  }
+  changed_.clear();
+  for (const std::uint32_t body : candidates(*frame.changed)) {
+    const Aabb box = sweptBox(before_[body], frame.boxes[body]);
+    if (box == boxes_[body]) continue;
+    boxes_[body] = box;
+    changed_.push_back(body);
+  }
+  for (const std::uint32_t body : *frame.changed) before_[body] = frame.boxes[body];
+  moved_.assign(frame.changed->begin(), frame.changed->end());
+}
+
+std::span<const std::uint32_t> SweptFrames::candidates(std::span<const std::uint32_t> changed) {
+  candidates_.resize(moved_.size() + changed.size());
+  const auto end = std::ranges::set_union(moved_, changed, candidates_.begin()).out;
+  return std::span(candidates_.begin(), end);
+}
+
+}  // namespace broadmark

@@ -1,0 +1,35 @@
+// The table of frames: CSV with one row per case, repetition and frame.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "broadmark/results/results.h"
+
+namespace broadmark {
+
+struct FrameRow {
+  int repetition = 1;
+  std::uint32_t frame = 0;
+  FrameTimes times;
+  FrameCounts counts;
+  bool changes_known = false;  ///< FrameCount::changed_bodies was counted
+  bool checked = false;        ///< the counts of wrong pairs mean something
+  bool disturbed = false;      ///< something was drawn while the frame was timed
+};
+
+class FrameTable {
+ public:
+  FrameTable();
+
+  /// The rows added from now on are of this case.
+  void begin(const CaseResult& result);
+  void add(const FrameRow& row);
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string case_;  ///< what the rows begin with
+  std::string text_;
+};
+
+}  // namespace broadmark

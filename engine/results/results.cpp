@@ -1,0 +1,21 @@
+// The list of result formats.
+
+#include "broadmark/results/results.h"
+
+#include "result_writers.h"
+
+namespace broadmark {
+
+std::vector<ResultWriter> resultWriters() {
+  return {
+      {"json", "results as JSON: everything, every frame's times included", formatJsonResults},
+      {"jsonl",
+       "the same as JSON Lines, one line a case, written as the run goes: whatever ends it, "
+       "finished cases are kept",
+       formatJsonLines, &jsonLines()},
+      {"csv", "results as CSV: one row per case", formatCsvResults},
+      {"csv-frames", "times as CSV: one row per frame", formatCsvFrames},
+  };
+}
+
+}  // namespace broadmark
