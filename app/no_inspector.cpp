@@ -2,15 +2,14 @@
 
 #include "broadmark/error.h"
 #include "command_line/option_types.h"
-#include "command_line/session_options.h"
 #include "inspector/run_inspector.h"
 #include "run/plan.h"
 
 namespace broadmark {
 
-int runInspector(Plan /*plan*/, const SessionOptions& options) {
-  throw InputError(options.headless ? "--ui: " + leftOut(parts::kInspector)
-                                    : leftOut(parts::kInspector) + ": add --headless");
+int runInspector(Plan /*plan*/, bool in_window, const std::filesystem::path& /*script*/) {
+  throw InputError(in_window ? leftOut(parts::kInspector) + ": add --headless"
+                             : "--ui: " + leftOut(parts::kInspector));
 }
 
 }  // namespace broadmark

@@ -31,7 +31,7 @@ void requireUsedParameters(const BakeOptions& options, const std::vector<BakeJob
 
 /// The scenes that are named, or all built-in ones.
 std::vector<std::string> scenesOf(const BakeOptions& options) {
-  std::vector<std::string> scenes = options.scenes;
+  std::vector<std::string> scenes = options.sources;
   if (!scenes.empty()) return scenes;
   for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
   return scenes;
@@ -46,7 +46,7 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
     for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
       BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};
       job.simulation = std::move(simulation);
-      job.paths = recordingPaths(options.output, job.scene, swept, options.scene.recorders);
+      job.paths = recordingPaths(options.record, job.scene, swept, options.scene.recorders);
       requireBakeable(*job.simulation, job.paths);
       if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
     }

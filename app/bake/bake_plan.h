@@ -10,16 +10,13 @@
 #include <vector>
 
 #include "bake/batch.h"
-#include "request/scene_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
-/// What is to be baked.
-struct BakeOptions {
-  std::vector<std::string> scenes;  ///< built-in ones, and files that describe a scene; empty: all
-  SceneOptions scene;
-  ParameterValues parameters;  ///< --param
-  std::filesystem::path output;
+/// What is to be baked: the recordings of the request's scenes (built-in ones, and files that
+/// describe a scene; none: all), into its directory.
+struct BakeOptions : RunRequest {
   int threads = 1;
   bool force = false;  ///< also what is already there
 };

@@ -7,18 +7,22 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "broadmark/error.h"
 #include "broadmark/harness/environment.h"
 #include "broadmark/names.h"
+#include "command_line/run_requests.h"
 #include "command_line/usage.h"
 #include "commands/command.h"
 #include "commands/session.h"
 #include "parts.h"
 #include "sources/source.h"
 #include "support/exit_status.h"
+#include "support/output.h"
 
 namespace broadmark {
 
@@ -125,8 +129,18 @@ class CommandLine {
   }
 
   [[nodiscard]] SessionOptions session() const {
-    requireNoMisspeltCommand(session_.sources());
+    requireNoMisspeltCommand(session_.parsed().sources);
     return session_.options();
+  }
+
+  /// The arguments with those of the run request that they name; nothing if they name none.
+  [[nodiscard]] std::optional<std::vector<std::string>> withRequest(
+      const std::vector<std::string>& given) const {
+    const std::filesystem::path& file = session_.parsed().request_file;
+    if (file.empty()) return std::nullopt;
+    std::vector<std::string> all = argumentsOf(readInput(file), file.string(), app_, session_);
+    all.insert(all.end(), given.begin(), given.end());
+    return all;
   }
 
  private:
@@ -158,6 +172,17 @@ class CommandLine {
   std::vector<std::pair<const CLI::App*, std::function<int()>>> commands_;
 };
 
+/// What a command line of the main command asks for, with the run request that it may name.
+SessionOptions sessionOf(const CommandLine& line, const std::vector<std::string>& arguments) {
+  const auto whole = line.withRequest(arguments);
+  CommandLine with_request;
+  std::string printed;
+  if (whole) with_request.parse(*whole, printed);
+  SessionOptions options = (whole ? with_request : line).session();
+  options.command_line = whole.value_or(arguments);
+  return options;
+}
+
 }  // namespace
 
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
@@ -170,9 +195,7 @@ std::function<int()> parseCommandLine(const std::vector<std::string>& arguments)
     };
   }
   if (auto run = line->command()) return [line, run = std::move(run)] { return run(); };
-  SessionOptions options = line->session();
-  options.command_line = arguments;
-  return [options = std::move(options)] { return runSession(options); };
+  return [options = sessionOf(*line, arguments)] { return runSession(options); };
 }
 
 SessionOptions parseSession(const std::vector<std::string>& arguments) {
@@ -181,7 +204,7 @@ SessionOptions parseSession(const std::vector<std::string>& arguments) {
   if (!line.parse(arguments, printed) || line.command()) {
     throw InputError("not a command line of the main command");
   }
-  return line.session();
+  return sessionOf(line, arguments);
 }
 
 }  // namespace broadmark

@@ -78,6 +78,12 @@ void parseSize(const std::string& text, PictureOptions& options) {
   options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMostPixels));
 }
 
+/// As an option of a list takes it.
+template <class List>
+std::string joined(const List& values) {
+  return fmt::format("{}", fmt::join(values, ","));
+}
+
 /// A scene parameter with an option of its own.
 struct SceneShortcut {
   const char* parameter;
@@ -120,19 +126,50 @@ int parseThreadCount(const std::string& text) {
 }
 
 CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
-                      std::function<void(const std::string&)> set, const std::string& doc,
-                      const std::string& shown) {
-  CLI::Option* option = app.add_option_function<std::string>(name, set, doc)->type_name(type);
-  return shown.empty() ? option : option->default_str(shown);
+                      std::function<void(const std::string&)> set, const ValueText& get,
+                      const std::string& doc) {
+  CLI::Option* option = app.add_option_function<std::string>(name, std::move(set), doc);
+  return option->type_name(type)->default_function(get)->capture_default_str();
+}
+
+CLI::Option* addFlag(CLI::App& app, const std::string& name, bool& target, const std::string& doc) {
+  return app.add_flag(name, target, doc)->default_function([&] { return target ? "true" : ""; });
+}
+
+CLI::Option* addPositive(CLI::App& app, const std::string& name, const std::string& type,
+                         double& target, const std::string& doc) {
+  const auto set = [&target, name](const std::string& text) {
+    target = parseNumber(text, name, 0, true);
+  };
+  return addValue(
+      app, name, type, set, [&] { return fmt::format("{}", target); }, doc);
+}
+
+CLI::Option* addShare(CLI::App& app, const std::string& name, double& target, bool open,
+                      const std::string& doc) {
+  const auto set = [&target, name, open](const std::string& text) {
+    target = parseShare(text, name, open);
+  };
+  return addValue(
+      app, name, "SHARE", set, [&] { return fmt::format("{:.12g}%", 100 * target); }, doc);
+}
+
+CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& type,
+                     std::string& target, const std::string& doc) {
+  return addValue(
+      app, name, type, [&](const std::string& text) { target = text; }, [&] { return target; },
+      doc);
 }
 
 CLI::Option* addPath(CLI::App& app, const std::string& name, const std::string& type,
                      std::filesystem::path& target, const std::string& doc) {
-  return app.add_option(name, target, doc)->type_name(type);
+  return app.add_option(name, target, doc)->type_name(type)->default_function([&] {
+    return target.string();
+  });
 }
 
 CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& type,
-                     std::function<void(const std::vector<std::string>&)> set,
+                     std::function<void(const std::vector<std::string>&)> set, const ValueText& get,
                      const std::string& doc) {
   const auto split = [set = std::move(set), name](const std::vector<std::string>& texts) {
     const std::vector<std::string> parts = splitList(texts);
@@ -141,12 +178,16 @@ CLI::Option* addList(CLI::App& app, const std::string& name, const std::string& 
   };
   return app.add_option_function<std::vector<std::string>>(name, split, doc)
       ->type_name(type)
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->default_function(get);
 }
 
 CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::string& type,
                            std::vector<std::string>& target, const std::string& doc) {
-  return app.add_option(name, target, doc)->type_name(type)->allow_extra_args(false);
+  return app.add_option(name, target, doc)
+      ->type_name(type)
+      ->allow_extra_args(false)
+      ->default_function([&] { return fmt::format("{}", fmt::join(target, "\n")); });
 }
 
 std::string leftOut(const BuildPart& part) {
@@ -178,7 +219,13 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
           "KEY=A,B,C: a recording or case for each value, and for every combination; "
           "ALGORITHM:KEY=VALUE: of these algorithms only, named as in --algorithm")
       ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->default_function([&] {
+        std::vector<std::string> lines;
+        for (const auto& [key, value] : parameters)
+          lines.push_back(fmt::format("{}={}", key, value));
+        return fmt::format("{}", fmt::join(lines, "\n"));
+      });
 }
 
 std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
@@ -199,16 +246,17 @@ CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {
   const auto set = [&](const std::vector<std::string>& names) {
     recorders = parseRecorders(names);
   };
-  return addList(app, "--recorder", "KIND[,KIND...]", set,
-                 fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
-                             "scene, else {})",
-                             fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
+  return addList(
+      app, "--recorder", "KIND[,KIND...]", set, [&] { return joined(recorders); },
+      fmt::format("kinds of recordings to keep: {} (default: {} if that can hold the "
+                  "scene, else {})",
+                  fmt::join(recorderIds(), ", "), kAabbsExtension, kBroadmarkExtension));
 }
 
 std::vector<CLI::Option*> addPictureOptions(CLI::App& app, PictureOptions& options) {
   CLI::Option* size = addValue(
       app, "--size", "WxH", [&](const std::string& text) { parseSize(text, options); },
-      "size of the pictures", fmt::format("{}x{}", options.width, options.height));
+      [&] { return fmt::format("{}x{}", options.width, options.height); }, "size of the pictures");
   CLI::Option* gl = addNamed(
       app, "--gl", "SOURCE", options.gl, kGlSources,
       fmt::format("where off-screen OpenGL comes from: {}", fmt::join(kGlSources.names(), ", ")));
@@ -223,38 +271,36 @@ CLI::Option* addAnswer(CLI::App& app, AnswerKind& answer) {
 }
 
 CLI::Option* addDevice(CLI::App& app, std::string& device) {
-  CLI::Option* option = app.add_option(
-      "--device", device,
+  CLI::Option* option = addText(
+      app, "--device", "NAME", device,
       "OpenCL device, by number or part of its name (see 'broadmark list devices'; default: the "
       "first, GPUs before CPUs)");
-  showWith(parts::kOpenCl, {option->type_name("NAME")});
+  showWith(parts::kOpenCl, {option});
   return option;
 }
 
-void addHosts(CLI::App& app, HostOptions& hosts) {
-  const auto number = [&app](const char* name, const char* type, auto& target, const char* doc,
-                             const std::string& shown) {
-    return addValue(
-        app, name, type,
-        [&target, name](const std::string& text) { target = parseNumber(text, name, 0, true); },
-        doc, shown);
-  };
+std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
   CLI::Option* in_process =
-      app.add_flag("--in-process", hosts.in_process,
-                   "run all cases in this process, for debuggers and profilers, instead of each in "
-                   "a worker process of its own: a crash or a hang then ends everything, and "
-                   "memory is not measured");
-  app.add_flag("--pin", hosts.pin,
-               "bind each thread of a case to a core of its own, the quietest ones for every "
-               "repetition; not if they are more than the cores, or of a device")
-      ->excludes(in_process);
-  number("--hard-limit", "SECONDS", hosts.hard_limit_seconds,
-         "limit on a single call into an algorithm: its process is then ended",
-         fmt::format("{}", hosts.hard_limit_seconds))
-      ->excludes(in_process);
-  number("--memory-limit", "GIB", hosts.memory_limit_gib,
-         "memory that a case may hold, in GiB (default: as much as the machine has)", "")
-      ->excludes(in_process);
+      addFlag(app, "--in-process", hosts.in_process,
+              "run all cases in this process, for debuggers and profilers, instead of each in "
+              "a worker process of its own: a crash or a hang then ends everything, and "
+              "memory is not measured");
+  CLI::Option* pin =
+      addFlag(app, "--pin", hosts.pin,
+              "bind each thread of a case to a core of its own, the quietest ones for every "
+              "repetition; not if they are more than the cores, or of a device");
+  CLI::Option* hard_limit =
+      addPositive(app, "--hard-limit", "SECONDS", hosts.hard_limit_seconds,
+                  "limit on a single call into an algorithm: its process is then ended");
+  CLI::Option* memory_limit = addValue(
+      app, "--memory-limit", "GIB",
+      [&](const std::string& text) {
+        hosts.memory_limit_gib = parseNumber(text, "--memory-limit", 0, true);
+      },
+      [&] { return hosts.memory_limit_gib ? fmt::format("{}", *hosts.memory_limit_gib) : ""; },
+      "memory that a case may hold, in GiB (default: as much as the machine has)");
+  return {in_process, pin->excludes(in_process), hard_limit->excludes(in_process),
+          memory_limit->excludes(in_process)};
 }
 
 std::string readingOption(std::string parameter) {
@@ -268,7 +314,7 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
     const std::string name = readingOption(std::string(parameter.name));
     const std::string doc(parameter.doc);
     if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
-      added.push_back(app.add_flag(name, **flag, doc));
+      added.push_back(addFlag(app, name, **flag, doc));
       return;
     }
     const auto set = [&options, key = std::string(parameter.name), name](const std::string& text) {
@@ -280,7 +326,10 @@ std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& optio
     };
     const bool choice = std::holds_alternative<Choice*>(parameter.value);
     const std::string type = choice ? parameterRange(parameter) : "NUMBER";
-    added.push_back(addValue(app, name, type, set, doc, parameterText(parameter)));
+    const auto get = [&options, key = std::string(parameter.name)] {
+      return parameterValues(options).at(key);
+    };
+    added.push_back(addValue(app, name, type, set, get, doc));
   });
   return added;
 }
@@ -292,21 +341,23 @@ std::vector<CLI::Option*> addSceneOptions(CLI::App& app, SceneOptions& options) 
           [&](const std::vector<std::string>& texts) {
             options.objects = parseObjectCounts(texts);
           },
-          "numbers of bodies, e.g. 1000,8000,32000"),
+          [&] { return joined(options.objects); }, "numbers of bodies, e.g. 1000,8000,32000"),
       addList(
           app, "--object-type", "TYPE[,TYPE...]",
           [&](const std::vector<std::string>& names) { options.object_types = names; },
-          "shapes of the bodies")};
+          [&] { return joined(options.object_types); }, "shapes of the bodies")};
   for (const SceneShortcut& shortcut : kSceneShortcuts) {
     const std::string name = fmt::format("--{}", shortcut.parameter);
     const auto set = [&options, &shortcut](const std::string& text) {
       options.parameters[shortcut.parameter] = text;
     };
-    const auto set_list = [set](const std::vector<std::string>& texts) {
-      set(fmt::format("{}", fmt::join(texts, ",")));
+    const auto set_list = [set](const std::vector<std::string>& texts) { set(joined(texts)); };
+    const auto get = [&options, &shortcut] {
+      const auto stated = options.parameters.find(shortcut.parameter);
+      return stated == options.parameters.end() ? "" : stated->second;
     };
-    added.push_back(shortcut.list ? addList(app, name, shortcut.type, set_list, shortcut.doc)
-                                  : addValue(app, name, shortcut.type, set, shortcut.doc));
+    added.push_back(shortcut.list ? addList(app, name, shortcut.type, set_list, get, shortcut.doc)
+                                  : addValue(app, name, shortcut.type, set, get, shortcut.doc));
   }
   return added;
 }

@@ -1,6 +1,9 @@
 // What the options of several commands share: how values are written, and whole options. A value
 // is taken over while the command line is parsed; a bad one throws an InputError that names the
 // option. Targets must outlive the parsing.
+//
+// An option that is part of a run request also states how its present value is written, as
+// CLI::Option::default_function(): one line, or one for each time that the option is to be given.
 #pragma once
 
 #include <filesystem>
@@ -16,8 +19,8 @@
 #include "request/hosts.h"
 #include "request/picture_options.h"
 #include "request/reading_options.h"
+#include "request/run_request.h"
 #include "request/scene_options.h"
-#include "run/result_files.h"
 
 namespace CLI {
 class App;
@@ -44,10 +47,16 @@ auto parseNamed(const std::string& text, std::string_view option, const Table& t
   throw InputError(std::string(option) + ": " + unknownName("value", text, table.names()));
 }
 
-/// An option of one value, which `set` takes over. `shown` is the default that help shows.
+/// How the present value of an option is written; "": as if the option were not given.
+using ValueText = std::function<std::string()>;
+
+/// An option of one value, which `set` takes over. Help shows the default, `get()` at first.
 CLI::Option* addValue(CLI::App&, const std::string& name, const std::string& type,
-                      std::function<void(const std::string&)> set, const std::string& doc,
-                      const std::string& shown = {});
+                      std::function<void(const std::string&)> set, const ValueText& get,
+                      const std::string& doc);
+
+/// An option without a value.
+CLI::Option* addFlag(CLI::App&, const std::string& name, bool& target, const std::string& doc);
 
 /// An option of one integer. The default is what `target` holds.
 template <class Integer>
@@ -56,7 +65,8 @@ CLI::Option* addInteger(CLI::App& app, const std::string& name, const std::strin
   const auto set = [&target, name, min, max](const std::string& text) {
     target = static_cast<Integer>(parseInteger(text, name, min, max));
   };
-  return addValue(app, name, type, set, doc, std::to_string(target));
+  return addValue(
+      app, name, type, set, [&target] { return std::to_string(target); }, doc);
 }
 
 /// An option of one name of a NameTable. The default is what `target` holds.
@@ -66,16 +76,30 @@ CLI::Option* addNamed(CLI::App& app, const std::string& name, const std::string&
   const auto set = [&target, name, &table](const std::string& text) {
     target = parseNamed(text, name, table);
   };
-  return addValue(app, name, type, set, doc, std::string(table.nameOf(target)));
+  const auto get = [&target, &table] { return std::string(table.nameOf(target)); };
+  return addValue(app, name, type, set, get, doc);
 }
 
 /// An option of a path.
 CLI::Option* addPath(CLI::App&, const std::string& name, const std::string& type,
                      std::filesystem::path& target, const std::string& doc);
 
+/// An option of a number greater than 0. The default is what `target` holds.
+CLI::Option* addPositive(CLI::App&, const std::string& name, const std::string& type,
+                         double& target, const std::string& doc);
+
+/// An option of a share, "1%" or "0.01": > 0 or, unless `open`, 0. The default is what `target`
+/// holds.
+CLI::Option* addShare(CLI::App&, const std::string& name, double& target, bool open,
+                      const std::string& doc);
+
+/// An option of a text.
+CLI::Option* addText(CLI::App&, const std::string& name, const std::string& type,
+                     std::string& target, const std::string& doc);
+
 /// An option of a comma-separated list, which may be repeated; `set` gets all parts.
 CLI::Option* addList(CLI::App&, const std::string& name, const std::string& type,
-                     std::function<void(const std::vector<std::string>&)> set,
+                     std::function<void(const std::vector<std::string>&)> set, const ValueText& get,
                      const std::string& doc);
 
 /// An option of one value that may be repeated; commas are part of the value.
@@ -108,7 +132,7 @@ CLI::Option* addAnswer(CLI::App&, AnswerKind& answer);
 /// --device. Help shows it only if there is OpenCL.
 CLI::Option* addDevice(CLI::App&, std::string& device);
 /// Where cases run: --in-process, --pin, --hard-limit, --memory-limit
-void addHosts(CLI::App&, HostOptions&);
+std::vector<CLI::Option*> addHosts(CLI::App&, HostOptions&);
 /// How the files of a source are read: --swept, --elements, …
 std::vector<CLI::Option*> addReadingOptions(CLI::App&, ReadingOptions&);
 /// What a scene is like: --objects, --object-type, --frames, …

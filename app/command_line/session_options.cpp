@@ -23,6 +23,7 @@ enum Conflict : unsigned {
   kExport = 2,     ///< --export-case: it writes one recording and nothing else
   kInspector = 4,  ///< the inspector: only a run without it uses the option
   kWindow = 8,     ///< a window: only pictures drawn off-screen use the option
+  kRequest = 16,   ///< a file of a run request: the option is of a call of the program
 };
 
 Shard parseShard(const std::string& text) {
@@ -57,11 +58,17 @@ std::vector<Isa> parseIsas(const std::vector<std::string>& names) {
   return isas;
 }
 
+std::string isaNames(const std::vector<Isa>& isas) {
+  std::vector<std::string_view> names;
+  for (const Isa isa : isas) names.push_back(isaName(isa));
+  return fmt::format("{}", fmt::join(names, ","));
+}
+
 }  // namespace
 
 struct SessionParser::Parts {
   explicit Parts(CLI::App& app_) : app(app_) {
-    addInspector();
+    addCall();
     addCases();
     addRun();
     addOutput();
@@ -70,9 +77,11 @@ struct SessionParser::Parts {
     addCaseOfResults();
   }
 
-  void tag(CLI::Option* option, unsigned conflicts) { tagged.emplace_back(option, conflicts); }
+  void tag(const CLI::Option* option, unsigned conflicts) {
+    tagged.emplace_back(option, conflicts);
+  }
 
-  void addInspector();
+  void addCall();
   void addCases();
   void addRun();
   void addOutput();
@@ -87,16 +96,28 @@ struct SessionParser::Parts {
   std::vector<const CLI::Option*> only_with_auto;
 };
 
-void SessionParser::Parts::addInspector() {
-  app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
-      ->type_name("SOURCE");
-  app.add_flag("--headless", options.headless, "run without a window");
+void SessionParser::Parts::addCall() {
+  tag(app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
+          ->type_name("SOURCE")
+          ->default_function(
+              [this] { return fmt::format("{}", fmt::join(options.sources, "\n")); }),
+      kNone);
+  tag(app.add_flag("--headless", options.headless, "run without a window"), kRequest);
   CLI::Option* ui = app.add_flag("--ui", options.ui,
                                  "with --headless: the inspector drawn off-screen (--screenshot)");
   CLI::Option* script =
       addPath(app, "--script", "FILE", options.script,
               "what a user does in the inspector, line by line (see docs/inspector.md)");
+  tag(ui, kRequest);
+  tag(script, kRequest);
   showWith(parts::kInspector, {ui, script});
+  tag(addPath(app, "--request", "FILE", options.request_file,
+              "take the options of this run request, too (JSON, see docs/run-requests.md; '-': "
+              "standard input); those given beside it win"),
+      kRequest);
+  tag(addPath(app, "--write-request", "FILE", options.written_request,
+              "write the run request ('-': to standard output), run nothing"),
+      kRequest | kExport | kInspector);
 }
 
 void SessionParser::Parts::addCases() {
@@ -104,6 +125,7 @@ void SessionParser::Parts::addCases() {
   using Texts = std::vector<std::string>;
   tag(addList(
           app, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
+          [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
           "only by name)"),
       kCase);
@@ -111,24 +133,26 @@ void SessionParser::Parts::addCases() {
   tag(addList(
           app, "--threads", "T[,T...]",
           [&](const Texts& texts) { cases.threads = parseThreads(texts); },
+          [&] { return fmt::format("{}", fmt::join(cases.threads, ",")); },
           "threads of parallel variants (default: all cores)"),
       kCase);
   tag(addList(
           app, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
+          [&] { return isaNames(cases.isas); },
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
   tag(addAnswer(app, cases.answer), kCase);
   tag(addDevice(app, cases.device), kCase);
-  tag(app.add_option("--filter", options.filter, "run only cases whose id matches")
-          ->type_name("REGEX"),
+  tag(addText(app, "--filter", "REGEX", options.filter, "run only cases whose id matches"),
       kCase | kInspector);
   tag(addValue(
           app, "--shard", "I/N", [&](const std::string& text) { options.shard = parseShard(text); },
-          "run only every N-th case, from the I-th (from 0)", "0/1"),
+          [&] { return fmt::format("{}/{}", options.shard.index, options.shard.count); },
+          "run only every N-th case, from the I-th (from 0)"),
       kCase | kInspector);
   tag(app.add_flag("--list", options.list_only, "print the cases, run nothing"),
-      kExport | kInspector);
+      kExport | kInspector | kRequest);
 }
 
 void SessionParser::Parts::addRun() {
@@ -143,58 +167,47 @@ void SessionParser::Parts::addRun() {
   };
   tag(addValue(
           app, "--repetitions", "R|auto", set_repetitions,
+          [&] { return repetitions.until_precise ? "auto" : fmt::format("{}", repetitions.most); },
           fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
                       "is known precisely",
-                      RepetitionOptions::kFewestUntilPrecise, RepetitionOptions::kMostUntilPrecise),
-          fmt::format("{}", repetitions.most)),
+                      RepetitionOptions::kFewestUntilPrecise,
+                      RepetitionOptions::kMostUntilPrecise)),
       kInspector);
   const auto tag_auto = [&](CLI::Option* option) {
     tag(option, kInspector);
     only_with_auto.push_back(option);
   };
-  tag_auto(addValue(
-      app, "--precision", "SHARE",
-      [&](const std::string& text) {
-        repetitions.precision = parseShare(text, "--precision", true);
-      },
-      "of --repetitions auto: width of the mean's 95 % interval over the repetitions", "2%"));
-  tag_auto(addValue(
-      app, "--most-seconds", "S",
-      [&](const std::string& text) {
-        repetitions.most_seconds = parseNumber(text, "--most-seconds", 0, true);
-      },
+  tag_auto(addShare(app, "--precision", repetitions.precision, true,
+                    "of --repetitions auto: width of the mean's 95 % interval over the "
+                    "repetitions"));
+  tag_auto(addPositive(
+      app, "--most-seconds", "S", repetitions.most_seconds,
       fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
                   "more than {} times",
-                  RepetitionOptions::kFewestUntilPrecise),
-      fmt::format("{}", repetitions.most_seconds)));
+                  RepetitionOptions::kFewestUntilPrecise)));
   tag(addInteger(app, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
                  "seed of the order in which cases take turns, another for each repetition"),
       kInspector);
-  tag(addInteger(app, "--warmup", "W", options.warmup, 0, kMostPasses,
+  tag(addInteger(app, "--warmup", "W", repetitions.warmup, 0, kMostPasses,
                  "unmeasured repetitions before them"),
       kInspector);
-  tag(addValue(
-          app, "--time-limit", "SECONDS",
-          [&](const std::string& text) {
-            policy.frame_limit_seconds = parseNumber(text, "--time-limit", 0, true);
-          },
-          "limit on the mean seconds per frame (the paper's cap)",
-          fmt::format("{}", policy.frame_limit_seconds)),
+  tag(addPositive(app, "--time-limit", "SECONDS", policy.frame_limit_seconds,
+                  "limit on the mean seconds per frame (the paper's cap)"),
       kInspector);
-  tag(app.add_flag("--allow-timeout", options.allow_timeout,
-                   "cases that cross a time limit do not make the run fail"),
+  tag(addFlag(app, "--allow-timeout", options.allow_timeout,
+              "cases that cross a time limit do not make the run fail"),
       kInspector);
   tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
-  addHosts(app, options.hosts);
-  tag(addQuiet(app, options.quiet), kNone);
+  for (const CLI::Option* option : addHosts(app, options.hosts)) tag(option, kNone);
+  tag(addQuiet(app, options.quiet), kRequest);
 }
 
 void SessionParser::Parts::addOutput() {
   for (const CLI::Option* option : addResultOutputs(app, options.outputs)) {
-    tagged.emplace_back(option, kExport | kInspector);
+    tag(option, kExport | kInspector);
   }
   tag(addPath(app, "--record", "DIR", options.record,
               "keep the simulated recordings in this directory"),
@@ -214,11 +227,14 @@ void SessionParser::Parts::addPictures() {
   };
   std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
   if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";
-  CLI::Option* frame = addValue(app, "--frame", "K", set_frame, frame_help);
+  const auto get_frame = [this] {
+    return options.frame ? fmt::format("{}", *options.frame) : std::string();
+  };
+  CLI::Option* frame = addValue(app, "--frame", "K", set_frame, get_frame, frame_help);
   tag(frame, kNone);
   showWith(parts::kRenderer, {screenshot, frame});
   for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
-    tagged.emplace_back(option, kWindow);
+    tag(option, kWindow);
   }
 }
 
@@ -229,14 +245,13 @@ void SessionParser::Parts::addScene() {
 }
 
 void SessionParser::Parts::addCaseOfResults() {
-  CLI::Option* id = app.add_option("--case", options.case_id,
-                                   "run only this case of the results file that is the source");
-  id->type_name("ID");
+  CLI::Option* id = addText(app, "--case", "ID", options.case_id,
+                            "run only this case of the results file that is the source");
   tag(addPath(app, "--export-case", "FILE", options.export_case,
               "instead of running it, find the smallest recording on which that case still gives "
               "a wrong answer, write it, and print the command that shows it")
           ->needs(id),
-      kInspector);
+      kInspector | kRequest);
 }
 
 void SessionParser::Parts::requireNoConflict() const {
@@ -268,7 +283,25 @@ void SessionParser::Parts::requireNoConflict() const {
 SessionParser::SessionParser(CLI::App& app) : parts_(std::make_unique<Parts>(app)) {}
 SessionParser::~SessionParser() = default;
 
-const std::vector<std::string>& SessionParser::sources() const { return parts_->options.sources; }
+const SessionOptions& SessionParser::parsed() const { return parts_->options; }
+
+void SessionParser::set(const RunRequest& request) {
+  SessionOptions& options = parts_->options;
+  // Options are bound to the paths in this map.
+  ResultPaths outputs = std::move(options.outputs);
+  static_cast<RunRequest&>(options) = request;
+  for (auto& [name, path] : outputs) {
+    const auto given = request.outputs.find(name);
+    path = given == request.outputs.end() ? std::filesystem::path() : given->second;
+  }
+  options.outputs = std::move(outputs);
+}
+
+bool SessionParser::isOfRequest(const CLI::Option& option) const {
+  return std::ranges::any_of(parts_->tagged, [&](const auto& tagged) {
+    return tagged.first == &option && (tagged.second & kRequest) == 0;
+  });
+}
 
 SessionOptions SessionParser::options() const {
   parts_->requireNoConflict();

@@ -1,61 +1,30 @@
-// The options of the main command: what is opened, which cases are run on it, and what is kept.
+// The options of the main command: a run request, and what is to be done with it.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "broadmark/harness/case_run.h"
-#include "request/cases.h"
-#include "request/hosts.h"
-#include "request/picture_options.h"
-#include "request/reading_options.h"
-#include "request/repetitions.h"
-#include "request/scene_options.h"
-#include "run/result_files.h"
+#include "request/run_request.h"
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace broadmark {
 
-/// One part of a run that is divided among machines: every `count`-th case from the `index`-th.
-struct Shard {
-  int index = 0;
-  int count = 1;
-};
-
-struct SessionOptions {
-  std::vector<std::string> sources;
-  SceneOptions scene;
-  CaseOptions cases;
-  ParameterValues parameters;  ///< --param: of algorithms or scenes
-  ReadingOptions reading;
-  std::vector<std::string> plugins;   ///< libraries with more algorithms or engines
-  std::string case_id;                ///< of the results file that is the source; "": none
-  std::filesystem::path export_case;  ///< where its smallest failing recording goes; "": nowhere
-  RepetitionOptions repetitions;
-  int warmup = 0;
-  RunPolicy policy;
-  bool allow_timeout = false;  ///< a case that crosses a time limit is no failure of the run
-  HostOptions hosts;
-  ResultPaths outputs;
-  std::filesystem::path record;        ///< "": keep no recordings
-  std::filesystem::path screenshot;    ///< "": none
-  std::optional<std::uint32_t> frame;  ///< of the screenshot, or where the inspector opens
-  PictureOptions picture;
-  Shard shard;
-  std::string filter;  ///< regular expression
+/// A run request, and what is to be done with it.
+struct SessionOptions : RunRequest {
+  std::filesystem::path export_case;   ///< where its smallest failing recording goes; "": nowhere
+  std::filesystem::path request_file;  ///< whose options are taken, too; "": none
+  std::filesystem::path written_request;  ///< where the request goes, which is not run; "": nowhere
   bool list_only = false;
   bool quiet = false;
   bool headless = false;
   bool ui = false;               ///< the inspector, without a window
   std::filesystem::path script;  ///< of the inspector; "": none
-  std::vector<std::string> command_line;
 
   [[nodiscard]] bool inspector() const { return !headless || ui; }
 };
@@ -69,8 +38,12 @@ class SessionParser {
   SessionParser(const SessionParser&) = delete;
   SessionParser& operator=(const SessionParser&) = delete;
 
-  /// The sources alone, after `app` has parsed a command line.
-  [[nodiscard]] const std::vector<std::string>& sources() const;
+  /// What `app` has parsed, not yet checked.
+  [[nodiscard]] const SessionOptions& parsed() const;
+  /// Gives the options the values of a request, as if they had been parsed.
+  void set(const RunRequest& request);
+  /// Whether a run request has this option.
+  [[nodiscard]] bool isOfRequest(const CLI::Option& option) const;
   /// The options, after `app` has parsed a command line. Throws InputError for options that cannot
   /// be combined.
   [[nodiscard]] SessionOptions options() const;

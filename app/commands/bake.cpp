@@ -31,7 +31,6 @@ namespace fs = std::filesystem;
 struct Options {
   BakeOptions bake;
   MovieOptions movie;
-  std::vector<std::string> plugins;  ///< libraries with more engines
   bool list_only = false;
   bool quiet = false;
 };
@@ -149,12 +148,12 @@ bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet)
 
 int run(const Options& options) {
   if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
-  addEnginesOf(options.plugins);
+  addEnginesOf(options.bake.plugins);
   const InterruptGuard guard;
   const auto begin = std::chrono::steady_clock::now();
   BakePlan plan = makeBakePlan(options);
   if (options.list_only) return listPlan(plan);
-  prepare(plan, options.bake.output);
+  prepare(plan, options.bake.record);
   std::optional<MovieMaker> movie_maker;
   if (!options.movie.directory.empty()) movie_maker.emplace(options.movie);
   Tally tally;
@@ -168,10 +167,10 @@ int run(const Options& options) {
 /// The scenes, built-in or in files.
 void addScenes(CLI::App& app, Options& options) {
   const auto append = [&](const std::vector<std::string>& names) {
-    auto& scenes = options.bake.scenes;
+    auto& scenes = options.bake.sources;
     scenes.insert(scenes.end(), names.begin(), names.end());
   };
-  addList(app, "--scenes", "A[,B...]", append, "built-in scenes (default: all)");
+  addList(app, "--scenes", "A[,B...]", append, {}, "built-in scenes (default: all)");
   app.add_option_function<std::vector<std::string>>(
          "--parameters", append,
          "bake the scene that this file of scene parameters, the .json beside a recording, or an "
@@ -197,17 +196,17 @@ std::function<int()> add(CLI::App& app) {
   BakeOptions& bake = options->bake;
   addScenes(app, *options);
   addSceneOptions(app, bake.scene);
-  addPlugins(app, options->plugins, "physics engines");
+  addPlugins(app, bake.plugins, "physics engines");
   addRecorders(app, bake.scene.recorders);
   addParameters(app, bake.parameters);
-  addPath(app, "--output", "DIR", bake.output,
+  addPath(app, "--output", "DIR", bake.record,
           "directory for the recordings; they go into folders of their kind in it, such as "
           "Recordings_AABBs/")
       ->required();
   bake.threads = allCores();
   addValue(
       app, "--threads", "T",
-      [&bake](const std::string& text) { bake.threads = parseThreadCount(text); },
+      [&bake](const std::string& text) { bake.threads = parseThreadCount(text); }, {},
       "recordings baked at the same time (default: all cores); they do not depend on it");
   addMovie(app, options->movie);
   app.add_flag("--list", options->list_only,

@@ -88,13 +88,6 @@ int run(const Options& options) {
   return status;
 }
 
-void addShare(CLI::App& app, const std::string& name, double& target, const std::string& doc) {
-  const auto set = [&target, name](const std::string& text) {
-    target = parseShare(text, name, false);
-  };
-  addValue(app, name, "SHARE", set, doc, fmt::format("{:g}%", 100 * target));
-}
-
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   ComparisonOptions& comparison = options->comparison;
@@ -102,8 +95,9 @@ std::function<int()> add(CLI::App& app) {
   app.add_option("B", options->after, "results to judge")->type_name("B");
   addRepeatable(app, "--baseline", "FILE", options->baselines,
                 "another run like A (repeatable): three or more tell how much runs differ");
-  addShare(app, "--margin", comparison.margin, "differences within it are 'same'");
-  addShare(app, "--fail-above", comparison.fail_above, "slow-down that counts as a regression");
+  addShare(app, "--margin", comparison.margin, false, "differences within it are 'same'");
+  addShare(app, "--fail-above", comparison.fail_above, false,
+           "slow-down that counts as a regression");
   app.add_option("--by", comparison.by,
                  "compare across this instead of each case with itself: algorithm, threads, isa or "
                  "a parameter; with the first such case of A")

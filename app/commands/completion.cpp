@@ -18,7 +18,7 @@ std::function<int()> add(CLI::App& app) {
   const auto shell = std::make_shared<Shell>();
   addValue(
       app, "shell", "SHELL",
-      [shell](const std::string& name) { *shell = parseNamed(name, "completion", kShells); },
+      [shell](const std::string& name) { *shell = parseNamed(name, "completion", kShells); }, {},
       fmt::format("{}", fmt::join(kShells.names(), ", ")))
       ->required();
   return [shell, &app] {

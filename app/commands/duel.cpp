@@ -15,9 +15,9 @@
 #include "request/cases.h"
 #include "request/hosts.h"
 #include "request/plugins.h"
+#include "run/plan.h"
 #include "run/recordings.h"
 #include "run/warnings.h"
-#include "sources/source.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
@@ -27,44 +27,32 @@
 namespace broadmark::commands::duel {
 namespace {
 
-struct Options {
-  std::string source;
+struct Options : RunRequest {
   std::vector<std::string> variants;
   std::filesystem::path program;  ///< another build of this program; "": none
-  std::string device;
-  AnswerKind answer = AnswerKind::pairs;
-  std::vector<std::string> plugins;  ///< libraries with more engines
-  SceneOptions scene;
-  ParameterValues parameters;
-  ReadingOptions reading;
   DuelOptions duel;
-  HostOptions hosts;
   std::filesystem::path json;  ///< "": none
   bool quiet = false;
 };
 
 /// The one source that is meant. Throws InputError.
 Source open(const Options& options) {
-  OpenedSource opened = openSource(
-      options.source,
-      {.scene = options.scene, .parameters = options.parameters, .reading = options.reading});
-  if (opened.entries.size() != 1) {
-    throw InputError(fmt::format("duel: {} stands for {}; a duel is on one", options.source,
-                                 counted(opened.entries.size(), "recording")));
+  Plan plan = makePlan(options, PlanUse::open, {});
+  if (plan.entries.size() != 1) {
+    throw InputError(fmt::format("duel: {} stands for {}; a duel is on one",
+                                 options.sources.front(),
+                                 counted(plan.entries.size(), "recording")));
   }
-  requireReadingUsed(options.reading, opened.entries);
-  Source source = std::move(opened.entries.front().source);
-  requireKnownParameters(options.parameters, source.simulation ? parameterNames(*source.simulation)
-                                                               : std::vector<std::string>());
-  return source;
+  return std::move(plan.entries.front().source);
 }
 
 std::vector<DuelSide> sidesOf(const Options& options) {
   std::vector<DuelSide> sides;
   const auto add = [&](const HostOptions& hosts, const std::string& where) {
     for (const std::string& variant : options.variants) {
-      sides.push_back(
-          {variant + where, caseNamed(variant, options.device, options.answer), hostMaker(hosts)});
+      sides.push_back({variant + where,
+                       caseNamed(variant, options.cases.device, options.cases.answer),
+                       hostMaker(hosts)});
     }
   };
   add(options.hosts, "");
@@ -101,10 +89,9 @@ int run(Options options) {
   const InterruptGuard guard;
   const std::vector<DuelSide> sides = sidesOf(options);
   Source source = open(options);
-  const std::unique_ptr<IndexedFrames> recording = openRecording(source, {}, {}, options.quiet);
-  if (!recording) throw Interrupted();
+  const std::unique_ptr<IndexedFrames> recording = openForCommand(source, options.quiet);
   if (recording->scene().frames == 0) {
-    throw InputError(fmt::format("duel: {} has no frame to run", options.source));
+    throw InputError(fmt::format("duel: {} has no frame to run", options.sources.front()));
   }
   warnOf(sides);
   constexpr double kTicks = 1000;
@@ -132,9 +119,8 @@ int run(Options options) {
 
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  app.add_option("source", options->source,
-                 fmt::format("what to run on, one recording: {}", sourceKindsText()))
-      ->type_name("SOURCE")
+  addText(app, "source", "SOURCE", options->sources.emplace_back(),
+          fmt::format("what to run on, one recording: {}", sourceKindsText()))
       ->required();
   app.add_option("variants", options->variants,
                  "what is compared, written as cases are printed: ID[/ISA][/tTHREADS]"
@@ -144,22 +130,15 @@ std::function<int()> add(CLI::App& app) {
       ->required();
   addPath(app, "--with", "PROGRAM", options->program,
           "another build of broadmark, which runs every variant, too");
-  const auto set_precision = [options = options.get()](const std::string& text) {
-    options->duel.precision = parseShare(text, "--precision", true);
-  };
-  addValue(app, "--precision", "SHARE", set_precision,
+  addShare(app, "--precision", options->duel.precision, true,
            "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "
-           "same",
-           "1%");
-  const auto set_time = [options = options.get()](const std::string& text) {
-    options->duel.most_seconds = parseNumber(text, "--seconds", 0, true);
-  };
-  addValue(app, "--seconds", "S", set_time, "ends the duel, whatever is known then",
-           fmt::format("{}", options->duel.most_seconds));
+           "same");
+  addPositive(app, "--seconds", "S", options->duel.most_seconds,
+              "ends the duel, whatever is known then");
   addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
            "answers of the first pass: full: as exact pair sets; hash: counts and hashes; off");
-  addDevice(app, options->device);
-  addAnswer(app, options->answer);
+  addDevice(app, options->cases.device);
+  addAnswer(app, options->cases.answer);
   addSceneOptions(app, options->scene);
   addPlugins(app, options->plugins, "physics engines");
   addParameters(app, options->parameters);

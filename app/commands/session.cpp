@@ -5,18 +5,21 @@
 #include <fmt/format.h>
 
 #include "command_line/option_types.h"
+#include "command_line/run_requests.h"
 #include "inspector/run_inspector.h"
 #include "request/plugins.h"
 #include "run/export_case.h"
 #include "run/headless.h"
 #include "run/plan.h"
+#include "support/exit_status.h"
+#include "support/output.h"
 
 namespace broadmark {
 namespace {
 
 int listCases(const Plan& plan) {
   for (const std::string& id : caseIds(plan)) fmt::print("{}\n", id);
-  return 0;
+  return exit_status::fine;
 }
 
 /// Throws InputError if the options need what has been left out of this build.
@@ -29,12 +32,20 @@ void requireParts(const SessionOptions& options) {
 
 int runSession(const SessionOptions& options) {
   addEnginesOf(options.plugins);
-  Plan plan = makePlan(options);
+  Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
+  if (!options.written_request.empty()) {
+    writeOutput(options.written_request, formatRunRequest(options));
+    return exit_status::fine;
+  }
   if (options.list_only) return listCases(plan);
   requireParts(options);
-  if (options.inspector()) return runInspector(std::move(plan), options);
-  if (!options.export_case.empty()) return runExportCase(std::move(plan), options);
-  return runHeadless(std::move(plan), options);
+  if (options.inspector()) {
+    return runInspector(std::move(plan), !options.headless, options.script);
+  }
+  if (!options.export_case.empty()) {
+    return runExportCase(std::move(plan), options.export_case, options.quiet);
+  }
+  return runHeadless(std::move(plan), options.quiet);
 }
 
 }  // namespace broadmark

@@ -24,8 +24,8 @@
 #include "request/hosts.h"
 #include "request/plugins.h"
 #include "run/export_case.h"
+#include "run/plan.h"
 #include "run/recordings.h"
-#include "sources/source.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
@@ -40,18 +40,19 @@ using Clock = std::chrono::steady_clock;
 /// Of the same kind of fault in the same algorithm only so many are shrunk and written.
 constexpr std::uint64_t kMostAlike = 3;
 
-struct Options {
-  std::vector<std::string> sources;
+struct Options : RunRequest {
+  Options() {
+    cases.algorithms = {"all"};
+    hosts.hard_limit_seconds = 10;
+  }
+
   bool only_sources = false;
-  std::vector<std::string> algorithms = {"all"};
   std::string case_name;  ///< "": of all kinds
-  std::vector<std::string> plugins;
   double minutes = 1;
   std::optional<std::uint64_t> rounds;  ///< after which it ends instead
   std::optional<std::uint64_t> seed;    ///< nothing: of the log, or 1
   int jobs = allCores();
   fs::path output = "torture";
-  HostOptions hosts{.hard_limit_seconds = 10};
   bool quiet = false;
 };
 
@@ -204,7 +205,7 @@ class Torture {
       return;
     }
     const std::vector<Algorithm> known = availableAlgorithms(options_.plugins);
-    for (Algorithm& algorithm : selectAlgorithms(options_.algorithms, known, "--algorithm")) {
+    for (Algorithm& algorithm : selectAlgorithms(options_.cases.algorithms, known, "--algorithm")) {
       if (!algorithm.traits.finds_pairs) continue;
       addBuild(algorithm);
       torture_.algorithms.push_back(std::move(algorithm));
@@ -249,12 +250,10 @@ class Torture {
 
   void readSources() {
     torture_.only_given = options_.only_sources;
-    for (const std::string& name : options_.sources) {
-      for (PlanEntry& entry : openSource(name, {}).entries) {
-        const auto recording = openRecording(entry.source, {}, {}, options_.quiet);
-        if (!recording) throw Interrupted();
-        torture_.given.push_back(inMemory(*recording));
-      }
+    RunRequest given;
+    given.sources = options_.sources;
+    for (PlanEntry& entry : makePlan(given, PlanUse::open, {}).entries) {
+      torture_.given.push_back(inMemory(*openForCommand(entry.source, options_.quiet)));
     }
   }
 
@@ -353,30 +352,28 @@ std::function<int()> add(CLI::App& app) {
                 "small parts of these are worlds, too: recordings, meshes, scenes");
   app.add_flag("--only-sources", options->only_sources, "no worlds but those")->needs("source");
   const auto set_algorithms = [options = options.get()](const std::vector<std::string>& parts) {
-    options->algorithms = parts;
+    options->cases.algorithms = parts;
   };
   CLI::Option* const algorithm =
-      addList(app, "--algorithm", "ID[,ID...]", set_algorithms,
+      addList(app, "--algorithm", "ID[,ID...]", set_algorithms, {},
               "algorithms: ids, families, patterns such as 'sap*', or all (default)");
   app.add_option("--case", options->case_name,
                  "only this case, written as cases are printed: kd-mt/avx2/t2/margin=0.1")
       ->type_name("CASE")
       ->excludes(algorithm);
   addPlugins(app, options->plugins, "algorithms");
-  const auto set_minutes = [options = options.get()](const std::string& text) {
-    options->minutes = parseNumber(text, "--minutes", 0, true);
-  };
-  addValue(app, "--minutes", "M", set_minutes, "how long; rounds that have begun are finished",
-           fmt::format("{}", options->minutes));
+  addPositive(app, "--minutes", "M", options->minutes,
+              "how long; rounds that have begun are finished");
   const auto set_rounds = [options = options.get()](const std::string& text) {
     options->rounds = parseInteger(text, "--rounds", 1, 1'000'000'000);
   };
-  addValue(app, "--rounds", "N", set_rounds,
+  addValue(app, "--rounds", "N", set_rounds, {},
            "how many rounds instead: a case each, on up to forty worlds");
   const auto set_seed = [options = options.get()](const std::string& text) {
     options->seed = parseInteger(text, "--seed", 0, std::numeric_limits<std::uint32_t>::max());
   };
-  addValue(app, "--seed", "S", set_seed, "same seed, same rounds", "1");
+  addValue(
+      app, "--seed", "S", set_seed, [] { return "1"; }, "same seed, same rounds");
   addInteger(app, "--jobs", "J", options->jobs, 1, 1024, "rounds at a time");
   addPath(app, "--output", "DIR", options->output,
           "where recordings of what goes wrong are written, and the log (torture.json) with which "

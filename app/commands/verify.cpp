@@ -172,8 +172,7 @@ Source sourceOf(const fs::path& file, const Options& options) {
 /// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
   Source source = sourceOf(file, options);
-  const auto opened = openRecording(source, {}, {}, options.quiet);
-  if (!opened) return std::nullopt;
+  const auto opened = openForCommand(source, options.quiet);
   IndexedFrames& recording = *opened;
   const std::string& hash = source.reference.hash;
   const SceneInfo& scene = recording.scene();

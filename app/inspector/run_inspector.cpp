@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "broadmark/error.h"
-#include "command_line/session_options.h"
 #include "inspector/inspect.h"
 #include "inspector/session/session.h"
 #include "request/hosts.h"
@@ -14,32 +13,32 @@
 
 namespace broadmark {
 
-int runInspector(Plan plan, const SessionOptions& options) {
+int runInspector(Plan plan, bool in_window, const std::filesystem::path& script) {
+  const RunRequest request = plan.request;
   std::vector<Algorithm> algorithms = plan.algorithms;
   // std::function wants to be copied, and a plan cannot be.
   const auto shared = std::make_shared<Plan>(std::move(plan));
   const InspectOptions inspect{.algorithms = std::move(algorithms),
-                               .make_host = hostMaker(options.hosts),
+                               .make_host = hostMaker(request.hosts),
                                .begin =
-                                   [shared, frame = options.frame](Session& session) {
+                                   [shared, frame = request.frame](Session& session) {
                                      session.open(std::move(*shared));
                                      if (frame) session.playback.goTo(*frame);
                                    },
-                               .script = options.script,
-                               .screenshot = options.screenshot,
-                               .width = options.picture.width,
-                               .height = options.picture.height,
-                               .gl = options.picture.gl};
+                               .script = script,
+                               .screenshot = request.screenshot,
+                               .width = request.picture.width,
+                               .height = request.picture.height,
+                               .gl = request.picture.gl};
   try {
-    if (options.headless) {
-      inspectOffscreen(inspect);
-    } else {
+    if (in_window) {
       inspectInWindow(inspect);
+    } else {
+      inspectOffscreen(inspect);
     }
   } catch (const RenderError& error) {
-    throw InputError(options.headless
-                         ? error.what()
-                         : fmt::format("{} (--headless runs without a window)", error.what()));
+    throw InputError(in_window ? fmt::format("{} (--headless runs without a window)", error.what())
+                               : error.what());
   }
   return 0;
 }

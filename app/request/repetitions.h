@@ -15,11 +15,15 @@ struct RepetitionOptions {
   static constexpr int kFewestUntilPrecise = 5;
   static constexpr int kMostUntilPrecise = 100;
 
+  int warmup = 0;              ///< unmeasured repetitions before
   int most = 1;                ///< and fewest, unless:
   bool until_precise = false;  ///< a case is repeated until its mean is known well enough
   double precision = 0.02;     ///< width of the mean's interval, as a share of it
   double most_seconds = 300;   ///< of a recording
   std::uint64_t order_seed = 1;
+
+  /// Repetitions of a case, with those for warming up.
+  [[nodiscard]] int passes() const { return warmup + most; }
 };
 
 /// Tells for each case of a recording when it has been repeated often enough.

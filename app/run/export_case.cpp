@@ -7,7 +7,6 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/fuzz/shrink.h"
-#include "command_line/session_options.h"
 #include "run/plan.h"
 #include "run/recordings.h"
 #include "support/interrupt.h"
@@ -81,22 +80,21 @@ std::string torturingCommand(const Case& run, const fs::path& recording) {
                      pathWord(recording.parent_path() / "again"));
 }
 
-int runExportCase(Plan plan, const SessionOptions& options) {
+int runExportCase(Plan plan, const fs::path& file, bool quiet) {
   PlanEntry& entry = plan.entries.front();
   const auto difference = entry.knownDifference();
   if (!difference) {
     throw InputError(fmt::format("--export-case: case '{}' gave no wrong answer (status: {})",
-                                 options.case_id, statusName(entry.known->status)));
+                                 plan.request.case_id, statusName(entry.known->status)));
   }
-  requireExportable(options.export_case, entry.source.reference.path, entry.source.reference.scene);
+  requireExportable(file, entry.source.reference.path, entry.source.reference.scene);
   const InterruptGuard guard;
-  const auto recording = openRecording(entry.source, {}, {}, options.quiet);
-  if (!recording) throw Interrupted();
+  const auto recording = openForCommand(entry.source, quiet);
 
   const Case& run = entry.cases.front();
   const SceneInfo& whole = recording->scene();
   const std::uint64_t size = std::uint64_t{whole.objects} * difference->frame;
-  Progress progress("shrinking " + whole.name, size, options.quiet);
+  Progress progress("shrinking " + whole.name, size, quiet);
   const ShrunkCase shrunk = shrinkCase(
       run, *recording, *difference,
       {.progress =
@@ -105,14 +103,14 @@ int runExportCase(Plan plan, const SessionOptions& options) {
              progress.update(size - std::min<std::uint64_t>(size, now.bodies * now.frames));
            },
        .cancelled = InterruptGuard::requested,
-       .make_host = hostMaker(options.hosts)});
+       .make_host = hostMaker(plan.request.hosts)});
   if (shrunk.trials == 0) throw Interrupted();
   if (shrunk.minimal) progress.update(size);
 
-  writePart(options.export_case, *recording, shrunk.part);
+  writePart(file, *recording, shrunk.part);
   progress.print(summaryOf(shrunk, whole));
-  progress.print("written: " + options.export_case.string());
-  progress.print(reproducingCommand(run, options.export_case));
+  progress.print("written: " + file.string());
+  progress.print(reproducingCommand(run, file));
   if (!shrunk.minimal) throw Interrupted("the smallest part so far is written");
   return 0;
 }

@@ -9,7 +9,6 @@
 namespace broadmark {
 
 struct Plan;
-struct SessionOptions;
 
 /// Throws InputError when no recording of the scene can be written to `file`, or when it is
 /// `original` (which may be ""): to fail before a long search rather than after it.
@@ -23,8 +22,8 @@ std::string reproducingCommand(const Case&, const std::filesystem::path& recordi
 std::string torturingCommand(const Case&, const std::filesystem::path& recording);
 
 /// Shrinks the plan's only case, which is of a results file, instead of running it; writes the
-/// smallest recording on which it still fails, and prints the command that shows it. Returns the
-/// exit status. Throws InputError.
-int runExportCase(Plan plan, const SessionOptions& options);
+/// smallest recording on which it still fails to `file`, and prints the command that shows it.
+/// Returns the exit status. Throws InputError.
+int runExportCase(Plan plan, const std::filesystem::path& file, bool quiet);
 
 }  // namespace broadmark

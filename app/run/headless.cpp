@@ -7,7 +7,6 @@
 #include <iostream>
 #include <map>
 #include <memory>
-#include <optional>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
@@ -26,39 +25,37 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells of a plan while it is run.
-class HeadlessRun final : public RunWatcher {
+/// Reports a plan on the terminal while it is run.
+class HeadlessRun final : public RunObserver {
  public:
-  explicit HeadlessRun(const SessionOptions& options) : options_(options) {}
+  HeadlessRun(const RunRequest& request, bool quiet) : request_(request), tasks_(quiet) {}
 
-  bool cancelled() override { return InterruptGuard::requested(); }
-  void begins(const SceneInfo& scene, std::uint64_t steps) override {
-    progress_.emplace(fmt::format("running {} N{}", scene.name, scene.objects), steps,
-                      options_.quiet);
+  bool cancelled() override { return tasks_.cancelled(); }
+  void onTaskStart(const std::string& task, std::uint64_t steps) override {
+    tasks_.onTaskStart(task, steps);
   }
-  void advances(std::uint64_t done, const std::string& algorithm) override {
-    progress_->detail(algorithm);
-    progress_->update(done);
+  void onProgress(std::uint64_t done, const std::string& detail) override {
+    tasks_.onProgress(done, detail);
   }
-  void ran(const PlanEntry& entry, std::span<const CaseResult> results) override {
-    progress_.reset();
+  void onRecordingResults(const PlanEntry& entry, std::span<const CaseResult> results) override {
+    tasks_.end();
     if (!prints_results_) std::cout << formatTable(results) << std::endl;
     if (!entry.original) return;
     const fs::path log = entry.original->output_log;
     writeTextFile(log, formatOriginalLog(*entry.original, results.front()));
     written_.push_back(log);
   }
-  void leaves(const PlanEntry& entry, IndexedFrames& recording, Oracle& oracle) override {
+  void onRecordingEnd(const PlanEntry& entry, IndexedFrames& recording, Oracle& oracle) override {
     if (!entry.screenshot.empty()) draw(recording, oracle, entry.screenshot);
   }
 
   /// Prints the results that go to standard output, and says what has been written. Returns the
   /// exit status. Throws Interrupted.
   int finish(const Results& results) {
-    progress_.reset();
-    if (!options_.record.empty()) written_.push_back(options_.record);
+    tasks_.end();
+    if (!request_.record.empty()) written_.push_back(request_.record);
     if (!results.cases.empty()) {
-      for (const auto& [name, path] : options_.outputs) {
+      for (const auto& [name, path] : request_.outputs) {
         if (!isStandardOutput(path)) written_.push_back(path);
       }
     }
@@ -77,14 +74,14 @@ class HeadlessRun final : public RunWatcher {
   [[nodiscard]] std::vector<Status> judgedStatuses(const Results& results) const {
     std::vector<Status> statuses;
     for (const CaseResult& result : results.cases) statuses.push_back(result.status);
-    if (options_.allow_timeout) std::erase(statuses, Status::timeout);
+    if (request_.allow_timeout) std::erase(statuses, Status::timeout);
     return statuses;
   }
 
   void draw(IndexedFrames& recording, Oracle& oracle, const fs::path& path) {
     try {
-      takeScreenshot(recording, options_.frame.value_or(recording.scene().frames), oracle,
-                     options_.picture, path);
+      takeScreenshot(recording, request_.frame.value_or(recording.scene().frames), oracle,
+                     request_.picture, path);
       written_.push_back(path);
     } catch (const RenderError& error) {
       std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
@@ -92,20 +89,19 @@ class HeadlessRun final : public RunWatcher {
     }
   }
 
-  const SessionOptions& options_;
+  const RunRequest& request_;
+  TerminalTasks tasks_;
   /// Results go to standard output: then nothing else does.
   const bool prints_results_ = std::ranges::any_of(
-      options_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
-  std::optional<Progress> progress_;  ///< of a recording
+      request_.outputs, [](const auto& output) { return isStandardOutput(output.second); });
   bool picture_failed_ = false;
   std::vector<fs::path> written_;
 };
 
 /// Every file that the run will write, with the option that asks for it.
-std::vector<std::pair<std::string, fs::path>> plannedFiles(const SessionOptions& options,
-                                                           const Plan& plan) {
+std::vector<std::pair<std::string, fs::path>> plannedFiles(const Plan& plan) {
   std::vector<std::pair<std::string, fs::path>> files;
-  for (const auto& [name, path] : options.outputs) files.emplace_back("--" + name, path);
+  for (const auto& [name, path] : plan.request.outputs) files.emplace_back("--" + name, path);
   for (const PlanEntry& entry : plan.entries) {
     if (!entry.screenshot.empty()) files.emplace_back("--screenshot", entry.screenshot);
     if (entry.original) files.emplace_back("m_outputLog", entry.original->output_log);
@@ -123,7 +119,7 @@ fs::path oneName(const fs::path& path) {
 
 /// Fails now rather than after a long run: a file cannot be written, or would overwrite a source or
 /// another file of this run.
-void requireWritable(const SessionOptions& options, const Plan& plan) {
+void requireWritable(const Plan& plan) {
   std::map<fs::path, std::string> taken;
   for (const PlanEntry& entry : plan.entries) {
     // This is named by a file, not by who runs it.
@@ -133,7 +129,7 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);
     if (!file.empty()) taken[oneName(file)] = "a source";
   }
-  for (const auto& [option, path] : plannedFiles(options, plan)) {
+  for (const auto& [option, path] : plannedFiles(plan)) {
     const auto [other, free] = taken.emplace(oneName(path), option);
     if (!free) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
@@ -145,13 +141,13 @@ void requireWritable(const SessionOptions& options, const Plan& plan) {
 
 }  // namespace
 
-int runHeadless(Plan plan, const SessionOptions& options) {
+int runHeadless(Plan plan, bool quiet) {
   if (plan.entries.empty()) throw InputError("no case is left to run after --filter and --shard");
-  requireWritable(options, plan);
-  if (!options.record.empty()) makeDirectory(options.record);
+  requireWritable(plan);
+  if (!plan.request.record.empty()) makeDirectory(plan.request.record);
   const InterruptGuard guard;
-  HeadlessRun run(options);
-  return run.finish(runPlan(plan, options, hostMaker(options.hosts), run));
+  HeadlessRun run(plan.request, quiet);
+  return run.finish(runPlan(plan, hostMaker(plan.request.hosts), run));
 }
 
 }  // namespace broadmark

@@ -1,13 +1,12 @@
 // Running a plan without the inspector.
 #pragma once
 
-#include "command_line/session_options.h"
 #include "run/plan.h"
 
 namespace broadmark {
 
-/// Opens or simulates the plan's recordings, runs every case on them, checks, measures and reports.
-/// Returns the exit status. Throws InputError.
-int runHeadless(Plan plan, const SessionOptions& options);
+/// Opens or simulates the plan's recordings, runs every case on them, checks, measures and reports;
+/// no progress when `quiet`. Returns the exit status. Throws InputError.
+int runHeadless(Plan plan, bool quiet);
 
 }  // namespace broadmark

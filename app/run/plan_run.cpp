@@ -25,19 +25,19 @@
 namespace broadmark {
 namespace {
 
-/// Which variants crossed the time limit on a smaller scene of the same kind: they are not run on
+/// Variants that crossed the time limit on a smaller scene of the same kind: they are not run on
 /// larger ones (the paper's rule).
-class Exhausted {
+class TimedOutVariants {
  public:
-  void note(const CaseResult& result, const Case& run) {
+  void add(const CaseResult& result, const Case& test_case) {
     if (result.status != Status::timeout) return;
     const std::uint32_t objects = result.recording.scene.objects;
-    std::uint32_t& smallest = smallest_.try_emplace(key(result, run), objects).first->second;
+    std::uint32_t& smallest = smallest_.try_emplace(key(result, test_case), objects).first->second;
     smallest = std::min(smallest, objects);
   }
   /// Whether a case is not to be run; then its result says so.
-  bool skip(CaseResult& result, const Case& run) const {
-    const auto found = smallest_.find(key(result, run));
+  bool skip(CaseResult& result, const Case& test_case) const {
+    const auto found = smallest_.find(key(result, test_case));
     if (found == smallest_.end() || found->second > result.recording.scene.objects) return false;
     result.status = Status::timeout;
     result.reason = fmt::format("not run: crossed the time limit with {}",
@@ -46,139 +46,12 @@ class Exhausted {
   }
 
  private:
-  static std::string key(const CaseResult& result, const Case& run) {
+  static std::string key(const CaseResult& result, const Case& test_case) {
     const SceneInfo& scene = result.recording.scene;
     return fmt::format("{}/{}{}/{}", scene.name, scene.object_type,
-                       sweptText(result.recording.swept), caseName(run));
+                       sweptText(result.recording.swept), caseName(test_case));
   }
   std::map<std::string, std::uint32_t> smallest_;
-};
-
-/// All cases of one recording, run in turn.
-class EntryRun {
- public:
-  /// All arguments outlive this.
-  EntryRun(const PlanEntry& entry, const SessionOptions& options, const HostMaker& make_host,
-           Exhausted& exhausted, RunWarnings& warnings, ResultFiles& files, RunWatcher& watcher)
-      : cases_(entry.cases),
-        options_(options),
-        make_host_(make_host),
-        exhausted_(exhausted),
-        files_(files),
-        watcher_(watcher),
-        runs_(cases_.size()),
-        ended_(cases_.size()),
-        order_(cases_.size(), options.repetitions.order_seed) {
-    for (const Case& run : cases_) {
-      results_.push_back(beginCase(run, entry.source.reference));
-      Conditions& conditions = results_.back().conditions = commonConditions();
-      conditions.plugin = run.algorithm.plugin_build;
-      conditions.warnings = warnings.of(run);
-    }
-  }
-
-  /// Runs all repetitions, interleaved. Returns false when interrupted.
-  bool run(IndexedFrames& recording, Oracle& oracle) {
-    const int passes = options_.warmup + options_.repetitions.most;
-    const SceneInfo& scene = recording.scene();
-    const auto steps_of = [&](int some_passes) {
-      return std::uint64_t{scene.frames} * static_cast<std::uint64_t>(some_passes);
-    };
-    watcher_.begins(scene, steps_of(passes) * cases_.size());
-    std::uint64_t steps = 0;
-    std::string algorithm;
-    const RunHooks hooks{
-        .cancelled = [this] { return watcher_.cancelled(); },
-        .progress = [&](std::uint32_t frame) { watcher_.advances(steps + frame, algorithm); }};
-    const RepetitionRule rule(options_.repetitions);
-    for (int pass = 0; pass < passes; ++pass) {
-      if (passes > 1) order_.shuffle();
-      for (const std::size_t i : order_.cases()) {
-        if (ended_[i]) continue;
-        algorithm = cases_[i].algorithm.id;
-        if (!runOnce(i, recording, oracle, hooks, pass >= options_.warmup)) return false;
-        steps += steps_of(1);
-        if (results_[i].status != Status::ok || rule.isEnough(results_[i])) {
-          results_[i].conditions.repetitions = rule.wanted(results_[i]);
-          end(i);
-          steps += steps_of(passes - 1 - pass);
-        }
-        // Its process is not needed any more, or would be one of too many.
-        if (ended_[i] || cases_.size() > kMostHeld) runs_[i].reset();
-        watcher_.advances(steps, algorithm);
-      }
-    }
-    return true;
-  }
-
-  /// Of the cases that have been run.
-  std::vector<CaseResult> takeResults() {
-    for (std::size_t i = 0; i < results_.size(); ++i) {
-      if (!results_[i].repetitions.empty()) end(i);  // interrupted, after some of its passes
-    }
-    std::erase_if(results_, [](const CaseResult& result) {
-      return result.status == Status::ok && result.repetitions.empty();
-    });
-    return std::move(results_);
-  }
-
- private:
-  /// Of more cases than these none keeps its process, with threads and device, between two passes.
-  static constexpr std::size_t kMostHeld = 64;
-
-  /// One repetition of one case, unless it has failed already. Returns false when interrupted.
-  bool runOnce(std::size_t i, IndexedFrames& recording, Oracle& oracle, const RunHooks& hooks,
-               bool measured) {
-    CaseResult& result = results_[i];
-    if (result.status != Status::ok || exhausted_.skip(result, cases_[i])) return true;
-    if (!runs_[i]) {
-      runs_[i] = std::make_unique<CaseRun>(cases_[i], options_.policy, make_host_,
-                                           [this] { return watcher_.cancelled(); });
-    }
-    const YardstickTimes yardsticks = measured ? yardsticks_.recent() : YardstickTimes();
-    const std::size_t before = result.repetitions.size();
-    if (!runRepetition(result, *runs_[i], recording, oracle, hooks, measured)) return false;
-    if (result.repetitions.size() > before) result.repetitions.back().yardsticks = yardsticks;
-    exhausted_.note(result, cases_[i]);
-    return true;
-  }
-
-  /// Keeps the result of a case that will not be run any more.
-  void end(std::size_t i) {
-    if (ended_[i]) return;
-    files_.add(results_[i]);
-    ended_[i] = true;
-    watcher_.ended(results_[i]);
-  }
-
-  [[nodiscard]] Conditions commonConditions() const {
-    const auto limit = [](double seconds) {
-      return std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
-    };
-    const HostOptions& hosts = options_.hosts;
-    return {.check = options_.policy.check,
-            .warmup = options_.warmup,
-            .repetitions = options_.repetitions.most,
-            .frame_limit_seconds = limit(options_.policy.frame_limit_seconds),
-            .initialize_limit_seconds = limit(options_.policy.initialize_limit_seconds),
-            .call_limit_seconds =
-                hosts.in_process ? std::nullopt : std::optional(hosts.hard_limit_seconds),
-            .in_process = hosts.in_process,
-            .load_average = thisEnvironment().load_average};
-  }
-
-  const std::vector<Case>& cases_;
-  const SessionOptions& options_;
-  const HostMaker& make_host_;
-  Exhausted& exhausted_;
-  ResultFiles& files_;
-  RunWatcher& watcher_;
-  Yardsticks yardsticks_;
-  // In the order of the cases.
-  std::vector<CaseResult> results_;
-  std::vector<std::unique_ptr<CaseRun>> runs_;  ///< null before the first and after the last pass
-  std::vector<bool> ended_;
-  TurnOrder order_;
 };
 
 /// The machine, with the compute device that is used before the others.
@@ -195,74 +68,191 @@ Environment environmentOf(const std::string& wanted_device) {
   return environment;
 }
 
-/// A whole plan, run entry by entry.
+/// A case of the present recording.
+struct PlannedCase {
+  const Case* test_case = nullptr;
+  CaseResult result;
+  std::unique_ptr<CaseRun> run = {};  ///< null before its first pass and after its last
+  bool ended = false;                 ///< will not be run any more
+};
+
 class PlanRun {
  public:
-  PlanRun(const SessionOptions& options, const HostMaker& make_host, RunWatcher& watcher,
-          const Plan& plan)
-      : options_(options), make_host_(make_host), watcher_(watcher) {
-    results_.environments = {environmentOf(plan.entries.front().cases.front().device)};
-    results_.options = options.command_line;
-    warnings_.emplace(results_.environments.front());
-    files_.emplace(options.outputs, results_);
-  }
+  /// All arguments outlive this.
+  PlanRun(Plan& plan, const HostMaker& make_host, RunObserver& observer)
+      : plan_(plan),
+        request_(plan.request),
+        make_host_(make_host),
+        observer_(observer),
+        results_{.environments = {environmentOf(plan.entries.front().cases.front().device)},
+                 .options = plan.request.command_line},
+        warnings_(results_.environments.front()),
+        files_(plan.request.outputs, results_) {}
 
-  Results run(Plan& plan) {
-    results_.complete =
-        std::ranges::all_of(plan.entries, [this](PlanEntry& entry) { return runEntry(entry); });
-    files_->end(results_);
+  Results run() {
+    results_.complete = std::ranges::all_of(
+        plan_.entries, [this](PlanEntry& entry) { return runRecording(entry); });
+    files_.end(results_);
     return std::move(results_);
   }
 
  private:
-  /// Returns false when it was ended.
-  bool runEntry(PlanEntry& entry) {
+  /// Above this many cases, their processes, with threads and devices, end between two passes.
+  static constexpr std::size_t kMaxHeld = 64;
+
+  /// All cases of a recording. Returns false when cancelled.
+  bool runRecording(PlanEntry& entry) {
     const auto recording =
-        openRecording(entry.source, options_.record, options_.scene.recorders, options_.quiet);
+        openRecording(entry.source, observer_, request_.record, request_.scene.recorders);
     if (!recording) return false;
     Oracle oracle;
-    EntryRun run(entry, options_, make_host_, exhausted_, *warnings_, *files_, watcher_);
-    bool went_on = false;
+    cases_.clear();
+    for (const Case& test_case : entry.cases) cases_.push_back(begin(test_case, entry.source));
+    bool whole = false;
     try {
-      went_on = run.run(*recording, oracle);
+      whole = runPasses(*recording, oracle);
     } catch (...) {
-      keepFinished(entry, run);
+      keepFinished(entry);
       throw;
     }
-    keep(entry, run.takeResults());
-    if (went_on) watcher_.leaves(entry, *recording, oracle);
-    return went_on;
+    keep(entry);
+    if (whole) observer_.onRecordingEnd(entry, *recording, oracle);
+    return whole;
   }
 
-  /// What ends the run costs no case that was finished before.
-  void keepFinished(const PlanEntry& entry, EntryRun& run) {
+  PlannedCase begin(const Case& test_case, const Source& source) {
+    PlannedCase begun{.test_case = &test_case, .result = beginCase(test_case, source.reference)};
+    begun.result.conditions = commonConditions();
+    begun.result.conditions.plugin = test_case.algorithm.plugin_build;
+    begun.result.conditions.warnings = warnings_.of(test_case);
+    return begun;
+  }
+
+  /// All repetitions, interleaved. Returns false when cancelled.
+  bool runPasses(IndexedFrames& recording, Oracle& oracle) {
+    const RepetitionOptions& repetitions = request_.repetitions;
+    const SceneInfo& scene = recording.scene();
+    const std::uint64_t steps_of_pass = scene.frames;
+    const auto passes = static_cast<std::uint64_t>(repetitions.passes());
+    observer_.onTaskStart(fmt::format("running {} N{}", scene.name, scene.objects),
+                          steps_of_pass * passes * cases_.size());
+    const RepetitionRule rule(repetitions);
+    TurnOrder order(cases_.size(), repetitions.order_seed);
+    std::uint64_t steps = 0;
+    for (std::uint64_t pass = 0; pass < passes; ++pass) {
+      if (passes > 1) order.shuffle();
+      for (const std::size_t i : order.cases()) {
+        PlannedCase& planned = cases_[i];
+        if (planned.ended) continue;
+        const bool measured = std::cmp_greater_equal(pass, repetitions.warmup);
+        if (!runOnce(planned, recording, oracle, steps, measured)) return false;
+        steps += steps_of_pass;
+        CaseResult& result = planned.result;
+        if (result.status != Status::ok || rule.isEnough(result)) {
+          result.conditions.repetitions = rule.wanted(result);
+          end(planned);
+          steps += steps_of_pass * (passes - 1 - pass);
+        }
+        if (planned.ended || cases_.size() > kMaxHeld) planned.run.reset();
+        observer_.onProgress(steps, planned.test_case->algorithm.id);
+      }
+    }
+    return true;
+  }
+
+  /// One repetition of one case, unless it is not to be run. Returns false when cancelled.
+  bool runOnce(PlannedCase& planned, IndexedFrames& recording, Oracle& oracle, std::uint64_t steps,
+               bool measured) {
+    CaseResult& result = planned.result;
+    const Case& test_case = *planned.test_case;
+    if (timed_out_.skip(result, test_case)) return true;
+    const auto cancelled = [this] { return observer_.cancelled(); };
+    if (!planned.run) {
+      planned.run = std::make_unique<CaseRun>(test_case, request_.policy, make_host_, cancelled);
+    }
+    const YardstickTimes yardsticks = measured ? yardsticks_.recent() : YardstickTimes();
+    const std::size_t before = result.repetitions.size();
+    const RunHooks hooks{.cancelled = cancelled, .progress = [&](std::uint32_t frame) {
+                           observer_.onProgress(steps + frame, test_case.algorithm.id);
+                         }};
+    if (!runRepetition(result, *planned.run, recording, oracle, hooks, measured)) return false;
+    if (result.repetitions.size() > before) result.repetitions.back().yardsticks = yardsticks;
+    timed_out_.add(result, test_case);
+    return true;
+  }
+
+  /// Keeps the result of a case that will not be run any more.
+  void end(PlannedCase& planned) {
+    files_.add(planned.result);
+    planned.ended = true;
+    observer_.onCaseFinished(planned.result);
+  }
+
+  /// Saves finished cases even if the run fails.
+  void keepFinished(const PlanEntry& entry) {
     try {
-      keep(entry, run.takeResults());
-    } catch (const InputError&) {  // what went wrong first is what the user hears of
+      keep(entry);
+    } catch (const InputError&) {  // the first error is the one to report
     }
   }
 
-  void keep(const PlanEntry& entry, const std::vector<CaseResult>& done) {
+  /// Keeps the results of the cases that have been run, if only for some of their passes.
+  void keep(const PlanEntry& entry) {
+    std::vector<CaseResult> done;
+    for (PlannedCase& planned : cases_) {
+      const bool measured = !planned.result.repetitions.empty();
+      if (measured && !planned.ended) end(planned);
+      if (measured || planned.result.status != Status::ok) {
+        done.push_back(std::move(planned.result));
+      }
+    }
     if (done.empty()) return;
-    watcher_.ran(entry, done);
-    results_.cases.insert(results_.cases.end(), done.begin(), done.end());
-    files_->rewrite(results_);
+    observer_.onRecordingResults(entry, done);
+    std::ranges::move(done, std::back_inserter(results_.cases));
+    files_.rewrite(results_);
   }
 
-  const SessionOptions& options_;
+  [[nodiscard]] Conditions commonConditions() const {
+    const auto limit = [](double seconds) {
+      return std::isfinite(seconds) ? std::optional(seconds) : std::nullopt;
+    };
+    const HostOptions& hosts = request_.hosts;
+    return {.check = request_.policy.check,
+            .warmup = request_.repetitions.warmup,
+            .repetitions = request_.repetitions.most,
+            .frame_limit_seconds = limit(request_.policy.frame_limit_seconds),
+            .initialize_limit_seconds = limit(request_.policy.initialize_limit_seconds),
+            .call_limit_seconds =
+                hosts.in_process ? std::nullopt : std::optional(hosts.hard_limit_seconds),
+            .in_process = hosts.in_process,
+            .load_average = thisEnvironment().load_average};
+  }
+
+  Plan& plan_;
+  const RunRequest& request_;
   const HostMaker& make_host_;
-  RunWatcher& watcher_;
+  RunObserver& observer_;
   Results results_;
-  std::optional<RunWarnings> warnings_;
-  std::optional<ResultFiles> files_;
-  Exhausted exhausted_;
+  RunWarnings warnings_;
+  ResultFiles files_;
+  TimedOutVariants timed_out_;
+  Yardsticks yardsticks_;
+  std::vector<PlannedCase> cases_;  ///< of the present recording
 };
 
 }  // namespace
 
-Results runPlan(Plan& plan, const SessionOptions& options, const HostMaker& make_host,
-                RunWatcher& watcher) {
-  return PlanRun(options, make_host, watcher, plan).run(plan);
+std::uint64_t stepsOf(const Plan& plan) {
+  const auto passes = static_cast<std::uint64_t>(plan.request.repetitions.passes());
+  std::uint64_t steps = 0;
+  for (const PlanEntry& entry : plan.entries) {
+    steps += passes * entry.cases.size() * entry.source.reference.scene.frames;
+  }
+  return steps;
+}
+
+Results runPlan(Plan& plan, const HostMaker& make_host, RunObserver& observer) {
+  return PlanRun(plan, make_host, observer).run();
 }
 
 }  // namespace broadmark

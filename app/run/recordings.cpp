@@ -19,40 +19,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls record(FrameProgress) and shows how far it is with what it is `doing`.
-template <class Record>
-bool recordWithProgress(const char* doing, const SceneInfo& scene, bool quiet, Record&& record) {
-  Progress progress(
+/// Reports what is `doing` to a scene, frame by frame.
+FrameProgress reportedTo(TaskObserver& tasks, const char* doing, const SceneInfo& scene) {
+  tasks.onTaskStart(
       fmt::format("{} {} {} N{}", doing, scene.name, scene.object_type, scene.objects),
-      scene.frames, quiet);
-  return record([&](std::uint32_t frame) {
-    progress.update(frame);
-    return !InterruptGuard::requested();
-  });
+      scene.frames);
+  return [&tasks](std::uint32_t frame) {
+    tasks.onProgress(frame);
+    return !tasks.cancelled();
+  };
 }
 
 /// Bakes a source's simulation below `directory`, unless it is already there. Returns the path of
-/// the first recorder's recording, or "" when interrupted.
-fs::path bakeInto(Source& source, const fs::path& directory,
-                  const std::vector<std::string>& recorders, bool quiet) {
+/// the first recorder's recording, or "" when cancelled.
+fs::path bakeInto(Source& source, TaskObserver& tasks, const fs::path& directory,
+                  const std::vector<std::string>& recorders) {
   Simulation& simulation = *source.simulation;
   const auto paths =
       recordingPaths(directory, simulation.scene(), source.reference.swept, recorders);
   const auto there = [&](const fs::path& path) { return isBaked(path, simulation); };
   if (std::ranges::all_of(paths, there)) return paths.front();
   for (const fs::path& path : paths) makeDirectory(path.parent_path());
-  const auto& scene = simulation.scene();
-  const bool whole = recordWithProgress("baking", scene, quiet, [&](const auto& progress) {
-    return bake(simulation, paths, progress);
-  });
+  const bool whole = bake(simulation, paths, reportedTo(tasks, "baking", simulation.scene()));
   return whole ? paths.front() : fs::path();
 }
 
-std::unique_ptr<Recording> recordTemporary(const char* doing, FrameSource& frames, bool quiet) {
+std::unique_ptr<Recording> recordTemporary(const char* doing, FrameSource& frames,
+                                           TaskObserver& tasks) {
   RecordingWriter writer(frames.scene());
-  const bool whole = recordWithProgress(
-      doing, frames.scene(), quiet,
-      [&](const FrameProgress& progress) { return recordAll(frames, writer, progress); });
+  const bool whole = recordAll(frames, writer, reportedTo(tasks, doing, frames.scene()));
   return whole ? writer.finishTemporary() : nullptr;
 }
 
@@ -65,22 +60,22 @@ std::unique_ptr<Recording> openAgain(const RecordingReference& reference) {
   throw InputError(fmt::format("{}: was replaced after the run had begun", reference.path));
 }
 
-/// The recording as it is, swept or not. Null when interrupted.
-std::unique_ptr<Recording> openPlain(Source& source, const fs::path& directory,
-                                     const std::vector<std::string>& recorders, bool quiet) {
-  if (source.imported) return recordTemporary("importing", *source.imported, quiet);
+/// The recording as it is, swept or not. Null when cancelled.
+std::unique_ptr<Recording> openPlain(Source& source, TaskObserver& tasks, const fs::path& directory,
+                                     const std::vector<std::string>& recorders) {
+  if (source.imported) return recordTemporary("importing", *source.imported, tasks);
   if (!source.simulation) return openAgain(source.reference);
-  if (directory.empty()) return recordTemporary("baking", *source.simulation, quiet);
-  const fs::path path = bakeInto(source, directory, recorders, quiet);
+  if (directory.empty()) return recordTemporary("baking", *source.simulation, tasks);
+  const fs::path path = bakeInto(source, tasks, directory, recorders);
   return path.empty() ? nullptr : openRecordingFile(path);
 }
 
 }  // namespace
 
-std::unique_ptr<IndexedFrames> openRecording(Source& source, const fs::path& directory,
-                                             const std::vector<std::string>& recorders,
-                                             bool quiet) {
-  std::unique_ptr<Recording> recording = openPlain(source, directory, recorders, quiet);
+std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks,
+                                             const fs::path& directory,
+                                             const std::vector<std::string>& recorders) {
+  std::unique_ptr<Recording> recording = openPlain(source, tasks, directory, recorders);
   if (!recording) return nullptr;
   const bool swept = source.reference.reading.contains("swept");
   const std::string hash = swept ? sweptHash(recording->hash()) : recording->hash();
@@ -91,6 +86,13 @@ std::unique_ptr<IndexedFrames> openRecording(Source& source, const fs::path& dir
                 hash, source.expected_hash);
   }
   if (swept) return std::make_unique<SweptFrames>(std::move(recording));
+  return recording;
+}
+
+std::unique_ptr<IndexedFrames> openForCommand(Source& source, bool quiet) {
+  TerminalTasks tasks(quiet);
+  auto recording = openRecording(source, tasks);
+  if (!recording) throw Interrupted();
   return recording;
 }
 

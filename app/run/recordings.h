@@ -8,6 +8,7 @@
 
 #include "broadmark/recordings/recording.h"
 #include "sources/source.h"
+#include "support/progress.h"
 
 namespace broadmark {
 
@@ -21,10 +22,14 @@ std::vector<std::filesystem::path> recordingPaths(const std::filesystem::path& d
 
 /// Opens a source's recording and fills in its hash. A simulation is recorded first: below
 /// `directory`, once by each of `recorders`, of which the first is opened; or, if that is empty,
-/// into an unnamed temporary file, as imported frames always are. Null when interrupted. Throws
+/// into an unnamed temporary file, as imported frames always are. Null when cancelled. Throws
 /// InputError; also when the recording is not the expected one.
-std::unique_ptr<IndexedFrames> openRecording(Source&, const std::filesystem::path& directory,
-                                             const std::vector<std::string>& recorders, bool quiet);
+std::unique_ptr<IndexedFrames> openRecording(Source&, TaskObserver&,
+                                             const std::filesystem::path& directory = {},
+                                             const std::vector<std::string>& recorders = {});
+
+/// The same for a command: shows its progress unless `quiet`. Throws Interrupted, too.
+std::unique_ptr<IndexedFrames> openForCommand(Source&, bool quiet);
 
 /// Throws InputError, naming `what`, unless `hash` is that of the recording a case ran on.
 void requireHash(const std::string& what, const std::string& hash, const std::string& expected);

@@ -2,18 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "broadmark/files.h"
 #include "broadmark/results/results.h"
+#include "request/run_request.h"
 
 namespace broadmark {
-
-/// Where the results of a run go, by the name of the result writer.
-using ResultPaths = std::map<std::string, std::filesystem::path>;
 
 /// Writes whole results to each of the paths, unless there is no case.
 void writeResults(const ResultPaths& paths, const Results& results);

@@ -1,6 +1,8 @@
 #include "support/output.h"
 
 #include <cstdio>
+#include <iostream>
+#include <iterator>
 
 #include "broadmark/files.h"
 
@@ -12,6 +14,11 @@ bool isStandardOutput(const std::filesystem::path& path) {
 
 void requireOutput(const std::filesystem::path& path) {
   if (!isStandardOutput(path)) AtomicFile probe(path);
+}
+
+std::string readInput(const std::filesystem::path& path) {
+  if (path != "-") return readTextFile(path);
+  return {std::istreambuf_iterator<char>(std::cin), {}};
 }
 
 void writeOutput(const std::filesystem::path& path, std::string_view text) {

@@ -4,10 +4,24 @@
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace broadmark {
+
+/// Receives the progress of long work, and may end it.
+class TaskObserver {
+ public:
+  virtual ~TaskObserver() = default;
+
+  /// Asked between steps; true ends the work.
+  virtual bool cancelled() = 0;
+  /// A task of so many steps begins, as the one before has ended.
+  virtual void onTaskStart(const std::string& task, std::uint64_t steps) = 0;
+  /// `done` of its steps are done; `detail` names the present one.
+  virtual void onProgress(std::uint64_t done, const std::string& detail = {}) = 0;
+};
 
 /// Shows on standard error how far a task is. On a terminal it rewrites one line, cut to the
 /// terminal's width; elsewhere it prints a line now and then, and one when the task ends. Shows
@@ -45,6 +59,22 @@ class Progress {
   bool terminal_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point drawn_ = start_;
+};
+
+/// Shows one task after the other as Progress; Ctrl-C (InterruptGuard) ends them.
+class TerminalTasks final : public TaskObserver {
+ public:
+  explicit TerminalTasks(bool quiet) : quiet_(quiet) {}
+
+  bool cancelled() override;
+  void onTaskStart(const std::string& task, std::uint64_t steps) override;
+  void onProgress(std::uint64_t done, const std::string& detail = {}) override;
+  /// The present task has ended.
+  void end() { progress_.reset(); }
+
+ private:
+  bool quiet_;
+  std::optional<Progress> progress_;
 };
 
 }  // namespace broadmark

@@ -80,43 +80,6 @@ class FrameCounter {
   std::size_t passed_ = 0;  ///< frames
 };
 
-/// All frames of one pass; false when cancelled.
-bool runFrames(Repetition& repetition, FrameCounter& counter, CaseRun& run, FrameSource& source,
-               Oracle& oracle, const RunHooks& hooks) {
-  while (run.running()) {
-    const std::optional<Frame> frame = source.next();
-    if (!frame) return true;
-    if (hooks.cancelled && hooks.cancelled()) return false;
-    run.step(*frame);
-    if (!run.answered()) return true;
-    repetition.frames.push_back(run.times());
-    counter.count(*frame, run, oracle);
-    if (hooks.progress) hooks.progress(frame->index);
-  }
-  return true;
-}
-
-/// What came of one pass.
-struct Pass {
-  bool finished = false;  ///< not cancelled
-  bool whole = false;     ///< its instance was not lost on the way
-  Repetition repetition;
-};
-Pass runPass(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
-             const RunHooks& hooks) {
-  Pass pass;
-  pass.repetition.frames.reserve(source.scene().frames);
-  const Frame first = source.rewind();
-  FrameCounter counter(result);
-  if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
-  pass.repetition.initialize_ns = run.initializeNanoseconds();
-  pass.finished = runFrames(pass.repetition, counter, run, source, oracle, hooks);
-  pass.whole = run.hasInstance();
-  run.stop();
-  pass.repetition.processor = run.processorCounts();
-  return pass;
-}
-
 }  // namespace
 
 std::string recordingId(const RecordingReference& recording) {
@@ -162,10 +125,30 @@ CaseResult beginCase(const Case& run, const RecordingReference& recording) {
 bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle& oracle,
                    const RunHooks& hooks, bool measured) {
   result.checked = run.checks();
+  Repetition repetition;
+  repetition.frames.reserve(source.scene().frames);
   try {
-    Pass pass = runPass(result, run, source, oracle, hooks);
-    if (!pass.finished) return false;
-    if (measured && pass.whole) result.repetitions.push_back(std::move(pass.repetition));
+    const Frame first = source.rewind();
+    FrameCounter counter(result);
+    if (run.start(source.scene(), first) && result.setup.empty()) result.setup = run.setup();
+    repetition.initialize_ns = run.initializeNanoseconds();
+    while (run.running()) {
+      const std::optional<Frame> frame = source.next();
+      if (!frame) break;
+      if (hooks.cancelled && hooks.cancelled()) {
+        run.stop();
+        return false;
+      }
+      run.step(*frame);
+      if (!run.answered()) break;
+      repetition.frames.push_back(run.times());
+      counter.count(*frame, run, oracle);
+      if (hooks.progress) hooks.progress(frame->index);
+    }
+    const bool instance_survived = run.hasInstance();
+    run.stop();
+    repetition.processor = run.processorCounts();
+    if (measured && instance_survived) result.repetitions.push_back(std::move(repetition));
   } catch (const Cancelled&) {
     return false;
   }

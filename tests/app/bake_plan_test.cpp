@@ -22,8 +22,8 @@ class BatchOfBakes : public testing::Test {
     std::string name = (fs::temp_directory_path() / "broadmark XXXXXX").string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary directory");
     directory_ = name;
-    options_.output = directory_ / "out";
-    options_.scenes = {"freefall", "brownian"};
+    options_.record = directory_ / "out";
+    options_.sources = {"freefall", "brownian"};
     options_.scene.object_types = {"cubes", "spheres"};
     options_.scene.objects = {20, 30};
     options_.scene.parameters = {{"frames", "5"}};
@@ -58,7 +58,7 @@ TEST_F(BatchOfBakes, PlansBakesAndKeeps) {
   EXPECT_EQ(plan->recordings(), 8U);
   EXPECT_EQ(plan->bytes(), 4 * (2 * 304 + 32 * 6 * (20 + 30)));
   EXPECT_TRUE(files().empty()) << "planning writes nothing";
-  prepare(*plan, options_.output);
+  prepare(*plan, options_.record);
   BakeBatch batch(std::move(plan->pending), 2);
   EXPECT_EQ(finish(batch), 8U);
   EXPECT_EQ(batch.state().done, batch.state().total);
@@ -77,7 +77,7 @@ TEST_F(BatchOfBakes, PlansBakesAndKeeps) {
 }
 
 TEST_F(BatchOfBakes, EveryValueMakesARecordingOfItsOwnName) {
-  options_.scenes = {"brownian"};
+  options_.sources = {"brownian"};
   options_.scene.object_types = {"cubes"};
   options_.scene.objects = {20};
   options_.scene.parameters["seed"] = "3,1";
@@ -94,7 +94,7 @@ TEST_F(BatchOfBakes, EveryValueMakesARecordingOfItsOwnName) {
 
 TEST_F(BatchOfBakes, PlanningCanBeStopped) {
   auto plan = planBake(options_);
-  prepare(*plan, options_.output);
+  prepare(*plan, options_.record);
   BakeBatch batch(std::move(plan->pending), 2);
   finish(batch);
   EXPECT_FALSE(planBake(
@@ -105,7 +105,7 @@ TEST_F(BatchOfBakes, CancellingLeavesOnlyWholeRecordings) {
   options_.scene.parameters["frames"] = "20000";
   options_.scene.objects = {300};
   auto plan = planBake(options_);
-  prepare(*plan, options_.output);
+  prepare(*plan, options_.record);
   BakeBatch long_batch(std::move(plan->pending), 2);
   while (long_batch.state().done == 0) long_batch.await(1ms);
   EXPECT_FALSE(long_batch.ended());
@@ -118,7 +118,7 @@ TEST_F(BatchOfBakes, AuthoredScenesTakePart) {
   scenes::AuthoredScene scene{.name = "Mine", .parameters = {{"frames", "5"}}};
   scene.bodies.resize(2);
   writeTextFile(directory_ / "mine.json", scenes::formatAuthoredScene(scene));
-  options_.scenes.push_back(directory_ / "mine.json");
+  options_.sources.push_back(directory_ / "mine.json");
   EXPECT_THROW(planBake(options_), InputError) << "it has its own number of bodies";
   options_.scene.objects.clear();
   options_.scene.object_types.clear();

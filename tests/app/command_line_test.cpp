@@ -49,7 +49,7 @@ TEST(Session, Defaults) {
   EXPECT_THAT(options.scene.recorders, IsEmpty());
   EXPECT_THAT(options.cases.algorithms, IsEmpty());
   EXPECT_EQ(options.repetitions.most, 1);
-  EXPECT_EQ(options.warmup, 0);
+  EXPECT_EQ(options.repetitions.warmup, 0);
   EXPECT_EQ(options.policy.check, CheckMode::full);
   EXPECT_EQ(options.policy.frame_limit_seconds, 0.5);
   EXPECT_THAT(options.outputs, IsEmpty());
@@ -138,7 +138,7 @@ TEST(Session, ValuesAreUnderstood) {
                                           "--memory-limit",
                                           "0.5"});
   EXPECT_EQ(options.repetitions.most, 5);
-  EXPECT_EQ(options.warmup, 2);
+  EXPECT_EQ(options.repetitions.warmup, 2);
   EXPECT_EQ(options.policy.frame_limit_seconds, 1e-3);
   EXPECT_EQ(options.policy.check, CheckMode::hash);
   EXPECT_EQ(options.frame, 0U);

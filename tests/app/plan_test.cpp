@@ -10,7 +10,6 @@
 #include "app/session_files.h"
 #include "broadmark/files.h"
 #include "broadmark/results/results.h"
-#include "command_line/session_options.h"
 
 namespace broadmark::tests {
 namespace {
@@ -22,10 +21,9 @@ using testing::IsEmpty;
 using testing::SizeIs;
 using Names = std::vector<std::string>;
 
-/// A headless session on two scenes of two sizes each.
-SessionOptions options() {
-  SessionOptions options;
-  options.headless = true;
+/// A run on two scenes of two sizes each.
+RunRequest request() {
+  RunRequest options;
   options.sources = {"freefall", "brownian"};
   options.scene.objects = {10, 20};
   options.scene.parameters = {{"frames", "3"}};
@@ -33,21 +31,22 @@ SessionOptions options() {
   return options;
 }
 
-/// The inspector on one scene.
-SessionOptions inspector() {
-  SessionOptions inspecting = options();
-  inspecting.headless = false;
+/// For the inspector, on one scene.
+RunRequest inspection() {
+  RunRequest inspecting = request();
   inspecting.sources = {"freefall"};
   inspecting.scene.objects = {10};
   return inspecting;
 }
 
-std::string complaint(const SessionOptions& asked) {
-  return inputErrorOf([&] { makePlan(asked); });
+Plan planOf(const RunRequest& asked) { return makePlan(asked, PlanUse::run); }
+
+std::string complaint(const RunRequest& asked, PlanUse use = PlanUse::run) {
+  return inputErrorOf([&] { makePlan(asked, use); });
 }
 
 TEST(Plan, HasEveryCaseOnEverySource) {
-  const Plan plan = makePlan(options());
+  const Plan plan = planOf(request());
   ASSERT_THAT(plan.entries, SizeIs(4));
   for (const PlanEntry& entry : plan.entries) EXPECT_THAT(entry.cases, SizeIs(7));
   const Names ids = caseIds(plan);
@@ -59,13 +58,13 @@ TEST(Plan, HasEveryCaseOnEverySource) {
 }
 
 TEST(Plan, ShardsDivideTheCases) {
-  const Names whole = caseIds(makePlan(options()));
+  const Names whole = caseIds(planOf(request()));
   for (const int count : {1, 3, 28, 40}) {
     Names divided;
     for (int index = 0; index < count; ++index) {
-      SessionOptions part = options();
+      RunRequest part = request();
       part.shard = {.index = index, .count = count};
-      const Plan plan = makePlan(part);
+      const Plan plan = planOf(part);
       const Names ids = caseIds(plan);
       EXPECT_LE(ids.size(), whole.size() / static_cast<std::size_t>(count) + 1);
       for (const PlanEntry& entry : plan.entries) EXPECT_THAT(entry.cases, Not(IsEmpty()));
@@ -76,13 +75,13 @@ TEST(Plan, ShardsDivideTheCases) {
 }
 
 TEST(Plan, FilterKeepsMatchingCases) {
-  SessionOptions filtered = options();
+  RunRequest filtered = request();
   filtered.filter = "N20/.*/bf$";
-  const Names ids = caseIds(makePlan(filtered));
+  const Names ids = caseIds(planOf(filtered));
   EXPECT_THAT(ids, SizeIs(2));
   EXPECT_THAT(ids, Each(AllOf(HasSubstr("N20"), testing::EndsWith("/bf"))));
   filtered.filter = "matches nothing";
-  EXPECT_THAT(makePlan(filtered).entries, IsEmpty());
+  EXPECT_THAT(planOf(filtered).entries, IsEmpty());
   filtered.filter = "([";
   EXPECT_THAT(complaint(filtered), AllOf(HasSubstr("--filter"), HasSubstr("'(['")));
 }
@@ -90,10 +89,10 @@ TEST(Plan, FilterKeepsMatchingCases) {
 TEST(Plan, ShardsDivideWhatTheFilterLeaves) {
   Names divided;
   for (int index = 0; index < 2; ++index) {
-    SessionOptions part = options();
+    RunRequest part = request();
     part.filter = "/sap$";
     part.shard = {.index = index, .count = 2};
-    const Names ids = caseIds(makePlan(part));
+    const Names ids = caseIds(planOf(part));
     EXPECT_THAT(ids, SizeIs(2));
     divided.insert(divided.end(), ids.begin(), ids.end());
   }
@@ -101,20 +100,20 @@ TEST(Plan, ShardsDivideWhatTheFilterLeaves) {
 }
 
 TEST(Plan, ParametersMustBeSomebodys) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.cases.algorithms = {"kd"};
   asked.parameters = {{"objects_per_leaf", "9"}, {"density", "0.05"}};
-  EXPECT_THAT(makePlan(asked).entries.front().cases.front().parameters, SizeIs(1));
+  EXPECT_THAT(planOf(asked).entries.front().cases.front().parameters, SizeIs(1));
   asked.parameters["densty"] = "0.1";
   EXPECT_THAT(complaint(asked),
               AllOf(HasSubstr("--param"), HasSubstr("'densty'"), HasSubstr("'density'")));
 }
 
 TEST(Plan, ParametersOfOneAlgorithmMustBeItsOwn) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.cases.algorithms = {"kd", "sap"};
   asked.parameters = {{"kd:objects_per_leaf", "9"}};
-  EXPECT_THAT(caseIds(makePlan(asked)).at(1), HasSubstr("objects_per_leaf=9"));
+  EXPECT_THAT(caseIds(planOf(asked)).at(1), HasSubstr("objects_per_leaf=9"));
   const auto refused = [&](const std::string& key, const Names& words) {
     asked.parameters = {{key, "1"}};
     for (const std::string& word : words) EXPECT_THAT(complaint(asked), HasSubstr(word));
@@ -126,13 +125,13 @@ TEST(Plan, ParametersOfOneAlgorithmMustBeItsOwn) {
 }
 
 TEST(Plan, EveryValueOfAParameterMakesARecordingOrACase) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.sources = {"freefall"};
   asked.scene.objects = {10};
   asked.scene.parameters = {{"frames", "3"}, {"seed", "2,1"}};
   asked.cases.algorithms = {"kd"};
   asked.parameters = {{"density", "0.05,0.1"}, {"objects_per_leaf", "9,20"}};
-  const Plan plan = makePlan(asked);
+  const Plan plan = planOf(asked);
   ASSERT_THAT(plan.entries, SizeIs(4));
   EXPECT_THAT(
       caseIds(plan),
@@ -150,7 +149,7 @@ TEST(Plan, EveryValueOfAParameterMakesARecordingOrACase) {
 }
 
 TEST(Plan, ParametersOfEveryCaseAreChecked) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.cases.algorithms = {"sap", "kd"};
   asked.filter = "/sap$";
   asked.parameters = {{"objects_per_leaf", "none"}};
@@ -160,10 +159,10 @@ TEST(Plan, ParametersOfEveryCaseAreChecked) {
 }
 
 TEST(Plan, DeviceAndAnswerAreThoseOfEveryCase) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.cases.device = "0";
   asked.cases.answer = AnswerKind::events;
-  for (const PlanEntry& entry : makePlan(asked).entries) {
+  for (const PlanEntry& entry : planOf(asked).entries) {
     for (const Case& run : entry.cases) {
       EXPECT_EQ(run.device, "0");
       EXPECT_EQ(run.answer, AnswerKind::events);
@@ -172,45 +171,46 @@ TEST(Plan, DeviceAndAnswerAreThoseOfEveryCase) {
 }
 
 TEST(Plan, ScreenshotsHaveNamesOfTheirOwn) {
-  SessionOptions asked = options();
+  RunRequest asked = request();
   asked.screenshot = "p.png";
   std::set<std::filesystem::path> names;
-  for (const PlanEntry& entry : makePlan(asked).entries) names.insert(entry.screenshot);
+  for (const PlanEntry& entry : planOf(asked).entries) names.insert(entry.screenshot);
   EXPECT_THAT(names, SizeIs(4));
   EXPECT_TRUE(names.contains("p Brownian Cubes N20.png"));
   asked.sources = {"freefall"};
   asked.scene.objects = {10};
-  EXPECT_EQ(makePlan(asked).entries.front().screenshot, "p.png");
-  EXPECT_EQ(makePlan(options()).entries.front().screenshot, "");
+  EXPECT_EQ(planOf(asked).entries.front().screenshot, "p.png");
+  EXPECT_EQ(planOf(request()).entries.front().screenshot, "");
 }
 
 TEST(Plan, TheInspectorBeginsWithTheNamedAlgorithmsOnly) {
-  SessionOptions asked = inspector();
-  EXPECT_THAT(makePlan(asked).entries.at(0).cases, SizeIs(7));
+  RunRequest asked = inspection();
+  EXPECT_THAT(makePlan(asked, PlanUse::open).entries.at(0).cases, SizeIs(7));
   asked.cases.algorithms.clear();
-  const Plan without = makePlan(asked);
+  const Plan without = makePlan(asked, PlanUse::open);
   ASSERT_THAT(without.entries, SizeIs(1)) << "kept, although it has no cases";
   EXPECT_THAT(without.entries.front().cases, IsEmpty());
   EXPECT_GT(without.algorithms.size(), 20U);
 }
 
 TEST(Plan, TheFrameToBeShownMustExist) {
-  for (SessionOptions asked : {options(), inspector()}) {
+  for (const PlanUse use : {PlanUse::run, PlanUse::open}) {
+    RunRequest asked = request();
     asked.frame = 3;
-    makePlan(asked);
+    makePlan(asked, use);
     asked.frame = 4;
-    EXPECT_THAT(complaint(asked), AllOf(HasSubstr("--frame"), HasSubstr("4")));
+    EXPECT_THAT(complaint(asked, use), AllOf(HasSubstr("--frame"), HasSubstr("4")));
   }
-  SessionOptions without = inspector();
+  RunRequest without = inspection();
   without.sources.clear();
   without.frame = 0;
-  EXPECT_THAT(complaint(without), HasSubstr("--frame"));
+  EXPECT_THAT(complaint(without, PlanUse::open), HasSubstr("--frame"));
 }
 
 TEST(Plan, TheInspectorNeedsNoSource) {
-  SessionOptions asked = inspector();
+  RunRequest asked = inspection();
   asked.sources.clear();
-  const Plan plan = makePlan(asked);
+  const Plan plan = makePlan(asked, PlanUse::open);
   EXPECT_THAT(plan.entries, IsEmpty());
   EXPECT_THAT(plan.cases, SizeIs(7));
 }
@@ -221,18 +221,17 @@ class PlanOfResults : public testing::Test {
     writeRecording(directory_ / "small.aabbs");
     wrong_ = resultOn(directory_ / "small.aabbs", "sap", 1);
     writeResults(directory_ / "results.json", {resultOn(directory_ / "small.aabbs", "bf"), wrong_});
-    asked_.headless = true;
     asked_.sources = {(directory_ / "results.json").string()};
   }
 
   TemporaryDirectory directory_;
   CaseResult wrong_;
-  SessionOptions asked_;
+  RunRequest asked_;
 };
 
 TEST_F(PlanOfResults, HasTheChosenCase) {
   asked_.case_id = wrong_.id;
-  const Plan plan = makePlan(asked_);
+  const Plan plan = planOf(asked_);
   EXPECT_THAT(caseIds(plan), testing::ElementsAre(wrong_.id));
   ASSERT_TRUE(plan.entries.front().known);
 }
@@ -247,7 +246,7 @@ TEST_F(PlanOfResults, MayBeOfLines) {
   }
   asked_.sources = {(directory_ / "results.jsonl").string()};
   asked_.case_id = wrong_.id;
-  EXPECT_THAT(caseIds(makePlan(asked_)), testing::ElementsAre(wrong_.id));
+  EXPECT_THAT(caseIds(planOf(asked_)), testing::ElementsAre(wrong_.id));
 }
 
 TEST_F(PlanOfResults, NeedsAChosenCase) {
@@ -256,8 +255,7 @@ TEST_F(PlanOfResults, NeedsAChosenCase) {
 }
 
 TEST_F(PlanOfResults, InTheInspectorTheCaseIsChosenLater) {
-  asked_.headless = false;
-  const Plan plan = makePlan(asked_);
+  const Plan plan = makePlan(asked_, PlanUse::open);
   ASSERT_TRUE(plan.unchosen_case);
   EXPECT_EQ(plan.unchosen_case->file, asked_.sources.front());
   EXPECT_THAT(plan.entries, IsEmpty());
@@ -277,7 +275,7 @@ TEST_F(PlanOfResults, SettingsOfTheOriginalNameTheirAlgorithm) {
                 originalSettingsText((directory_ / "small.aabbs").string()));
   asked_.sources = {(directory_ / "settings.json").string()};
   asked_.cases.device = "1";
-  const Plan plan = makePlan(asked_);
+  const Plan plan = planOf(asked_);
   ASSERT_THAT(plan.entries, SizeIs(1));
   EXPECT_THAT(plan.entries.front().cases, SizeIs(1));
   EXPECT_TRUE(plan.entries.front().original);

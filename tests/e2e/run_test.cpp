@@ -169,6 +169,26 @@ TEST_F(Run, SelfChecksStandLastAndAreNeverTheFastest) {
   }
 }
 
+TEST_F(Run, ARequestRunsWhatItsCommandLineDoes) {
+  const Arguments given = {"--headless", "freefall",    "--objects", "20,30",         "--frames",
+                           "3",          "--algorithm", "sap,kd",    "--repetitions", "2"};
+  Arguments writing = given;
+  writing.insert(writing.end(), {"--write-request", "run.json"});
+  EXPECT_THAT(runQuietly(writing).out, IsEmpty());
+  EXPECT_THAT(files(), testing::ElementsAre("run.json")) << "nothing was run";
+  runQuietly({"--headless", "--request", "run.json", "--json", "r.json"});
+  std::vector<std::string> ids;
+  for (const Json& one : readJson(file("r.json")).at("cases")) {
+    ids.push_back(one.at("id"));
+    EXPECT_EQ(one.at("frames").at("total").size(), 2U);
+  }
+  Arguments listing = given;
+  listing.emplace_back("--list");
+  EXPECT_EQ(ids, linesOf(runQuietly(listing).out));
+  ASSERT_EQ(shell("broadmark --headless --request - --list <run.json"), 0);
+  EXPECT_EQ(linesOf(readFile(file("shell.out"))), ids) << "from standard input";
+}
+
 TEST_F(Run, RepetitionsAndWarmup) {
   const Json done = casesOf({"--algorithm", "sap,bf", "--repetitions", "3", "--warmup", "1"});
   for (const Json& one : done) {

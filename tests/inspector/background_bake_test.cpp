@@ -20,13 +20,15 @@ using Outcome = BackgroundBake::Outcome;
 class BackgroundBakeTest : public testing::Test {
  protected:
   BakeOptions options(std::vector<std::uint32_t> objects, int frames) const {
-    return {.scenes = {"freefall"},
-            .scene = {.objects = std::move(objects),
-                      .object_types = {"cubes"},
-                      .parameters = {{"frames", std::to_string(frames)}},
-                      .recorders = {"aabbs"}},
-            .output = directory / "baked",
-            .threads = 2};
+    BakeOptions options;
+    options.sources = {"freefall"};
+    options.scene = {.objects = std::move(objects),
+                     .object_types = {"cubes"},
+                     .parameters = {{"frames", std::to_string(frames)}},
+                     .recorders = {"aabbs"}};
+    options.record = directory / "baked";
+    options.threads = 2;
+    return options;
   }
 
   BackgroundBake::Report wait() {

@@ -66,7 +66,7 @@ void BackgroundBake::planAndBake(const BakeOptions& options) {
         return !task_.cancelled();
       });
   if (!plan) return;
-  prepare(*plan, options.output);
+  prepare(*plan, options.record);
   task_.update([&](Report& report) {
     for (const fs::path& path : plan->kept) {
       report.items.push_back({.path = path, .outcome = Outcome::kept});

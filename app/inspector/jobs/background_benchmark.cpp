@@ -13,20 +13,6 @@
 #include "support/words.h"
 
 namespace broadmark {
-namespace {
-
-std::uint64_t stepsOf(const Plan& plan, const SessionOptions& options) {
-  const auto passes = static_cast<std::uint64_t>(options.warmup) +
-                      static_cast<std::uint64_t>(options.repetitions.most);
-  std::uint64_t steps = 0;
-  for (const PlanEntry& entry : plan.entries) {
-    steps += passes * entry.cases.size() * entry.source.reference.scene.frames;
-  }
-  return std::max<std::uint64_t>(steps, 1);
-}
-
-}  // namespace
-
 std::size_t BackgroundBenchmark::Report::failed() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(items, [](const Item& item) { return item.status != Status::ok; }));
@@ -38,30 +24,31 @@ std::string BackgroundBenchmark::Report::text() const {
   return text;
 }
 
-/// Puts into the report what a run tells.
-class BackgroundBenchmark::Watcher final : public RunWatcher {
+/// Keeps the report of a run up to date.
+class BackgroundBenchmark::Observer final : public RunObserver {
  public:
-  Watcher(BackgroundTask<Report>& task, std::uint64_t steps) : task_(task), steps_(steps) {}
+  Observer(BackgroundTask<Report>& task, std::uint64_t steps)
+      : task_(task), steps_(static_cast<double>(std::max<std::uint64_t>(steps, 1))) {}
 
   bool cancelled() override { return task_.cancelled(); }
 
-  void begins(const SceneInfo& scene, std::uint64_t steps) override {
-    scene_ = fmt::format("{} {} N{}", scene.name, scene.object_type, scene.objects);
+  void onTaskStart(const std::string& task, std::uint64_t steps) override {
+    doing_ = task;
     begun_ = next_;
     next_ += steps;
   }
 
-  void advances(std::uint64_t done, const std::string& algorithm) override {
-    const double share = static_cast<double>(begun_ + done) / static_cast<double>(steps_);
+  void onProgress(std::uint64_t done, const std::string& detail) override {
+    const double share = std::min(1.0, static_cast<double>(begun_ + done) / steps_);
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
     task_.update([&](Report& report) {
-      report.doing = fmt::format("{}: {}", scene_, algorithm);
+      report.doing = detail.empty() ? doing_ : fmt::format("{}: {}", doing_, detail);
       report.fraction = static_cast<float>(share);
       report.seconds_left = share > 0 ? seconds * (1 - share) / share : 0;
     });
   }
 
-  void ended(const CaseResult& result) override {
+  void onCaseFinished(const CaseResult& result) override {
     Item item{.id = result.id,
               .name = fmt::format("{} · {}", caseNameOf(result), recordingId(result.recording)),
               .status = result.status,
@@ -70,7 +57,7 @@ class BackgroundBenchmark::Watcher final : public RunWatcher {
     task_.update([&](Report& report) { report.items.push_back(std::move(item)); });
   }
 
-  void leaves(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) override {
+  void onRecordingEnd(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) override {
     task_.update([](Report& report) {
       for (Item& item : report.items) item.kept = true;
     });
@@ -80,25 +67,23 @@ class BackgroundBenchmark::Watcher final : public RunWatcher {
   using Clock = std::chrono::steady_clock;
 
   BackgroundTask<Report>& task_;
-  const std::uint64_t steps_;
+  const double steps_;
   const Clock::time_point start_ = Clock::now();
-  std::string scene_;
-  std::uint64_t begun_ = 0;  ///< steps of the recordings before
-  std::uint64_t next_ = 0;   ///< those with this one's
+  std::string doing_;
+  std::uint64_t begun_ = 0;  ///< steps of the tasks before
+  std::uint64_t next_ = 0;   ///< steps of the tasks up to the present one
 };
 
-void BackgroundBenchmark::start(SessionOptions options, std::vector<Algorithm> algorithms,
-                                std::filesystem::path file) {
+void BackgroundBenchmark::start(RunRequest request, std::vector<Algorithm> algorithms) {
+  const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
-  options.outputs = {{"json", file}};
-  options.headless = options.quiet = true;
   task_.begin({.file = file},
-              [this, options = std::move(options), algorithms = std::move(algorithms)] {
+              [this, request = std::move(request), algorithms = std::move(algorithms)] {
                 task_.update([](Report& report) { report.doing = "opening recordings"; });
-                Plan plan = makePlan(options, algorithms);
+                Plan plan = makePlan(request, PlanUse::run, algorithms);
                 task_.update([&](Report& report) { report.cases = caseIds(plan).size(); });
-                Watcher watcher(task_, stepsOf(plan, options));
-                return runPlan(plan, options, make_host_, watcher).complete;
+                Observer observer(task_, stepsOf(plan));
+                return runPlan(plan, make_host_, observer).complete;
               });
 }
 

@@ -9,8 +9,8 @@
 #include "broadmark/algorithm.h"
 #include "broadmark/harness/case_host.h"
 #include "broadmark/results/results.h"
-#include "command_line/session_options.h"
 #include "inspector/jobs/background_task.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
@@ -40,9 +40,9 @@ class BackgroundBenchmark {
   /// `make_host`: where algorithms run.
   explicit BackgroundBenchmark(HostMaker make_host) : make_host_(std::move(make_host)) {}
 
-  /// Begins what the options describe, with these algorithms to choose from; its results go to
-  /// `file`, anew after each recording. Throws InputError while another one is running.
-  void start(SessionOptions options, std::vector<Algorithm> algorithms, std::filesystem::path file);
+  /// Begins a run with these algorithms to choose from; its results are written as JSON after each
+  /// recording. Throws InputError while another one is running.
+  void start(RunRequest request, std::vector<Algorithm> algorithms);
   /// Ends soon; finished cases are kept.
   void cancel() { task_.cancel(); }
   [[nodiscard]] bool running() const { return task_.running(); }
@@ -51,7 +51,7 @@ class BackgroundBenchmark {
   bool takeEnd() { return task_.takeEnd(); }
 
  private:
-  class Watcher;
+  class Observer;
 
   HostMaker make_host_;
   BackgroundTask<Report> task_{"running algorithms"};

@@ -57,7 +57,7 @@ BakeForm::BakeForm() {
   for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
   types_ = optionsOf("object_type");
   engines_ = optionsOf("engine");
-  options_.scenes = {scenes_.front()};
+  options_.sources = {scenes_.front()};
   options_.scene.object_types = {types_.front()};
   options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
 }
@@ -92,7 +92,7 @@ void BakeForm::draw(PanelContext& context) {
 
 void BakeForm::drawOptions(PanelContext& context) {
   Ui& ui = context.ui;
-  stale_ |= chooseSome(ui, "scenes", scenes_, options_.scenes);
+  stale_ |= chooseSome(ui, "scenes", scenes_, options_.sources);
   stale_ |= chooseSome(ui, "object types", types_, options_.scene.object_types);
   stale_ |= chooseSome(ui, "recorders", recorders_, options_.scene.recorders);
   ui.heading("Each of them");
@@ -111,14 +111,14 @@ void BakeForm::update() {
   stale_ = begun_ = false;
   preview_ = {};
   try {
-    if (options_.scenes.empty()) throw InputError("no scene is chosen");
+    if (options_.sources.empty()) throw InputError("no scene is chosen");
     if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
     if (directory_.empty()) throw InputError("an output directory is needed");
     options_.scene.objects = countsIn(counts_, "number of bodies", kMostBodies);
     if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
     options_.scene.parameters = {{"frames", std::to_string(frames_)},
                                  {"engine", engines_.at(engine_)}};
-    options_.output = directory_;
+    options_.record = directory_;
     BakeOptions all = options_;
     all.force = true;  // reads no file
     const auto plan = planBake(all);

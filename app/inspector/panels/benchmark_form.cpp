@@ -49,7 +49,7 @@ void BenchmarkForm::draw(PanelContext& context) {
   } else if (ui.button("Start", "Runs in the background; best while nothing is played",
                        ImGui::GetContentRegionAvail().x)) {
     session.notices.attempt(
-        [&] { session.benchmark.start(options(), session.lanes.algorithms(), results_); });
+        [&] { session.benchmark.start(request(), session.lanes.algorithms()); });
   }
   ImGui::BeginDisabled(running);
   drawOptions(context);
@@ -105,31 +105,32 @@ void BenchmarkForm::drawRecordings(Ui& ui) {
   }
 }
 
-SessionOptions BenchmarkForm::options() const {
-  SessionOptions options;
+RunRequest BenchmarkForm::request() const {
+  RunRequest request;
   for (const auto& [path, marked] : recordings_) {
-    if (marked) options.sources.push_back(path.string());
+    if (marked) request.sources.push_back(path.string());
   }
-  if (options.sources.empty()) throw InputError("no recording is chosen");
-  options.cases.algorithms = wordsIn(algorithms_);
-  if (options.cases.algorithms.empty()) throw InputError("no algorithm is chosen");
+  if (request.sources.empty()) throw InputError("no recording is chosen");
+  request.cases.algorithms = wordsIn(algorithms_);
+  if (request.cases.algorithms.empty()) throw InputError("no algorithm is chosen");
   for (const std::uint32_t threads : countsIn(threads_, "number of threads", 256)) {
-    options.cases.threads.push_back(static_cast<int>(threads));
+    request.cases.threads.push_back(static_cast<int>(threads));
   }
-  options.repetitions.most = static_cast<int>(repetitions_);
-  options.policy.check = kCheckModes.entries.at(check_).value;
+  request.repetitions.most = static_cast<int>(repetitions_);
+  request.policy.check = kCheckModes.entries.at(check_).value;
   if (results_.empty()) throw InputError("a file for the results is needed");
-  return options;
+  request.outputs = {{"json", results_}};
+  return request;
 }
 
 /// What would be run, or why nothing would.
 void BenchmarkForm::drawPreview(Ui& ui, const Session& session) {
   ui.heading("To run");
   try {
-    const SessionOptions options = this->options();
-    const auto cases = selectCases(options.cases, {}, session.lanes.algorithms());
+    const RunRequest request = this->request();
+    const auto cases = selectCases(request.cases, {}, session.lanes.algorithms());
     ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
-                             counted(options.sources.size(), "recording")));
+                             counted(request.sources.size(), "recording")));
   } catch (const InputError& error) {
     ImGui::PushTextWrapPos(0);
     ui.coloured(ui.theme.warning, error.what());

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "command_line/session_options.h"
 #include "inspector/panels/panel.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
@@ -22,7 +22,7 @@ class BenchmarkForm {
   void drawPreview(Ui& ui, const Session& session);
   void findRecordings();
   /// Throws InputError for inputs that mean nothing.
-  [[nodiscard]] SessionOptions options() const;
+  [[nodiscard]] RunRequest request() const;
 
   std::string directory_ = "recordings";
   std::vector<std::pair<std::filesystem::path, bool>> recordings_;  ///< whether it is marked
