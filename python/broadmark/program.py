@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import pathlib
 import shutil
@@ -9,7 +11,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from broadmark.errors import InputError
@@ -18,6 +20,9 @@ from broadmark.results import Results, read_results
 
 #: The environment variable that names the program.
 VARIABLE = "BROADMARK"
+
+#: The kind of JSON file that a run request is.
+RUN_SCHEMA = "broadmark-run/1"
 
 #: Exit statuses with which a run has results all the same: fine, a wrong answer, a time limit.
 WITH_RESULTS = (0, 1, 4)
@@ -130,11 +135,30 @@ def _text(value: Any) -> str:
     return ",".join(str(one) for one in value)
 
 
+@contextlib.contextmanager
+def request_file(**options: Any) -> Iterator[str]:
+    """The path of a run request (docs/run-requests.md) with these options, for --request."""
+    with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
+        path = pathlib.Path(folder, "request.json")
+        path.write_text(json.dumps({"schema": RUN_SCHEMA, **options}, default=_plain), "utf-8")
+        yield str(path)
+
+
+def _plain(value: Any) -> Any:
+    """What JSON has no type for: arrays and their numbers, other sequences, paths."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return list(value) if isinstance(value, Iterable) else str(value)
+
+
 def run(source: Any, *, algorithm: Any = "all", show: bool = False, **options: Any) -> Results:
     """Runs algorithms, and returns their results; a case that failed says so in its `status`.
 
     `source` is whatever the command line takes (a scene's name, a file), or boxes as
-    `write_recording` takes them. Other arguments are the program's options, as in `as_options`:
+    `write_recording` takes them. Other arguments are the program's options, as a run request
+    (docs/run-requests.md) has them:
 
         run("brownian", algorithm="sap*", objects=[1000, 8000], threads=[1, 2], repetitions=5)
 
@@ -146,12 +170,8 @@ def run(source: Any, *, algorithm: Any = "all", show: bool = False, **options: A
             boxes, source = source, os.path.join(folder, "boxes.aabbs")
             write_recording(source, boxes)
         lines = os.path.join(folder, "results.jsonl")
-        call(
-            "--headless",
-            os.fspath(source),
-            *as_options(algorithm=algorithm, quiet=not show, **options),
-            *("--jsonl", lines),
-            accept=WITH_RESULTS,
-            show=show,
-        )
+        request = {"source": source, "algorithm": algorithm, **options, "jsonl": lines}
+        with request_file(**request) as path:
+            quiet = [] if show else ["--quiet"]
+            call("--headless", "--request", path, *quiet, accept=WITH_RESULTS, show=show)
         return read_results(lines)

@@ -1,4 +1,4 @@
-"""What a campaign file is to the program: options, and the cases and names that it makes of them."""
+"""What a campaign file is to the program: requests, and the cases and names that it makes of them."""
 
 from __future__ import annotations
 
@@ -6,21 +6,16 @@ import itertools
 import os
 import re
 import tempfile
+from typing import Any
 
-from broadmark.campaign.description import Campaign, Selection, Values
+from broadmark.campaign.description import Campaign, Selection
 from broadmark.campaign.plan import as_text
 from broadmark.errors import InputError
-from broadmark.program import as_options, call
+from broadmark.program import as_options, call, request_file
 from broadmark.recordings import write_recording
 
 #: Options of a campaign that are part of its selections; the others tell how cases are measured.
 OF_SELECTIONS = ("plugin", "device", "answer")
-
-
-def parameter_options(parameters: Values) -> list[str]:
-    """As the program takes them."""
-    several = {name: ",".join(map(as_text, values)) for name, values in parameters}
-    return as_options(param=several)
 
 
 def plugin_options(campaign: Campaign) -> list[str]:
@@ -28,20 +23,21 @@ def plugin_options(campaign: Campaign) -> list[str]:
     return list(itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))))
 
 
-def selection_options(campaign: Campaign, selection: Selection) -> list[str]:
-    """The program's options that make the cases of a selection."""
-    return [
-        *as_options(algorithm=selection.algorithms, threads=selection.threads, isa=selection.isas),
-        *parameter_options(selection.parameters),
-        *plugin_options(campaign),
-        *as_options(**{name: campaign.options.get(name) for name in ("device", "answer")}),
-    ]
+def selection_request(campaign: Campaign, selection: Selection) -> dict[str, Any]:
+    """What a run request says of the cases of a selection."""
+    return {
+        "algorithm": selection.algorithms,
+        "threads": selection.threads,
+        "isa": selection.isas,
+        "param": dict(selection.parameters),
+        **{name: campaign.options.get(name) for name in OF_SELECTIONS},
+    }
 
 
-def measuring_options(campaign: Campaign) -> list[str]:
-    """The program's options that tell how each case is measured."""
+def measuring_request(campaign: Campaign) -> dict[str, Any]:
+    """What a run request says of how each case is measured."""
     options = campaign.options.items()
-    return as_options(**{name: value for name, value in options if name not in OF_SELECTIONS})
+    return {name: value for name, value in options if name not in OF_SELECTIONS}
 
 
 def planned_variants(campaign: Campaign) -> dict[str, Selection]:
@@ -52,7 +48,8 @@ def planned_variants(campaign: Campaign) -> dict[str, Selection]:
         variants: dict[str, Selection] = {}
         for selection in campaign.selections:
             try:
-                listed = call("--headless", path, *selection_options(campaign, selection), "--list")
+                with request_file(source=path, **selection_request(campaign, selection)) as request:
+                    listed = call("--headless", "--request", request, "--list")
             except InputError as error:
                 raise InputError(f"{campaign.path}: {selection.where}: {error}") from None
             for case in listed.splitlines():
@@ -72,7 +69,9 @@ def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
                 *as_options(objects=block.objects, frames=block.frames, seed=block.seeds),
                 *as_options(engine=",".join(filter(None, block.engines)) or None),
                 *plugin_options(campaign),
-                *parameter_options(block.parameters),
+                *as_options(
+                    param={name: map(as_text, values) for name, values in block.parameters}
+                ),
             )
         except InputError as error:
             raise InputError(f"{campaign.path}: {block.where}: {error}") from None

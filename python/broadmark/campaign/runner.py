@@ -20,14 +20,14 @@ from broadmark.campaign.folder import Folder, recorders_of
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.options import (
     filter_for,
-    measuring_options,
+    measuring_request,
     plugin_options,
-    selection_options,
+    selection_request,
 )
 from broadmark.campaign.plan import Recording, levels, with_sources
 from broadmark.campaign.progress import Progress
 from broadmark.errors import InputError
-from broadmark.program import WITH_RESULTS, as_options, follow
+from broadmark.program import WITH_RESULTS, as_options, follow, request_file
 
 SCENE_PARAMETERS = "broadmark-scene-parameters/1"
 
@@ -145,12 +145,17 @@ class Runner:
                 self.progress.case(recording, variant, outcome)
             self.progress.tick()
 
-        with self.estimate.running(recording, pending):
+        request = {
+            "source": path,
+            **selection_request(self.campaign, selection),
+            **measuring_request(self.campaign),
+            "allow_timeout": True,
+            "filter": filter_for(pending),
+            "jsonl": str(attempt),
+        }
+        with self.estimate.running(recording, pending), request_file(**request) as file:
             follow(
-                *("--headless", path, "--quiet", "--allow-timeout"),
-                *selection_options(self.campaign, selection),
-                *measuring_options(self.campaign),
-                *("--filter", filter_for(pending), "--jsonl", str(attempt)),
+                *("--headless", "--request", file, "--quiet"),
                 tick=tick,
                 accept=WITH_RESULTS,
                 keep_open=(lock,),
