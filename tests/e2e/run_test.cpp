@@ -177,10 +177,11 @@ TEST_F(Run, ARequestRunsWhatItsCommandLineDoes) {
   EXPECT_THAT(runQuietly(writing).out, IsEmpty());
   EXPECT_THAT(files(), testing::ElementsAre("run.json")) << "nothing was run";
   runQuietly({"--headless", "--request", "run.json", "--json", "r.json"});
+  const Json results = readJson(file("r.json"));
   std::vector<std::string> ids;
-  for (const Json& one : readJson(file("r.json")).at("cases")) {
-    ids.push_back(one.at("id"));
-    EXPECT_EQ(one.at("frames").at("total").size(), 2U);
+  for (const Json& result : results.at("cases")) {
+    ids.push_back(result.at("id"));
+    EXPECT_EQ(result.at("frames").at("total").size(), 2U);
   }
   Arguments listing = given;
   listing.emplace_back("--list");
