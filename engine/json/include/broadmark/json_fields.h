@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -110,6 +111,15 @@ class JsonFields {
     return expect(key, at(key).is_string(), "a text").template get<std::string>();
   }
 
+  /// The value that the text names in a NameTable.
+  template <class Table>
+  [[nodiscard]] auto named(const char* key, const Table& table) const {
+    const std::string name = text(key);
+    const auto value = table.find(name);
+    if (!value) throw InputError(fmt::format("{}: unknown value '{}'", path(key), name));
+    return *value;
+  }
+
   [[nodiscard]] std::vector<std::string> texts(const char* key) const {
     std::vector<std::string> all;
     for (const Json& element : array(key)) {
@@ -132,6 +142,26 @@ class JsonFields {
   [[nodiscard]] Integer integer(const char* key,
                                 Integer min = std::numeric_limits<Integer>::min()) const {
     return integerOf<Integer>(at(key), path(key), min);
+  }
+
+  /// Reads a value of the type of `value`, which stays as it is where an optional one is missing.
+  template <class T>
+  void read(const char* key, T& value) const {
+    if constexpr (std::is_same_v<T, bool>) {
+      value = boolean(key);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      value = text(key);
+    } else if constexpr (std::is_floating_point_v<T>) {
+      value = number(key);
+    } else if constexpr (std::is_integral_v<T>) {
+      value = integer<T>(key, 0);
+    } else {
+      value = texts(key);
+    }
+  }
+  template <class T>
+  void read(const char* key, std::optional<T>& value) const {
+    if (has(key)) read(key, value.emplace());
   }
 
   /// The elements of an array, each as an object.
