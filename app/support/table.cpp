@@ -147,7 +147,7 @@ std::string formatTable(std::span<const CaseResult> results) {
   std::vector<std::vector<std::string>> table = {{""}};
   std::vector<bool> right_aligned = {false};
   for (const CaseColumn* column : columns) {
-    table.front().push_back(column->heading());
+    table.front().push_back(column->shown.heading);
     right_aligned.push_back(!column->isText());
   }
   const std::vector<Row> rows = sortedRows(results);

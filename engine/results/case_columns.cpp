@@ -68,8 +68,10 @@ JsonPlace derived(std::string path) {
 template <class Get>
 CaseColumn computed(const std::string& key, std::string_view title, JsonPlace json, Get get,
                     ColumnShown shown = {}) {
+  const std::string words = withSpaces(title.empty() ? key : title);
+  if (shown.heading.empty()) shown.heading = words;
   return {.key = key,
-          .title = withSpaces(title.empty() ? key : title),
+          .title = words,
           .unit = unitOf(key),
           .json = std::move(json),
           .shown = std::move(shown),
@@ -268,10 +270,6 @@ std::vector<CaseColumn> makeColumns() {
 }  // namespace
 
 bool CaseColumn::isText() const { return std::holds_alternative<std::string>(value({}, {})); }
-
-const std::string& CaseColumn::heading() const {
-  return shown.heading.empty() ? title : shown.heading;
-}
 
 ColumnValue CaseColumn::valueOf(R result, S summary) const {
   if (shown.known == Known::timed && result.repetitions.empty()) return {};

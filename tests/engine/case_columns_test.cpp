@@ -45,7 +45,7 @@ constexpr NameTable kKnownRules{{NamedValue{Known::always, ""},
 Json toJson(const CaseColumn& column) {
   return {{"key", column.key},
           {"title", column.title},
-          {"heading", column.heading()},
+          {"heading", column.shown.heading},
           {"kind", column.isText() ? "text" : "number"},
           {"unit", kUnitNames.nameOf(column.unit)},
           {"known", kKnownNames.nameOf(column.shown.known)},

@@ -131,7 +131,8 @@ class CasesPanel final : public Panel {
     if (!ImGui::BeginTable("cases", columns, kFlags, {widthOfWholeColumns("cases", 3), 0})) return;
     ImGui::TableSetupScrollFreeze(2, 1);
     ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
-    for (const CaseColumn* column : columns_) ImGui::TableSetupColumn(column->heading().c_str());
+    for (const CaseColumn* column : columns_)
+      ImGui::TableSetupColumn(column->shown.heading.c_str());
     drawHeadings(context.ui);
     sort(results);
     ImGuiListClipper clipper;

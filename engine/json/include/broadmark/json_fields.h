@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -144,20 +144,14 @@ class JsonFields {
     return integerOf<Integer>(at(key), path(key), min);
   }
 
-  /// Reads a value of the type of `value`, which stays as it is where an optional one is missing.
-  template <class T>
-  void read(const char* key, T& value) const {
-    if constexpr (std::is_same_v<T, bool>) {
-      value = boolean(key);
-    } else if constexpr (std::is_same_v<T, std::string>) {
-      value = text(key);
-    } else if constexpr (std::is_floating_point_v<T>) {
-      value = number(key);
-    } else if constexpr (std::is_integral_v<T>) {
-      value = integer<T>(key, 0);
-    } else {
-      value = texts(key);
-    }
+  /// Reads a value of the type of `value`; an integer from 0 on. An optional one may be missing.
+  void read(const char* key, std::string& value) const { value = text(key); }
+  void read(const char* key, std::vector<std::string>& value) const { value = texts(key); }
+  void read(const char* key, bool& value) const { value = boolean(key); }
+  void read(const char* key, double& value) const { value = number(key); }
+  template <std::integral Integer>
+  void read(const char* key, Integer& value) const {
+    value = integer<Integer>(key, 0);
   }
   template <class T>
   void read(const char* key, std::optional<T>& value) const {

@@ -55,7 +55,7 @@ struct ColumnShown {
   int rank = 1;              ///< there: 1 always, 2 and 3 on wider screens only
   bool figure = false;       ///< among the details of a case there
   bool particular = false;   ///< the same, further below, and only if it is not 0
-  std::string heading = {};  ///< above a column, shorter than its title
+  std::string heading = {};  ///< above a column; by default its title
   /// Whether tables for people show a value that is known; null: always.
   bool (*meaningful)(const CaseResult&) = nullptr;
   /// What the inspector sorts by; null: the value.
@@ -73,7 +73,6 @@ struct CaseColumn {
   std::function<void(const JsonFields&, const char* key, CaseResult&)> read = {};
 
   [[nodiscard]] bool isText() const;
-  [[nodiscard]] const std::string& heading() const;
   /// Nothing where it is not known.
   [[nodiscard]] ColumnValue valueOf(const CaseResult&, const Summary&) const;
   /// Nothing where it is not known or not meaningful.
