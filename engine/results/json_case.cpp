@@ -219,11 +219,11 @@ Json caseToJson(const CaseResult& result) {
 
 CaseResult caseFrom(const JsonFields& json) {
   CaseResult result;
-  json.integer<int>("threads", 1);  // not 0
   for (const CaseColumn& column : caseColumns()) {
     if (column.read) readColumn(column, column.json.path, json, result);
   }
   readRecording(json.object("recording"), result.recording);
+  result.threads = json.integer<int>("threads", 1);
   result.vectorised = json.boolean("vectorised");
   if (json.has("plugin")) result.plugin = json.text("plugin");  // not in earlier files
   result.parameters = parametersFrom(json, "params");

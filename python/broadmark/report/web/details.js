@@ -54,14 +54,13 @@ function figuresOf(one) {
   const better = lastRunsOn(one).filter((other) => isTimed(other) && !isSelfCheck(other))
     .sort((a, b) => a.seconds_per_frame - b.seconds_per_frame)[0];
   const shown = one.seconds_per_frame !== null;
-  const [mean, ...others] = kFields.filter((field) => field.figure)
-    .map((field) => [field.title, textOfField(field, one)]);
-  return [
-    mean, ["95 % interval", interval || (shown ? "one repetition" : kNothing)],
+  const beside = [
+    ["95 % interval", interval || (shown ? "one repetition" : kNothing)],
     ["to the best here", shown && better && one.status === "ok" && !isSelfCheck(one)
       ? `${ratio(one.seconds_per_frame / better.seconds_per_frame)} × ${better.variant}` : kNothing],
-    ...others,
   ];
+  return kFields.filter((field) => field.figure).flatMap((field) => [
+    [field.title, textOfField(field, one)], ...(field.key === "seconds_per_frame" ? beside : [])]);
 }
 
 function lastRunsOn(one) {
