@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <variant>
 
 #include "broadmark/results/case_columns.h"
@@ -71,22 +70,6 @@ Conditions conditionsFrom(const JsonFields& json) {
   return c;
 }
 
-Json toJson(const ParameterValues& values) {
-  Json json = Json::object();
-  for (const auto& [name, value] : values) json[name] = value;
-  return json;
-}
-
-ParameterValues parametersFrom(const JsonFields& json, const char* key) {
-  if (!json.at(key).is_object()) {
-    throw InputError(json.path(key) + ": an object of texts is expected");
-  }
-  const JsonFields fields = json.object(key);
-  ParameterValues values;
-  for (const auto& [name, value] : json.at(key).items()) values[name] = fields.text(name.c_str());
-  return values;
-}
-
 Json toJson(const std::array<float, 4>& corner) { return {corner[0], corner[1], corner[2]}; }
 
 std::array<float, 4> cornerFrom(const Json& json, const std::string& name) {
@@ -104,22 +87,21 @@ std::array<float, 4> cornerFrom(const Json& json, const std::string& name) {
 void addRecording(Json& json, const RecordingReference& recording) {
   const Aabb& world = recording.scene.world;
   json["world"] = {{"min", toJson(world.min)}, {"max", toJson(world.max)}};
-  if (!recording.swept.empty()) json["swept"] = toJson(recording.swept);
-  if (!recording.reading.empty()) json["reading"] = toJson(recording.reading);
-  json["source"] =
-      recording.path.empty() ? toJson(recording.scene_parameters) : Json(recording.path);
+  if (!recording.swept.empty()) json["swept"] = recording.swept;
+  if (!recording.reading.empty()) json["reading"] = recording.reading;
+  json["source"] = recording.path.empty() ? Json(recording.scene_parameters) : Json(recording.path);
 }
 
 void readRecording(const JsonFields& json, RecordingReference& recording) {
   const JsonFields world = json.object("world");
   recording.scene.world.min = cornerFrom(world.array("min"), world.path("min"));
   recording.scene.world.max = cornerFrom(world.array("max"), world.path("max"));
-  if (json.has("swept")) recording.swept = parametersFrom(json, "swept");
-  if (json.has("reading")) recording.reading = parametersFrom(json, "reading");
+  if (json.has("swept")) json.read("swept", recording.swept);
+  if (json.has("reading")) json.read("reading", recording.reading);
   if (json.at("source").is_string()) {
     recording.path = json.text("source");
   } else {
-    recording.scene_parameters = parametersFrom(json, "source");
+    json.read("source", recording.scene_parameters);
   }
 }
 
@@ -180,16 +162,6 @@ FrameDifference differenceFrom(const JsonFields& json) {
   return difference;
 }
 
-/// Numbers by their names, left out of earlier files.
-template <class Number>
-void readNumbers(const JsonFields& json, const char* key, std::map<std::string, Number>& numbers) {
-  if (!json.has(key)) return;
-  const JsonFields fields = json.object(key);
-  for (const auto& [name, number] : json.at(key).items()) {
-    fields.read(name.c_str(), numbers[name]);
-  }
-}
-
 }  // namespace
 
 Json caseToJson(const CaseResult& result) {
@@ -198,7 +170,7 @@ Json caseToJson(const CaseResult& result) {
   addRecording(json["recording"], result.recording);
   json["vectorised"] = result.vectorised;
   json["plugin"] = result.plugin;
-  json["params"] = toJson(result.parameters);
+  json["params"] = result.parameters;
   json["environment"] = result.environment;
   json["conditions"] = toJson(result.conditions);
   if (result.bodies) {
@@ -226,7 +198,7 @@ CaseResult caseFrom(const JsonFields& json) {
   result.threads = json.integer<int>("threads", 1);
   result.vectorised = json.boolean("vectorised");
   if (json.has("plugin")) result.plugin = json.text("plugin");  // not in earlier files
-  result.parameters = parametersFrom(json, "params");
+  json.read("params", result.parameters);
   if (json.has("bodies")) {
     const JsonFields bodies = json.object("bodies");
     result.bodies = {bodies.number("mean"), bodies.integer<std::uint64_t>("max")};
@@ -243,8 +215,8 @@ CaseResult caseFrom(const JsonFields& json) {
     result.false_count = json.integer<std::uint64_t>("false");
     result.allowed_extra_count = json.integer<std::uint64_t>("allowed_extra");
   }
-  readNumbers(json, "counters", result.counters);
-  readNumbers(json, "setup", result.setup);
+  if (json.has("counters")) json.read("counters", result.counters);
+  if (json.has("setup")) json.read("setup", result.setup);
   readFrames(json, result);
   if (json.has("conditions")) {  // since results/2
     result.environment = json.integer<std::size_t>("environment");

@@ -6,6 +6,7 @@
 #include <concepts>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -144,7 +145,8 @@ class JsonFields {
     return integerOf<Integer>(at(key), path(key), min);
   }
 
-  /// Reads a value of the type of `value`; an integer from 0 on. An optional one may be missing.
+  /// Reads a value of the type of `value`; an integer from 0 on. An optional one may be missing; of
+  /// a map each element is a field.
   void read(const char* key, std::string& value) const { value = text(key); }
   void read(const char* key, std::vector<std::string>& value) const { value = texts(key); }
   void read(const char* key, bool& value) const { value = boolean(key); }
@@ -156,6 +158,11 @@ class JsonFields {
   template <class T>
   void read(const char* key, std::optional<T>& value) const {
     if (has(key)) read(key, value.emplace());
+  }
+  template <class T>
+  void read(const char* key, std::map<std::string, T>& values) const {
+    const JsonFields fields = object(key);
+    for (const auto& item : at(key).items()) fields.read(item.key().c_str(), values[item.key()]);
   }
 
   /// The elements of an array, each as an object.
