@@ -39,7 +39,7 @@ struct JsonPlace {
   std::string path = {};  ///< keys, and indices of arrays, with '/' between; "": nowhere
   JsonForm form = JsonForm::value;
   bool optional = false;                       ///< may be null or missing
-  bool derived = false;                        ///< written, but not read
+  bool derived = false;                        ///< written by the table, but not read by it
   std::optional<std::string> if_missing = {};  ///< a text
 };
 
