@@ -9,6 +9,7 @@
 #include <limits>
 #include <sstream>
 #include <tuple>
+#include <variant>
 
 #include "support/words.h"
 
@@ -20,6 +21,9 @@ std::size_t width(std::string_view text) {
   return static_cast<std::size_t>(
       std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
+
+/// The column of which a table shows only what differs.
+constexpr std::string_view kParameters = "params";
 
 /// A result with its summary, computed once.
 struct Row {
@@ -60,30 +64,6 @@ std::string variedParameters(const CaseResult& result, std::span<const CaseResul
   return text;
 }
 
-std::vector<std::string> cells(const Row& row, const std::string& parameters, bool fastest) {
-  const CaseResult& result = *row.result;
-  const auto time = [&](double seconds) { return row.timed() ? durationText(seconds) : "–"; };
-  const auto count = [&](std::uint64_t n) {
-    return result.checked && row.timed() ? fmt::format("{}", n) : "–";
-  };
-  return {fastest ? "*" : "",
-          result.algorithm,
-          fmt::format("{}", result.threads),
-          result.vectorised ? std::string(isaName(result.isa)) : "–",
-          parameters,
-          time(row.summary.seconds_per_frame),
-          time(row.summary.median),
-          time(row.summary.p95),
-          row.timed() ? fmt::format("{:.0f}", result.pairs_mean) : "–",
-          count(result.missed_count),
-          count(result.false_count),
-          count(result.allowed_extra_count),
-          count(result.invalid_count),
-          std::string(statusName(result.status))};
-}
-
-constexpr std::size_t kParametersColumn = 4;
-
 /// Leaves out a column that is empty but for its heading.
 void dropEmptyColumn(std::vector<std::vector<std::string>>& rows, std::vector<bool>& right_aligned,
                      std::size_t column) {
@@ -95,6 +75,19 @@ void dropEmptyColumn(std::vector<std::vector<std::string>>& rows, std::vector<bo
 }
 
 }  // namespace
+
+std::string cellText(const CaseColumn& column, const CaseResult& result, const Summary& summary,
+                     std::string (*seconds_text)(double)) {
+  const ColumnValue value = column.shownValueOf(result, summary);
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* integer = std::get_if<std::uint64_t>(&value)) {
+    return column.unit == ColumnUnit::bytes ? bytesText(*integer) : fmt::format("{}", *integer);
+  }
+  const auto* number = std::get_if<double>(&value);
+  if (number == nullptr) return "–";
+  return column.unit == ColumnUnit::seconds ? seconds_text(*number)
+                                            : fmt::format("{:.0f}", *number);
+}
 
 std::string wrapped(const std::string& text, std::size_t begun, std::size_t indent) {
   std::string lines;
@@ -150,18 +143,26 @@ std::string formatTable(std::span<const CaseResult> results) {
   }
   if (results.front().answer == AnswerKind::events) text += ", events";
   text += '\n';
-  std::vector<std::vector<std::string>> table = {{"", "algorithm", "threads", "ISA", "parameters",
-                                                  "mean", "median", "p95", "pairs", "missed",
-                                                  "false", "allowed extra", "invalid", "status"}};
+  const std::vector<const CaseColumn*> columns = caseColumns(&ColumnShown::terminal);
+  std::vector<std::vector<std::string>> table = {{""}};
+  std::vector<bool> right_aligned = {false};
+  for (const CaseColumn* column : columns) {
+    table.front().push_back(column->shown.heading);
+    right_aligned.push_back(!column->isText());
+  }
   const std::vector<Row> rows = sortedRows(results);
   const auto competes = [](const Row& row) { return row.right() && row.result->checked; };
   const auto fastest = std::ranges::find_if(rows, competes);
   for (auto row = rows.begin(); row != rows.end(); ++row) {
-    table.push_back(cells(*row, variedParameters(*row->result, results), row == fastest));
+    std::vector<std::string>& cells = table.emplace_back();
+    cells.emplace_back(row == fastest ? "*" : "");
+    for (const CaseColumn* column : columns) {
+      cells.push_back(column->key == kParameters ? variedParameters(*row->result, results)
+                                                 : cellText(*column, *row->result, row->summary));
+    }
   }
-  std::vector<bool> right_aligned = {false, false, true, false, false, true, true,
-                                     true,  true,  true, true,  true,  true, false};
-  dropEmptyColumn(table, right_aligned, kParametersColumn);
+  const auto parameters = std::ranges::find(columns, kParameters, &CaseColumn::key);
+  dropEmptyColumn(table, right_aligned, static_cast<std::size_t>(parameters - columns.begin()) + 1);
   text += alignColumns(table, right_aligned);
   for (const Row& row : rows) {
     if (row.result->reason.empty()) continue;

@@ -6,9 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/results/results.h"
+#include "broadmark/results/case_columns.h"
+#include "support/words.h"
 
 namespace broadmark {
+
+/// What a column says of a case; "–" where that is not known.
+std::string cellText(const CaseColumn&, const CaseResult&, const Summary&,
+                     std::string (*seconds_text)(double) = durationText);
 
 /// The cases of one recording, sorted by their medians, the fastest right one marked.
 std::string formatTable(std::span<const CaseResult>);

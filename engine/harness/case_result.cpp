@@ -2,6 +2,7 @@
 
 #include "broadmark/harness/case_result.h"
 
+#include <set>
 #include <span>
 #include <utility>
 
@@ -43,6 +44,12 @@ std::optional<double> CaseResult::perFrame(ProcessorCounter which) const {
   }
   if (frames_counted == 0) return std::nullopt;
   return sum / static_cast<double>(frames_counted);
+}
+
+std::size_t CaseResult::mismatchedFrames() const {
+  std::set<std::uint32_t> wrong;
+  for (const FrameDifference& difference : differences) wrong.insert(difference.frame);
+  return wrong.size();
 }
 
 bool CaseResult::isComplete() const {

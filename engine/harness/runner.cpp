@@ -106,6 +106,16 @@ std::string caseNameOf(const CaseResult& result) {
   return result.id.starts_with(recording) ? result.id.substr(recording.size()) : result.id;
 }
 
+std::string variantOf(const CaseResult& result) {
+  std::string text = caseNameOf(result) + '/';
+  for (const std::string& part :
+       {fmt::format("/{}/", isaName(result.isa)), fmt::format("/t{}/", result.threads)}) {
+    if (const std::size_t at = text.find(part); at != text.npos) text.erase(at, part.size() - 1);
+  }
+  text.pop_back();
+  return text;
+}
+
 CaseResult beginCase(const Case& run, const RecordingReference& recording) {
   CaseResult result;
   result.id = caseId(recording, run);

@@ -8,7 +8,7 @@ import json
 import os
 import pathlib
 import zlib
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, TextIO
 
@@ -19,17 +19,19 @@ from broadmark.errors import InputError
 
 SCHEMAS = ("broadmark-results/2", "broadmark-results/1")
 
+#: What the program's results have of a case: docs/results.md lists these columns. The file is
+#: written from the program's own table (tests/engine/case_columns_test.cpp).
+COLUMNS: list[dict[str, Any]] = json.loads(
+    (pathlib.Path(__file__).parent / "columns.json").read_text("utf-8")
+)
+
 #: The parts of a frame's work that are timed apart, and all of it.
 PHASES = ["update_objects", "clean_cache", "update_structures", "search_overlaps"]
 TRANSFERS = ["upload", "download"]  #: are in the phases; only of algorithms on a device
 COUNTS = ["pairs", "changed_bodies", "missed", "false", "allowed_extra", "invalid"]
-PROCESSOR = ["cycles", "instructions", "cache_misses", "branches", "branch_misses"]
 
 #: The columns that tell which case a frame is of.
-CASE_KEYS = [
-    *("case", "id", "scene", "object_type", "objects"),
-    *("algorithm", "family", "isa", "threads", "params"),
-]
+CASE_KEYS = ["case", *(column["key"] for column in COLUMNS if column["frames"])]
 
 
 @dataclass
@@ -248,77 +250,66 @@ def is_complete(case: dict[str, Any]) -> bool:
 
 def _row(case: dict[str, Any]) -> dict[str, Any]:
     """What the table of cases says of one."""
-    recording, conditions = case["recording"], case.get("conditions", {})
-    source = recording["source"]
-    simulated = isinstance(source, dict)
-    times = case["frames"]["total"]
-    checked = case["checked"]
-    processor = case.get("processor", {})
-    row = {
-        "id": case["id"],
-        "scene": recording["name"],
-        "object_type": recording["object_type"],
-        "objects": recording["objects"],
-        "algorithm": case["algorithm"],
-        "family": case["family"],
-        "isa": case["isa"],
-        "threads": case["threads"],
-        "params": _joined(case["params"]),
-        "frames": recording["frames"],
-        "seed": recording.get("seed"),
-        "recording_hash": recording["hash"],
-        "recording_file": "" if simulated else source,
-        "scene_params": _joined(source) if simulated else "",
-        "device": case.get("device", ""),
-        "answer": case.get("answer", "pairs"),
-        "status": case["status"],
-        "reason": case["reason"],
-        "repetitions": len(times),
-        "repetitions_asked": conditions.get("repetitions"),
+    known = {"always": True, "timed": bool(case["initialize_ns"]), "checked": case["checked"]}
+    return {
+        **{
+            column["key"]: _FORMS[column["form"]](_found(column, case), case)
+            if known[column["known"]]
+            else None
+            for column in COLUMNS
+        },
         "complete": is_complete(case),
-        "check": conditions.get("check"),
-        **_summary(case["summary"] if times else {}),
-        "initialize_seconds": _mean(case["initialize_ns"]) * 1e-9,
+        "warnings": "; ".join(case.get("conditions", {}).get("warnings", [])),
     }
-    for phase in PHASES + TRANSFERS:
-        nothing = [np.zeros(1)] if sum(map(len, times)) else []  # without a device
-        row[f"{phase}_seconds"] = _mean_of_arrays(case["frames"].get(phase, nothing)) * 1e-9
-    row |= {"pairs_mean": case["pairs"]["mean"], "pairs_max": case["pairs"]["max"]}
-    bodies = case.get("bodies", {})
-    row |= {"bodies_mean": bodies.get("mean"), "bodies_max": bodies.get("max")}
-    for count in ("missed", "false", "allowed_extra", "invalid"):
-        row[count] = case.get(count) if checked else None
-    row["peak_bytes"] = case.get("peak_bytes")
-    frames = sum(len(repetition) for repetition in times)
-    for counter in PROCESSOR:
-        known = [count for count in processor.get(counter, []) if count is not None]
-        row[f"{counter}_per_frame"] = sum(known) / frames if known and frames else None
-    row["warnings"] = "; ".join(conditions.get("warnings", []))
-    return row
 
 
-def _joined(parameters: dict[str, str]) -> str:
+def _found(column: dict[str, Any], case: dict[str, Any]) -> Any:
+    """What stands at a column's place; files of earlier versions lack some of those optional."""
+    value: Any = case
+    for name in column["path"].split("/"):
+        if isinstance(value, list):
+            value = value[int(name)]
+        elif column["optional"] and (value is None or name not in value):
+            return column["if_missing"]
+        else:
+            value = value[name]
+    return value
+
+
+def _joined(parameters: Any, _: dict[str, Any]) -> str:
+    if not isinstance(parameters, dict):
+        return ""
     return ";".join(f"{name}={value}" for name, value in parameters.items())
 
 
-def _summary(summary: dict[str, Any]) -> dict[str, Any]:
-    low, high = summary.get("ci95") or (None, None)
-    columns = {"seconds_per_frame": summary.get("seconds_per_frame")}
-    for name in ("median", "p95", "p99", "min", "stddev"):
-        columns[f"{name}_seconds"] = summary.get(name)
-    return columns | {
-        "ci95_low_seconds": low,
-        "ci95_high_seconds": high,
-        "outliers": summary.get("outliers"),
-    }
+def _seconds(nanoseconds: Any, case: dict[str, Any]) -> float | None:
+    """The mean; without a device there are no times of one."""
+    if nanoseconds is None:
+        return 0.0 if any(map(len, case["frames"]["total"])) else None
+    all_of_them = np.hstack(nanoseconds) if nanoseconds else np.empty(0)
+    return float(all_of_them.mean()) * 1e-9 if len(all_of_them) else None
 
 
-def _mean(values: list[float]) -> float:
-    return sum(values) / len(values) if values else float("nan")
+def _per_frame(sums: Any, case: dict[str, Any]) -> float | None:
+    """Over the repetitions of which the sum is known."""
+    known = [
+        (total, len(times))
+        for total, times in zip(sums or [], case["frames"]["total"])
+        if total is not None
+    ]
+    frames = sum(length for _, length in known)
+    return sum(total for total, _ in known) / frames if frames else None
 
 
-def _mean_of_arrays(arrays: list[Any]) -> float:
-    return float(np.concatenate(arrays).mean()) if sum(map(len, arrays)) else float("nan")
+#: How a column follows from what stands at its place in a case.
+_FORMS: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
+    "value": lambda value, _: value,
+    "text": lambda value, _: value if isinstance(value, str) else "",
+    "joined": _joined,
+    "count": lambda values, _: len(values),
+    "seconds": _seconds,
+    "per_frame": _per_frame,
+}
 
 
 def _frames_of(number: int, case: dict[str, Any]) -> pd.DataFrame:

@@ -347,7 +347,7 @@ TEST(WorldsApart, AreSharedOutWhereEachWorkerGetsOne) {
   EXPECT_THAT(threads_of_each({.threads = 2, .concurrent = false}), ElementsAre(2, 2, 2));
 }
 
-std::map<std::string, std::uint64_t> counted(
+std::map<std::string, std::uint64_t> countersOf(
     const std::function<void(const CounterVisitor&)>& visit) {
   std::map<std::string, std::uint64_t> counts;
   visit([&](std::string_view name, std::uint64_t count) {
@@ -364,9 +364,9 @@ TEST(WorldsApart, TellAndDrawWhatAllInstancesDo) {
   watched.step(boxes);
   const WorldsApart& all = watched.all();
   using Counts = std::map<std::string, std::uint64_t>;
-  EXPECT_EQ(counted([&](const auto& visit) { all.visitCounters(visit); }),
+  EXPECT_EQ(countersOf([&](const auto& visit) { all.visitCounters(visit); }),
             (Counts{{"worlds with changes", 2}, {"changed", 3}, {"bodies", 5}}));
-  EXPECT_EQ(counted([&](const auto& visit) { all.visitSetup(visit); }), (Counts{{"starts", 3}}));
+  EXPECT_EQ(countersOf([&](const auto& visit) { all.visitSetup(visit); }), (Counts{{"starts", 3}}));
   EXPECT_EQ(all.transfers().upload_ns, 2);
   EXPECT_EQ(all.transfers().download_ns, 4);
   RecordedDrawing drawing;

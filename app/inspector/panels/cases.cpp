@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/render/plot.h"
@@ -12,7 +13,7 @@
 #include "inspector/panels/panel.h"
 #include "inspector/ui/two_parts.h"
 #include "support/child_program.h"
-#include "support/words.h"
+#include "support/table.h"
 
 #include <imgui_stdlib.h>  // after imgui.h, which it lacks
 
@@ -22,37 +23,15 @@ namespace {
 constexpr float kTableShare = 0.52F;  // of the width; the rest is the plot's
 constexpr float kRoomForBoth = 760;   // units: narrower, it is either the one or the other
 
+constexpr std::string_view kStatus = "status";
+
 using Row = OpenedResults::Row;
 
-std::string timeText(const Row& row, double Summary::*which) {
-  return row.summary ? withPrefix((*row.summary).*which, "s") : "–";
-}
+std::string secondsText(double seconds) { return withPrefix(seconds, "s"); }
 
-std::string cellText(const Row& row, CaseColumn column) {
-  const CaseResult& result = row.result;
-  switch (column) {
-    case CaseColumn::algorithm:
-      return row.algorithm;
-    case CaseColumn::recording:
-      return row.recording;
-    case CaseColumn::isa:
-      return result.vectorised ? std::string(isaName(result.isa)) : "–";
-    case CaseColumn::threads:
-      return std::to_string(result.threads);
-    case CaseColumn::status:
-      return std::string(statusName(result.status));
-    case CaseColumn::mean:
-      return timeText(row, &Summary::seconds_per_frame);
-    case CaseColumn::median:
-      return timeText(row, &Summary::median);
-    case CaseColumn::p95:
-      return timeText(row, &Summary::p95);
-    case CaseColumn::pairs:
-      return fmt::format("{:.0f}", result.pairs_mean);
-    case CaseColumn::mismatches:
-      return result.checked ? std::to_string(row.mismatches) : "not checked";
-  }
-  return "";
+std::string textOf(const Row& row, const CaseColumn& column) {
+  if (column.shown.known == Known::checked && !row.result.checked) return "not checked";
+  return cellText(column, row.result, row.summary.value_or(Summary{}), secondsText);
 }
 
 class CasesPanel final : public Panel {
@@ -148,13 +127,12 @@ class CasesPanel final : public Panel {
                                                        : "No case is like that.");
       return;
     }
-    const auto columns = static_cast<int>(kCaseColumns.entries.size()) + 1;
+    const auto columns = static_cast<int>(columns_.size()) + 1;
     if (!ImGui::BeginTable("cases", columns, kFlags, {widthOfWholeColumns("cases", 3), 0})) return;
     ImGui::TableSetupScrollFreeze(2, 1);
     ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
-    for (const auto& [column, name] : kCaseColumns.entries) {
-      ImGui::TableSetupColumn(std::string(name).c_str());
-    }
+    for (const CaseColumn* column : columns_)
+      ImGui::TableSetupColumn(column->shown.heading.c_str());
     drawHeadings(context.ui);
     sort(results);
     ImGuiListClipper clipper;
@@ -177,16 +155,16 @@ class CasesPanel final : public Panel {
     }
   }
 
-  static void sort(OpenedResults& results) {
+  void sort(OpenedResults& results) const {
     ImGuiTableSortSpecs* const wanted = ImGui::TableGetSortSpecs();
     if (wanted == nullptr || !wanted->SpecsDirty) return;
     wanted->SpecsDirty = false;
     if (wanted->SpecsCount == 0) {
-      results.sort({}, false);
+      results.sort("", false);
       return;
     }
     const ImGuiTableColumnSortSpecs& by = wanted->Specs[0];
-    results.sort(kCaseColumns.entries.at(static_cast<std::size_t>(by.ColumnIndex) - 1).value,
+    results.sort(columns_.at(static_cast<std::size_t>(by.ColumnIndex) - 1)->key,
                  by.SortDirection == ImGuiSortDirection_Descending);
   }
 
@@ -204,15 +182,15 @@ class CasesPanel final : public Panel {
       results.mark(index, marked);
     }
     ImGui::PopStyleVar();
-    for (const auto& [column, name] : kCaseColumns.entries) {
+    for (const CaseColumn* column : columns_) {
       ImGui::TableNextColumn();
-      if (column == CaseColumn::algorithm) {
+      const std::optional<Rgb> rgb = colourOf(ui, row, column->key);
+      if (column == columns_.front()) {
         const std::optional<Rgb> curve = plots_.colourOf(ui, results, index);
-        drawOpener(context, row, curve ? curve : colourOf(ui, row, column), place == 0);
+        drawOpener(context, row, curve ? curve : rgb, place == 0);
       } else {
-        const std::optional<Rgb> rgb = colourOf(ui, row, column);
-        rgb ? ui.coloured(*rgb, cellText(row, column)) : ui.plain(cellText(row, column));
-        if (column == CaseColumn::status) ui.tooltip(row.result.reason.c_str());
+        rgb ? ui.coloured(*rgb, textOf(row, *column)) : ui.plain(textOf(row, *column));
+        if (column->key == kStatus) ui.tooltip(row.result.reason.c_str());
       }
     }
     ImGui::PopID();
@@ -238,11 +216,11 @@ class CasesPanel final : public Panel {
   }
 
   /// Nothing: as all text.
-  static std::optional<Rgb> colourOf(const Ui& ui, const Row& row, CaseColumn column) {
-    if (column == CaseColumn::status) {
+  static std::optional<Rgb> colourOf(const Ui& ui, const Row& row, std::string_view column) {
+    if (column == kStatus) {
       return row.result.status == Status::ok ? ui.theme.good : ui.theme.bad;
     }
-    if (column == CaseColumn::mismatches && row.mismatches > 0) return ui.theme.bad;
+    if (column == "mismatches" && row.mismatches > 0) return ui.theme.bad;
     if (!row.obstacle.empty()) return ui.theme.faint;
     return {};
   }
@@ -251,6 +229,7 @@ class CasesPanel final : public Panel {
   bool only_wrong_ = false;
   bool plot_alone_ = false;
   CasePlots plots_;
+  const std::vector<const CaseColumn*> columns_ = caseColumns(&ColumnShown::inspector);
 };
 
 }  // namespace

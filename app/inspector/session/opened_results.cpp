@@ -1,10 +1,6 @@
 #include "inspector/session/opened_results.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "broadmark/harness/runner.h"
@@ -17,57 +13,6 @@ namespace {
 constexpr std::size_t kMarkedAtFirst = 4;
 
 using Row = OpenedResults::Row;
-
-/// What of a case's name is not told elsewhere: "kd-mt/avx2/t4/margin=0.1" is "kd-mt/margin=0.1".
-std::string algorithmText(const CaseResult& result) {
-  std::string text = caseNameOf(result) + '/';
-  for (const std::string& told :
-       {fmt::format("/{}/", isaName(result.isa)), fmt::format("/t{}/", result.threads)}) {
-    if (const std::size_t at = text.find(told); at != text.npos) text.erase(at, told.size() - 1);
-  }
-  text.pop_back();
-  return text;
-}
-
-std::size_t mismatchCount(const CaseResult& result) {
-  std::set<std::uint32_t> frames;  // each may be wrong in several repetitions
-  for (const FrameDifference& difference : result.differences) frames.insert(difference.frame);
-  return frames.size();
-}
-
-/// Recordings of more bodies come later, also where their ids would not.
-auto recordingKey(const Row& row) {
-  const SceneInfo& scene = row.result.recording.scene;
-  return std::tuple(scene.name, scene.object_type, scene.objects, scene.frames, row.recording);
-}
-
-/// What numbers a column has; nothing where it has words, or the case none.
-std::optional<double> numberOf(const Row& row, CaseColumn column) {
-  const auto time = [&](double Summary::*which) -> std::optional<double> {
-    if (!row.summary) return {};
-    return (*row.summary).*which;
-  };
-  switch (column) {
-    case CaseColumn::isa:
-      return static_cast<double>(row.result.isa);
-    case CaseColumn::threads:
-      return row.result.threads;
-    case CaseColumn::status:
-      return static_cast<double>(row.result.status);
-    case CaseColumn::mean:
-      return time(&Summary::seconds_per_frame);
-    case CaseColumn::median:
-      return time(&Summary::median);
-    case CaseColumn::p95:
-      return time(&Summary::p95);
-    case CaseColumn::pairs:
-      return row.result.pairs_mean;
-    case CaseColumn::mismatches:
-      return static_cast<double>(row.mismatches);
-    default:
-      return {};
-  }
-}
 
 FrameValues secondsOf(const CaseResult& result, Phase phase) {
   std::size_t frames = 0;
@@ -101,9 +46,9 @@ OpenedResults::OpenedResults(std::filesystem::path file, Results results,
   std::size_t marked = 0;
   for (CaseResult& result : results.cases) {
     Row& row = rows_.emplace_back();
-    row.algorithm = algorithmText(result);
+    row.algorithm = variantOf(result);
     row.recording = recordingId(result.recording);
-    row.mismatches = mismatchCount(result);
+    row.mismatches = result.mismatchedFrames();
     row.obstacle = obstacleTo(result, file_, algorithms);
     if (!result.repetitions.empty()) row.summary = result.summary();
     row.result = std::move(result);
@@ -148,8 +93,10 @@ const std::vector<ScalingCurve>& OpenedResults::scaling(Phase phase) {
   return scaling_;
 }
 
-void OpenedResults::sort(std::optional<CaseColumn> by, bool descending) {
-  sorted_by_ = by;
+void OpenedResults::sort(std::string_view column, bool descending) {
+  const std::vector<CaseColumn>& columns = caseColumns();
+  const auto found = std::ranges::find(columns, column, &CaseColumn::key);
+  sorted_by_ = found == columns.end() ? nullptr : &*found;
   descending_ = descending;
   list();
 }
@@ -161,17 +108,6 @@ void OpenedResults::filter(const std::string& text, bool only_wrong) {
   list();
 }
 
-bool OpenedResults::before(std::size_t a, std::size_t b) const {
-  const Row& x = rows_[descending_ ? b : a];
-  const Row& y = rows_[descending_ ? a : b];
-  if (*sorted_by_ == CaseColumn::algorithm) return x.algorithm < y.algorithm;
-  if (*sorted_by_ == CaseColumn::recording) return recordingKey(x) < recordingKey(y);
-  const std::optional<double> of_a = numberOf(rows_[a], *sorted_by_);
-  const std::optional<double> of_b = numberOf(rows_[b], *sorted_by_);
-  if (!of_a || !of_b) return of_a.has_value() && !of_b;
-  return descending_ ? *of_b < *of_a : *of_a < *of_b;
-}
-
 void OpenedResults::list() {
   scaling_of_.reset();
   listed_.clear();
@@ -179,8 +115,19 @@ void OpenedResults::list() {
     if (only_wrong_ && rows_[i].mismatches == 0) continue;
     if (rows_[i].result.id.find(text_) != std::string::npos) listed_.push_back(i);
   }
-  if (!sorted_by_) return;
-  std::ranges::stable_sort(listed_, [this](std::size_t a, std::size_t b) { return before(a, b); });
+  if (sorted_by_ == nullptr) return;
+  std::vector<ColumnValue> values;
+  for (const Row& row : rows_) {
+    values.push_back(sorted_by_->shown.order
+                         ? sorted_by_->shown.order(row.result)
+                         : sorted_by_->shownValueOf(row.result, row.summary.value_or(Summary{})));
+  }
+  const ColumnValue unknown;
+  std::ranges::stable_sort(listed_, [&](std::size_t a, std::size_t b) {
+    if (values[a] == unknown || values[b] == unknown)
+      return values[b] == unknown && values[a] != unknown;
+    return descending_ ? values[b] < values[a] : values[a] < values[b];
+  });
 }
 
 }  // namespace broadmark

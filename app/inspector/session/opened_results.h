@@ -6,45 +6,22 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/names.h"
 #include "broadmark/render/frame_values.h"
+#include "broadmark/results/case_columns.h"
 #include "broadmark/results/results.h"
 #include "inspector/session/scaling.h"
 
 namespace broadmark {
 
-/// What is told of each case.
-enum class CaseColumn {
-  algorithm,
-  recording,
-  status,
-  median,
-  mean,
-  p95,
-  pairs,
-  mismatches,
-  isa,
-  threads
-};
-inline constexpr NameTable kCaseColumns{{NamedValue{CaseColumn::algorithm, "algorithm"},
-                                         {CaseColumn::recording, "recording"},
-                                         {CaseColumn::status, "status"},
-                                         {CaseColumn::median, "median"},
-                                         {CaseColumn::mean, "mean"},
-                                         {CaseColumn::p95, "95 %"},
-                                         {CaseColumn::pairs, "pairs"},
-                                         {CaseColumn::mismatches, "mismatches"},
-                                         {CaseColumn::isa, "isa"},
-                                         {CaseColumn::threads, "threads"}}};
-
 class OpenedResults {
  public:
   struct Row {
     CaseResult result;
-    std::string algorithm;           ///< as caseNameOf(), without what other columns tell
+    std::string algorithm;           ///< as variantOf()
     std::string recording;           ///< as recordingId()
     std::optional<Summary> summary;  ///< nothing without any time
     std::size_t mismatches = 0;      ///< frames
@@ -77,20 +54,20 @@ class OpenedResults {
 
   /// The numbers of the rows to be shown, in order.
   [[nodiscard]] const std::vector<std::size_t>& listed() const { return listed_; }
-  /// Nothing: as in the file. Cases that have no such number come last, either way.
-  void sort(std::optional<CaseColumn> by, bool descending);
+  /// By the column with this key; "": as in the file. Cases without the value come last, either
+  /// way.
+  void sort(std::string_view column, bool descending);
   /// Lists only cases whose id contains the text, and, if `only_wrong`, that gave a wrong answer.
   void filter(const std::string& text, bool only_wrong);
 
  private:
-  [[nodiscard]] bool before(std::size_t a, std::size_t b) const;
   void list();
 
   std::filesystem::path file_;
   bool complete_ = false;
   std::vector<Row> rows_;
   std::vector<std::size_t> listed_;
-  std::optional<CaseColumn> sorted_by_;  ///< nothing: as in the file
+  const CaseColumn* sorted_by_ = nullptr;  ///< null: as in the file
   bool descending_ = false;
   std::string text_;
   bool only_wrong_ = false;

@@ -12,18 +12,12 @@ from collections.abc import Iterable
 from typing import Any
 
 from broadmark.report import labels, rerun
-from broadmark.results import PHASES, PROCESSOR, TRANSFERS, Results
+from broadmark.results import COLUMNS, Results
 
-#: Columns of numbers that the page takes as they are in `Results.cases`.
-NUMBERS = [
-    *("threads", "repetitions", "repetitions_asked"),
-    *("seconds_per_frame", "median_seconds", "p95_seconds", "p99_seconds", "min_seconds"),
-    *("stddev_seconds", "ci95_low_seconds", "ci95_high_seconds", "outliers"),
-    *("initialize_seconds", *(f"{phase}_seconds" for phase in PHASES + TRANSFERS)),
-    *("pairs_mean", "pairs_max", "missed", "false", "allowed_extra", "invalid", "peak_bytes"),
-    *(f"{counter}_per_frame" for counter in PROCESSOR),
-]
-TEXTS = ["id", "algorithm", "family", "params", "device", "status", "reason", "warnings", "file"]
+#: Columns that the page takes as they are in `Results.cases`; others are of the recording.
+OF_CASES = [column for column in COLUMNS if not column["path"].startswith("recording/")]
+NUMBERS = [column["key"] for column in OF_CASES if column["kind"] == "number"]
+TEXTS = [column["key"] for column in OF_CASES if column["kind"] == "text"] + ["warnings", "file"]
 
 #: The machine's facts: title and key of its environment.
 FACTS = [
@@ -72,6 +66,7 @@ def page_data(results: Results) -> dict[str, Any]:
         "machines": [_machine(row) for row in results.environments.to_dict("records")],
         "runs": [_run(row) for row in results.files.to_dict("records")],
         "recordings": recordings,
+        "fields": COLUMNS,
         "columns": columns,
         "parameters": _varying_parameters(details),
         "wrong_frames": _wrong_frames(details),

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <concepts>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -110,6 +112,15 @@ class JsonFields {
     return expect(key, at(key).is_string(), "a text").template get<std::string>();
   }
 
+  /// The value that the text names in a NameTable.
+  template <class Table>
+  [[nodiscard]] auto named(const char* key, const Table& table) const {
+    const std::string name = text(key);
+    const auto value = table.find(name);
+    if (!value) throw InputError(fmt::format("{}: unknown value '{}'", path(key), name));
+    return *value;
+  }
+
   [[nodiscard]] std::vector<std::string> texts(const char* key) const {
     std::vector<std::string> all;
     for (const Json& element : array(key)) {
@@ -132,6 +143,26 @@ class JsonFields {
   [[nodiscard]] Integer integer(const char* key,
                                 Integer min = std::numeric_limits<Integer>::min()) const {
     return integerOf<Integer>(at(key), path(key), min);
+  }
+
+  /// Reads a value of the type of `value`; an integer from 0 on. An optional one may be missing; of
+  /// a map each element is a field.
+  void read(const char* key, std::string& value) const { value = text(key); }
+  void read(const char* key, std::vector<std::string>& value) const { value = texts(key); }
+  void read(const char* key, bool& value) const { value = boolean(key); }
+  void read(const char* key, double& value) const { value = number(key); }
+  template <std::integral Integer>
+  void read(const char* key, Integer& value) const {
+    value = integer<Integer>(key, 0);
+  }
+  template <class T>
+  void read(const char* key, std::optional<T>& value) const {
+    if (has(key)) read(key, value.emplace());
+  }
+  template <class T>
+  void read(const char* key, std::map<std::string, T>& values) const {
+    const JsonFields fields = object(key);
+    for (const auto& item : at(key).items()) fields.read(item.key().c_str(), values[item.key()]);
   }
 
   /// The elements of an array, each as an object.

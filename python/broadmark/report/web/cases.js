@@ -24,8 +24,20 @@ recordings.forEach((one, i) => {
   one.title = `${one.series}, ${plural(one.objects, "body", "bodies")}`;
 });
 
-const kMeasures = [["seconds_per_frame", "mean"], ["median_seconds", "median"],
-                   ["p95_seconds", "95th percentile"], ["p99_seconds", "99th percentile"]];
+// What the program's results have of a case, as its own table of columns says.
+const kFields = data.fields;
+const valueOf = (field, one) => (field.key in one ? one[field.key] : one.on[field.key]);
+
+function textOfField(field, one) {
+  if (field.known === "checked" && !one.checked) return "not checked";
+  const value = valueOf(field, one);
+  if (field.kind === "text") return value || kNothing;
+  return field.unit === "seconds" ? time(value) : field.unit === "bytes" ? bytes(value) : count(value);
+}
+
+// The times that cases can be compared by.
+const kMeasures = ["seconds_per_frame", "median_seconds", "p95_seconds", "p99_seconds"]
+  .map((key) => [key, kFields.find((field) => field.key === key).title]);
 
 const isSelfCheck = (one) => one.family === "self-check";
 

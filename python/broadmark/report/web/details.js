@@ -54,19 +54,13 @@ function figuresOf(one) {
   const better = lastRunsOn(one).filter((other) => isTimed(other) && !isSelfCheck(other))
     .sort((a, b) => a.seconds_per_frame - b.seconds_per_frame)[0];
   const shown = one.seconds_per_frame !== null;
-  return [
-    ["mean", time(one.seconds_per_frame)],
+  const beside = [
     ["95 % interval", interval || (shown ? "one repetition" : kNothing)],
     ["to the best here", shown && better && one.status === "ok" && !isSelfCheck(one)
       ? `${ratio(one.seconds_per_frame / better.seconds_per_frame)} × ${better.variant}` : kNothing],
-    ["median", time(one.median_seconds)], ["95th percentile", time(one.p95_seconds)],
-    ["99th percentile", time(one.p99_seconds)], ["least", time(one.min_seconds)],
-    ["standard deviation", time(one.stddev_seconds)], ["outliers", count(one.outliers)],
-    ["initialise", time(one.initialize_seconds)], ["memory", bytes(one.peak_bytes)],
-    ["pairs a frame", `${count(one.pairs_mean)}, at most ${count(one.pairs_max)}`],
-    ["missed", one.checked ? count(one.missed) : "not checked"], ["false", count(one.false)],
-    ["allowed extra", count(one.allowed_extra)], ["invalid", count(one.invalid)],
   ];
+  return kFields.filter((field) => field.figure).flatMap((field) => [
+    [field.title, textOfField(field, one)], ...(field.key === "seconds_per_frame" ? beside : [])]);
 }
 
 function lastRunsOn(one) {
@@ -74,17 +68,14 @@ function lastRunsOn(one) {
 }
 
 function particularsOf(one) {
-  const counters = ["cycles", "instructions", "cache_misses", "branches", "branch_misses"]
-    .filter((name) => (one[`${name}_per_frame`] ?? null) !== null)
-    .map((name) => [`${name.replace("_", " ")} a frame`, count(one[`${name}_per_frame`])]);
-  const transfers = ["upload", "download"].filter((name) => one[`${name}_seconds`] > 0)
-    .map((name) => [name, time(one[`${name}_seconds`])]);
+  const measured = kFields.filter((field) => field.particular && valueOf(field, one))
+    .map((field) => [field.title, textOfField(field, one)]);
   return [
     ["machine", machines[one.machine].name], ["algorithm", one.algorithm], ["family", one.family],
     ["parameters", one.params.replaceAll(";", ", ") || "none"], ["threads", one.threads],
     ["instruction set", one.isa || "does not depend on it"], ["device", one.device],
     ["repetitions", one.repetitions_asked === null ? one.repetitions : `${one.repetitions} of ${one.repetitions_asked}`],
-    ["frames", `${count(one.frames_run)} of ${count(one.on.frames)}`], ...transfers, ...counters,
+    ["frames", `${count(one.frames_run)} of ${count(one.on.frames)}`], ...measured,
     ["counted", one.counted.replaceAll("\n", ", ")], ["results file", one.file],
   ].filter(([, value]) => value !== "" && value !== null);
 }

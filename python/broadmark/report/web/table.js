@@ -64,23 +64,21 @@ function rowOf(columns, row) {
 
 const kMachineColumns = machines.length > 1 ? [{
   title: "machine", name: "machine", value: (one) => machines[one.machine].name,
-  show: (one) => machines[one.machine].name, rank: 2,
+  show: (one) => machines[one.machine].name, rank: 2, place: 60,
 }] : [];
 
+// From the left by their places.
 const kCaseColumns = [
-  { title: "variant", value: nameOf, show: nameOf, rank: 1 },
-  { title: "recording", value: (one) => one.on.series, show: (one) => one.on.series, rank: 1 },
-  { title: "bodies", value: (one) => one.on.objects, show: (one) => count(one.on.objects), number: true, rank: 1 },
-  { title: "threads", value: (one) => one.threads, show: (one) => String(one.threads), number: true, rank: 3 },
-  { title: "ISA", value: (one) => one.isa, show: (one) => one.isa || kNothing, rank: 3 },
+  { title: "variant", value: nameOf, show: nameOf, rank: 1, place: 10 },
+  { title: "recording", value: (one) => one.on.series, show: (one) => one.on.series, rank: 1, place: 20 },
   ...kMachineColumns,
-  ...[["mean", "seconds_per_frame", 1], ["median", "median_seconds", 3], ["p95", "p95_seconds", 2]].map(([title, key, rank]) => (
-    { title, value: (one) => one[key], show: (one) => time(one[key]), number: true, rank })),
-  { title: "± 95 %", value: halfWidth, show: (one) => (halfWidth(one) === null ? kNothing : percent(halfWidth(one))), number: true, rank: 2 },
-  { title: "pairs", value: (one) => one.pairs_mean, show: (one) => count(one.pairs_mean), number: true, rank: 3 },
-  { title: "memory", value: (one) => one.peak_bytes, show: (one) => bytes(one.peak_bytes), number: true, rank: 3 },
-  { title: "status", value: (one) => one.status, show: (one) => statusMark(statusOf(one)), rank: 1 },
-];
+  { title: "± 95 %", value: halfWidth, show: (one) => (halfWidth(one) === null ? kNothing : percent(halfWidth(one))), number: true, rank: 2, place: 95 },
+  ...kFields.filter((field) => field.report > 0).map((field) => ({
+    title: field.heading, value: (one) => valueOf(field, one),
+    show: field.key === "status" ? (one) => statusMark(statusOf(one)) : (one) => textOfField(field, one),
+    number: field.kind === "number", rank: field.rank, place: field.report,
+  })),
+].sort((a, b) => a.place - b.place);
 
 // Half the interval's width as a share of the mean.
 function halfWidth(one) {

@@ -114,6 +114,8 @@ struct CaseResult {
   [[nodiscard]] std::optional<double> meanSeconds(Phase phase) const;
   /// The mean per frame, over the repetitions in which it was known; nothing if there is none.
   [[nodiscard]] std::optional<double> perFrame(ProcessorCounter which) const;
+  /// How many frames were wrong in some repetition.
+  [[nodiscard]] std::size_t mismatchedFrames() const;
   /// Whether it ran as often as was asked for, or ended by its status. A run that was interrupted
   /// leaves cases that did not.
   [[nodiscard]] bool isComplete() const;

@@ -17,6 +17,9 @@ std::string recordingId(const RecordingReference&);
 std::string caseId(const RecordingReference&, const Case&);
 /// caseName() of the case that gave this result: its id without the recording's.
 std::string caseNameOf(const CaseResult&);
+/// caseNameOf() without instruction set and threads: "kd-mt/avx2/t4/margin=0.1" is
+/// "kd-mt/margin=0.1".
+std::string variantOf(const CaseResult&);
 
 /// A result with everything but measurements.
 CaseResult beginCase(const Case&, const RecordingReference&);
