@@ -159,9 +159,10 @@ class Sap final : public OdeSpace {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  const Algorithm family = {
-      .family = "ODE",
-      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted}};
+  const Algorithm family = {.family = "ODE",
+                            .traits = {.library_allocates = true,
+                                       .changing_worlds = ChangingWorlds::compacted,
+                                       .instance_per_world = true}};
   Algorithm hash = variantOf(
       family, [] { return std::make_unique<Hash>(); }, "ode-hash",
       "ODE's hash space, grids of several resolutions");
