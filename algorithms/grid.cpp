@@ -339,6 +339,7 @@ Algorithm variant(const Kind& kind) {
           .traits = {.parallel = kind.parallel,
                      .vectorised = true,
                      .changing_worlds = ChangingWorlds::compacted,
+                     .side_by_side_below = 400,
                      .max_objects = kMaxMarkedBodies - 1},
           .description = {.principle = sweeps ? "grid, sorting" : "grid",
                           .optimisations = sweeps ? "axis per cell, bucket sort" : "",

@@ -217,13 +217,17 @@ std::vector<Algorithm> variants() {
           .time = "O(n + w), w pairs that overlap on the sort axis",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Baraff 1992; Cohen et al. 1995; Ericson 2005, 7.5"}};
+  Algorithm plain_family = family;
+  // Side by side, bodies share the sort axis with those of other worlds.
+  plain_family.traits.side_by_side_below = 40;
   const auto plain = [] { return std::make_unique<SweepAndPrune<PlainSweeper>>(); };
   const auto simd = [] { return std::make_unique<SweepAndPrune<SimdSweeper>>(); };
   return {
-      variantOf(family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
+      variantOf(plain_family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
       variantOf(family, simd, "sap-simd", "sweep and prune, one box against a vector of boxes",
                 {.vectorised = true}),
-      variantOf(family, plain, "sap-mt", "sweep and prune, on several threads", {.parallel = true}),
+      variantOf(plain_family, plain, "sap-mt", "sweep and prune, on several threads",
+                {.parallel = true}),
       variantOf(family, simd, "sap-simd-mt", "sweep and prune, vectorised and on several threads",
                 {.parallel = true, .vectorised = true})};
 }
