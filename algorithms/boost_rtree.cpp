@@ -120,7 +120,9 @@ class Incremental final : public RTree {
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "Boost R-tree",
-      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted},
+      .traits = {.library_allocates = true,
+                 .changing_worlds = ChangingWorlds::compacted,
+                 .instance_per_world = true},
       .description = {
           .principle = "tree",
           .time = "O(n log n + k)",

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "sample.h"
+
 namespace broadmark {
 namespace {
 
@@ -20,13 +22,6 @@ struct AxisSample {
   double high = 0;
   double edge = 0;  ///< three quarters of the boxes are no longer
 };
-
-/// The k-th body of a sample of `count`. Spread by the golden ratio and not by a stride, since
-/// scenes give bodies their shapes by number, in turn.
-std::size_t sampled(std::size_t k, std::size_t count) {
-  if (count <= kSample) return k;
-  return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
-}
 
 /// The value below which `part` of the values lie, which get rearranged.
 double quantileOf(std::span<double> values, double part) {
@@ -43,11 +38,9 @@ AxisSample sampleAxis(std::span<const Aabb> boxes, int axis) {
   const std::span centres(centre_memory.data(), count);
   const std::span edges(edge_memory.data(), count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Aabb& box = boxes[sampled(i, boxes.size())];
-    const double low = box.min[axis];
-    const double high = box.max[axis];
-    centres[i] = (low + high) / 2;
-    edges[i] = high - low;
+    const Aabb& box = boxes[sampled(i, count, boxes.size())];
+    centres[i] = centreOf(box, axis);
+    edges[i] = double{box.max[axis]} - double{box.min[axis]};
   }
   // Where nine tenths of the centres lie, and a quarter of that more on both sides: for most
   // distributions that holds nearly everything.

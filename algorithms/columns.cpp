@@ -385,7 +385,9 @@ std::unique_ptr<BroadPhase> create() { return std::make_unique<Columns>(); }
 std::vector<Algorithm> variants() {
   const Algorithm family = {
       .family = "Columns",
-      .traits = {.changing_worlds = ChangingWorlds::compacted, .max_objects = kMaxMarkedBodies - 1},
+      .traits = {.changing_worlds = ChangingWorlds::compacted,
+                 .side_by_side_below = 400,
+                 .max_objects = kMaxMarkedBodies - 1},
       .description = {.principle = "grid, sorting",
                       .optimisations = "layout by sample, small integers, bucket sort",
                       .time = "O(n + w), w pairs that share a column and overlap along it",

@@ -48,13 +48,6 @@ Aabb boxOf(const btDbvtVolume& volume) {
   return {{min.x(), min.y(), min.z(), 0}, {max.x(), max.y(), max.z(), 0}};
 }
 
-bool contains(const Aabb& outer, const Aabb& inner) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
-  }
-  return true;
-}
-
 /// Bullet has one margin for the whole process: it is this one while the object lives. Of all that
 /// is called here only setAabb reads it.
 class MarginInForce {

@@ -73,7 +73,7 @@ class Grid final : public PairBroadPhase {
     boxes_.resize(frame.boxes.size());
     bounds_ = {};
     if (boxes_.empty()) return;
-    forShares(boxes_.size(), [&](int worker, Range part) {
+    team().run(boxes_.size(), [&](int worker, Range part) {
       Aabb bounds = frame.boxes.front();
       for (std::size_t i = part.begin; i < part.end; ++i) {
         boxes_[i] = frame.boxes[i];
@@ -116,23 +116,14 @@ class Grid final : public PairBroadPhase {
 
   void findPairs() override {
     const Range large = contents(kLarge);
-    team().run([&](int worker) {
+    team().run(large.end, [&](int worker, Range part) {
       kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
                             pairs(worker));
-      const auto [begin, end] = share(large.end, team().size(), worker);
-      for (std::size_t i = begin; i < end; ++i) {
+      for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachRowOfCells(i, [&](Range copies, MarkedBody marks) {
           kernels_->test_row(arrays_, i, bodies_[i] | marks, copies, bodies_.data(), pairs(worker));
         });
       }
-    });
-  }
-
-  template <class Work>
-  void forShares(std::size_t count, Work work) {
-    team().run([&](int worker) {
-      const auto [begin, end] = share(count, team().size(), worker);
-      work(worker, Range{begin, end});
     });
   }
 
@@ -155,7 +146,7 @@ class Grid final : public PairBroadPhase {
   }
 
   void findCopies() {
-    forShares(boxes_.size(), [&](int worker, Range part) {
+    team().run(boxes_.size(), [&](int worker, Range part) {
       Worker& mine = workerData(worker);
       mine.copies.clear();
       mine.places.assign(cellCount(), 0);
@@ -226,18 +217,11 @@ class Grid final : public PairBroadPhase {
                         static_cast<std::uint32_t>(range.begin));
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       const std::uint32_t place = places[buckets.of(boxes[i].min[axis])]++;
-      set(place, boxes[i]);
+      arrays_.set(place, boxes[i]);
       bodies_[place] = copies_[range.begin + i];
     }
     const float* const max = arrays_.max(axis);
     for (std::size_t i = range.begin; i < range.end; ++i) ends_[i] = places[buckets.of(max[i])];
-  }
-
-  void set(std::size_t i, const Aabb& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      arrays_.min(axis)[i] = box.min[axis];
-      arrays_.max(axis)[i] = box.max[axis];
-    }
   }
 
   /// Calls visit(copies, marks) for the copies that the large box at i is tested against: all in
@@ -355,6 +339,7 @@ Algorithm variant(const Kind& kind) {
           .traits = {.parallel = kind.parallel,
                      .vectorised = true,
                      .changing_worlds = ChangingWorlds::compacted,
+                     .side_by_side_below = 400,
                      .max_objects = kMaxMarkedBodies - 1},
           .description = {.principle = sweeps ? "grid, sorting" : "grid",
                           .optimisations = sweeps ? "axis per cell, bucket sort" : "",

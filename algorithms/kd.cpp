@@ -89,10 +89,9 @@ class Kd final : public BroadPhase {
   void updateObjects(const Frame& frame) override {
     const std::span<const std::uint32_t> changed = *frame.changed;
     forgetMoved();
-    team_->run([&](int part) {
+    team_->run(changed.size(), [&](int part, Range range) {
       Worker& worker = workers_[static_cast<std::size_t>(part)];
-      const auto [begin, end] = share(changed.size(), team_->size(), part);
-      for (const std::uint32_t body : changed.subspan(begin, end - begin)) {
+      for (const std::uint32_t body : changed.subspan(range.begin, range.size())) {
         takeOver(worker, body, frame.boxes[body]);
       }
     });
@@ -313,9 +312,8 @@ class Kd final : public BroadPhase {
   /// Calls work(worker, its share of the bodies) for all workers at once.
   template <class Work>
   void forWorkers(Work work) {
-    team_->run([&](int part) {
-      const auto [begin, end] = share(stored_.size(), team_->size(), part);
-      work(workers_[static_cast<std::size_t>(part)], Range{begin, end});
+    team_->run(stored_.size(), [&](int part, Range bodies) {
+      work(workers_[static_cast<std::size_t>(part)], bodies);
     });
   }
 

@@ -19,7 +19,7 @@ struct Moments {
 
   void add(const Aabb& box, const std::array<double, 3>& origin) {
     for (int axis = 0; axis < 3; ++axis) {
-      const double distance = centre(box, axis) - origin[axis];
+      const double distance = centreOf(box, axis) - origin[axis];
       sum[axis] += distance;
       squares[axis] += distance * distance;
     }
@@ -44,11 +44,8 @@ struct Moments {
     return axes;
   }
 
-  static double centre(const Aabb& box, int axis) {
-    return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
-  }
   static std::array<double, 3> centre(const Aabb& box) {
-    return {centre(box, 0), centre(box, 1), centre(box, 2)};
+    return {centreOf(box, 0), centreOf(box, 1), centreOf(box, 2)};
   }
 };
 

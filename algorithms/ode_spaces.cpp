@@ -130,9 +130,8 @@ class Hash final : public OdeSpace {
     double longest = 0;
     double farthest = 0;
     for (const Aabb& box : boxes()) {
-      double edge = 0;
+      const double edge = longestEdge(box);
       for (int axis = 0; axis < 3; ++axis) {
-        edge = std::max(edge, double{box.max[axis]} - double{box.min[axis]});
         farthest = std::max<double>({farthest, std::fabs(box.min[axis]), std::fabs(box.max[axis])});
       }
       edges += edge;
@@ -160,9 +159,10 @@ class Sap final : public OdeSpace {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  const Algorithm family = {
-      .family = "ODE",
-      .traits = {.library_allocates = true, .changing_worlds = ChangingWorlds::compacted}};
+  const Algorithm family = {.family = "ODE",
+                            .traits = {.library_allocates = true,
+                                       .changing_worlds = ChangingWorlds::compacted,
+                                       .instance_per_world = true}};
   Algorithm hash = variantOf(
       family, [] { return std::make_unique<Hash>(); }, "ode-hash",
       "ODE's hash space, grids of several resolutions");

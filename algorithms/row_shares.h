@@ -21,9 +21,8 @@ class RowShares {
     rows_ = ends.size();
     workers_ = team.size();
     work_.resize((rows_ + kChunk - 1) / kChunk);
-    team.run([&](int worker) {
-      const auto [begin, end] = share(work_.size(), workers_, worker);
-      for (std::size_t chunk = begin; chunk < end; ++chunk) {
+    team.run(work_.size(), [&](int, Range chunks) {
+      for (std::size_t chunk = chunks.begin; chunk < chunks.end; ++chunk) {
         const std::size_t rows_end = std::min(rows_, (chunk + 1) * kChunk);
         std::uint64_t work = 0;
         for (std::size_t i = chunk * kChunk; i < rows_end; ++i) work += ends[i] - i;

@@ -67,12 +67,7 @@ class SimdSweeper {
  public:
   void initialize(const Execution& execution) { kernels_ = &overlapKernels(execution.isa()); }
   void resize(std::size_t count) { boxes_.resize(count); }
-  void set(std::size_t i, const Aabb& box) {
-    for (int axis = 0; axis < 3; ++axis) {
-      boxes_.min(axis)[i] = box.min[axis];
-      boxes_.max(axis)[i] = box.max[axis];
-    }
-  }
+  void set(std::size_t i, const Aabb& box) { boxes_.set(i, box); }
   [[nodiscard]] float min(std::size_t i) const { return boxes_.min(0)[i]; }
   [[nodiscard]] float max(std::size_t i) const { return boxes_.max(0)[i]; }
 
@@ -101,7 +96,7 @@ class SweepAndPrune final : public PairBroadPhase {
 
   void updateObjects(const Frame& frame) override {
     boxes_.resize(frame.boxes.size());
-    forShares(frame.boxes.size(), [&](int, Range part) {
+    team().run(frame.boxes.size(), [&](int, Range part) {
       std::copy(frame.boxes.begin() + static_cast<std::ptrdiff_t>(part.begin),
                 frame.boxes.begin() + static_cast<std::ptrdiff_t>(part.end),
                 boxes_.begin() + static_cast<std::ptrdiff_t>(part.begin));
@@ -147,18 +142,10 @@ class SweepAndPrune final : public PairBroadPhase {
     });
   }
 
-  template <class Work>
-  void forShares(std::size_t count, Work work) {
-    team().run([&](int worker) {
-      const auto [begin, end] = share(count, team().size(), worker);
-      work(worker, Range{begin, end});
-    });
-  }
-
   void chooseAxes() {
     if (boxes_.empty()) return;
     const std::array<double, 3> origin = Moments::centre(boxes_[0]);
-    forShares(boxes_.size(), [&](int worker, Range part) {
+    team().run(boxes_.size(), [&](int worker, Range part) {
       Moments moments;
       for (std::size_t i = part.begin; i < part.end; ++i) moments.add(boxes_[i], origin);
       moments_[static_cast<std::size_t>(worker)] = moments;
@@ -170,7 +157,7 @@ class SweepAndPrune final : public PairBroadPhase {
 
   void sortBodies() {
     sorter_.resize(boxes_.size(), team().size());
-    forShares(boxes_.size(), [&](int, Range part) {
+    team().run(boxes_.size(), [&](int, Range part) {
       const std::span<SortEntry> entries = sorter_.entries();
       for (std::size_t i = part.begin; i < part.end; ++i) {
         entries[i] = {sortKey(boxes_[i].min[axes_[0]]), static_cast<std::uint32_t>(i)};
@@ -182,7 +169,7 @@ class SweepAndPrune final : public PairBroadPhase {
   void gatherBoxes() {
     sweeper_.resize(boxes_.size());
     bodies_.resize(boxes_.size());
-    forShares(boxes_.size(), [&](int, Range part) {
+    team().run(boxes_.size(), [&](int, Range part) {
       const std::span<const SortEntry> entries = sorter_.entries();
       for (std::size_t i = part.begin; i < part.end; ++i) {
         bodies_[i] = entries[i].body;
@@ -195,7 +182,7 @@ class SweepAndPrune final : public PairBroadPhase {
   void findWindows() {
     const std::size_t count = boxes_.size();
     ends_.resize(count);
-    forShares(count, [&](int, Range part) {
+    team().run(count, [&](int, Range part) {
       std::size_t end = part.begin;
       for (std::size_t i = part.begin; i < part.end; ++i) {
         const float limit = sweeper_.max(i);
@@ -230,13 +217,17 @@ std::vector<Algorithm> variants() {
           .time = "O(n + w), w pairs that overlap on the sort axis",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Baraff 1992; Cohen et al. 1995; Ericson 2005, 7.5"}};
+  Algorithm plain_family = family;
+  // Side by side, bodies share the sort axis with those of other worlds.
+  plain_family.traits.side_by_side_below = 40;
   const auto plain = [] { return std::make_unique<SweepAndPrune<PlainSweeper>>(); };
   const auto simd = [] { return std::make_unique<SweepAndPrune<SimdSweeper>>(); };
   return {
-      variantOf(family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
+      variantOf(plain_family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
       variantOf(family, simd, "sap-simd", "sweep and prune, one box against a vector of boxes",
                 {.vectorised = true}),
-      variantOf(family, plain, "sap-mt", "sweep and prune, on several threads", {.parallel = true}),
+      variantOf(plain_family, plain, "sap-mt", "sweep and prune, on several threads",
+                {.parallel = true}),
       variantOf(family, simd, "sap-simd-mt", "sweep and prune, vectorised and on several threads",
                 {.parallel = true, .vectorised = true})};
 }

@@ -96,14 +96,13 @@ class Tracy final : public BroadPhase {
   void reportEvents() override { reports_events_ = true; }
 
   void updateObjects(const Frame& frame) override {
-    team_->run([&](int worker) {
+    team_->run(bodies_.moved.size(), [&](int worker, Range words) {
       std::vector<std::uint32_t>& moved = workerOf(worker).moved;
       for (const std::uint32_t body : moved) bodies_.moved[body / kWordBits] = 0;
       // Whole words of bits: no two workers write to the same.
-      const auto [begin, end] = share(bodies_.moved.size(), team_->size(), worker);
       const std::span<const std::uint32_t> changed = *frame.changed;
-      moved.assign(std::ranges::lower_bound(changed, begin * kWordBits),
-                   std::ranges::lower_bound(changed, end * kWordBits));
+      moved.assign(std::ranges::lower_bound(changed, words.begin * kWordBits),
+                   std::ranges::lower_bound(changed, words.end * kWordBits));
       for (const std::uint32_t body : moved) takeOver(body, frame.boxes[body]);
     });
   }
@@ -232,10 +231,9 @@ class Tracy final : public BroadPhase {
   /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
   std::uint64_t cellsTouchedIn(const Grid& grid) {
     std::atomic<std::uint64_t> all = 0;
-    team_->run([&](int worker) {
+    team_->run(bodies_.boxes[kNow].size(), [&](int, Range part) {
       std::uint64_t touched = 0;
-      const auto [begin, end] = share(bodies_.boxes[kNow].size(), team_->size(), worker);
-      for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t i = part.begin; i < part.end; ++i)
         touched += grid.range(bodies_.boxes[kNow][i]).size();
       all += touched;
     });

@@ -52,22 +52,6 @@ Vector3f corner(const Aabb& box, int index) {
   return point;
 }
 
-bool holdsCentre(const Aabb& world, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double centre = (double{box.min[axis]} + double{box.max[axis]}) / 2;
-    if (!(centre >= world.min[axis] && centre <= world.max[axis])) return false;
-  }
-  return true;
-}
-
-double longestEdge(const Aabb& box) {
-  double longest = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    longest = std::max(longest, double{box.max[axis]} - double{box.min[axis]});
-  }
-  return longest;
-}
-
 }  // namespace
 
 std::array<float, 3> ViewSpace::toView(const std::array<float, 4>& world_point) const {
@@ -87,9 +71,7 @@ Aabb ViewSpace::toView(const Aabb& world_box) const {
 
 ViewSpace viewSpaceOf(const Aabb& box) {
   ViewSpace space;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    space.origin[axis] = (double{box.min[axis]} + double{box.max[axis]}) / 2;
-  }
+  for (std::size_t axis = 0; axis < 3; ++axis) space.origin[axis] = centreOf(box, axis);
   const double longest = longestEdge(box);
   if (longest > 0) space.side = longest;
   return space;

@@ -105,20 +105,28 @@ void colourByCount(const ColouringInput& input, Colouring& colouring) {
   });
 }
 
-void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
+/// Two sets of pairs that ought to be the same: those only in the first, those only in the second.
+void colourByDifference(const ColouringInput& input, std::span<const Pair> first_only,
+                        std::span<const Pair> second_only, const std::array<std::string, 3>& labels,
+                        Colouring& colouring) {
   const Palette palette = paletteOf(input);
   std::vector<std::uint8_t> classes(input.boxes.size());
   for (std::size_t body = 0; body < classes.size(); ++body) {
     classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
   }
-  mark(classes, input.false_pairs, 1);
-  mark(classes, input.missed, 0);  // last: a missed pair is the worse fault
+  mark(classes, second_only, 1);
+  mark(classes, first_only, 0);  // last: a missed pair is the worse fault
   colourByClass(input.boxes,
-                {{"missed", palette.missed},
-                 {"false", palette.false_pair},
-                 {"right", palette.right},
+                {{labels[0], palette.missed},
+                 {labels[1], palette.false_pair},
+                 {labels[2], palette.right},
                  {"free", palette.quiet}},
                 colouring, [&](std::size_t body) { return classes[body]; });
+}
+
+void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
+  colourByDifference(input, input.missed, input.false_pairs, {"missed", "false", "right"},
+                     colouring);
 }
 
 /// All bodies in one class.
@@ -151,23 +159,12 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
 }
 
 void colourByComparison(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
   if (input.comparison == nullptr) {
-    colourAlike(input, "no second view", palette.quiet, colouring);
+    colourAlike(input, "no second view", paletteOf(input).quiet, colouring);
     return;
   }
-  std::vector<std::uint8_t> classes(input.boxes.size());
-  for (std::size_t body = 0; body < classes.size(); ++body) {
-    classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
-  }
-  mark(classes, input.comparison->second_only, 1);
-  mark(classes, input.comparison->first_only, 0);
-  colourByClass(input.boxes,
-                {{"first only", palette.missed},
-                 {"second only", palette.false_pair},
-                 {"both", palette.right},
-                 {"free", palette.quiet}},
-                colouring, [&](std::size_t body) { return classes[body]; });
+  colourByDifference(input, input.comparison->first_only, input.comparison->second_only,
+                     {"first only", "second only", "both"}, colouring);
 }
 
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {

@@ -77,7 +77,6 @@ bool isModifier(Key key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_
 struct Touched {
   std::bitset<kKeys> keys;
   std::bitset<kButtons> buttons;
-  bool moved = false;
   bool wheel = false;
   bool plain_key = false;  ///< other than a modifier
   bool character = false;
@@ -112,7 +111,6 @@ void apply(const InputEvent& event, Touched& touched, ImGuiIO& io) {
   switch (event.kind) {
     case InputEvent::Kind::move:
       io.MousePos = {event.x, event.y};
-      touched.moved = true;
       break;
     case InputEvent::Kind::leave:
       io.MousePos = {-FLT_MAX, -FLT_MAX};

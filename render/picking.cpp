@@ -2,23 +2,22 @@
 // a frustum. O(n). Double precision: neither far-off nor tiny bodies are lost.
 #include "broadmark/render/picking.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 
 namespace broadmark {
 namespace {
 
-using Vector = std::array<double, 3>;
+using Vector = Eigen::Vector3d;
 
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-Vector widened(const std::array<float, 3>& vector) { return {vector[0], vector[1], vector[2]}; }
+/// Of a point or a corner: its first three numbers.
+template <class Numbers>
+Vector widened(const Numbers& numbers) {
+  return Eigen::Vector3f(numbers.data()).cast<double>();
+}
 
 Vector eyeInWorld(const Camera& camera, const ViewSpace& space) {
-  Vector eye;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    eye[axis] = space.origin[axis] + space.side * double{camera.eye[axis]};
-  }
-  return eye;
+  return Vector(space.origin.data()) + space.side * widened(camera.eye);
 }
 
 /// Where a point of the picture lies on the window at distance 1.
@@ -41,28 +40,20 @@ struct SeenBox {
 };
 
 SeenBox seenBox(const Aabb& box, const Vector& eye, double scale) {
-  SeenBox seen;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    seen.low[axis] = (double{box.min[axis]} - eye[axis]) * scale;
-    seen.high[axis] = (double{box.max[axis]} - eye[axis]) * scale;
-  }
-  return seen;
+  return {(widened(box.min) - eye) * scale, (widened(box.max) - eye) * scale};
 }
 
 /// Like the box shader: makes every side at least a given number of pixels long.
 void enlarge(SeenBox& box, const Vector& forward, double half_side_at_1) {
-  Vector centre;
-  for (std::size_t axis = 0; axis < 3; ++axis) centre[axis] = (box.low[axis] + box.high[axis]) / 2;
-  const double half = half_side_at_1 * dot(centre, forward);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.low[axis] = std::min(box.low[axis], centre[axis] - half);
-    box.high[axis] = std::max(box.high[axis], centre[axis] + half);
-  }
+  const Vector centre = (box.low + box.high) / 2;
+  const double half = half_side_at_1 * centre.dot(forward);
+  box.low = box.low.cwiseMin((centre.array() - half).matrix());
+  box.high = box.high.cwiseMax((centre.array() + half).matrix());
 }
 
 /// All points p with dot(normal, p) >= offset.
 struct Plane {
-  Vector normal{};
+  Vector normal;
   double offset = 0;
 };
 
@@ -74,12 +65,9 @@ std::array<Plane, 5> frustum(const Viewpoint& viewpoint, const ScreenRectangle& 
   const std::array high = onWindow(viewpoint, right, top);
   const CameraAxes axes = axesOf(viewpoint.camera);
   const auto plane = [&](double right_part, double up_part, double back_part, double offset) {
-    Plane result{{}, offset};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      result.normal[axis] = right_part * double{axes.right[axis]} +
-                            up_part * double{axes.up[axis]} + back_part * double{axes.back[axis]};
-    }
-    return result;
+    return Plane{right_part * widened(axes.right) + up_part * widened(axes.up) +
+                     back_part * widened(axes.back),
+                 offset};
   };
   return {plane(1, 0, low[0], 0), plane(-1, 0, -high[0], 0), plane(0, 1, low[1], 0),
           plane(0, -1, -high[1], 0), plane(0, 0, -1, viewpoint.camera.near)};
@@ -87,11 +75,9 @@ std::array<Plane, 5> frustum(const Viewpoint& viewpoint, const ScreenRectangle& 
 
 bool isWithin(const std::array<Plane, 5>& planes, const SeenBox& box) {
   return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-    double least = 0;  // over the corners
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      least += std::min(plane.normal[axis] * box.low[axis], plane.normal[axis] * box.high[axis]);
-    }
-    return least >= plane.offset;
+    const auto least_corner =
+        plane.normal.cwiseProduct(box.low).cwiseMin(plane.normal.cwiseProduct(box.high));
+    return least_corner.sum() >= plane.offset;
   });
 }
 
@@ -119,9 +105,8 @@ std::optional<PickedBody> pickBody(std::span<const Aabb> boxes, const ViewSpace&
   const Vector eye = eyeInWorld(camera, space);
   const double scale = 1 / space.side;
   const Vector direction = widened(rayThrough(viewpoint, x, y).direction);
-  const Vector inverse = {1 / direction[0], 1 / direction[1], 1 / direction[2]};
-  const std::array<float, 3> back = axesOf(camera).back;
-  const Vector forward = {-back[0], -back[1], -back[2]};
+  const Vector inverse = direction.cwiseInverse();
+  const Vector forward = -widened(axesOf(camera).back);
   const double half_side = double{smallest} * double{pixelSize(camera, viewpoint.height)};
 
   std::optional<PickedBody> picked;
@@ -160,11 +145,7 @@ std::vector<std::uint32_t> bodiesWithin(std::span<const Aabb> boxes, const ViewS
   for (std::size_t body = 0; body < boxes.size(); ++body) {
     if (!counts(boxes, mask, body)) continue;
     SeenBox box = seenBox(boxes[body], eye, 1 / space.side);
-    if (by == SelectBy::centre) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = box.high[axis] = (box.low[axis] + box.high[axis]) / 2;
-      }
-    }
+    if (by == SelectBy::centre) box.low = box.high = (box.low + box.high) / 2;
     if (isWithin(planes, box)) bodies.push_back(static_cast<std::uint32_t>(body));
   }
   return bodies;

@@ -4,6 +4,7 @@
 
 #include "colour.h"
 #include "look.h"
+#include "render_assets.h"
 
 namespace broadmark {
 namespace {
@@ -51,6 +52,28 @@ PrimitiveBuffer::Batch PrimitiveRenderer::makeBatch(std::span<const Primitive> p
   gl_->BindTexture(GL_TEXTURE_BUFFER, batch.texture.get());
   gl_->TexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, batch.buffer.get());
   return batch;
+}
+
+PrimitiveRenderer boxRenderer(const Gl& gl, std::size_t max_batch) {
+  constexpr int kVertices = 18;  // three faces of two triangles
+  PrimitiveRenderer renderer(gl, render_assets::box_vert(), render_assets::box_frag(), kVertices,
+                             max_batch);
+  renderer.use();
+  gl.Uniform3f(renderer.uniform("light"), kBoxLook.light[0], kBoxLook.light[1], kBoxLook.light[2]);
+  gl.Uniform1f(renderer.uniform("underside"), kBoxLook.underside);
+  gl.Uniform1f(renderer.uniform("edge_darkness"), kBoxLook.edge_darkness);
+  gl.Uniform1f(renderer.uniform("foot_darkness"), kBoxLook.foot_darkness);
+  gl.Uniform1f(renderer.uniform("most_haze"), kBoxLook.haze);
+  gl.Uniform2f(renderer.uniform("haze_range"), -kBoxLook.haze_before, kBoxLook.haze_behind);
+  return renderer;
+}
+
+PrimitiveRenderer lineRenderer(const Gl& gl) {
+  constexpr int kVertices = 6;
+  PrimitiveRenderer renderer(gl, render_assets::line_vert(), render_assets::line_frag(), kVertices);
+  renderer.use();
+  gl.Uniform1f(renderer.uniform("lift"), kLineLook.lift);
+  return renderer;
 }
 
 GLint PrimitiveRenderer::uniform(const char* name) const {

@@ -55,7 +55,6 @@ class PrimitiveRenderer {
   /// RenderError.
   void draw(const PrimitiveBuffer& primitives, const Viewpoint& viewpoint, float opacity = 1) const;
 
- protected:
   /// Before setting uniforms that stay the same in all pictures.
   void use() const { gl_->UseProgram(program_.get()); }
   [[nodiscard]] GLint uniform(const char* name) const;
@@ -69,5 +68,11 @@ class PrimitiveRenderer {
   int vertices_per_primitive_;
   std::size_t batch_size_;
 };
+
+/// Of solid boxes with dark edges. The shaders do the shading and the edges, and choose the three
+/// faces that look at the camera.
+PrimitiveRenderer boxRenderer(const Gl& gl, std::size_t max_batch);
+/// Of straight lines of even width in pixels, with smooth borders. Draw them with blending.
+PrimitiveRenderer lineRenderer(const Gl& gl);
 
 }  // namespace broadmark

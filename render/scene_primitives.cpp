@@ -96,19 +96,18 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
   // The visible bodies of a worker's share follow those of the workers before it.
   const std::size_t count = content.boxes.size();
   std::vector<std::size_t> begins(static_cast<std::size_t>(team.size()) + 1, 0);
-  team.run([&](int worker) {
-    const auto [begin, end] = share(count, team.size(), worker);
+  team.run(count, [&](int worker, Range part) {
     std::size_t visible = 0;
-    for (std::size_t body = begin; body < end; ++body) visible += is_visible(body) ? 1 : 0;
+    for (std::size_t body = part.begin; body < part.end; ++body)
+      visible += is_visible(body) ? 1 : 0;
     begins[static_cast<std::size_t>(worker) + 1] = visible;
   });
   std::partial_sum(begins.begin(), begins.end(), begins.begin());
   scene.boxes.resize(begins.back());
-  team.run([&](int worker) {
-    const auto [begin, end] = share(count, team.size(), worker);
+  team.run(count, [&](int worker, Range part) {
     auto box =
         scene.boxes.begin() + static_cast<std::ptrdiff_t>(begins[static_cast<std::size_t>(worker)]);
-    for (std::size_t body = begin; body < end; ++body) {
+    for (std::size_t body = part.begin; body < part.end; ++body) {
       if (!is_visible(body)) continue;
       Rgb colour = content.colours[body];
       if (!is_selected.empty() && is_selected[body]) {

@@ -1,10 +1,17 @@
+// The scene is drawn by OpenGL, or, where that runs on the processor, by the splatter.
 #include "broadmark/render/scene_view.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <string_view>
 
+#include "axes_cross.h"
 #include "broadmark/render/framebuffer.h"
-#include "scene_painter.h"
+#include "colour.h"
+#include "primitive_renderer.h"
+#include "scene_primitives.h"
+#include "splatter.h"
 
 namespace broadmark {
 namespace {
@@ -28,10 +35,30 @@ class TargetGuard {
   GLint viewport_[4]{};
 };
 
+bool splats(const Gl& gl, Technique technique) {
+  return technique == Technique::splat ||
+         (technique == Technique::automatic && isSoftwareRenderer(gl));
+}
+
 int samplesOf(const Gl& gl, int wanted, bool is_splatting) {
   if (is_splatting) return 1;
   if (wanted != 0) return wanted;
   return isSoftwareRenderer(gl) ? 1 : Framebuffer::kSamples;
+}
+
+void setClearColour(const Gl& gl, Rgb colour) {
+  const std::array rgb = components(colour);
+  gl.ClearColor(rgb[0], rgb[1], rgb[2], 1);
+}
+
+Aabb boundsOf(std::span<const Primitive> boxes, Aabb bounds) {
+  for (const Primitive& box : boxes) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      bounds.min[axis] = std::min(bounds.min[axis], box.from[axis]);
+      bounds.max[axis] = std::max(bounds.max[axis], box.to[axis]);
+    }
+  }
+  return bounds;
 }
 
 }  // namespace
@@ -46,9 +73,171 @@ bool isSoftwareRenderer(const Gl& gl) {
          is_in_name("Software") || is_in_name("SwiftShader");
 }
 
+/// Keeps boxes and lines as primitives and makes them again only when the content has changed.
+class SceneView::Painter {
+ public:
+  Painter(const Gl& gl, const SceneViewOptions& options)
+      : gl_(&gl),
+        team_(std::max(1, options.threads)),
+        splatter_(splats(gl, options.technique) ? std::make_unique<Splatter>(team_, options.isa)
+                                                : nullptr),
+        boxes_(boxRenderer(gl, options.max_batch)),
+        lines_(lineRenderer(gl)) {}
+
+  /// Takes over what has changed in the content. Whether anything has.
+  bool update(const SceneViewContent& content);
+  /// Draws what was last taken over, and leaves `target` bound.
+  void draw(const Viewpoint& viewpoint, const Framebuffer& target);
+
+  /// Bounds of bodies and world, in view space.
+  [[nodiscard]] const Aabb& bounds() const { return bounds_; }
+  [[nodiscard]] bool isSplatting() const { return splatter_ != nullptr; }
+
+ private:
+  /// Everything that changes a picture, except its size and the camera.
+  struct Drawn {
+    std::uint64_t bodies_revision = 0;
+    std::uint64_t lines_revision = 0;
+    ViewSpace space;
+    Aabb world;
+    SceneTheme theme;
+    bool shows_world = false;
+    bool shows_grid = false;
+    bool shows_axes = false;
+    float scale = 1;
+
+    friend bool operator==(const Drawn&, const Drawn&) = default;
+  };
+  /// The scene on the GPU.
+  struct Uploaded {
+    PrimitiveBuffer boxes;
+    PrimitiveBuffer floor;
+    std::array<PrimitiveBuffer, ScenePrimitives::layers> lines;
+  };
+  void upload(bool bodies, bool lines);
+  void drawByGl(const Viewpoint& viewpoint) const;
+  void drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const;
+  void drawAxes(const Viewpoint& viewpoint) const;
+
+  const Gl* gl_;
+  ThreadTeam team_;
+  std::unique_ptr<Splatter> splatter_;  ///< null: OpenGL draws the scene
+  PrimitiveRenderer boxes_;
+  PrimitiveRenderer lines_;
+
+  std::optional<Drawn> drawn_;
+  ScenePrimitives scene_;
+  Uploaded uploaded_;  ///< empty if the splatter draws
+  Aabb bounds_;
+};
+
+bool SceneView::Painter::update(const SceneViewContent& content) {
+  const Drawn wanted{content.bodies_revision, content.lines_revision, content.space,
+                     content.world,           content.theme,          content.shows_world,
+                     content.shows_grid,      content.shows_axes,     content.scale};
+  if (drawn_ == wanted) return false;
+  const bool all = !drawn_ || drawn_->space != wanted.space;
+  const bool bodies = all || drawn_->bodies_revision != wanted.bodies_revision ||
+                      drawn_->theme != wanted.theme || drawn_->scale != wanted.scale;
+  const bool lines =
+      all || drawn_->lines_revision != wanted.lines_revision || drawn_->scale != wanted.scale;
+  if (bodies) {
+    setBodies(scene_, content, team_);
+    setOutlines(scene_, content);
+  }
+  if (lines) setLines(scene_, content);
+  setSurroundings(scene_, content);
+  bounds_ = boundsOf(scene_.boxes, content.space.toView(content.world));
+  if (!splatter_) upload(bodies, lines);
+  drawn_ = wanted;
+  return true;
+}
+
+void SceneView::Painter::upload(bool bodies, bool lines) {
+  const auto upload_layers = [&](std::initializer_list<ScenePrimitives::Layer> layers) {
+    for (const ScenePrimitives::Layer layer : layers) {
+      uploaded_.lines[layer] = lines_.upload(scene_.lines[layer].lines);
+    }
+  };
+  if (bodies) {
+    uploaded_.boxes = boxes_.upload(scene_.boxes);
+    upload_layers({ScenePrimitives::outlines});
+  }
+  if (lines) {
+    upload_layers({ScenePrimitives::hidden, ScenePrimitives::faint, ScenePrimitives::shown});
+  }
+  uploaded_.floor = boxes_.upload(scene_.floor);
+  upload_layers({ScenePrimitives::grid, ScenePrimitives::world});
+}
+
+void SceneView::Painter::draw(const Viewpoint& viewpoint, const Framebuffer& target) {
+  gl_->Disable(GL_SCISSOR_TEST);
+  gl_->Disable(GL_CULL_FACE);
+  gl_->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  if (splatter_) {
+    splatter_->draw(scene_, viewpoint);
+    target.write(splatter_->colours());
+    target.bind();
+  } else {
+    target.bind();
+    drawByGl(viewpoint);
+  }
+  if (drawn_->shows_axes) drawAxes(viewpoint);
+}
+
+void SceneView::Painter::drawByGl(const Viewpoint& viewpoint) const {
+  gl_->Enable(GL_DEPTH_TEST);
+  gl_->DepthFunc(GL_LEQUAL);
+  gl_->Disable(GL_BLEND);
+  setClearColour(*gl_, viewpoint.haze);
+  gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+  boxes_.draw(uploaded_.boxes, viewpoint);
+
+  gl_->DepthMask(GL_FALSE);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // the picture stays opaque
+  // At the far end of the depth range: everything drawn so far is in front of it.
+  gl_->DepthRange(1, 1);
+  boxes_.draw(uploaded_.floor, viewpoint);
+  gl_->DepthRange(0, 1);
+  gl_->Enable(GL_BLEND);
+  for (int layer = 0; layer < ScenePrimitives::layers; ++layer) {
+    drawLines(static_cast<ScenePrimitives::Layer>(layer), viewpoint);
+  }
+  gl_->Disable(GL_BLEND);
+  gl_->Disable(GL_DEPTH_TEST);
+  gl_->DepthMask(GL_TRUE);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void SceneView::Painter::drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const {
+  const LineLayer& how = scene_.lines[layer];
+  const PrimitiveBuffer& lines = uploaded_.lines[layer];
+  if (how.opacity_behind > 0) {
+    gl_->DepthFunc(GL_GREATER);
+    lines_.draw(lines, viewpoint, how.opacity_behind);
+    gl_->DepthFunc(GL_LEQUAL);
+  }
+  if (how.where_no_box_is) gl_->DepthRange(1, 1);
+  lines_.draw(lines, viewpoint);
+  gl_->DepthRange(0, 1);
+}
+
+void SceneView::Painter::drawAxes(const Viewpoint& viewpoint) const {
+  const float scale = drawn_->scale;
+  const Viewpoint corner = axesViewpoint(viewpoint, scale);
+  const auto margin = static_cast<int>(kAxesMargin * scale);
+  gl_->Viewport(margin, margin, corner.width, corner.height);
+  gl_->Disable(GL_DEPTH_TEST);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+  gl_->Enable(GL_BLEND);
+  lines_.draw(lines_.upload(axesCross(viewpoint.camera, scale)), corner);
+  gl_->Disable(GL_BLEND);
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 SceneView::SceneView(const Gl& gl, const SceneViewOptions& options)
     : gl_(&gl),
-      painter_(std::make_unique<ScenePainter>(gl, options)),
+      painter_(std::make_unique<Painter>(gl, options)),
       samples_(samplesOf(gl, options.samples, painter_->isSplatting())) {
   resize(1, 1);
 }

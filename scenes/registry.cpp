@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene.h"
 #include "engines/replay.h"
-#include "recorders/recorder.h"
 
 namespace broadmark::scenes {
 
@@ -20,26 +18,6 @@ namespace broadmark::scenes {
 #define LIST "engine_list.inc"
 #define ENTRY_TYPE EngineEntry
 #define ENTRIES builtinEngineEntries
-#include "entries.inl"
-
-#define LIST "replay_list.inc"
-#define ENTRY_TYPE ReplayEntry
-#define ENTRIES replayEntries
-#include "entries.inl"
-
-#define LIST "recorder_list.inc"
-#define ENTRY_TYPE RecorderEntry
-#define ENTRIES recorderEntries
-#include "entries.inl"
-
-#define LIST "object_type_list.inc"
-#define ENTRY_TYPE ObjectType
-#define ENTRIES objectTypes
-#include "entries.inl"
-
-#define LIST "brush_list.inc"
-#define ENTRY_TYPE BrushEntry
-#define ENTRIES brushEntries
 #include "entries.inl"
 
 namespace {
@@ -82,7 +60,5 @@ std::vector<EngineListing> availableEngines() {
   std::ranges::move(listingsOf(scenes::replayEntries()), std::back_inserter(listings));
   return listings;
 }
-
-std::vector<RecorderListing> builtinRecorders() { return listingsOf(scenes::recorderEntries()); }
 
 }  // namespace broadmark

@@ -42,14 +42,11 @@ void putInOrder(std::span<std::uint32_t> bodies, std::span<const Aabb> boxes, st
     if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
   }
   const std::size_t half = firstHalf(bodies.size(), block);
-  std::ranges::nth_element(
-      bodies, bodies.begin() + static_cast<std::ptrdiff_t>(half), {},
-      [&](std::uint32_t body) { return Moments::centre(boxes[body], longest); });
+  std::ranges::nth_element(bodies, bodies.begin() + static_cast<std::ptrdiff_t>(half), {},
+                           [&](std::uint32_t body) { return centreOf(boxes[body], longest); });
   putInOrder(bodies.first(half), boxes, block);
   putInOrder(bodies.subspan(half), boxes, block);
 }
-
-bool contains(const Aabb& outer, const Aabb& inner) { return merged(outer, inner) == outer; }
 
 }  // namespace
 

@@ -335,7 +335,7 @@ void Tree::trim(Node& node, const Place& place, Worker& worker) {
 bool Tree::translate(Node& node, const Place& place, Worker& worker) {
   const std::span<const std::uint32_t> bodies(at(place.begin), node.size);
   double sum = 0;
-  for (const std::uint32_t body : bodies) sum += Moments::centre(boxes_[body], node.axis);
+  for (const std::uint32_t body : bodies) sum += centreOf(boxes_[body], node.axis);
   const auto mean = static_cast<float>(sum / node.size);
   if (mean == node.plane || !isGood(populationsAt(bodies, node.axis, mean))) return false;
 
@@ -401,7 +401,7 @@ bool Tree::findSplit(Node& node, std::span<const std::uint32_t> bodies, Worker& 
     std::vector<float>& centres = worker.centres;
     centres.clear();
     for (const std::uint32_t body : bodies) {
-      centres.push_back(static_cast<float>(Moments::centre(boxes_[body], axis)));
+      centres.push_back(static_cast<float>(centreOf(boxes_[body], axis)));
     }
     const auto middle = centres.begin() + static_cast<std::ptrdiff_t>(centres.size() / 2);
     std::ranges::nth_element(centres, middle);

@@ -10,7 +10,6 @@
 #include <map>
 #include <set>
 
-#include "broadmark/analysis/duel.h"
 #include "broadmark/error.h"
 #include "broadmark/harness/runner.h"
 #include "broadmark/names.h"
@@ -119,17 +118,9 @@ std::vector<ConditionDifference> differencesOf(const Candidate& before, const Ca
 }
 
 Verdict verdictOn(const Interval& ratio, const ComparisonOptions& options) {
-  switch (standingOf(ratio, options.margin)) {
-    case Standing::same:
-      return Verdict::same;
-    case Standing::faster:
-      return Verdict::faster;
-    case Standing::slower:
-      return ratio.low > 1 + options.fail_above ? Verdict::regressed : Verdict::slower;
-    case Standing::undecided:
-      break;
-  }
-  return Verdict::undecided;
+  const Verdict verdict = verdictOn(ratio, options.margin);
+  const bool is_tolerated = verdict != Verdict::slower || ratio.low <= 1 + options.fail_above;
+  return is_tolerated ? verdict : Verdict::regressed;
 }
 
 /// `before` has one case or, of several baselines, that case of each.

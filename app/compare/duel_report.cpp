@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "broadmark/analysis/run_ratio.h"
 #include "broadmark/json_fields.h"
 #include "support/table.h"
 #include "support/words.h"
@@ -55,14 +56,12 @@ std::string verdictOnTwo(const DuelResult& result) {
   const Estimate& ratio = std::ranges::find(result.places, 1U, &DuelPlace::side)->ratio;
   const std::string& a = result.sides[0].name;
   const std::string& b = result.sides[1].name;
-  switch (standingOf(ratio.ci95, result.margin)) {
-    case Standing::same:
-      return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * result.margin);
-    case Standing::undecided:
-      return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
-    case Standing::faster:
-    case Standing::slower:
-      break;
+  const Verdict verdict = verdictOn(ratio.ci95, result.margin);
+  if (verdict == Verdict::same) {
+    return fmt::format("{} and {}: the same within {:g} %", a, b, 100 * result.margin);
+  }
+  if (verdict == Verdict::undecided) {
+    return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
   }
   return fmt::format("{} is {} than {}", b, changeText(ratio.value), a);
 }

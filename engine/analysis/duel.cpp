@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "broadmark/analysis/run_ratio.h"
 #include "broadmark/error.h"
 
 namespace broadmark {
@@ -40,7 +41,7 @@ std::vector<DuelPlace> ranking(const DuelResult& result) {
   std::size_t first = 0;  // of the present place
   for (std::size_t i = 1; i < places.size(); ++i) {
     const Interval ratio = result.ratio(places[i].side, places[first].side).ci95;
-    if (standingOf(ratio, result.margin) == Standing::slower) first = i;
+    if (verdictOn(ratio, result.margin) == Verdict::slower) first = i;
     places[i].place = first + 1;
   }
   return places;
@@ -163,13 +164,6 @@ class Duel {
 };
 
 }  // namespace
-
-Standing standingOf(const Interval& ratio, double margin) {
-  if (ratio.low >= 1 / (1 + margin) && ratio.high <= 1 + margin) return Standing::same;
-  if (ratio.low > 1) return Standing::slower;
-  if (ratio.high < 1) return Standing::faster;
-  return Standing::undecided;
-}
 
 bool DuelResult::ok() const {
   return std::ranges::all_of(sides, [](const Side& side) { return side.status == Status::ok; });

@@ -222,4 +222,11 @@ std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const Cas
   return result;
 }
 
+Verdict verdictOn(const Interval& ratio, double margin) {
+  if (ratio.low >= 1 / (1 + margin) && ratio.high <= 1 + margin) return Verdict::same;
+  if (ratio.low > 1) return Verdict::slower;
+  if (ratio.high < 1) return Verdict::faster;
+  return Verdict::undecided;
+}
+
 }  // namespace broadmark

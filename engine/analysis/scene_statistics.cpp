@@ -14,25 +14,10 @@
 namespace broadmark {
 namespace {
 
-std::array<double, 3> edges(const Aabb& box) {
-  std::array<double, 3> lengths{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lengths[axis] = double{box.max[axis]} - double{box.min[axis]};
-  }
-  return lengths;
-}
-
 double volume(const Aabb& box) {
-  const auto [x, y, z] = edges(box);
-  return x * y * z;
-}
-
-bool holdsCentre(const Aabb& world, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double centre = (double{box.min[axis]} + double{box.max[axis]}) / 2;
-    if (centre < world.min[axis] || centre > world.max[axis]) return false;
-  }
-  return true;
+  double volume = 1;
+  for (int axis = 0; axis < 3; ++axis) volume *= double{box.max[axis]} - double{box.min[axis]};
+  return volume;
 }
 
 double ratio(double part, double whole) { return whole > 0 ? part / whole : 0; }
@@ -63,7 +48,7 @@ FrameStatistics statisticsOf(const SceneInfo& scene, const Frame& frame,
   double filled = 0;
   for (const Aabb& box : frame.boxes) {
     if (isEmpty(box)) continue;
-    extents.push_back(std::ranges::max(edges(box)));
+    extents.push_back(longestEdge(box));
     filled += volume(box);
     if (!holdsCentre(scene.world, box)) ++figures.outside;
   }

@@ -28,11 +28,6 @@ std::vector<int> coresOfList(std::istream& list) {
   return cores;
 }
 
-double busyShare(const BusyShares& busy, int core) {
-  const auto found = busy.find(core);
-  return found == busy.end() ? 0 : found->second;
-}
-
 /// What speaks against a core, the worst first: one of its siblings is taken; other work beside it.
 std::tuple<bool, double> disadvantage(int core, const std::vector<int>& taken,
                                       const BusyShares& busy, const CoreSiblings& siblings) {
@@ -49,6 +44,11 @@ std::tuple<bool, double> disadvantage(int core, const std::vector<int>& taken,
 }
 
 }  // namespace
+
+double busyShare(const BusyShares& busy, int core) {
+  const auto found = busy.find(core);
+  return found == busy.end() ? 0 : found->second;
+}
 
 std::vector<int> usableCores() {
   std::vector<int> cores;

@@ -27,24 +27,20 @@ NamedLock* lockOf(std::string_view name) {
 
 }  // namespace
 
-ExclusiveUse::ExclusiveUse(std::string_view name) : lock_(lockOf(name)) {
+template <bool exclusive>
+StateUse<exclusive>::StateUse(std::string_view name) : lock_(lockOf(name)) {
   if (lock_ == nullptr) return;
   const std::lock_guard entering(lock_->door);
-  lock_->room.lock();
+  exclusive ? lock_->room.lock() : lock_->room.lock_shared();
 }
 
-ExclusiveUse::~ExclusiveUse() {
-  if (lock_ != nullptr) lock_->room.unlock();
-}
-
-SharedUse::SharedUse(std::string_view name) : lock_(lockOf(name)) {
+template <bool exclusive>
+StateUse<exclusive>::~StateUse() {
   if (lock_ == nullptr) return;
-  const std::lock_guard entering(lock_->door);
-  lock_->room.lock_shared();
+  exclusive ? lock_->room.unlock() : lock_->room.unlock_shared();
 }
 
-SharedUse::~SharedUse() {
-  if (lock_ != nullptr) lock_->room.unlock_shared();
-}
+template class StateUse<true>;
+template class StateUse<false>;
 
 }  // namespace broadmark

@@ -65,15 +65,12 @@ bool isCompacted(const Case& run, const SceneInfo& scene) {
 
 /// Whether each of several worlds is for an instance of its own.
 bool isApart(const Case& run, const SceneInfo& scene) {
-  // From here on this is quicker than to put them side by side, where bodies share an axis or a
-  // column of cells with those of other worlds.
-  constexpr std::size_t kManyBodies = 100;
   const AlgorithmTraits& traits = run.algorithm.traits;
   const std::size_t worlds = worldCount(scene);
   if (worlds < 2) return false;
   if (traits.instance_per_world) return true;
   return traits.changing_worlds == ChangingWorlds::compacted && !traits.on_device &&
-         scene.objects / worlds >= kManyBodies;
+         scene.objects / worlds >= traits.side_by_side_below;
 }
 
 std::unique_ptr<BroadPhase> makeForOneWorld(const Case& run, const SceneInfo& scene) {

@@ -16,11 +16,6 @@ using Texts = std::vector<std::string>;
 /// As much of a core as may be busy unmentioned. A tick in a short moment is no news.
 constexpr double kLittle = 0.25;
 
-double busyShareOf(const MachineState& machine, int core) {
-  const auto found = machine.busy.find(core);
-  return found == machine.busy.end() ? 0 : found->second;
-}
-
 /// What a file holds first; nothing if there is none.
 std::optional<int> numberIn(const std::filesystem::path& path) {
   std::ifstream file(path);
@@ -37,7 +32,7 @@ bool hasTurbo(const SystemFolders& folders) {
 
 void warnOfLoad(Texts& warnings, const MachineState& machine) {
   double busy = 0;
-  for (const int core : machine.usable_cores) busy += busyShareOf(machine, core);
+  for (const int core : machine.usable_cores) busy += busyShare(machine.busy, core);
   if (busy < kLittle) return;
   warnings.push_back(
       fmt::format("other programs keep {:.1f} of {} cores busy: times are longer and vary more",
@@ -51,7 +46,7 @@ void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
     const auto beside = machine.siblings.find(core);
     if (beside == machine.siblings.end()) continue;
     for (const int sibling : beside->second) {
-      if (busyShareOf(machine, sibling) < kLittle) continue;
+      if (busyShare(machine.busy, sibling) < kLittle) continue;
       warnings.push_back(
           fmt::format("core {} is busy: it shares its units with core {}, which is slower then",
                       sibling, core));

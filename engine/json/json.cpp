@@ -15,69 +15,49 @@ InputError notJson(std::string_view name, const nlohmann::detail::exception& err
                   what.substr(end_of_prefix == std::string_view::npos ? 0 : end_of_prefix + 2)));
 }
 
-/// Visits the keys of the outermost object, and stops where it is told to.
-class TopLevelReader : public JsonEvents {
+/// Looks for a key of the outermost object, and for the text that it has.
+class KeyReader final : public JsonEvents {
  public:
-  using JsonEvents::JsonEvents;
+  /// Stops at the key, or at its text if that is wanted.
+  KeyReader(std::string_view wanted, bool wants_text, std::string_view name)
+      : JsonEvents(name), wanted_(wanted), wants_text_(wants_text) {}
 
   bool start_object(std::size_t) override {
     in_object_ |= depth_ == 0;
-    return open();
-  }
-  bool end_object() override { return close(); }
-  bool start_array(std::size_t) override { return open(); }
-  bool end_array() override { return close(); }
-
- protected:
-  [[nodiscard]] bool atTop() const { return in_object_ && depth_ == 1; }
-
- private:
-  bool open() {
     ++depth_;
     return true;
   }
-  bool close() {
+  bool end_object() override { return end_array(); }
+  bool start_array(std::size_t) override {
+    ++depth_;
+    return true;
+  }
+  bool end_array() override {
     --depth_;
     return true;
   }
-
-  std::size_t depth_ = 0;
-  bool in_object_ = false;
-};
-
-class SchemaReader final : public TopLevelReader {
- public:
-  using TopLevelReader::TopLevelReader;
-
   bool key(string_t& key) override {
-    if (atTop()) is_schema_ = key == "schema";
-    return true;
+    if (isAtTop()) is_there_ = key == wanted_;
+    return wants_text_ || !is_there_;
   }
   bool string(string_t& text) override {
-    if (atTop() && is_schema_) schema_ = text;
-    return schema_.empty();
+    if (isAtTop() && is_there_) text_ = text;
+    return text_.empty();
   }
-  [[nodiscard]] const std::string& schema() const { return schema_; }
+
+  /// Whether the last key of the outermost object is the wanted one.
+  [[nodiscard]] bool isThere() const { return is_there_; }
+  [[nodiscard]] const std::string& text() const { return text_; }
 
  private:
-  bool is_schema_ = false;
-  std::string schema_;
-};
+  [[nodiscard]] bool isAtTop() const { return in_object_ && depth_ == 1; }
 
-class KeyFinder final : public TopLevelReader {
- public:
-  KeyFinder(std::string_view wanted, std::string_view name)
-      : TopLevelReader(name), wanted_(wanted) {}
-
-  bool key(string_t& key) override {
-    found_ |= atTop() && key == wanted_;
-    return !found_;
-  }
-  [[nodiscard]] bool found() const { return found_; }
-
- private:
   std::string_view wanted_;
-  bool found_ = false;
+  bool wants_text_;
+  std::size_t depth_ = 0;
+  bool in_object_ = false;
+  bool is_there_ = false;
+  std::string text_;
 };
 
 std::string dumped(const Json& json, int indent) {
@@ -116,15 +96,15 @@ bool JsonEvents::parse_error(std::size_t, const std::string&,
 void readJson(std::string_view text, JsonEvents& events) { Json::sax_parse(text, &events); }
 
 std::string jsonSchema(std::string_view text, std::string_view name) {
-  SchemaReader reader(name);
+  KeyReader reader("schema", true, name);
   readJson(text, reader);
-  return reader.schema();
+  return reader.text();
 }
 
 bool jsonHasKey(std::string_view text, std::string_view key, std::string_view name) {
-  KeyFinder finder(key, name);
-  readJson(text, finder);
-  return finder.found();
+  KeyReader reader(key, false, name);
+  readJson(text, reader);
+  return reader.isThere();
 }
 
 }  // namespace broadmark

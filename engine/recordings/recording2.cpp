@@ -186,7 +186,6 @@ template <class Take>
 void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
   const RecordedFrame& frame = index_[index];
   const FrameLayout layout(frame.changed, frame.key == index, scene().objects);
-  const bool may_be_empty = !scene().all_present;
   std::uint64_t offset = frame.offset + layout.idBytes();
   for (std::uint64_t first = 0; first < layout.rows; first += kPieceRows) {
     const std::uint64_t rows = std::min(kPieceRows, layout.rows - first);
@@ -195,8 +194,8 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
     hasher_.add(raw);
     offset += raw.size();
     for (std::uint64_t row = 0; row < rows; ++row) {
-      const BoxCorners box(raw.data() + sizeof(PackedBox) * row);
-      if (!box.isRight(may_be_empty)) failAt(index, first + row, box);
+      const Aabb box = unpacked(raw.data() + sizeof(PackedBox) * row);
+      if (!isRecordable(box, scene().all_present)) failAt(index, first + row, box);
       take(first + row, box);
     }
   }
@@ -205,30 +204,27 @@ void Recording2Reader::readRows(std::uint32_t index, Take&& take) {
 void Recording2Reader::readAllBoxes(std::uint32_t index, bool follows) {
   // Who relies on `changed` misses what changed without being named.
   if (follows && changed_ < scene().objects) {
-    readRows(index,
-             [&, listed = std::uint32_t{0}](std::uint64_t body, const BoxCorners& box) mutable {
-               if (listed < changed_ && ids_[listed] == body) {
-                 ++listed;
-               } else if (!box.is(boxes_[body])) {
-                 failAt(index, body,
-                        "differs from the frame before, but is not among the changed "
-                        "bodies");
-               }
-               box.put(boxes_[body]);
-             });
+    readRows(index, [&, listed = std::uint32_t{0}](std::uint64_t body, const Aabb& box) mutable {
+      if (listed < changed_ && ids_[listed] == body) {
+        ++listed;
+      } else if (!sameBits(box, boxes_[body])) {
+        failAt(index, body,
+               "differs from the frame before, but is not among the changed "
+               "bodies");
+      }
+      boxes_[body] = box;
+    });
   } else {
-    readRows(index, [&](std::uint64_t body, const BoxCorners& box) { box.put(boxes_[body]); });
+    readRows(index, [&](std::uint64_t body, const Aabb& box) { boxes_[body] = box; });
   }
 }
 
 void Recording2Reader::readChangedBoxes(std::uint32_t index) {
-  readRows(index, [&](std::uint64_t row, const BoxCorners& box) { box.put(boxes_[ids_[row]]); });
+  readRows(index, [&](std::uint64_t row, const Aabb& box) { boxes_[ids_[row]] = box; });
 }
 
-void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box) {
-  Aabb unpacked;
-  box.put(unpacked);
-  failAt(index, row, "the box " + recordingFault(unpacked, scene().all_present));
+void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const Aabb& box) {
+  failAt(index, row, "the box " + recordingFault(box, scene().all_present));
 }
 
 void Recording2Reader::failAt(std::uint32_t index, std::uint64_t row, const std::string& what) {

@@ -92,8 +92,7 @@ Aabb worldIn(const JsonFields& fields) {
             std::abs(number.get<double>()) <= double{std::numeric_limits<float>::max()};
     if (right) numbers[i] = static_cast<float>(number.get<double>());
   }
-  Aabb world;
-  BoxCorners(std::as_bytes(std::span(numbers)).data()).put(world);
+  const Aabb world = unpacked(std::as_bytes(std::span(numbers)).data());
   if (!right || !isSound(world)) {
     throw InputError(fmt::format(
         "{}: two corners of three finite numbers, min <= max, are expected", fields.path("world")));

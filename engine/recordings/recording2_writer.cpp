@@ -18,10 +18,6 @@ namespace {
 
 /// Most frames from one key frame to the next: a frame in which little changed takes its time, too.
 constexpr std::uint32_t kMostBetweenKeys = 256;
-bool isRecordable(const Aabb& box, bool all_present) {
-  return isSound(box) || (!all_present && box == kEmptyBox);
-}
-
 class Recording2File final : public BoxRecordingFile {
  public:
   Recording2File(const std::filesystem::path& path, const SceneInfo& scene,

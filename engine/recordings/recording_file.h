@@ -66,6 +66,11 @@ inline bool isSound(const Aabb& box) {
   return (sound[0] & sound[1] & sound[2]) != 0;
 }
 
+/// Whether a recording 2 may hold it: the same, or that of a body that may be absent.
+inline bool isRecordable(const Aabb& box, bool all_present) {
+  return isSound(box) || (!all_present && box == kEmptyBox);
+}
+
 inline float squaredLength(const Quaternion& q) {
   return q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
 }

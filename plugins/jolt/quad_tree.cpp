@@ -251,19 +251,18 @@ class QuadTree final : public BoxBroadPhase {
   }
 
   void updateBounds(const Ids& ids) {
-    team().run([&](int worker) {
-      const auto [begin, end] = share(ids.size(), team().size(), worker);
-      for (std::size_t i = begin; i < end; ++i) {
+    team().run(ids.size(), [&](int, Range part) {
+      for (std::size_t i = part.begin; i < part.end; ++i) {
         bodies_[ids[i].GetIndex()]->CalculateWorldSpaceBoundsInternal();
       }
     });
   }
 
   void tellMoved() {
-    team().run([&](int worker) {
-      const auto [begin, end] = share(moved_.size(), team().size(), worker);
-      if (begin == end) return;
-      trees_.NotifyBodiesAABBChanged(moved_.data() + begin, static_cast<int>(end - begin), false);
+    team().run(moved_.size(), [&](int, Range part) {
+      if (part.size() == 0) return;
+      trees_.NotifyBodiesAABBChanged(moved_.data() + part.begin, static_cast<int>(part.size()),
+                                     false);
     });
   }
 

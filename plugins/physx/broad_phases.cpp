@@ -159,7 +159,7 @@ class PhysX final : public BroadPhase {
     }
     for (PxU32 i = 0; i < results.mNbCreatedPairs; ++i) {
       const Pair pair = pairOf(results.mCreatedPairs[i]);
-      if (isWanted(pair)) apart_.insert(pair);
+      if (isWanted(pair)) apart_.insert(PairRun(&pair, 1));
     }
   }
 
@@ -223,10 +223,10 @@ class PhysX final : public BroadPhase {
   /// No longer a candidate.
   void drop(Pair pair) {
     if (overlapping_.contains(pair)) {
-      overlapping_.erase(pair);
+      overlapping_.erase(PairRun(&pair, 1));
       ended_.add(pair.a, pair.b);
     } else {
-      apart_.erase(pair);
+      apart_.erase(PairRun(&pair, 1));
     }
   }
 
@@ -244,18 +244,17 @@ class PhysX final : public BroadPhase {
   /// Pairs that no longer overlap, and are candidates yet.
   void findParted() {
     const PairRun pairs = overlapping_.run();
-    team_->run([&](int worker) {
+    team_->run(pairs.size(), [&](int worker, Range part) {
       PairBuffer& parted = parted_[static_cast<std::size_t>(worker)];
       parted.clear();
-      const auto [begin, end] = share(pairs.size(), team_->size(), worker);
-      for (const Pair pair : pairs.subspan(begin, end - begin)) {
+      for (const Pair pair : pairs.subspan(part.begin, part.size())) {
         if (hasMoved(pair) && !overlap(pair)) parted.add(pair.a, pair.b);
       }
     });
     for (const PairBuffer& parted : parted_) {
       for (const Pair pair : parted.run()) {
         drop(pair);
-        apart_.insert(pair);
+        apart_.insert(PairRun(&pair, 1));
       }
     }
   }
@@ -267,8 +266,8 @@ class PhysX final : public BroadPhase {
       if (hasMoved(pair) && overlap(pair)) met_.push_back(pair);
     }
     for (const Pair pair : met_) {
-      apart_.erase(pair);
-      overlapping_.insert(pair);
+      apart_.erase(PairRun(&pair, 1));
+      overlapping_.insert(PairRun(&pair, 1));
       began_.add(pair.a, pair.b);
     }
   }

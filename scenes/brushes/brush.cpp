@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/registry.h"
 #include "broadmark/scenes/simulation.h"
-#include "brushes/occupied.h"
 #include "entries.h"
 
 namespace broadmark::scenes {
@@ -29,6 +29,29 @@ Aabb core(Aabb box) {
     box.max[axis] -= skin;
   }
   return box;
+}
+
+/// The exponent of the least power of two above all edges.
+int exponentOf(const Aabb& box) {
+  int exponent = 0;
+  std::frexp(longestEdge(box), &exponent);
+  return exponent;
+}
+
+/// Cells per unit of length in a grid of that exponent.
+double cellsPerUnit(int exponent) { return std::ldexp(1.0, -exponent - 1); }
+
+std::int64_t cellAlong(double coordinate, double cells_per_unit) {
+  return static_cast<std::int64_t>(std::floor(coordinate * cells_per_unit));
+}
+
+std::uint64_t cellAt(const std::array<std::int64_t, 3>& indices) {
+  std::uint64_t hash = 0;
+  for (const std::int64_t index : indices) {
+    hash = (hash ^ static_cast<std::uint64_t>(index)) * 0x9E3779B97F4A7C15U;
+    hash ^= hash >> 32;
+  }
+  return hash;
 }
 
 std::size_t checkedCount(double count) {
@@ -53,19 +76,49 @@ void Paint::visitParameters(const ParameterVisitor& visit) {
   visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
 }
 
-TakenRoom::TakenRoom(std::span<const AuthoredBody> bodies) : boxes_(std::make_unique<Occupied>()) {
+TakenRoom::TakenRoom(std::span<const AuthoredBody> bodies) {
   for (const AuthoredBody& body : bodies) add(body);
 }
-TakenRoom::~TakenRoom() = default;
-TakenRoom::TakenRoom(TakenRoom&&) noexcept = default;
-TakenRoom& TakenRoom::operator=(TakenRoom&&) noexcept = default;
 
 void TakenRoom::add(const AuthoredBody& body) {
-  boxes_->add(core(tightBox(body.shape, body.pose)));
+  const Aabb box = core(tightBox(body.shape, body.pose));
+  const int exponent = exponentOf(box);
+  const double scale = cellsPerUnit(exponent);
+  const auto along = [&](int axis) { return cellAlong(box.min[axis], scale); };
+  grids_[exponent][cellAt({along(0), along(1), along(2)})].push_back(box);
 }
 
 bool TakenRoom::overlaps(const AuthoredBody& body) const {
-  return boxes_->overlaps(core(tightBox(body.shape, body.pose)));
+  const Aabb box = core(tightBox(body.shape, body.pose));
+  return std::ranges::any_of(
+      grids_, [&](const auto& grid) { return overlapsIn(grid.second, grid.first, box); });
+}
+
+bool TakenRoom::overlapsIn(const Grid& grid, int exponent, const Aabb& box) {
+  const auto any_overlaps = [&](const std::vector<Aabb>& boxes) {
+    return std::ranges::any_of(boxes, [&](const Aabb& b) { return broadmark::overlaps(b, box); });
+  };
+  const double scale = cellsPerUnit(exponent);
+  std::array<std::int64_t, 3> low;
+  std::array<std::int64_t, 3> high;
+  double cells = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    low[axis] = cellAlong(box.min[axis] - std::ldexp(1.0, exponent), scale);
+    high[axis] = cellAlong(box.max[axis], scale);
+    cells *= static_cast<double>(high[axis] - low[axis] + 1);
+  }
+  if (cells > static_cast<double>(grid.size())) {
+    return std::ranges::any_of(grid, [&](const auto& cell) { return any_overlaps(cell.second); });
+  }
+  for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+    for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+      for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+        const auto cell = grid.find(cellAt({x, y, z}));
+        if (cell != grid.end() && any_overlaps(cell->second)) return true;
+      }
+    }
+  }
+  return false;
 }
 
 Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const TakenRoom& taken,

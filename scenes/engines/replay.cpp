@@ -248,6 +248,21 @@ class ReplaySimulation final : public Simulation {
 
 }  // namespace
 
+PoseSource& Replay::posed() const {
+  if (auto* source = dynamic_cast<PoseSource*>(recording_.get())) return *source;
+  throw InputError(recording_->name() + ": holds boxes only, not the poses that .posrot needs");
+}
+
+std::vector<ReplayEntry> replayEntries() {
+  return {{.listing = {.id = "viewer",
+                       .summary = "replays a recording (.posrot, .aabbs, .broadmark)",
+                       .dynamics = Dynamics::replayed},
+           .bodies_per_recorded = 1,
+           .extensions = {kPosrotExtension, kAabbsExtension, kBroadmarkExtension},
+           .create = makeAs<Replay, Replay>},
+          splitter::entry()};
+}
+
 std::unique_ptr<Simulation> makeReplay(const SceneListing& scene, const ReplayEntry& engine,
                                        std::string_view needed) {
   return std::make_unique<ReplaySimulation>(scene, engine, needed);

@@ -1,5 +1,4 @@
-// Engines that simulate nothing: they make their frames from a recording. One implementation per
-// file, listed in CMakeLists.txt.
+// Engines that simulate nothing: they make their frames from a recording.
 #pragma once
 
 #include <memory>
@@ -12,11 +11,26 @@
 
 namespace broadmark::scenes {
 
-/// The frames made from one recording.
+/// The frames of a recording; as they are, unless overridden.
 class Replay : public FrameSource, public PoseSource {
  public:
-  /// The recording's.
-  virtual std::string inputHash() = 0;
+  explicit Replay(std::unique_ptr<Recording> recording) : recording_(std::move(recording)) {}
+
+  [[nodiscard]] const SceneInfo& scene() const override { return recording_->scene(); }
+  Frame rewind() override { return recording_->rewind(); }
+  std::optional<Frame> next() override { return recording_->next(); }
+  std::span<const Aabb> unturnedBoxes() override { return posed().unturnedBoxes(); }
+  std::span<const Pose> poses() override { return posed().poses(); }
+
+  std::string inputHash() { return recording_->hash(); }
+
+ protected:
+  Recording& recording() { return *recording_; }
+
+ private:
+  [[nodiscard]] PoseSource& posed() const;
+
+  std::unique_ptr<Recording> recording_;
 };
 
 struct ReplayEntry {
@@ -29,8 +43,11 @@ struct ReplayEntry {
   std::unique_ptr<Replay> (*create)(std::unique_ptr<Recording>);
 };
 
-/// All of them, in the order of the list in CMakeLists.txt.
 std::vector<ReplayEntry> replayEntries();
+
+namespace splitter {
+ReplayEntry entry();
+}
 
 /// A replay of a built-in scene: a simulation whose parameters say which recording it reads.
 /// `needed`: the extension of recordings that can hold the scene.

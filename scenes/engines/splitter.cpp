@@ -56,15 +56,14 @@ SceneInfo grown(SceneInfo scene) {
 class Splitter final : public Replay {
  public:
   explicit Splitter(std::unique_ptr<Recording> recording)
-      : recording_(std::move(recording)),
-        whole_(dynamic_cast<PosrotReader&>(*recording_)),
-        info_(grown(recording_->scene())) {}
+      : Replay(std::move(recording)),
+        whole_(dynamic_cast<PosrotReader&>(this->recording())),
+        info_(grown(whole_.scene())) {}
 
   [[nodiscard]] const SceneInfo& scene() const override { return info_; }
-  std::string inputHash() override { return recording_->hash(); }
 
   Frame rewind() override {
-    const Frame whole = recording_->rewind();
+    const Frame whole = whole_.rewind();
     boxes_.resize(info_.objects);
     for (std::size_t i = 0; i < boxes_.size(); ++i) {
       boxes_[i] = partOf(whole.boxes[i / kParts], i % kParts);
@@ -73,7 +72,7 @@ class Splitter final : public Replay {
   }
 
   std::optional<Frame> next() override {
-    const auto whole = recording_->next();
+    const auto whole = whole_.next();
     if (!whole) return {};
     forEachBody([this](std::size_t body, const Pose& pose, const auto& centres) {
       // Each part is as large as the body was, and turned like it.
@@ -108,8 +107,7 @@ class Splitter final : public Replay {
     }
   }
 
-  std::unique_ptr<Recording> recording_;
-  PosrotReader& whole_;  ///< the same
+  PosrotReader& whole_;  ///< the recording
   SceneInfo info_;
   std::vector<Aabb> boxes_;
   std::vector<Pose> poses_;

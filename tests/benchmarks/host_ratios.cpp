@@ -19,6 +19,7 @@
 
 #include "benchmarks/contest.h"
 #include "broadmark/analysis/duel.h"
+#include "broadmark/analysis/run_ratio.h"
 #include "broadmark/harness/worker_process.h"
 #include "torture/inputs.h"
 
@@ -92,7 +93,7 @@ bool measure(const std::string& id, Drifting& frames, const Options& options) {
     return failed->status == Status::unsupported;
   }
   const Estimate ratio = duel.ratio(1, 0);
-  const Standing standing = standingOf(ratio.ci95, kSame);
+  const Verdict verdict = verdictOn(ratio.ci95, kSame);
   fmt::print("{:4} rounds", duel.rounds());
   for (const DuelResult::Side& side : duel.sides) {
     const auto at = [&](double q) { return 1e3 * quantile(side.seconds, q); };
@@ -100,9 +101,9 @@ bool measure(const std::string& id, Drifting& frames, const Options& options) {
                100 * (at(0.75) - at(0.25)) / at(0.5));
   }
   fmt::print("  {:.3f} [{:.3f}, {:.3f}]  {}\n", ratio.value, ratio.ci95.low, ratio.ci95.high,
-             kStandings.nameOf(standing));
+             kVerdicts.nameOf(verdict));
   std::fflush(stdout);
-  return standing == Standing::same || standing == Standing::undecided;
+  return verdict == Verdict::same || verdict == Verdict::undecided;
 }
 
 int run(int argc, char** argv) {

@@ -1,6 +1,7 @@
 // Duels: their statistics on machines that are made up, with all the noise that real ones have.
 
 #include "broadmark/analysis/duel.h"
+#include "broadmark/analysis/run_ratio.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -58,12 +59,12 @@ DuelResult duelOf(const std::vector<double>& seconds, unsigned seed, double prec
   return runDuel(sides, frames, {.precision = precision, .seed = seed, .check = CheckMode::off});
 }
 
-TEST(Standing, IsSameOnlyWithinTheMargin) {
-  EXPECT_EQ(standingOf({0.995, 1.005}, 0.01), Standing::same);
-  EXPECT_EQ(standingOf({1.002, 1.008}, 0.01), Standing::same) << "less than anybody asks for";
-  EXPECT_EQ(standingOf({1.002, 1.02}, 0.01), Standing::slower);
-  EXPECT_EQ(standingOf({0.9, 0.99}, 0.01), Standing::faster);
-  EXPECT_EQ(standingOf({0.42, 5.9}, 0.01), Standing::undecided);
+TEST(Verdict, IsSameOnlyWithinTheMargin) {
+  EXPECT_EQ(verdictOn({0.995, 1.005}, 0.01), Verdict::same);
+  EXPECT_EQ(verdictOn({1.002, 1.008}, 0.01), Verdict::same) << "less than anybody asks for";
+  EXPECT_EQ(verdictOn({1.002, 1.02}, 0.01), Verdict::slower);
+  EXPECT_EQ(verdictOn({0.9, 0.99}, 0.01), Verdict::faster);
+  EXPECT_EQ(verdictOn({0.42, 5.9}, 0.01), Verdict::undecided);
 }
 
 TEST(Duel, ClaimsNoDifferenceWhereThereIsNone) {
@@ -72,8 +73,8 @@ TEST(Duel, ClaimsNoDifferenceWhereThereIsNone) {
   for (int seed = 0; seed < kDuels; ++seed) {
     const DuelResult result = duelOf({1e-4, 1e-4}, static_cast<unsigned>(seed), 0.02);
     EXPECT_TRUE(result.decided);
-    const Standing standing = standingOf(result.ratio(1, 0).ci95, 0.02);
-    claims += standing == Standing::faster || standing == Standing::slower ? 1 : 0;
+    const Verdict verdict = verdictOn(result.ratio(1, 0).ci95, 0.02);
+    claims += verdict == Verdict::faster || verdict == Verdict::slower ? 1 : 0;
   }
   EXPECT_LE(claims, kDuels / 20);
 }
@@ -85,7 +86,7 @@ TEST(Duel, FindsADifferenceOfTenPercent) {
     const DuelResult result = duelOf({1e-4, 1.1e-4}, static_cast<unsigned>(seed), 0.02);
     const Estimate ratio = result.ratio(1, 0);
     EXPECT_NEAR(ratio.value, 1.1, 0.025);
-    found += standingOf(ratio.ci95, 0.02) == Standing::slower ? 1 : 0;
+    found += verdictOn(ratio.ci95, 0.02) == Verdict::slower ? 1 : 0;
   }
   EXPECT_GE(found, kDuels * 9 / 10);
 }

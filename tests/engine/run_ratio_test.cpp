@@ -85,7 +85,7 @@ TEST(RunRatio, ThePaceIsTheLeastOfAllCasesThatTookTurns) {
   run.cases = {one, other, elsewhere};
   const std::optional<YardstickTimes> pace = paceOf(run, "");
   ASSERT_TRUE(pace);
-  EXPECT_EQ(pace->ns, (YardstickTimes{{5, 3}}.ns));
+  EXPECT_EQ(pace->values, (YardstickTimes{{5, 3}}.values));
   run.cases = {resultOf({{1}})};
   EXPECT_FALSE(paceOf(run, ""));
 }
@@ -111,7 +111,7 @@ CaseResult runOn(UnevenMachine machine, double seconds, int passes) {
   for (int pass = 0; pass < passes; ++pass) {
     Repetition& repetition = result.repetitions.emplace_back();
     YardstickTimes& yardsticks = repetition.yardsticks.emplace();
-    for (std::int64_t& ns : yardsticks.ns) ns = nanoseconds(machine.yardstick(1e-3));
+    for (std::int64_t& ns : yardsticks.values) ns = nanoseconds(machine.yardstick(1e-3));
     for (int frame = 0; frame < 100; ++frame) {
       const double work = seconds * (1 + 0.01 * frame);
       repetition.frames.emplace_back()[Phase::total] = nanoseconds(machine.time(work, own_noise));

@@ -18,7 +18,7 @@ TEST(Yardsticks, TakeTime) {
 
 TEST(Yardsticks, AreNotMeasuredAgainAtOnce) {
   Yardsticks yardsticks;
-  EXPECT_EQ(yardsticks.recent().ns, yardsticks.recent().ns);
+  EXPECT_EQ(yardsticks.recent().values, yardsticks.recent().values);
 }
 
 }  // namespace

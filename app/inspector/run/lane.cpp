@@ -19,7 +19,7 @@ constexpr RunPolicy kPolicy{.check = CheckMode::hash,
 void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
   for (std::size_t phase = 0; phase < seconds.size(); ++phase) {
     seconds[phase].set(frame,
-                       static_cast<float>(1e-9 * static_cast<double>(record.times.ns[phase])));
+                       static_cast<float>(1e-9 * static_cast<double>(record.times.values[phase])));
   }
   pairs.set(frame, static_cast<float>(record.pairs));
   disturbed.set(frame, record.disturbed ? 1 : FrameValues::kUnknown);

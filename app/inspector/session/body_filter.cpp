@@ -1,18 +1,9 @@
 #include "inspector/session/body_filter.h"
 
-#include <algorithm>
 #include <limits>
 
 namespace broadmark {
 namespace {
-
-double longestEdge(const Aabb& box) {
-  double longest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    longest = std::max(longest, static_cast<double>(box.max[axis]) - box.min[axis]);
-  }
-  return longest;
-}
 
 double placeOf(const BodyFilter& filter, const Aabb& world) {
   const auto axis = static_cast<std::size_t>(filter.clip_axis);

@@ -161,9 +161,8 @@ void CompactedWorld::searchOverlaps() {
   algorithm_->searchOverlaps();
   const PairRuns found = algorithm_->overlaps();
   if (pairs_.size() < found.size()) pairs_.resize(found.size());
-  team_->run([&](int worker) {
-    const auto [begin, end] = share(found.size(), team_->size(), worker);
-    for (std::size_t run = begin; run < end; ++run) translate(found[run], pairs_[run]);
+  team_->run(found.size(), [&](int, Range runs) {
+    for (std::size_t run = runs.begin; run < runs.end; ++run) translate(found[run], pairs_[run]);
   });
   runs_.clear();
   for (std::size_t run = 0; run < found.size(); ++run) runs_.push_back(pairs_[run].run());

@@ -48,6 +48,31 @@ constexpr double centreOf(const Aabb& box, std::size_t axis) {
   return (static_cast<double>(box.min[axis]) + static_cast<double>(box.max[axis])) / 2;
 }
 
+/// In double likewise; 0 for that of a body that is absent.
+constexpr double longestEdge(const Aabb& box) {
+  double longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    longest = std::max(longest, double{box.max[axis]} - double{box.min[axis]});
+  }
+  return longest;
+}
+
+/// Whether the centre of a box lies in another.
+constexpr bool holdsCentre(const Aabb& outer, const Aabb& box) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double centre = centreOf(box, axis);
+    if (!(centre >= outer.min[axis] && centre <= outer.max[axis])) return false;
+  }
+  return true;
+}
+
+constexpr bool contains(const Aabb& outer, const Aabb& inner) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (inner.min[axis] < outer.min[axis] || inner.max[axis] > outer.max[axis]) return false;
+  }
+  return true;
+}
+
 /// The box grown by `margin` on every side.
 constexpr Aabb enlarged(Aabb box, float margin) {
   for (int axis = 0; axis < 3; ++axis) {

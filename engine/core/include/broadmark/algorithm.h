@@ -43,6 +43,8 @@ struct AlgorithmTraits {
   /// Without it a `compacted` one has small worlds side by side in one instance, unless it is on a
   /// device, where that goes for all worlds; a `native` one gets all bodies as they are.
   bool instance_per_world = false;
+  /// Small are worlds of fewer bodies than this: from here on instances of their own are quicker.
+  std::size_t side_by_side_below = 100;
   /// Largest number of bodies it can handle.
   std::uint64_t max_objects = std::numeric_limits<std::uint32_t>::max();
   /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two

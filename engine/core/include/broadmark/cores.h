@@ -29,6 +29,8 @@ std::map<int, CoreTicks> coreTicks(const SystemFolders& = {});
 
 /// Which share of a time each core was busy, by its number.
 using BusyShares = std::map<int, double>;
+/// 0 for a core of which nothing is known.
+double busyShare(const BusyShares& busy, int core);
 BusyShares busySharesBetween(const std::map<int, CoreTicks>& before,
                              const std::map<int, CoreTicks>& after);
 /// Those of the coming moment, which the calling thread sleeps through. The system counts in ticks

@@ -16,30 +16,23 @@ inline constexpr std::string_view kBulletTreeMargin = "Bullet's tree margin";
 /// Per name: a lock, made when it is first used, which lasts as long as the process.
 struct NamedLock;
 
-/// While this lives no other thread uses the state of that name; "" stands for no state. Waits
-/// until present uses end; SharedUses that come later wait for it. A thread may hold only one use
-/// of a name.
-class ExclusiveUse {
+/// One of a state of that name; "" stands for no state. A thread may hold only one use of a name.
+template <bool exclusive>
+class StateUse {
  public:
-  explicit ExclusiveUse(std::string_view name);
-  ~ExclusiveUse();
-  ExclusiveUse(const ExclusiveUse&) = delete;
-  ExclusiveUse& operator=(const ExclusiveUse&) = delete;
+  explicit StateUse(std::string_view name);
+  ~StateUse();
+  StateUse(const StateUse&) = delete;
+  StateUse& operator=(const StateUse&) = delete;
 
  private:
   NamedLock* lock_;
 };
 
+/// While this lives no other thread uses the state. Waits until present uses end; SharedUses that
+/// come later wait for it.
+using ExclusiveUse = StateUse<true>;
 /// While this lives no other thread changes the state. Any number of threads may hold one.
-class SharedUse {
- public:
-  explicit SharedUse(std::string_view name);
-  ~SharedUse();
-  SharedUse(const SharedUse&) = delete;
-  SharedUse& operator=(const SharedUse&) = delete;
-
- private:
-  NamedLock* lock_;
-};
+using SharedUse = StateUse<false>;
 
 }  // namespace broadmark

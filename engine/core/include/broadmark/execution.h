@@ -64,6 +64,12 @@ class ThreadTeam {
            const_cast<void*>(static_cast<const void*>(std::addressof(work)))});
   }
 
+  /// Calls work(worker, range) likewise, for the worker's share of `count` things.
+  template <class Work>
+  void run(std::size_t count, Work&& work) {
+    run([&](int worker) { work(worker, share(count, size(), worker)); });
+  }
+
  private:
   struct Job {
     void (*call)(void* context, int worker) = nullptr;

@@ -47,6 +47,15 @@ struct NameTable {
 template <class Value, std::size_t size>
 NameTable(const NamedValue<Value> (&)[size]) -> NameTable<Value, size>;
 
+/// A value for each of `size` keys, which are numbered from 0.
+template <class Key, class Value, std::size_t size>
+struct ValueOfEach {
+  std::array<Value, size> values{};
+
+  constexpr Value& operator[](Key key) { return values[static_cast<std::size_t>(key)]; }
+  constexpr const Value& operator[](Key key) const { return values[static_cast<std::size_t>(key)]; }
+};
+
 /// The known name with the smallest edit distance to `name`, or "" when none is near.
 std::string nearestName(std::string_view name, std::span<const std::string> known);
 

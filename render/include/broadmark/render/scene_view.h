@@ -20,7 +20,6 @@
 namespace broadmark {
 
 class Framebuffer;
-class ScenePainter;
 
 /// The colours of everything but the bodies.
 struct SceneTheme {
@@ -123,11 +122,13 @@ class SceneView {
   [[nodiscard]] bool isSplatting() const;
 
  private:
+  class Painter;
+
   void update(const SceneViewContent& content);
   void drawFrom(const Camera& camera, const SceneTheme& theme);
 
   const Gl* gl_;
-  std::unique_ptr<ScenePainter> painter_;
+  std::unique_ptr<Painter> painter_;
   int samples_;
   std::unique_ptr<Framebuffer> framebuffer_;
   bool is_up_to_date_ = false;

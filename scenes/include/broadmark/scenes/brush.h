@@ -1,12 +1,14 @@
-// Brushes place many bodies at once. One implementation per file, listed in CMakeLists.txt.
+// Brushes place many bodies at once.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "broadmark/parameters.h"
@@ -14,8 +16,6 @@
 #include "broadmark/scenes/random.h"
 
 namespace broadmark::scenes {
-
-class Occupied;  // private to the sources
 
 /// Says how many bodies go where, relative to a point. Visits the parameters that only this brush
 /// has. Lengths are in world units.
@@ -37,7 +37,6 @@ struct BrushEntry {
   std::unique_ptr<Brush> (*create)();
 };
 
-/// All of them, in the order of the list in CMakeLists.txt.
 std::vector<BrushEntry> brushEntries();
 
 /// What the bodies are like: the same for all brushes.
@@ -60,19 +59,26 @@ struct Stroke {
   std::size_t left_out = 0;  ///< bodies without room
 };
 
-/// The room that bodies take: their tight boxes, but for a touch.
+/// The room that bodies take: their tight boxes, but for a touch. There is a hash grid for each
+/// power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
+/// among large ones crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
+/// never more than a comparison with every box.
 class TakenRoom {
  public:
   explicit TakenRoom(std::span<const AuthoredBody> bodies = {});
-  ~TakenRoom();
-  TakenRoom(TakenRoom&&) noexcept;
-  TakenRoom& operator=(TakenRoom&&) noexcept;
 
   void add(const AuthoredBody&);
   [[nodiscard]] bool overlaps(const AuthoredBody&) const;
 
  private:
-  std::unique_ptr<Occupied> boxes_;
+  /// Boxes by the cell of their lower corner: a hash of where it is, which others may share.
+  using Grid = std::unordered_map<std::uint64_t, std::vector<Aabb>>;
+
+  static bool overlapsIn(const Grid& grid, int exponent, const Aabb& box);
+
+  /// By the exponent of the least power of two above all edges of the boxes. Cells are twice as
+  /// large as that.
+  std::map<int, Grid> grids_;
 };
 
 /// Bodies placed around the point `at`, `most` of them or fewer. Unless the paint allows overlaps,

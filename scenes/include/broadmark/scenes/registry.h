@@ -1,5 +1,5 @@
-// The built-in scenes, physics engines and object types, in the order of the lists in
-// CMakeLists.txt; and engines from elsewhere.
+// The built-in scenes and physics engines, in the order of the lists in CMakeLists.txt; engines
+// from elsewhere; and object types.
 #pragma once
 
 #include <cstddef>

@@ -15,17 +15,6 @@
 
 namespace broadmark {
 
-/// What an interval of a ratio says, as seen from its numerator.
-enum class Standing { faster, slower, same, undecided };
-inline constexpr NameTable kStandings{{NamedValue{Standing::faster, "faster"},
-                                       {Standing::slower, "slower"},
-                                       {Standing::same, "same"},
-                                       {Standing::undecided, "undecided"}}};
-
-/// Same: all of the interval within `margin` of 1. Faster or slower: the interval is on one side of
-/// 1. Undecided: neither.
-Standing standingOf(const Interval& ratio, double margin);
-
 struct DuelSide {
   std::string name;
   Case run;

@@ -11,10 +11,43 @@
 #include <span>
 #include <vector>
 
+#include "broadmark/names.h"
 #include "broadmark/results/results.h"
 #include "broadmark/statistics/statistics.h"
 
 namespace broadmark {
+
+/// What is found of B against A; all but the first four only where runs are compared.
+enum class Verdict {
+  same,          ///< the whole interval is within the margin
+  faster,        ///< the whole interval is below 1
+  slower,        ///< the whole interval is above 1
+  undecided,     ///< the interval is too wide to tell
+  regressed,     ///< slower than is tolerated, or no longer ok
+  other_status,  ///< another status, but it was not ok before
+  not_ok,        ///< the same status in both, not ok: its times say nothing
+  not_timed,
+  other_conditions,  ///< refused: times under such conditions are not to be compared
+  other_recording,
+  missing,  ///< only in A
+  added,    ///< only in B
+};
+inline constexpr NameTable kVerdicts{{NamedValue{Verdict::same, "same"},
+                                      {Verdict::faster, "faster"},
+                                      {Verdict::slower, "slower"},
+                                      {Verdict::undecided, "undecided"},
+                                      {Verdict::regressed, "REGRESSED"},
+                                      {Verdict::other_status, "other status"},
+                                      {Verdict::not_ok, "not ok"},
+                                      {Verdict::not_timed, "not timed"},
+                                      {Verdict::other_conditions, "other conditions"},
+                                      {Verdict::other_recording, "other recording"},
+                                      {Verdict::missing, "missing"},
+                                      {Verdict::added, "added"}}};
+
+/// Same, faster, slower or undecided. Same comes first: what is on one side of 1 may be so near
+/// that nobody cares.
+Verdict verdictOn(const Interval& ratio, double margin);
 
 /// Times of B / times of A.
 struct RunRatio {

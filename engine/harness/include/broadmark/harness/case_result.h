@@ -1,7 +1,6 @@
 // What a case leaves behind: its times and its verdict.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -41,14 +40,7 @@ inline constexpr NameTable kFrameCounts{{NamedValue{FrameCount::pairs, "pairs"},
                                          {FrameCount::allowed_extra, "allowed_extra"},
                                          {FrameCount::invalid, "invalid"}}};
 
-struct FrameCounts {
-  std::array<std::uint64_t, kFrameCounts.entries.size()> values{};
-
-  std::uint64_t& operator[](FrameCount which) { return values[static_cast<std::size_t>(which)]; }
-  std::uint64_t operator[](FrameCount which) const {
-    return values[static_cast<std::size_t>(which)];
-  }
-};
+using FrameCounts = ValueOfEach<FrameCount, std::uint64_t, kFrameCounts.entries.size()>;
 
 /// The recording a case ran on.
 struct RecordingReference {

@@ -1,8 +1,6 @@
 // The timed phases of a frame, and how long each took.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -33,11 +31,6 @@ inline constexpr NameTable kPhases{{NamedValue{Phase::update_objects, "update_ob
 constexpr std::string_view phaseName(Phase phase) { return kPhases.nameOf(phase); }
 
 /// Durations of one frame's phases in nanoseconds of a steady clock.
-struct FrameTimes {
-  std::array<std::int64_t, kPhases.entries.size()> ns{};
-
-  std::int64_t& operator[](Phase phase) { return ns[static_cast<std::size_t>(phase)]; }
-  std::int64_t operator[](Phase phase) const { return ns[static_cast<std::size_t>(phase)]; }
-};
+using FrameTimes = ValueOfEach<Phase, std::int64_t, kPhases.entries.size()>;
 
 }  // namespace broadmark

@@ -20,16 +20,8 @@ inline constexpr NameTable kProcessorCounters{{NamedValue{ProcessorCounter::cycl
                                                {ProcessorCounter::branch_misses, "branch_misses"}}};
 
 /// One count of each; nothing where it is not known.
-struct ProcessorCounts {
-  std::array<std::optional<std::uint64_t>, kProcessorCounters.entries.size()> values{};
-
-  std::optional<std::uint64_t>& operator[](ProcessorCounter which) {
-    return values[static_cast<std::size_t>(which)];
-  }
-  const std::optional<std::uint64_t>& operator[](ProcessorCounter which) const {
-    return values[static_cast<std::size_t>(which)];
-  }
-};
+using ProcessorCounts =
+    ValueOfEach<ProcessorCounter, std::optional<std::uint64_t>, kProcessorCounters.entries.size()>;
 
 /// Counts what the thread that made it does, and the threads that this one starts afterwards.
 /// Most virtual machines and containers do not allow it: then nothing is known, which is no error.

@@ -2,9 +2,7 @@
 // Where two runs are compared, what these differ by is not the algorithms' doing.
 #pragma once
 
-#include <array>
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -20,12 +18,7 @@ inline constexpr NameTable kYardsticks{
     {NamedValue{Yardstick::arithmetic, "arithmetic"}, {Yardstick::memory, "memory"}}};
 
 /// Nanoseconds of each.
-struct YardstickTimes {
-  std::array<std::int64_t, kYardsticks.entries.size()> ns{};
-
-  std::int64_t& operator[](Yardstick which) { return ns[static_cast<std::size_t>(which)]; }
-  std::int64_t operator[](Yardstick which) const { return ns[static_cast<std::size_t>(which)]; }
-};
+using YardstickTimes = ValueOfEach<Yardstick, std::int64_t, kYardsticks.entries.size()>;
 
 class Yardsticks {
  public:

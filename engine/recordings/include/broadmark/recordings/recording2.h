@@ -17,8 +17,6 @@
 
 namespace broadmark {
 
-class BoxCorners;
-
 /// What the index of a recording 2 says of a frame, as it lies in the file.
 struct RecordedFrame {
   std::uint64_t offset;   ///< where it begins
@@ -54,13 +52,13 @@ class Recording2Reader final : public Recording {
   void readIds(std::uint32_t index);
   void readAllBoxes(std::uint32_t index, bool follows);
   void readChangedBoxes(std::uint32_t index);
-  /// Hands the boxes of a frame to take(row, BoxCorners).
+  /// Hands the boxes of a frame to take(row, box).
   template <class Take>
   void readRows(std::uint32_t index, Take&& take);
   /// Throws InputError: a wrong checksum if that is so, else what is said.
   [[noreturn]] void fail(std::uint32_t index, const std::string& what);
   [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const std::string& what);
-  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const BoxCorners& box);
+  [[noreturn]] void failAt(std::uint32_t index, std::uint64_t row, const Aabb& box);
 
   RecordingOrigin origin_;
   std::vector<RecordedFrame> index_;

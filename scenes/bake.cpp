@@ -9,8 +9,8 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
-#include "broadmark/recordings/recording.h"
-#include "recorders/recorder.h"
+#include "broadmark/recordings/posrot.h"
+#include "broadmark/scenes/simulation.h"
 #include "scene_parameters.h"
 
 namespace broadmark {
@@ -63,17 +63,51 @@ Sidecar sidecarOf(const fs::path& recording) {
   return sidecar.value("schema", Sidecar()) == kBakeSchema ? sidecar : Sidecar::object();
 }
 
-scenes::RecorderEntry recorderOf(const fs::path& path) {
-  std::vector<std::string> extensions;
-  for (const scenes::RecorderEntry& entry : scenes::recorderEntries()) {
-    extensions.push_back("." + entry.listing.id);
-    if (path.extension() == extensions.back()) return entry;
+/// Writes one recording, of the kind that the path's extension names: positions and rotations, or
+/// boxes. Leaves no file unless it is finished.
+class Recorder {
+ public:
+  Recorder(const fs::path& path, Simulation& simulation) {
+    std::vector<std::string> extensions;
+    for (const RecorderListing& kind : builtinRecorders()) extensions.push_back("." + kind.id);
+    if (std::ranges::find(extensions, path.extension().string()) == extensions.end()) {
+      throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
+                                   fmt::join(extensions, " or ")));
+    }
+    if (path.extension() == kPosrotExtension) {
+      poses_ = std::make_unique<PosrotWriter>(path, simulation.scene());
+    } else {
+      boxes_ = std::make_unique<RecordingWriter>(path, simulation.scene(), originOf(simulation));
+    }
   }
-  throw InputError(fmt::format("{}: the name of a recording must end in {}", path.string(),
-                               fmt::join(extensions, " or ")));
-}
+
+  /// Writes the frame that the simulation has just handed out. The initial pose comes first.
+  void record(const Frame& frame, Simulation& simulation) {
+    if (boxes_) {
+      boxes_->write(frame);
+    } else if (frame.index == 0) {
+      poses_->writeBoxes(simulation.unturnedBoxes());
+    } else {
+      poses_->write(simulation.poses());
+    }
+  }
+  /// Makes the recording whole. Returns its hash.
+  std::string finish() { return boxes_ ? boxes_->finish() : poses_->finish(); }
+
+ private:
+  std::unique_ptr<RecordingWriter> boxes_;
+  std::unique_ptr<PosrotWriter> poses_;
+};
 
 }  // namespace
+
+std::vector<RecorderListing> builtinRecorders() {
+  return {{"aabbs", "boxes of all bodies, frame after frame", "Recordings_AABBs"},
+          {"broadmark", "boxes of the bodies that changed; bodies may be absent, and have layers",
+           "Recordings_Broadmark"},
+          {"posrot", "positions and rotations of all bodies, frame after frame",
+           "Recordings_PositionRotation"}};
+}
 
 bool isBaked(const fs::path& path, Simulation& simulation) {
   if (!fs::exists(sidecarPath(path))) return false;
@@ -131,18 +165,16 @@ void requireBakeable(Simulation& simulation, const std::vector<fs::path>& paths)
 bool bake(Simulation& simulation, const std::vector<fs::path>& paths,
           const FrameProgress& progress) {
   requireBakeable(simulation, paths);
-  std::vector<std::unique_ptr<scenes::Recorder>> recorders;
-  for (const fs::path& path : paths) {
-    recorders.push_back(recorderOf(path).create(path, simulation.scene(), originOf(simulation)));
-  }
+  std::vector<Recorder> recorders;
+  for (const fs::path& path : paths) recorders.emplace_back(path, simulation);
   const auto record = [&](const Frame& frame) {
-    for (const auto& recorder : recorders) recorder->record(frame, simulation);
+    for (Recorder& recorder : recorders) recorder.record(frame, simulation);
   };
   if (!recordAll(simulation, record, progress)) return false;
   // Hashes the input of a replay while the recorders may still be writing.
   Json sidecar = sidecarJson(simulation, {});
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    sidecar["hash"] = recorders[i]->finish();
+    sidecar["hash"] = recorders[i].finish();
     writeTextFile(sidecarPath(paths[i]), formatJson(sidecar, 2));
   }
   return true;

@@ -1,0 +1,172 @@
+// The brushes: how many bodies each of them places, and where.
+
+#include <array>
+
+#include "broadmark/scenes/brush.h"
+#include "broadmark/scenes/simulation.h"
+#include "entries.h"
+
+namespace broadmark::scenes {
+namespace {
+
+class SingleBrush final : public Brush {
+ public:
+  [[nodiscard]] double count(double) const override { return 1; }
+  [[nodiscard]] Vec3 place(std::size_t, Random&) const override { return {}; }
+};
+
+/// A brush whose number of bodies is a parameter.
+template <std::int64_t default_count>
+class CountedBrush : public Brush {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"count", "number of bodies", &count_, 1, kMostBodies});
+  }
+  [[nodiscard]] double count(double) const override { return static_cast<double>(count_); }
+
+ private:
+  std::int64_t count_ = default_count;
+};
+
+class BallBrush final : public CountedBrush<100> {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    CountedBrush::visitParameters(visit);
+    visit({"radius", "radius of the ball, in world units", &radius_, 1e-3, 1e6});
+  }
+  [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
+    return random.inBall(radius_);
+  }
+  [[nodiscard]] bool scatters() const override { return true; }
+
+ private:
+  double radius_ = 5;
+};
+
+/// A box around the point that is painted at.
+class BoxSpace {
+ public:
+  void visitParameters(const ParameterVisitor& visit) {
+    visit({"size_x", "size of the box along x, in world units", &size_[0], 1e-3, 1e6});
+    visit({"size_y", "size of the box along y, in world units", &size_[1], 1e-3, 1e6});
+    visit({"size_z", "size of the box along z, in world units", &size_[2], 1e-3, 1e6});
+  }
+
+  [[nodiscard]] const std::array<double, 3>& size() const { return size_; }
+
+  /// A uniformly random point in it.
+  [[nodiscard]] Vec3 pointInside(Random& random) const {
+    Vec3 point;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point[axis] = static_cast<float>(random.between(-size_[axis] / 2, size_[axis] / 2));
+    }
+    return point;
+  }
+
+ private:
+  std::array<double, 3> size_ = {10, 10, 10};
+};
+
+class BoxBrush final : public CountedBrush<100> {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    CountedBrush::visitParameters(visit);
+    space_.visitParameters(visit);
+  }
+  [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
+    return space_.pointInside(random);
+  }
+  [[nodiscard]] bool scatters() const override { return true; }
+
+ private:
+  BoxSpace space_;
+};
+
+/// As many bodies, at random in a box, as give it a density.
+class RandomBrush final : public Brush {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"density", "share of the box that bodies of unit shape and this scale fill", &density_,
+           1e-6, 1});
+    space_.visitParameters(visit);
+  }
+  [[nodiscard]] double count(double body_volume) const override {
+    const auto& size = space_.size();
+    return density_ * size[0] * size[1] * size[2] / body_volume;
+  }
+  [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
+    return space_.pointInside(random);
+  }
+  [[nodiscard]] bool scatters() const override { return true; }
+
+ private:
+  double density_ = 0.1;
+  BoxSpace space_;
+};
+
+class LineBrush final : public CountedBrush<10> {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    CountedBrush::visitParameters(visit);
+    visit(
+        {"step_x", "way from one body to the next along x, in world units", &step_[0], -1e6, 1e6});
+    visit(
+        {"step_y", "way from one body to the next along y, in world units", &step_[1], -1e6, 1e6});
+    visit(
+        {"step_z", "way from one body to the next along z, in world units", &step_[2], -1e6, 1e6});
+  }
+  [[nodiscard]] Vec3 place(std::size_t index, Random&) const override {
+    Vec3 place;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      place[axis] = static_cast<float>(static_cast<double>(index) * step_[axis]);
+    }
+    return place;
+  }
+
+ private:
+  std::array<double, 3> step_ = {1, 0, 0};
+};
+
+class LatticeBrush final : public Brush {
+ public:
+  void visitParameters(const ParameterVisitor& visit) override {
+    visit({"count_x", "number of bodies along x", &count_[0], 1, 1'000'000});
+    visit({"count_y", "number of bodies along y", &count_[1], 1, 1'000'000});
+    visit({"count_z", "number of bodies along z", &count_[2], 1, 1'000'000});
+    visit({"spacing", "distance between neighbours, in world units", &spacing_, 0, 1e6});
+  }
+  [[nodiscard]] double count(double) const override {
+    return static_cast<double>(count_[0]) * static_cast<double>(count_[1]) *
+           static_cast<double>(count_[2]);
+  }
+  [[nodiscard]] Vec3 place(std::size_t index, Random&) const override {
+    Vec3 place;
+    auto rest = static_cast<std::int64_t>(index);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto steps = static_cast<double>(rest % count_[axis]);
+      rest /= count_[axis];
+      place[axis] =
+          static_cast<float>(spacing_ * (steps - static_cast<double>(count_[axis] - 1) / 2));
+    }
+    return place;
+  }
+
+ private:
+  std::array<std::int64_t, 3> count_ = {5, 5, 5};
+  double spacing_ = 2;
+};
+
+}  // namespace
+
+std::vector<BrushEntry> brushEntries() {
+  return {{{"single", "one body"}, makeAs<Brush, SingleBrush>},
+          {{"ball", "bodies at random in a ball"}, makeAs<Brush, BallBrush>},
+          {{"box", "bodies at random in a box"}, makeAs<Brush, BoxBrush>},
+          {{"line", "bodies in a row, beginning at the point"}, makeAs<Brush, LineBrush>},
+          {{"lattice", "bodies in rows, columns and layers around the point"},
+           makeAs<Brush, LatticeBrush>},
+          {{"random", "as many bodies, at random in a box, as fill it to a density"},
+           makeAs<Brush, RandomBrush>}};
+}
+
+}  // namespace broadmark::scenes
