@@ -1,8 +1,8 @@
-#include "inspector/closing.h"
-
-#include <fmt/format.h>
+// What is asked before the window closes while work goes on in the background.
 
 #include <utility>
+
+#include "inspector/inspector.h"
 
 namespace broadmark {
 namespace {
@@ -11,33 +11,30 @@ constexpr const char* kEnding = "Still at work";
 
 }  // namespace
 
-void drawEnding(Ui& ui, Session& session) {
-  if (!session.ending || !session.notices.errors.empty()) return;
-  if (!session.atWork()) {  // it has ended meanwhile
-    session.document.leave(std::exchange(session.ending, {}));
-    return;
-  }
-  const auto scope = ui.scope("Ending");
+void Inspector::leave() {
+  ending_ = false;
+  session_.document.leave([this] { closing_ = true; });
+}
+
+void Inspector::drawEnding() {
+  if (!ending_ || !session_.notices.errors.empty()) return;
+  if (!session_.jobs.running()) return leave();  // it has ended meanwhile
+  const auto scope = ui_.scope("Ending");
   if (!ImGui::IsPopupOpen(kEnding)) ImGui::OpenPopup(kEnding);
-  if (!ui.beginDialog(kEnding, {420, 0})) return;
-  if (session.bake.running()) ui.paragraph("Baking: " + session.bake.report().text() + ".");
-  if (session.benchmark.running()) {
-    ui.paragraph("Running algorithms: " + session.benchmark.report().text() + ".");
+  if (!ui_.beginDialog(kEnding, {420, 0})) return;
+  for (const Job* const job : session_.jobs.all()) {
+    if (job->running()) ui_.paragraph(job->status().doing);
   }
-  if (session.duel.running()) ui.paragraph("A duel goes on.");
-  if (session.case_export.running()) ui.paragraph("A case is being exported.");
-  if (session.report_page.running()) ui.paragraph("A report page is being written.");
-  ui.paragraph("What is finished is kept.");
+  ui_.paragraph("What is finished is kept.");
   ImGui::Spacing();
-  const float width = 84 * ui.scale;
-  const bool end = ui.button("End it", "What is not finished is given up", width);
+  const float width = 84 * ui_.scale;
+  const bool end = ui_.button("End it", "What is not finished is given up", width);
   ImGui::SameLine();
-  const bool stay = ui.cancel(width);
+  const bool stay = ui_.cancel(width);
   if (end || stay) ImGui::CloseCurrentPopup();
   ImGui::EndPopup();
-  if (!end && !stay) return;
-  const auto then = std::exchange(session.ending, {});
-  if (end) session.document.leave(then);
+  if (stay) ending_ = false;
+  if (end) leave();
 }
 
 }  // namespace broadmark

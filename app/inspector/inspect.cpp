@@ -116,7 +116,7 @@ void inspectInWindow(const InspectOptions& options) {
       const double seconds = std::chrono::duration<double>(now - before).count();
       const bool lively = inspector.lively() || script || !window.input().empty();
       window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
-      for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
+      for (const fs::path& file : window.takeDrops()) inspector.session().opener.open(file);
       if (window.closing()) {
         window.stayOpen();  // until the user has decided about unsaved changes
         inspector.close();

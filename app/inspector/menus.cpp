@@ -24,7 +24,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
     if (ImGui::BeginMenu("Open recent", !preferences_.recent.empty())) {
       const auto inside = ui_.scope("Open recent");
       for (const std::string& file : std::vector(preferences_.recent)) {
-        if (ui_.menuItem(file.c_str())) session_.open(file);
+        if (ui_.menuItem(file.c_str())) session_.opener.open(file);
       }
       ImGui::EndMenu();
     } else {
@@ -120,7 +120,7 @@ void Inspector::askOpen() {
               .purpose = FileDialog::Purpose::open,
               .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
-              .chosen = [this](const fs::path& path) { session_.open(path); }});
+              .chosen = [this](const fs::path& path) { session_.opener.open(path); }});
 }
 
 void Inspector::askSaveRecording() {

@@ -22,7 +22,7 @@ int runInspector(Plan plan, const SessionOptions& options) {
                                .make_host = hostMaker(options.hosts),
                                .begin =
                                    [shared, frame = options.frame](Session& session) {
-                                     session.open(std::move(*shared));
+                                     session.opener.open(std::move(*shared));
                                      if (frame) session.playback.goTo(*frame);
                                    },
                                .script = options.script,

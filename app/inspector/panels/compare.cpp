@@ -30,12 +30,12 @@ class ComparePanel final : public Panel {
 
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
-    if (!context.session.second) {
+    if (!context.session.second.wish) {
       ui.paragraph(
           "A second view beside the first one shows another algorithm's answer, another frame or "
           "another recording. Here stands then who finds what, and who is slower where.");
       if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
-        context.session.showSecond(true);
+        context.session.second.show(true);
       }
       return;
     }
@@ -102,8 +102,8 @@ class ComparePanel final : public Panel {
     Ui& ui = context.ui;
     const Session& session = context.session;
     const LaneReport* const first = laneOf(context, session.lanes.shown());
-    const LaneReport* const second = laneOf(context, session.second->lane);
-    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
+    const LaneReport* const second = laneOf(context, session.second.wish->lane);
+    if (first == nullptr || second == nullptr || first == second || session.second.wish->footage) {
       ui.faintParagraph(
           "Times are compared where the views show two algorithms on the same recording.");
       return;

@@ -181,7 +181,7 @@ class MismatchesPanel final : public Panel {
     Session& session = context.session;
     const bool wrong = showsAnswerOf(context, lane) &&
                        context.progress.snapshot->difference.isMismatch() &&
-                       !session.case_export.running();
+                       !session.jobs.get<CaseExport>().running();
     ImGui::BeginDisabled(!wrong);
     if (context.ui.button("Export case…",
                           "Writes the smallest recording on which the algorithm is still wrong",
@@ -200,7 +200,7 @@ class MismatchesPanel final : public Panel {
 
   static void drawExport(PanelContext& context) {
     Ui& ui = context.ui;
-    CaseExport& case_export = context.session.case_export;
+    CaseExport& case_export = context.session.jobs.get<CaseExport>();
     const CaseExport::Report report = case_export.report();
     if (report.state == TaskState::idle) return;
     const auto scope = ui.scope("export");
@@ -238,7 +238,7 @@ class MismatchesPanel final : public Panel {
     }
     ImGui::SameLine();
     if (ui.button("Open it", "Looks at the exported recording instead")) {
-      context.session.openExport();
+      context.session.opener.openExport(report);
     }
   }
 

@@ -46,9 +46,9 @@ struct LaneSpec {
   Case run;
 
   /// Whether both would do the same.
-  [[nodiscard]] bool same(const LaneSpec& other) const {
-    return number == other.number && run.device == other.run.device &&
-           caseName(run) == caseName(other.run);
+  friend bool operator==(const LaneSpec& a, const LaneSpec& b) {
+    return a.number == b.number && a.run.device == b.run.device &&
+           caseName(a.run) == caseName(b.run);
   }
 };
 

@@ -156,8 +156,8 @@ void RunThread::fail(std::string reason) {
 
 bool RunThread::isUnwanted(const LaneSpec& spec) {
   const std::lock_guard lock(mutex_);
-  const auto is_same = [&](const LaneSpec& wished) { return wished.same(spec); };
-  return stopping_ || wished_.footage != opened_ || std::ranges::none_of(wished_.lanes, is_same);
+  return stopping_ || wished_.footage != opened_ ||
+         std::ranges::find(wished_.lanes, spec) == wished_.lanes.end();
 }
 
 bool RunThread::isUnwantedBeside(const LaneSpec& spec) {
@@ -200,7 +200,7 @@ void RunThread::openFootage() {
 /// Brings the lanes in line with those wished for. Returns whether there was anything to do.
 bool RunThread::reconcileLanes() {
   const auto stands = [&](std::size_t i) {
-    return i < lanes_.size() && lanes_[i]->spec().same(current_.lanes[i]);
+    return i < lanes_.size() && lanes_[i]->spec() == current_.lanes[i];
   };
   bool same = lanes_.size() == current_.lanes.size();
   for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
@@ -209,8 +209,8 @@ bool RunThread::reconcileLanes() {
   std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
   lanes_.clear();
   for (const LaneSpec& spec : current_.lanes) {
-    const auto found = std::ranges::find_if(
-        kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
+    const auto found =
+        std::ranges::find_if(kept, [&](const auto& lane) { return lane && lane->spec() == spec; });
     lanes_.push_back(found != kept.end() ? std::move(*found)
                                          : std::make_unique<Lane>(spec, make_host_, [this, spec] {
                                              return isUnwanted(spec);
@@ -227,7 +227,7 @@ bool RunThread::reconcileLanes() {
   std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
   for (const auto& lane : lanes_) {
     const auto report = std::ranges::find_if(
-        reports, [&](const LaneReport& known) { return known.spec.same(lane->spec()); });
+        reports, [&](const LaneReport& known) { return known.spec == lane->spec(); });
     if (report != reports.end()) {
       progress_.lanes.push_back(std::move(*report));
     } else {

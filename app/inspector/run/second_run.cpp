@@ -47,7 +47,7 @@ Lane* SecondRun::lane(const SecondWish& wish, const First& first) {
   if (frame == 0) return nullptr;  // which has no answer
   Lane& of_first = **found;
   if (!opened_ && frame == first.frame) return &of_first;
-  if (!lane_ || !lane_->spec().same(of_first.spec())) {
+  if (!lane_ || lane_->spec() != of_first.spec()) {
     const LaneSpec spec = of_first.spec();
     lane_ = std::make_unique<Lane>(spec, make_host_, [this, spec] { return unwanted_(spec); });
   }

@@ -448,4 +448,13 @@ void Ui::faintParagraph(std::string_view words) {
   ImGui::PopTextWrapPos();
 }
 
+void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos(position);
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin(id, nullptr,
+               flags | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+}
+
 }  // namespace broadmark

@@ -178,6 +178,10 @@ std::string fittingText(std::string text, float room, ImFont* font = nullptr);
 /// anyhow.
 float widthOfWholeColumns(const char* table, int always);
 
+inline constexpr float kSplitterSize = 5;  ///< units: between two parts of the window
+/// Opens a window that fills a rectangle.
+void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0);
+
 /// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
 void applyTheme(Ui& ui, bool dark, float scale);
 

@@ -1,4 +1,4 @@
-#include "inspector/session/pair_comparison.h"
+#include "inspector/run/pair_comparison.h"
 
 #include <algorithm>
 #include <iterator>
