@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr float kFontSize = 15;       // units
 constexpr float kLargeFontSize = 20;  // units
 constexpr float kNarrowest = 110;     // units: of a place that is shown
+constexpr const char* kStillAtWork = "Still at work";
 
 }  // namespace
 
@@ -237,6 +238,32 @@ void Inspector::drawErrors() {
     if (session_.notices.errors.empty()) ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
+}
+
+void Inspector::leave() {
+  ending_ = false;
+  session_.document.leave([this] { closing_ = true; });
+}
+
+void Inspector::drawEnding() {
+  if (!ending_ || !session_.notices.errors.empty()) return;
+  if (!session_.jobs.running()) return leave();  // it has ended meanwhile
+  const auto scope = ui_.scope("Ending");
+  if (!ImGui::IsPopupOpen(kStillAtWork)) ImGui::OpenPopup(kStillAtWork);
+  if (!ui_.beginDialog(kStillAtWork, {420, 0})) return;
+  for (const Job* const job : session_.jobs.all()) {
+    if (job->running()) ui_.paragraph(job->status().doing);
+  }
+  ui_.paragraph("What is finished is kept.");
+  ImGui::Spacing();
+  const float width = 84 * ui_.scale;
+  const bool end = ui_.button("End it", "What is not finished is given up", width);
+  ImGui::SameLine();
+  const bool stay = ui_.cancel(width);
+  if (end || stay) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  if (stay) ending_ = false;
+  if (end) leave();
 }
 
 }  // namespace broadmark

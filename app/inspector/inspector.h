@@ -78,7 +78,6 @@ class Inspector {
   /// The session's state by name, as text, for scripts and tests: "frame", "pairs", … Nothing for
   /// an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
-  FileDialog& fileDialog() { return files_; }
   /// Panel by name, or null.
   [[nodiscard]] Panel* panel(const std::string& name);
 
@@ -118,7 +117,7 @@ class Inspector {
   void editAuthored(void (scenes::SceneEditor::*change)());
   void askOpen();
   void askSaveRecording();
-  void askExportTimings();
+  void askExportTimings(const std::string& table);
   void askMovie();
 
   Preferences preferences_;
@@ -142,7 +141,6 @@ class Inspector {
   bool screenshot_asked_ = false;
   int screenshots_ = 0;
   std::filesystem::path movie_directory_;
-  std::optional<std::string> timings_;  ///< asked for as a table, not yet saved
 };
 
 }  // namespace broadmark

@@ -8,7 +8,7 @@
 
 #include "inspector/inspector.h"
 #include "inspector/session/answer_text.h"
-#include "inspector/session/span_statistics.h"
+#include "inspector/session/lane_statistics.h"
 #include "inspector/session/wrong_pair.h"
 
 namespace broadmark {

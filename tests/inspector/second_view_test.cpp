@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "inspector/helpers.h"
-#include "inspector/run/pair_comparison.h"
-#include "inspector/session/time_ratios.h"
+#include "inspector/run/second_run.h"
+#include "inspector/session/lane_statistics.h"
 
 namespace broadmark::tests {
 namespace {

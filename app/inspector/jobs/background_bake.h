@@ -40,6 +40,7 @@ struct BakeReport : WorkReport {
 class BackgroundBake final : public ReportingJob<BakeReport> {
  public:
   BackgroundBake() : ReportingJob("baking", "batch") {}
+  ~BackgroundBake() override { finish(); }
 
   /// Begins what the options describe. Throws InputError while another batch is running.
   void start(BakeOptions options);

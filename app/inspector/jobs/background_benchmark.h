@@ -38,6 +38,7 @@ struct BenchmarkReport : WorkReport {
 class BackgroundBenchmark final : public ReportingJob<BenchmarkReport> {
  public:
   BackgroundBenchmark() : ReportingJob("running algorithms", "benchmark") {}
+  ~BackgroundBenchmark() override { finish(); }
 
   /// Begins what the options describe, with these algorithms to choose from, which run where
   /// `make_host` says; its results go to `file`, rewritten after each recording. Throws InputError

@@ -21,6 +21,7 @@ struct DuelReport : TaskReport {
 class BackgroundDuel final : public ReportingJob<DuelReport> {
  public:
   BackgroundDuel() : ReportingJob("duel", "duel") {}
+  ~BackgroundDuel() override { finish(); }
 
   /// Begins; the cases run where `make_host` says. Throws InputError for fewer than two cases, for
   /// no frame, and while another one is running.

@@ -20,6 +20,7 @@ struct PageReport : TaskReport {
 class BackgroundReport final : public ReportingJob<PageReport> {
  public:
   BackgroundReport() : ReportingJob("report page", "report") {}
+  ~BackgroundReport() override { finish(); }
 
   /// Begins. Throws InputError where nothing can be written, and while another one is written.
   void start(const std::filesystem::path& results, const std::filesystem::path& page);

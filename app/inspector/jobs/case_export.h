@@ -29,6 +29,7 @@ struct ExportReport : TaskReport {
 class CaseExport final : public ReportingJob<ExportReport> {
  public:
   CaseExport() : ReportingJob("exporting a case", "export") {}
+  ~CaseExport() override { finish(); }
 
   /// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
   /// while another export is running.

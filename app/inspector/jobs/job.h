@@ -71,12 +71,6 @@ class ReportingJob : public Job {
  public:
   using Report = R;
 
-  /// Cancels the work, and waits for its end.
-  ~ReportingJob() override {
-    cancel();
-    if (thread_.joinable()) thread_.join();
-  }
-
   void cancel() override { cancelled_ = true; }
   [[nodiscard]] bool running() const override {
     const std::lock_guard lock(mutex_);
@@ -100,9 +94,14 @@ class ReportingJob : public Job {
   ReportingJob(std::string name, std::string prefix)
       : Job(std::move(prefix)), name_(std::move(name)) {}
 
+  /// Cancels the work, and waits for its end. For the derived class's destructor: the work uses it.
+  void finish() {
+    cancel();
+    if (thread_.joinable()) thread_.join();
+  }
   /// Begins with the report `first`. `work()` asks cancelled() now and then, and returns whether it
-  /// was completed; what it throws becomes the failure. It uses no member of the derived class,
-  /// which is destroyed first. Throws InputError while earlier work is running.
+  /// was completed; what it throws becomes the failure. Throws InputError while earlier work is
+  /// running.
   template <class Work>
   void begin(Report first, Work work) {
     if (running()) throw InputError(name_ + ": still running: wait for its end, or cancel it");

@@ -8,7 +8,7 @@
 
 #include "broadmark/error.h"
 #include "inspector/panels/batch_parts.h"
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 #include "support/words.h"
 
 namespace broadmark {
@@ -163,14 +163,10 @@ void BakeForm::drawPreview(Ui& ui) const {
   ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
                          bytesText(preview_.bytes))
                  .c_str());
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(preview_.recordings.size()));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
-      ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
-    }
-  }
+  clipped(preview_.recordings.size(), [&](std::size_t row) {
+    const auto& [path, bytes] = preview_.recordings[row];
+    ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
+  });
 }
 
 }  // namespace broadmark

@@ -7,7 +7,7 @@
 
 #include "broadmark/error.h"
 #include "inspector/panels/batch_parts.h"
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 #include "request/cases.h"
 #include "support/words.h"
 
@@ -148,26 +148,19 @@ void BenchmarkForm::drawItems(Ui& ui, Session& session, const BackgroundBenchmar
     session.opener.open(report.file);
   }
   const auto scope = ui.scope("cases");
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(report.items.size()));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const BenchmarkReport::Item& item = report.items[static_cast<std::size_t>(i)];
-      const bool ok = item.status == Status::ok;
-      const bool opens = item.kept || report.state != TaskState::running;
-      ImGui::PushID(i);
-      ImGui::BeginDisabled(!opens);
-      const std::string right =
-          ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
-      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
-                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
-        session.opener.openCase(report.file, item.id);
-      }
-      if (i == 0) ui.note("first");
-      ImGui::EndDisabled();
-      ImGui::PopID();
+  clipped(report.items.size(), [&](std::size_t row) {
+    const BenchmarkReport::Item& item = report.items[row];
+    const bool ok = item.status == Status::ok;
+    ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
+    const std::string right =
+        ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
+    if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                      item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+      session.opener.openCase(report.file, item.id);
     }
-  }
+    if (row == 0) ui.note("first");
+    ImGui::EndDisabled();
+  });
 }
 
 }  // namespace broadmark

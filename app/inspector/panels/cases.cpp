@@ -10,7 +10,6 @@
 #include "broadmark/render/plot.h"
 #include "inspector/panels/case_plots.h"
 #include "inspector/panels/panel.h"
-#include "inspector/ui/two_parts.h"
 #include "support/child_program.h"
 #include "support/words.h"
 

@@ -10,7 +10,6 @@
 #include "compare/duel_report.h"
 #include "inspector/panels/panel.h"
 #include "inspector/ui/histogram.h"
-#include "inspector/ui/two_parts.h"
 #include "support/words.h"
 
 namespace broadmark::panels::duel {

@@ -162,20 +162,6 @@ class MismatchesPanel final : public Panel {
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
-  /// Draws those of `count` rows that are in sight.
-  template <class Row>
-  static void clipped(std::size_t count, Row row) {
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(count));
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        ImGui::PushID(i);
-        row(static_cast<std::size_t>(i));
-        ImGui::PopID();
-      }
-    }
-  }
-
   /// The button that begins an export.
   static void drawCase(PanelContext& context, const LaneReport& lane) {
     Session& session = context.session;

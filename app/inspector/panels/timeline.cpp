@@ -13,10 +13,9 @@
 
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
-#include "inspector/session/span_statistics.h"
+#include "inspector/session/lane_statistics.h"
 #include "inspector/ui/curve_colours.h"
 #include "inspector/ui/histogram.h"
-#include "inspector/ui/two_parts.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {

@@ -24,7 +24,6 @@
 #include "inspector/run/draw_gate.h"
 #include "inspector/run/footage.h"
 #include "inspector/run/lane.h"
-#include "inspector/run/pair_comparison.h"
 #include "inspector/run/second_run.h"
 #include "inspector/run/seen_answers.h"
 #include "inspector/run/snapshot.h"

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/recordings/recording.h"
 #include "broadmark/recordings/swept_frames.h"
 #include "run/recordings.h"
 #include "sources/make_source.h"

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "broadmark/harness/case_result.h"
 #include "broadmark/parameters.h"
-#include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/simulation.h"
 #include "inspector/run/snapshot.h"
 

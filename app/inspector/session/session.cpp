@@ -6,7 +6,6 @@
 
 #include "broadmark/error.h"
 #include "broadmark/recordings/recording.h"
-#include "broadmark/render/colouring.h"
 #include "run/export_case.h"
 
 namespace broadmark {

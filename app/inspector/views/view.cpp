@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "broadmark/render/input_queue.h"
 #include "broadmark/render/ui_renderer.h"
 #include "inspector/views/view_overlay.h"
 
