@@ -41,6 +41,29 @@ function(broadmark_room name)
   endforeach()
 endfunction()
 
+# Which folders of the present one may include headers of which others, one RULE for each: "FOLDER:
+# USED USED…". PREFIX stands before the folders' names in includes. Any other include among them, or
+# of a header beside the folders, fails.
+function(broadmark_arrows prefix)
+  list(TRANSFORM ARGN REPLACE ":.*" "/" OUTPUT_VARIABLE names)
+  file(GLOB beside CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.h)
+  foreach(rule IN LISTS ARGN)
+    string(REGEX MATCHALL "[a-z_]+" allowed "${rule}")
+    list(TRANSFORM allowed APPEND "/")
+    list(GET allowed 0 folder)
+    set(forbidden ${names} ${beside})
+    list(REMOVE_ITEM forbidden ${allowed})
+    list(JOIN forbidden "|" forbidden)
+    file(GLOB_RECURSE files CONFIGURE_DEPENDS ${folder}*.cpp ${folder}*.h)
+    foreach(file IN LISTS files)
+      file(STRINGS ${file} includes REGEX "#include \"${prefix}(${forbidden})")
+      if(includes)
+        message(FATAL_ERROR "${file}: ${includes}: not an arrow of '${rule}'")
+      endif()
+    endforeach()
+  endforeach()
+endfunction()
+
 # One list, stated once in CMake: every NAME adds FOLDER/NAME.cpp to the target and the line
 # MACRO(NAME) to the generated FILE, from which the target's C++ registry is built.
 function(broadmark_registry target file macro folder)

@@ -119,7 +119,7 @@ void Inspector::drawStatus(const RunProgress& progress) {
                     partly ? fmt::format("{} of {}", progress.snapshot->present, bodies) : bodies));
     if (progress.snapshot) {
       ImGui::SameLine(0, 14 * ui_.scale);
-      ui_.faint(view_.answer().answer);
+      ui_.faint(views_.first().answer().answer);
     }
   } else {
     ui_.faint("Nothing is open: simulate a scene, or open or drop a recording");

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "inspector/authoring/author_dialogs.h"
-#include "inspector/closing.h"
 
 namespace broadmark {
 namespace {
@@ -22,20 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr float kFontSize = 15;       // units
 constexpr float kLargeFontSize = 20;  // units
-constexpr float kSplitterSize = 5;    // units
 constexpr float kNarrowest = 110;     // units: of a place that is shown
-
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-/// Opens a window that fills a rectangle.
-void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0) {
-  ImGui::SetNextWindowPos(position);
-  ImGui::SetNextWindowSize(size);
-  ImGui::Begin(id, nullptr, kFixed | flags);
-}
+constexpr const char* kStillAtWork = "Still at work";
 
 }  // namespace
 
@@ -46,8 +33,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
       renderer_(gl),
       gl_(&gl),
       session_(std::move(algorithms), std::move(make_host)),
-      view_(gl),
-      second_view_(gl, View::Role::second),
+      views_(gl),
       panels_(makePanels()),
       screen_scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
@@ -59,7 +45,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
   restyle();
   for (const auto& [place, panel] : preferences_.tabs)
     session_.notices.wanted_panels.push_back(panel);
-  session_.on_file = [this](const fs::path& file) { preferences_.remember(file); };
+  session_.notices.on_file = [this](const fs::path& file) { preferences_.remember(file); };
   ui_.on_correction = [this](const std::string& text) {
     session_.notices.say(text, Message::Kind::warning);
   };
@@ -114,7 +100,7 @@ void Inspector::draw(InputQueue& input, int width, int height, double seconds,
 }
 
 bool Inspector::lively() {
-  return session_.busy() || view_.lively() || second_view_.lively() || ImGui::GetIO().WantTextInput;
+  return session_.busy() || views_.lively() || ImGui::GetIO().WantTextInput;
 }
 
 std::optional<fs::path> Inspector::takeScreenshotRequest() {
@@ -179,7 +165,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   const float view_bottom =
       std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
-  PanelContext context{ui_, session_, progress, view_, files_};
+  PanelContext context{ui_, session_, progress, views_.first(), files_};
   if (left > 0) {
     drawPlace(Place::left, context, {0, top}, {left, status_top - top});
     splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
@@ -194,7 +180,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
     splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
              preferences_.bottom, -1);
   }
-  drawViews(progress, {view_left, top}, {middle, view_bottom - top});
+  views_.draw(ui_, session_, progress, {view_left, top}, {middle, view_bottom - top});
   beginAt("Playback", {view_left, view_bottom}, {middle, transport_height},
           ImGuiWindowFlags_NoScrollbar);
   takeFocus(kPlaces.entries.size());
@@ -207,29 +193,9 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   session_.notices.wanted_panels.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
-  drawEnding(ui_, session_);
+  drawEnding();
   drawHelp();
   drawErrors();
-  ImGui::PopStyleVar();
-}
-
-void Inspector::drawViews(const RunProgress& progress, ImVec2 position, ImVec2 size) {
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
-  const float gap = kSplitterSize * ui_.scale;
-  const float width = session_.second ? std::max((size.x - gap) / 2, 1.0F) : size.x;
-  // Of both, if each has a camera of its own.
-  const std::optional<BodySelection::Bodies> fly_to = session_.selection.fly_to;
-  beginAt("View", position, {width, size.y}, ImGuiWindowFlags_NoScrollbar);
-  view_.draw(ui_, session_, progress);
-  ImGui::End();
-  if (session_.second) {
-    if (!session_.linked && !session_.selection.fly_to) session_.selection.fly_to = fly_to;
-    beginAt("Second view", {position.x + size.x - width, position.y}, {width, size.y},
-            ImGuiWindowFlags_NoScrollbar);
-    second_view_.draw(ui_, session_, progress, session_.linked ? &view_ : nullptr);
-    ImGui::End();
-    if (session_.linked && second_view_.moved()) view_.follow(second_view_);
-  }
   ImGui::PopStyleVar();
 }
 
@@ -272,6 +238,32 @@ void Inspector::drawErrors() {
     if (session_.notices.errors.empty()) ImGui::CloseCurrentPopup();
   }
   ImGui::EndPopup();
+}
+
+void Inspector::leave() {
+  ending_ = false;
+  session_.document.leave([this] { closing_ = true; });
+}
+
+void Inspector::drawEnding() {
+  if (!ending_ || !session_.notices.errors.empty()) return;
+  if (!session_.jobs.running()) return leave();  // it has ended meanwhile
+  const auto scope = ui_.scope("Ending");
+  if (!ImGui::IsPopupOpen(kStillAtWork)) ImGui::OpenPopup(kStillAtWork);
+  if (!ui_.beginDialog(kStillAtWork, {420, 0})) return;
+  for (const Job* const job : session_.jobs.all()) {
+    if (job->running()) ui_.paragraph(job->status().doing);
+  }
+  ui_.paragraph("What is finished is kept.");
+  ImGui::Spacing();
+  const float width = 84 * ui_.scale;
+  const bool end = ui_.button("End it", "What is not finished is given up", width);
+  ImGui::SameLine();
+  const bool stay = ui_.cancel(width);
+  if (end || stay) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  if (stay) ending_ = false;
+  if (end) leave();
 }
 
 }  // namespace broadmark

@@ -16,7 +16,7 @@
 #include "inspector/ui/file_dialog.h"
 #include "inspector/ui/preferences.h"
 #include "inspector/ui/ui.h"
-#include "inspector/views/view.h"
+#include "inspector/views/views.h"
 
 struct ImGuiContext;
 
@@ -60,13 +60,12 @@ class Inspector {
 
   [[nodiscard]] Session& session() { return session_; }
   [[nodiscard]] Ui& ui() { return ui_; }
-  [[nodiscard]] View& view() { return view_; }
-  [[nodiscard]] View& secondView() { return second_view_; }
   [[nodiscard]] const Preferences& preferences() const { return preferences_; }
   [[nodiscard]] bool closing() const { return closing_; }
   /// Closes, once it is decided what becomes of unsaved changes and of work in the background.
   void close() {
-    session_.end([this] { closing_ = true; });
+    ending_ = true;
+    if (!session_.jobs.running()) leave();
   }
   /// Whether pictures change without input.
   [[nodiscard]] bool lively();
@@ -79,7 +78,6 @@ class Inspector {
   /// The session's state by name, as text, for scripts and tests: "frame", "pairs", … Nothing for
   /// an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
-  FileDialog& fileDialog() { return files_; }
   /// Panel by name, or null.
   [[nodiscard]] Panel* panel(const std::string& name);
 
@@ -90,7 +88,6 @@ class Inspector {
   void drawMenus(const RunProgress& progress);
   void drawScaleMenu();
   void resetLayout();
-  void drawViews(const RunProgress& progress, ImVec2 position, ImVec2 size);
   void drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size);
   [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
@@ -100,6 +97,10 @@ class Inspector {
   void drawStatus(const RunProgress& progress);
   void drawHelp();
   void drawErrors();
+  /// While `ending_`: whether to end the work in the background, or to stay.
+  void drawEnding();
+  /// Closes, once it is decided what becomes of unsaved changes.
+  void leave();
   void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);
   void makeShortcuts();
   void handleShortcuts();
@@ -116,7 +117,7 @@ class Inspector {
   void editAuthored(void (scenes::SceneEditor::*change)());
   void askOpen();
   void askSaveRecording();
-  void askExportTimings();
+  void askExportTimings(const std::string& table);
   void askMovie();
 
   Preferences preferences_;
@@ -126,21 +127,20 @@ class Inspector {
   Ui ui_;
   FileDialog files_;
   Session session_;
-  View view_;
-  View second_view_;
+  Views views_;
   std::vector<std::unique_ptr<Panel>> panels_;
   std::vector<Shortcut> shortcuts_;
   bool help_ = false;
   bool navigates_ = false;               ///< keys move among the widgets
   std::optional<std::size_t> to_focus_;  ///< which of the places, in the next picture
   std::size_t focused_ = 0;
+  bool ending_ = false;  ///< it is to be closed, and work goes on in the background
   bool closing_ = false;
   float screen_scale_;    ///< that the screen suggests
   bool restyle_ = false;  ///< theme or scale are others than in the last picture
   bool screenshot_asked_ = false;
   int screenshots_ = 0;
   std::filesystem::path movie_directory_;
-  std::optional<std::string> timings_;  ///< asked for as a table, not yet saved
 };
 
 }  // namespace broadmark

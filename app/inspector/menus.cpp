@@ -24,7 +24,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
     if (ImGui::BeginMenu("Open recent", !preferences_.recent.empty())) {
       const auto inside = ui_.scope("Open recent");
       for (const std::string& file : std::vector(preferences_.recent)) {
-        if (ui_.menuItem(file.c_str())) session_.open(file);
+        if (ui_.menuItem(file.c_str())) session_.opener.open(file);
       }
       ImGui::EndMenu();
     } else {
@@ -39,8 +39,7 @@ void Inspector::drawMenus(const RunProgress& progress) {
       askSaveRecording();
     }
     if (ui_.menuItem("Export timings…", nullptr, false, !progress.lanes.empty())) {
-      timings_ = formatFrameTable(session_.playback.scene(), progress.lanes);
-      askExportTimings();
+      askExportTimings(formatFrameTable(session_.playback.scene(), progress.lanes));
     }
     ImGui::Separator();
     if (ui_.menuItem("Screenshot", keysFor(kTakePicture).c_str())) screenshot_asked_ = true;
@@ -120,7 +119,7 @@ void Inspector::askOpen() {
               .purpose = FileDialog::Purpose::open,
               .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
-              .chosen = [this](const fs::path& path) { session_.open(path); }});
+              .chosen = [this](const fs::path& path) { session_.opener.open(path); }});
 }
 
 void Inspector::askSaveRecording() {
@@ -132,14 +131,14 @@ void Inspector::askSaveRecording() {
               .chosen = [this](const fs::path& path) { session_.saveRecording(path); }});
 }
 
-void Inspector::askExportTimings() {
+void Inspector::askExportTimings(const std::string& table) {
   files_.ask({.title = "Export the times of all frames",
               .purpose = FileDialog::Purpose::save,
               .extensions = {".csv"},
               .suggestion = "timings.csv",
-              .chosen = [this](const fs::path& path) {
+              .chosen = [this, table](const fs::path& path) {
                 session_.notices.attempt([&] {
-                  writeTextFile(path, timings_.value_or(""));
+                  writeTextFile(path, table);
                   session_.notices.say(fmt::format("written: {}", path.string()));
                 });
               }});
@@ -148,8 +147,6 @@ void Inspector::askExportTimings() {
 void Inspector::askMovie() {
   files_.ask({.title = "Directory for the movie's pictures",
               .purpose = FileDialog::Purpose::directory,
-              .extensions = {},
-              .suggestion = {},
               .chosen = [this](const fs::path& path) { movie_directory_ = path; }});
 }
 

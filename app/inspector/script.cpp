@@ -329,7 +329,7 @@ void ScriptPlayer::panel(const Words& words, Inspector& inspector) {
 }
 
 void ScriptPlayer::open(const Words& words, Inspector& inspector) {
-  inspector.session().open(words[0]);
+  inspector.session().opener.open(words[0]);
   pause();
 }
 

@@ -64,7 +64,7 @@ void Inspector::makeShortcuts() {
          session_.view.filter.hidden_classes = 0;
        }},
       {GLFW_KEY_V, false, false, "a second view beside the first, or one",
-       [this] { session_.showSecond(!session_.second); }},
+       [this] { session_.second.show(!session_.second.wish); }},
       {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
        [this] { takeTool(Tool::move); }},
       {GLFW_KEY_T, false, false, "likewise: the gizmo that turns",
@@ -176,7 +176,7 @@ void Inspector::escape() {
   Tools& tools = session_.document.desk.tools;
   if (help_) {
     help_ = false;
-  } else if (view_.hands().cancel()) {
+  } else if (views_.first().hands().cancel()) {
     return;
   } else if (session_.document.shown() && tools.tool == Tool::brush) {
     tools.tool = Tool::none;

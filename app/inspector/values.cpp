@@ -3,20 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <span>
 
-#include "compare/duel_report.h"
 #include "inspector/inspector.h"
 #include "inspector/session/answer_text.h"
-#include "inspector/session/span_statistics.h"
+#include "inspector/session/lane_statistics.h"
 #include "inspector/session/wrong_pair.h"
 
 namespace broadmark {
 namespace {
-
-using Values = std::map<std::string, std::string>;
 
 const char* yes(bool is) { return is ? "yes" : "no"; }
 
@@ -35,7 +31,7 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
     values[name + "status"] = statusName(lane.status);
     values[name + "reason"] = lane.reason;
     values[name + "frame"] = std::to_string(lane.frame);
-    values[name + "over"] = std::to_string(framesOver(lane, session.budget_ms));
+    values[name + "over"] = std::to_string(framesOver(lane, session.timeline.budget_ms));
     FrameRecord sum;
     for (const FrameRecord& record : lane.frames) {
       sum.missed_count += record.missed_count;
@@ -69,7 +65,7 @@ void addSnapshot(Values& values, const Snapshot* snapshot) {
 
 void addSecond(Values& values, const Session& session, const RunProgress& progress) {
   const Snapshot* second = progress.second.get();
-  values["second"] = yes(session.second.has_value());
+  values["second"] = yes(session.second.wish.has_value());
   values["second.frame"] = second ? std::to_string(second->frame) : "";
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
@@ -140,24 +136,6 @@ void addAuthored(Values& values, Session& session) {
               : Vec3{2 * std::get<scenes::SphereShape>(body.shape).radius, 0, 0});
 }
 
-void addBatch(Values& values, const BackgroundBake& bake) {
-  using Outcome = BackgroundBake::Outcome;
-  const BackgroundBake::Report report = bake.report();
-  values["batch.state"] = kTaskStates.nameOf(report.state);
-  values["batch.recordings"] = std::to_string(report.items.size());
-  values["batch.done"] = std::to_string(report.count(Outcome::baked));
-  values["batch.kept"] = std::to_string(report.count(Outcome::kept));
-  values["batch.failed"] = std::to_string(report.failed());
-}
-
-void addBenchmark(Values& values, const BackgroundBenchmark& benchmark) {
-  const BackgroundBenchmark::Report report = benchmark.report();
-  values["benchmark.state"] = kTaskStates.nameOf(report.state);
-  values["benchmark.cases"] = std::to_string(report.cases);
-  values["benchmark.run"] = std::to_string(report.items.size());
-  values["benchmark.failed"] = std::to_string(report.failed());
-}
-
 void addCases(Values& values, std::optional<OpenedResults>& results) {
   const auto rows = results ? std::span(results->rows()) : std::span<const OpenedResults::Row>();
   values["cases"] = results ? std::to_string(rows.size()) : "";
@@ -167,13 +145,6 @@ void addCases(Values& values, std::optional<OpenedResults>& results) {
   values["cases.scaling"] = results ? std::to_string(results->scaling(Phase::total).size()) : "";
   const bool any = results && !results->listed().empty();
   values["cases.first"] = any ? rows[results->listed().front()].result.id : "";
-}
-
-void addDuel(Values& values, const BackgroundDuel& duel) {
-  const BackgroundDuel::Report report = duel.report();
-  values["duel.state"] = kTaskStates.nameOf(report.state);
-  values["duel.rounds"] = std::to_string(report.result.sides.empty() ? 0 : report.result.rounds());
-  values["duel.verdict"] = report.result.places.empty() ? "" : verdictOf(report.result);
 }
 
 /// Whether the first selected body is there.
@@ -203,15 +174,6 @@ void addPair(Values& values, const Session& session, const Snapshot* snapshot) {
       snapshot->tracks.size() == 2 ? std::to_string(snapshot->tracks[0].boxes.size()) : "0";
 }
 
-void addExport(Values& values, const CaseExport::Report& report) {
-  values["export.state"] = kTaskStates.nameOf(report.state);
-  values["export.trials"] = std::to_string(report.trials);
-  values["export.bodies"] = std::to_string(report.bodies);
-  values["export.frames"] = std::to_string(report.frames);
-  values["export.file"] = report.file.string();
-  values["export.command"] = report.command;
-}
-
 Values valuesOf(Session& session, const RunProgress& progress) {
   Values values;
   values["frame"] = std::to_string(session.playback.frame());
@@ -236,8 +198,10 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   values["stop_frame"] = progress.stop ? std::to_string(progress.stop->frame) : "";
   values["error"] = session.notices.errors.empty() ? "" : session.notices.errors.front();
   values["status"] = session.notices.status.text;
-  for (const auto& [name, value] : parameterValues(*session.draft)) values["scene." + name] = value;
-  for (const auto& [name, value] : session.openParameters()) values["open." + name] = value;
+  for (const auto& [name, value] : parameterValues(session.draft.scene()))
+    values["scene." + name] = value;
+  for (const auto& [name, value] : sceneParametersOf(session.playback.footage().get()))
+    values["open." + name] = value;
   for (LaneEdit& lane : session.lanes.list) {
     for (const auto& [name, value] : parameterValues(*lane.parameters)) {
       values[fmt::format("lane.{}.{}", lane.algorithm.id, name)] = value;
@@ -248,17 +212,17 @@ Values valuesOf(Session& session, const RunProgress& progress) {
   const LaneEdit* shown = session.lanes.find(session.lanes.shown());
   values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
   addAuthored(values, session);
-  addBatch(values, session.bake);
-  addBenchmark(values, session.benchmark);
-  addDuel(values, session.duel);
-  values["report.state"] = kTaskStates.nameOf(session.report_page.report().state);
+  for (const Job* const job : session.jobs.all()) {
+    for (const auto& [name, value] : job->status().values) {
+      values[fmt::format("{}.{}", job->value_prefix, name)] = value;
+    }
+  }
   addLanes(values, session, progress);
   addTimeline(values, session.timeline);
   addSnapshot(values, progress.snapshot.get());
   addSecond(values, session, progress);
   values["selected_body"] = presenceText(session, progress.snapshot.get());
   addPair(values, session, progress.snapshot.get());
-  addExport(values, session.case_export.report());
   values["searching"] = yes(session.mismatches.searching());
   addCases(values, session.results);
   return values;
@@ -272,24 +236,24 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["panel.left"] = preferences_.tabs["left"];
   values["panel.right"] = preferences_.tabs["right"];
   values["panel.bottom"] = preferences_.tabs["bottom"];
-  values["camera.yaw"] = fmt::format("{:.4f}", view_.camera().yaw);
-  values["camera.pitch"] = fmt::format("{:.4f}", view_.camera().pitch);
-  values["camera.distance"] = fmt::format("{:.4f}", view_.camera().distance);
-  values["legend"] = legendText(view_.content().legend());
-  values["legend.oracle"] = legendText(view_.content().oracleLegend());
-  values["legend.cells"] = legendText(view_.content().cellLegend());
-  values["view.answer"] = view_.answer().answer;
-  values["view.oracle"] = view_.answer().beside;
-  values["view.hands"] = view_.hands().text();
-  values["view.pair"] = view_.answer().pair;
-  values["view.where"] = view_.answer().where;
-  values["second.where"] = second_view_.answer().where;
-  values["second.answer"] = second_view_.answer().answer;
-  values["second.oracle"] = second_view_.answer().beside;
-  values["second.pair"] = second_view_.answer().pair;
-  values["second.yaw"] = fmt::format("{:.4f}", second_view_.camera().yaw);
-  values["second.distance"] = fmt::format("{:.4f}", second_view_.camera().distance);
-  values["hidden"] = std::to_string(view_.content().hiddenBodies());
+  for (const View& view : views_.list()) {
+    const std::string prefix = &view == &views_.first() ? "view." : "second.";
+    values[prefix + "where"] = view.answer().where;
+    values[prefix + "answer"] = view.answer().answer;
+    values[prefix + "oracle"] = view.answer().beside;
+    values[prefix + "pair"] = view.answer().pair;
+    values[prefix + "yaw"] = fmt::format("{:.4f}", view.camera().yaw);
+    values[prefix + "distance"] = fmt::format("{:.4f}", view.camera().distance);
+  }
+  View& first = views_.first();
+  values["camera.yaw"] = values["view.yaw"];
+  values["camera.pitch"] = fmt::format("{:.4f}", first.camera().pitch);
+  values["camera.distance"] = values["view.distance"];
+  values["legend"] = legendText(first.content().legend());
+  values["legend.oracle"] = legendText(first.content().oracleLegend());
+  values["legend.cells"] = legendText(first.content().cellLegend());
+  values["view.hands"] = first.hands().text();
+  values["hidden"] = std::to_string(first.content().hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());
   values["scale"] = fmt::format("{:g}", ui_.scale);
   values["layout"] =

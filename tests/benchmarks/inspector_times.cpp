@@ -68,7 +68,7 @@ struct Watched {
   Watched(const Gl& gl, const Setting& setting)
       : target(gl, kWidth, kHeight, 1), inspector(gl, builtinAlgorithms(), {}, 1) {
     session().draft = simulationOf(setting);
-    session().simulate();
+    session().draft.simulate();
     LaneEdit& lane = session().lanes.add(setting.algorithm);
     lane.threads = 1;
     session().lanes.changed();
@@ -128,7 +128,7 @@ void showEverything(Session& session) {
   view.structure_near = false;
   view.filter = {.largest = 1e6};
   session.selection.select({0, 1, 2, 3});
-  session.showSecond(true);
+  session.second.show(true);
 }
 
 /// The milliseconds of each picture while draw() is called for some seconds; the first one, which

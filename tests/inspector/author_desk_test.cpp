@@ -1,5 +1,5 @@
 // Authoring in the session, without any drawing.
-#include "inspector/authoring/author_desk.h"
+#include "inspector/session/author_desk.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -88,8 +88,8 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   session.document.edit(&SceneEditor::selectAll);
   EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2));
   // What is selected elsewhere is none of the document's business.
-  setParameters(*session.draft, {{"objects", "40"}, {"frames", "5"}});
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "40"}, {"frames", "5"}});
+  session.draft.simulate();
   settle();
   session.selection.select({30});
   EXPECT_EQ(session.document.desk.editor.selection().size(), 3U);
@@ -102,7 +102,7 @@ TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
   session.document.edit(&SceneEditor::group);
   EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(0, 2));
   EXPECT_THAT(session.selection.whole({1}), testing::ElementsAre(1));
-  session.simulate();
+  session.draft.simulate();
   settle();
   EXPECT_THAT(session.selection.whole({2}), testing::ElementsAre(2)) << "of another scene";
 }
@@ -133,7 +133,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
   EXPECT_EQ(session.document.desk.path(), directory / "three.json");
   EXPECT_FALSE(session.document.desk.isModified());
   session.document.start({});
-  session.open(directory / "three.json");
+  session.opener.open(directory / "three.json");
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.shown());
@@ -146,8 +146,8 @@ TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
   session.document.start(threeBodies());
   settle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
-  session.open(directory / "bad.json");
-  session.open(directory / "missing.json");
+  session.opener.open(directory / "bad.json");
+  session.opener.open(directory / "missing.json");
   EXPECT_FALSE(session.document.save(directory / "no such" / "directory.json"));
   ASSERT_EQ(session.notices.errors.size(), 3U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("bad.json"));
@@ -187,8 +187,8 @@ TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
 }
 
 TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
-  setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "30"}, {"frames", "20"}});
+  session.draft.simulate();
   session.playback.seek(9);
   const RunProgress live = settle();
   session.document.startFromFrame();
@@ -204,13 +204,13 @@ TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
 }
 
 TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
-  setParameters(*session.draft, {{"objects", "30"}, {"frames", "20"}});
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "30"}, {"frames", "20"}});
+  session.draft.simulate();
   session.playback.seek(9);
   settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
-  session.open(directory / "some.aabbs");
+  session.opener.open(directory / "some.aabbs");
   settle();
   session.playback.seek(4);
   const RunProgress recorded = settle();
@@ -238,11 +238,11 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
 TEST_F(AuthoringTest, BakesTheWholeScene) {
   session.document.start(threeBodies());
   session.document.bake(directory / "three");
-  while (session.bake.running()) std::this_thread::sleep_for(1ms);
+  while (session.jobs.get<BackgroundBake>().running()) std::this_thread::sleep_for(1ms);
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
-  EXPECT_EQ(session.bake.report().state, TaskState::done);
-  session.open(directory / "three.aabbs");
+  EXPECT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done);
+  session.opener.open(directory / "three.aabbs");
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.scene.objects, 3U);

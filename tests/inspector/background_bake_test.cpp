@@ -15,7 +15,7 @@ namespace broadmark::tests {
 namespace {
 
 using namespace std::chrono_literals;
-using Outcome = BackgroundBake::Outcome;
+using Outcome = BakeOutcome;
 
 class BackgroundBakeTest : public testing::Test {
  protected:

@@ -1,5 +1,5 @@
 // Who of a crowd is drawn.
-#include "inspector/session/body_filter.h"
+#include "inspector/session/view_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

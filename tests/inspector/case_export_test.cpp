@@ -27,9 +27,9 @@ class CaseExportTest : public testing::Test {
 
   /// Goes to the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {
-    session.chooseScene("brownian", "kinematic");
-    setParameters(*session.draft, {{"objects", "200"}, {"frames", "60"}});
-    session.simulate();
+    session.draft.choose("brownian", "kinematic");
+    setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
+    session.draft.simulate();
     setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
     session.mismatches.goToNext(settle());
@@ -39,10 +39,10 @@ class CaseExportTest : public testing::Test {
   }
 
   CaseExport::Report waitForEnd() {
-    for (int i = 0; i < 60000 && session.case_export.running(); ++i) {
+    for (int i = 0; i < 60000 && session.jobs.get<CaseExport>().running(); ++i) {
       std::this_thread::sleep_for(1ms);
     }
-    return session.case_export.report();
+    return session.jobs.get<CaseExport>().report();
   }
 
   Session session;
@@ -72,7 +72,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     EXPECT_EQ(written->scene().objects, report.bodies);
     EXPECT_EQ(written->scene().frames, report.frames);
 
-    session.openExport();
+    session.opener.openExport(session.jobs.get<CaseExport>().report());
     const RunProgress opened = settle();
     EXPECT_EQ(opened.scene.objects, report.bodies);
     ASSERT_TRUE(opened.snapshot);
@@ -99,12 +99,12 @@ TEST_F(CaseExportTest, BadFilesAreTold) {
   EXPECT_THAT(session.notices.errors[0],
               testing::AllOf(testing::HasSubstr("a.posrot"), testing::HasSubstr(".aabbs")));
   EXPECT_THAT(session.notices.errors[1], testing::HasSubstr("no/a.aabbs"));
-  EXPECT_EQ(session.case_export.report().state, State::idle);
+  EXPECT_EQ(session.jobs.get<CaseExport>().report().state, State::idle);
 }
 
 TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
   const RunProgress seen = findMismatch("faulty");
-  session.simulate();
+  session.draft.simulate();
   session.exportCase(seen.lanes[0].spec.run, seen.snapshot, directory / "a.aabbs");
   settle();
   ASSERT_EQ(session.notices.errors.size(), 1U);
@@ -113,7 +113,7 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
 
 TEST_F(CaseExportTest, CanBeCancelled) {
   const RunProgress seen = findMismatch("faulty");
-  CaseExport& work = session.case_export;
+  CaseExport& work = session.jobs.get<CaseExport>();
   // It is cancelled before the first trial, then while it may be at any point, or be over.
   for (const auto pause : {0ms, 2ms, 10ms}) {
     std::unique_ptr<IndexedFrames> frames;
@@ -156,8 +156,8 @@ TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {
 }
 
 TEST_F(CaseExportTest, TheSearchTellsWhenThereIsNoMismatch) {
-  setParameters(*session.draft, {{"objects", "50"}, {"frames", "8"}});
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "50"}, {"frames", "8"}});
+  session.draft.simulate();
   session.lanes.add("sap");
   session.mismatches.goToNext(settle());
   EXPECT_TRUE(session.mismatches.searching());
@@ -212,7 +212,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
   }
-  session.open(directory / "r.json");
+  session.opener.open(directory / "r.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(session.results);
   ASSERT_EQ(session.results->rows().size(), 2U);
@@ -220,7 +220,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_EQ(session.results->rows()[1].mismatches, 1U);
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
 
-  session.openCase(directory / "r.json", "some/case");
+  session.opener.openCase(directory / "r.json", "some/case");
   const RunProgress opened = settle();
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_EQ(session.lanes.list.size(), 1U);
@@ -228,7 +228,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));
 
-  session.openCase(directory / "r.json", "other/case");
+  session.opener.openCase(directory / "r.json", "other/case");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("'other/case'"));
 }

@@ -34,11 +34,11 @@ class InspectorTest : public testing::Test {
         inspector(gl, algorithmsAndFaultyOnes(), {}, 1),
         former_directory(std::filesystem::current_path()) {
     std::filesystem::current_path(directory / "");  // screenshots go there
-    setParameters(*inspector.session().draft, {{"objects", "40"}, {"frames", "20"}});
+    setParameters(inspector.session().draft.scene(), {{"objects", "40"}, {"frames", "20"}});
   }
   ~InspectorTest() override {
     // A batch that has been begun writes below the directory that is about to go.
-    BackgroundBake& bake = inspector.session().bake;
+    BackgroundBake& bake = inspector.session().jobs.get<BackgroundBake>();
     bake.cancel();
     while (bake.running()) std::this_thread::sleep_for(1ms);
     std::filesystem::current_path(former_directory);
@@ -142,9 +142,9 @@ TEST_F(InspectorTest, LettersTypedIntoAnInputAreNoShortcuts) {
 // Among several frames for each pixel.
 TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
   Session& session = inspector.session();
-  setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
-  session.chooseScene("brownian");
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
+  session.draft.choose("brownian");
+  session.draft.simulate();
   session.lanes.add("faulty");
   session.playback.seek(300);
   settle();
@@ -164,7 +164,7 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
 }
 
 TEST_F(InspectorTest, EverySizeCanBeDrawn) {
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   inspector.session().lanes.add("kd");
   for (const auto& [w, h] : {std::pair{1, 1},
                              {3, 700},
@@ -183,8 +183,8 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
 }
 
 TEST_F(InspectorTest, LooksAsItDid) {
-  inspector.session().chooseScene("brownian", "kinematic");
-  inspector.session().simulate();
+  inspector.session().draft.choose("brownian", "kinematic");
+  inspector.session().draft.simulate();
   settle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/inspector.png")));
 }
@@ -208,7 +208,7 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
   click("Scene/Simulate");
   settle();
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
-  inspector.session().open(vanishingBodies(directory, 40));
+  inspector.session().opener.open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(inspector.ui().find("Scene/objects"), nullptr);
   EXPECT_EQ(value("source"), "recording: vanishing.broadmark");
@@ -218,7 +218,7 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
 }
 
 TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   inspector.session().lanes.add("sap");
   settle();
   EXPECT_EQ(value("legend.oracle"), "") << "in frame 0 no algorithm answers";
@@ -234,7 +234,7 @@ TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
 
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
   draw(2);
-  inspector.session().open("/nowhere/at all.aabbs");
+  inspector.session().opener.open("/nowhere/at all.aabbs");
   draw(3);
   EXPECT_THAT(value("error"), testing::HasSubstr("/nowhere/at all.aabbs"));
   click("Error/OK");
@@ -243,7 +243,7 @@ TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
 }
 
 TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   settle();
   ASSERT_NE(inspector.ui().find("View/scene"), nullptr);
   const WidgetPlace view = *inspector.ui().find("View/scene");
@@ -261,7 +261,7 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
 }
 
 TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
-  inspector.session().open(vanishingBodies(directory, 40));
+  inspector.session().opener.open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(value("bodies"), "40");
   key(GLFW_KEY_END);
@@ -283,7 +283,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 }
 
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
-  inspector.session().open(vanishingBodies(directory, 40));
+  inspector.session().opener.open(vanishingBodies(directory, 40));
   settle();
   inspector.showPanel("Bodies");
   inspector.session().selection.select({37});
@@ -299,7 +299,7 @@ TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
 }
 
 TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
-  inspector.session().open(vanishingBodies(directory, 40));
+  inspector.session().opener.open(vanishingBodies(directory, 40));
   settle();
   key(GLFW_KEY_END);
   settle();
@@ -317,7 +317,7 @@ TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
 
 // Every widget of every panel is pressed once, and whatever that opens is closed again.
 TEST_F(InspectorTest, EveryWidgetCanBePressed) {
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   inspector.session().lanes.add("grid-bf-mt");
   settle();
   std::set<std::string> pressed;
@@ -352,7 +352,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
 TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
   width = 1000;
   height = 700;
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   inspector.session().lanes.add("grid-bf-mt");
   settle();
   const auto press = [&](Key which, const std::vector<Key>& held = {}) {
@@ -441,7 +441,7 @@ TEST_P(RandomEvents, DoNoHarm) {
                            GLFW_KEY_D,
                            GLFW_KEY_F6,
                            GLFW_KEY_S};
-  inspector.session().simulate();
+  inspector.session().draft.simulate();
   inspector.session().lanes.add("sap");
   settle();
   for (int event = 0; event < events; ++event) {

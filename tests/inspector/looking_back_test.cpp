@@ -18,8 +18,8 @@ using namespace std::chrono_literals;
 class LookingBackTest : public testing::Test {
  protected:
   LookingBackTest() : session(algorithmsAndFaultyOnes()) {
-    session.chooseScene("brownian");
-    setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
+    session.draft.choose("brownian");
+    setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
   }
 
   RunProgress seek(std::uint32_t frame) {
@@ -29,7 +29,7 @@ class LookingBackTest : public testing::Test {
 
   /// The frames that it has to have been run to.
   RunProgress simulate(const char* algorithm, std::uint32_t frame) {
-    session.simulate();
+    session.draft.simulate();
     session.lanes.add(algorithm);
     return seek(frame);
   }
@@ -112,7 +112,7 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
 }
 
 TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
-  session.simulate();
+  session.draft.simulate();
   for (const char* algorithm : {"tracy", "tide", "kd", "dbvt-d"}) session.lanes.add(algorithm);
   seek(40);
   EXPECT_EQ(seek(20).lanes[0].frame, 40U);

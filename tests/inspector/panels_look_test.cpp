@@ -129,9 +129,9 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     session.document.edit(&SceneEditor::selectAll);
     settled(session);
 
-    session.chooseScene("brownian", "kinematic");
-    setParameters(*session.draft, {{"objects", "100"}, {"frames", "40"}});
-    session.simulate();
+    session.draft.choose("brownian", "kinematic");
+    setParameters(session.draft.scene(), {{"objects", "100"}, {"frames", "40"}});
+    session.draft.simulate();
     session.lanes.add("sap");
     LaneEdit& parallel = session.lanes.add("bf-simd-mt");
     parallel.isa = Isa::scalar;
@@ -141,12 +141,12 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     settled(session);
     session.startDuel(20);
     session.commit();
-    while (session.duel.running()) std::this_thread::sleep_for(1ms);
+    while (session.jobs.get<BackgroundDuel>().running()) std::this_thread::sleep_for(1ms);
 
     setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
     settled(session);
-    session.showSecond(true);
+    session.second.show(true);
     session.timeline.select(5, 30);
     session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
     settled(session);

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "inspector/helpers.h"
-#include "inspector/session/pair_comparison.h"
-#include "inspector/session/time_ratios.h"
+#include "inspector/run/second_run.h"
+#include "inspector/session/lane_statistics.h"
 
 namespace broadmark::tests {
 namespace {
@@ -55,8 +55,9 @@ TEST(TimeRatios, AreOfFramesThatBothHaveRunUndisturbed) {
 class SecondViewTest : public testing::Test {
  protected:
   SecondViewTest() : session(algorithmsAndFaultyOnes()) {
-    setParameters(*session.draft, {{"objects", "60"}, {"frames", "20"}, {"engine", "kinematic"}});
-    session.simulate();
+    setParameters(session.draft.scene(),
+                  {{"objects", "60"}, {"frames", "20"}, {"engine", "kinematic"}});
+    session.draft.simulate();
     faulty = session.lanes.add("faulty-extra").number;
     sap = session.lanes.add("sap").number;
     session.lanes.show(faulty);
@@ -77,7 +78,7 @@ class SecondViewTest : public testing::Test {
 
 TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   EXPECT_EQ(settled(session).second, nullptr);
-  session.showSecond(true);
+  session.second.show(true);
   const RunProgress seen = settled(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->lane, sap);
@@ -95,14 +96,14 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   EXPECT_EQ(settled(session).second->frame, 15U);
   session.lanes.remove(sap);
   EXPECT_EQ(settled(session).second->lane, 0);
-  session.showSecond(false);
+  session.second.show(false);
   const RunProgress alone = settled(session);
   EXPECT_EQ(alone.second, nullptr);
   EXPECT_EQ(alone.comparison, nullptr);
 }
 
 TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
-  session.second = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
+  session.second.wish = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
   RunProgress seen = settled(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 5U);
@@ -116,14 +117,14 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
   for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.frame, 12U);
 
   // Later than the first view's: it is simulated as far as that.
-  session.second->frame = 18;
+  session.second.wish->frame = 18;
   seen = settled(session);
   EXPECT_EQ(seen.second->frame, 18U);
   EXPECT_EQ(seen.second->lane, sap);
   EXPECT_EQ(seen.snapshot->frame, 12U);
   // Back again, by a fresh instance; and where both are at the same frame.
   for (const std::uint32_t frame : {3U, 12U, 0U, 99U}) {
-    session.second->frame = frame;
+    session.second.wish->frame = frame;
     seen = settled(session);
     EXPECT_EQ(seen.second->frame, std::min(frame, 20U));
     EXPECT_EQ(seen.second->pairs.size(), rightPairs(*seen.second).size());
@@ -133,7 +134,7 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
 TEST_F(SecondViewTest, AnotherRecording) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.lanes.show(sap);  // it copes with bodies that vanish
-  session.showBeside(other);
+  session.second.showRecording(other);
   RunProgress seen = settled(session);
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(seen.second);
@@ -144,7 +145,7 @@ TEST_F(SecondViewTest, AnotherRecording) {
   EXPECT_EQ(seen.snapshot->footage, session.playback.footage());
 
   // It stays when something else is opened beside it.
-  session.simulate();
+  session.draft.simulate();
   session.playback.goTo(2);
   seen = settled(session);
   ASSERT_TRUE(seen.second);
@@ -153,13 +154,13 @@ TEST_F(SecondViewTest, AnotherRecording) {
 }
 
 TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
-  session.showBeside("none.aabbs");
+  session.second.showRecording("none.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
-  EXPECT_FALSE(session.second);
+  EXPECT_FALSE(session.second.wish);
 
   // It vanishes before it is opened.
   const std::filesystem::path other = vanishingBodies(directory, 40);
-  session.showBeside(other);
+  session.second.showRecording(other);
   std::filesystem::remove(other);
   const RunProgress seen = settled(session);
   EXPECT_EQ(seen.second, nullptr);

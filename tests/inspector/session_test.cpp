@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 class SessionTest : public testing::Test {
  protected:
   SessionTest() : session(algorithmsAndFaultyOnes()) {
-    setParameters(*session.draft, {{"objects", "60"}, {"frames", "40"}, {"density", "0.3"}});
+    setParameters(session.draft.scene(), {{"objects", "60"}, {"frames", "40"}, {"density", "0.3"}});
   }
 
   RunProgress settle() { return settled(session); }
@@ -39,7 +39,7 @@ class SessionTest : public testing::Test {
 };
 
 TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
-  session.simulate();
+  session.draft.simulate();
   RunProgress seen = settle();
   ASSERT_TRUE(seen.snapshot);
   EXPECT_EQ(seen.snapshot->frame, 0U);
@@ -54,7 +54,7 @@ TEST_F(SessionTest, ShowsALiveSimulationAsFarAsItIsWatched) {
 }
 
 TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
-  session.simulate();
+  session.draft.simulate();
   for (const Algorithm& algorithm : builtinAlgorithms()) {
     if (!algorithm.traits.on_device) session.lanes.add(algorithm.id);
   }
@@ -68,7 +68,7 @@ TEST_F(SessionTest, EveryAlgorithmIsRightFrameByFrame) {
 }
 
 TEST_F(SessionTest, PlaysToTheEndAndLoops) {
-  session.simulate();
+  session.draft.simulate();
   settle();
   session.play(true);
   playOn();
@@ -82,9 +82,9 @@ TEST_F(SessionTest, PlaysToTheEndAndLoops) {
 }
 
 TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
-  setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
-  session.chooseScene("brownian");
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
+  session.draft.choose("brownian");
+  session.draft.simulate();
   const int faulty = session.lanes.add("faulty").number;
   session.lanes.add("bf");
   session.playback.seek(300);
@@ -105,10 +105,10 @@ TEST_F(SessionTest, StopsAtTheFirstMismatchAndGoesOn) {
 }
 
 TEST_F(SessionTest, WithoutCheckingNothingStops) {
-  setParameters(*session.draft, {{"objects", "200"}, {"frames", "300"}});
-  session.chooseScene("brownian");
+  setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
+  session.draft.choose("brownian");
   session.mismatches.check = false;
-  session.simulate();
+  session.draft.simulate();
   session.lanes.add("faulty");
   session.playback.seek(300);
   const RunProgress unchecked = settle();
@@ -120,7 +120,7 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
   EXPECT_TRUE(std::ranges::none_of(unchecked.lanes[0].frames, &FrameRecord::checked));
   // The same, checked.
   session.mismatches.check = true;
-  session.simulate();
+  session.draft.simulate();
   session.playback.seek(300);
   const RunProgress checked = settle();
   ASSERT_TRUE(checked.stop) << "the fault did not show";
@@ -130,13 +130,13 @@ TEST_F(SessionTest, WithoutCheckingNothingStops) {
 }
 
 TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
-  session.simulate();
+  session.draft.simulate();
   session.playback.seek(4);
   const RunProgress live = settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
-  session.open(directory / "some.aabbs");
+  session.opener.open(directory / "some.aabbs");
   session.playback.seek(4);
   settle();  // now its length is known
   session.playback.seek(4);
@@ -147,26 +147,26 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
 }
 
 TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
-  session.simulate();
+  session.draft.simulate();
   settle();
   const auto before = session.playback.footage();
-  session.open(directory / "missing.aabbs");
+  session.opener.open(directory / "missing.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("missing.aabbs"));
   EXPECT_EQ(session.playback.footage(), before);
 }
 
 TEST_F(SessionTest, AFileOfSceneParametersBecomesTheDraft) {
-  writeTextFile(directory / "scene.json", formatSceneParameters(*session.draft));
-  setParameters(*session.draft, {{"objects", "7"}});
-  session.open(directory / "scene.json");
+  writeTextFile(directory / "scene.json", formatSceneParameters(session.draft.scene()));
+  setParameters(session.draft.scene(), {{"objects", "7"}});
+  session.opener.open(directory / "scene.json");
   EXPECT_TRUE(session.notices.errors.empty());
-  EXPECT_EQ(parameterValues(*session.draft).at("objects"), "60");
+  EXPECT_EQ(parameterValues(session.draft.scene()).at("objects"), "60");
   EXPECT_EQ(settle().scene.objects, 60U);
 }
 
 TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
-  session.simulate();
+  session.draft.simulate();
   session.playback.seek(4);
   settle();
   session.saveRecording(directory / "some.aabbs");
@@ -175,7 +175,7 @@ TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
       directory / "settings.json",
       R"({"m_inputScene": "some.aabbs", "m_outputLog": "log.json", "m_algorithm": "SAP"})");
   session.lanes.add("bf");
-  session.open(directory / "settings.json");
+  session.opener.open(directory / "settings.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 4U);
@@ -188,7 +188,7 @@ TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
   plan.entries = openSource("freefall", {.algorithms = plan.algorithms}).entries;
   const Algorithm& sap = *std::ranges::find(plan.algorithms, "sap", &Algorithm::id);
   plan.entries[0].cases = {Case{.algorithm = sap}};
-  session.open(std::move(plan));
+  session.opener.open(std::move(plan));
   session.playback.seek(2);
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.name, "FreeFall");
@@ -197,8 +197,8 @@ TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
 }
 
 TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
-  setParameters(*session.draft, {{"objects", "200"}});
-  session.simulate();
+  setParameters(session.draft.scene(), {{"objects", "200"}});
+  session.draft.simulate();
   for (const char* margin : {"0.01", "0.7"}) {
     setParameters(*session.lanes.add("dbvt-d").parameters, {{"margin", margin}});
   }
@@ -218,7 +218,7 @@ TEST_F(SessionTest, TwoThatShareOneStateAreRightSideBySide) {
 TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
   Algorithm small = session.lanes.algorithms().front();
   small.traits.max_objects = 10;
-  session.simulate();
+  session.draft.simulate();
   session.lanes.add(Case{.algorithm = small});
   session.lanes.add("sap");
   session.playback.seek(3);
@@ -230,7 +230,7 @@ TEST_F(SessionTest, ALaneThatCannotRunTellsWhyAndLeavesTheOthersAlone) {
 }
 
 TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
-  session.simulate();
+  session.draft.simulate();
   session.lanes.add("grid-bf");
   session.playback.seek(3);
   settle();
@@ -243,7 +243,7 @@ TEST_F(SessionTest, EditedParametersStartTheLaneAnew) {
 }
 
 TEST_F(SessionTest, TracksFollowBodiesBackwards) {
-  session.simulate();
+  session.draft.simulate();
   session.playback.seek(9);
   settle();
   session.selection.select({5, 2});
@@ -255,7 +255,7 @@ TEST_F(SessionTest, TracksFollowBodiesBackwards) {
 }
 
 TEST_F(SessionTest, TheTableOfFramesHasALinePerLaneAndFrame) {
-  session.simulate();
+  session.draft.simulate();
   session.lanes.add("sap");
   session.lanes.add("bf");
   session.playback.seek(3);
@@ -270,7 +270,8 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   const auto layers = [](inputs::Random&, std::uint32_t body) {
     return BodyGroups{.layer = static_cast<std::uint8_t>(body % 2)};
   };
-  session.open(vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
+  session.opener.open(
+      vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
   session.playback.seek(10);
   settle();
   session.playback.seek(10);
@@ -294,17 +295,17 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
 }
 
 TEST_F(SessionTest, WithoutChangesThereIsNoPopulation) {
-  session.simulate();
+  session.draft.simulate();
   session.playback.seek(3);
   EXPECT_EQ(settle().population.size(), 0U);
 }
 
 TEST_F(SessionTest, WishesMayChangeAtAnyTime) {
-  session.simulate();
+  session.draft.simulate();
   session.lanes.add("sap");
   for (int i = 0; i < 200; ++i) {
     session.playback.seek((i * 7) % 41);
-    if (i % 31 == 0) session.simulate();
+    if (i % 31 == 0) session.draft.simulate();
     if (i % 17 == 0) session.lanes.add(i % 2 == 0 ? "bf" : "kd");
     if (i % 23 == 0 && !session.lanes.list.empty())
       session.lanes.remove(session.lanes.list.front().number);

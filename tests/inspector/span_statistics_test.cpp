@@ -1,5 +1,5 @@
 // What an algorithm took in a span of frames.
-#include "inspector/session/span_statistics.h"
+#include "inspector/session/lane_statistics.h"
 
 #include <gtest/gtest.h>
 

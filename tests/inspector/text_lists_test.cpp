@@ -1,5 +1,5 @@
 // Lists as they are typed.
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

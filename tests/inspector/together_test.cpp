@@ -68,9 +68,9 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
   Session session(builtinAlgorithms());
-  session.chooseScene("brownian", "kinematic");
-  setParameters(*session.draft, {{"objects", "150"}, {"frames", "30"}});
-  session.simulate();
+  session.draft.choose("brownian", "kinematic");
+  setParameters(session.draft.scene(), {{"objects", "150"}, {"frames", "30"}});
+  session.draft.simulate();
   const Case faulty{.algorithm = faultyTree()};
   ASSERT_EQ(faulty.algorithm.traits.exclusive, kBulletTreeMargin);
   session.lanes.add(faulty);
@@ -83,25 +83,28 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   const RunProgress seen = settled(session);
   ASSERT_TRUE(seen.snapshot->difference.isMismatch());
 
-  session.bake.start(bulletScene(), directory / "together.aabbs");
+  session.jobs.get<BackgroundBake>().start(bulletScene(), directory / "together.aabbs");
   session.exportCase(faulty, seen.snapshot, directory / "case.aabbs");
   RunProgress last;
   for (int round = 0; round < 50; ++round) {
     session.playback.seek(round % 2 == 0 ? 30 : 4);
     last = settled(session);
-    if (round > 0 && !session.bake.running() && !session.case_export.running()) break;
+    if (round > 0 && !session.jobs.get<BackgroundBake>().running() &&
+        !session.jobs.get<CaseExport>().running())
+      break;
   }
-  waitFor(session.bake);
-  while (session.case_export.running()) std::this_thread::sleep_for(1ms);
+  waitFor(session.jobs.get<BackgroundBake>());
+  while (session.jobs.get<CaseExport>().running()) std::this_thread::sleep_for(1ms);
 
   EXPECT_EQ(last.lanes[0].status, Status::mismatch);
   for (const std::size_t lane : {1U, 2U}) {
     EXPECT_EQ(last.lanes[lane].status, Status::ok) << last.lanes[lane].reason;
   }
-  const CaseExport::Report exported = session.case_export.report();
+  const CaseExport::Report exported = session.jobs.get<CaseExport>().report();
   EXPECT_EQ(exported.state, TaskState::done) << exported.failure;
   EXPECT_EQ(exported.bodies, 2U);
-  ASSERT_EQ(session.bake.report().state, TaskState::done) << session.bake.report().failure;
+  ASSERT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done)
+      << session.jobs.get<BackgroundBake>().report().failure;
   EXPECT_EQ(openRecordingFile(directory / "together.aabbs")->hash(),
             openRecordingFile(directory / "alone.aabbs")->hash());
 }

@@ -17,7 +17,7 @@ void askOpenScene(FileDialog& files, Session& session) {
              .purpose = FileDialog::Purpose::open,
              .extensions = {".json"},
              .suggestion = session.document.desk.path().parent_path(),
-             .chosen = [&session](const fs::path& path) { session.open(path); }});
+             .chosen = [&session](const fs::path& path) { session.opener.open(path); }});
 }
 
 void askSaveScene(FileDialog& files, Session& session, std::function<void()> then) {

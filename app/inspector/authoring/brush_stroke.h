@@ -6,8 +6,8 @@
 #include <optional>
 #include <span>
 
-#include "inspector/authoring/author_desk.h"
 #include "inspector/authoring/gizmo.h"
+#include "inspector/session/author_desk.h"
 
 namespace broadmark {
 

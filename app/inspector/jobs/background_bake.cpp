@@ -17,23 +17,34 @@ constexpr std::chrono::milliseconds kGlance{20};
 
 }  // namespace
 
-std::size_t BackgroundBake::Report::count(Outcome outcome) const {
+std::size_t BakeReport::count(BakeOutcome outcome) const {
   return static_cast<std::size_t>(std::ranges::count(items, outcome, &Item::outcome));
 }
 
-std::string BackgroundBake::Report::text() const {
-  std::string text = fmt::format("{} baked, {} kept", count(Outcome::baked), count(Outcome::kept));
+std::string BakeReport::text() const {
+  std::string text =
+      fmt::format("{} baked, {} kept", count(BakeOutcome::baked), count(BakeOutcome::kept));
   if (failed() > 0) text += fmt::format(", {} failed", failed());
-  if (const std::size_t left = count(Outcome::waiting); left > 0) {
+  if (const std::size_t left = count(BakeOutcome::waiting); left > 0) {
     text += fmt::format(", {} not finished", left);
   }
   return text;
 }
 
+JobStatus BackgroundBake::statusOf(const Report& report) const {
+  return {.doing = "Baking: " + report.text() + ".",
+          .outcome = report.text(),
+          .faulty = report.failed() > 0,
+          .values = {{"recordings", std::to_string(report.items.size())},
+                     {"done", std::to_string(report.count(BakeOutcome::baked))},
+                     {"kept", std::to_string(report.count(BakeOutcome::kept))},
+                     {"failed", std::to_string(report.failed())}}};
+}
+
 void BackgroundBake::start(BakeOptions options) {
-  task_.begin({}, [this, options = std::move(options)] {
+  begin({}, [this, options = std::move(options)] {
     planAndBake(options);
-    return !task_.cancelled();
+    return !cancelled();
   });
 }
 
@@ -42,15 +53,15 @@ void BackgroundBake::start(std::unique_ptr<Simulation> simulation, fs::path path
   job.scene = simulation->scene();
   job.simulation = std::move(simulation);
   job.paths = {std::move(path)};
-  task_.begin({}, [this, job = std::move(job)]() mutable {
+  begin({}, [this, job = std::move(job)]() mutable {
     bakeOne(std::move(job));
-    return !task_.cancelled();
+    return !cancelled();
   });
 }
 
 void BackgroundBake::bakeOne(BakeJob job) {
   requireBakeable(*job.simulation, job.paths);
-  task_.update([&](Report& report) { report.items = {{.path = job.paths.front()}}; });
+  update([&](Report& report) { report.items = {{.path = job.paths.front()}}; });
   std::vector<BakeJob> jobs;
   jobs.push_back(std::move(job));
   bake(std::move(jobs), 1);
@@ -59,17 +70,17 @@ void BackgroundBake::bakeOne(BakeJob job) {
 void BackgroundBake::planAndBake(const BakeOptions& options) {
   auto plan =
       planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
-        task_.update([&](Report& report) {
+        update([&](Report& report) {
           report.doing = fmt::format("checking {}", path.filename().string());
           report.fraction = static_cast<float>(number) / static_cast<float>(total);
         });
-        return !task_.cancelled();
+        return !cancelled();
       });
   if (!plan) return;
   prepare(*plan, options.record);
-  task_.update([&](Report& report) {
+  update([&](Report& report) {
     for (const fs::path& path : plan->kept) {
-      report.items.push_back({.path = path, .outcome = Outcome::kept});
+      report.items.push_back({.path = path, .outcome = BakeOutcome::kept});
     }
     for (const BakeJob& job : plan->pending) {
       for (const fs::path& path : job.paths) report.items.push_back({.path = path});
@@ -81,10 +92,10 @@ void BackgroundBake::planAndBake(const BakeOptions& options) {
 void BackgroundBake::bake(std::vector<BakeJob> jobs, int threads) {
   BakeBatch batch(std::move(jobs), threads);
   while (!batch.ended()) {
-    if (task_.cancelled()) batch.cancel();
+    if (cancelled()) batch.cancel();
     for (const BakedJob& job : batch.await(kGlance)) take(job);
     const BatchState state = batch.state();
-    task_.update([&](Report& report) {
+    update([&](Report& report) {
       report.doing = state.running;
       report.seconds_left = state.seconds_left;
       report.fraction =
@@ -95,10 +106,10 @@ void BackgroundBake::bake(std::vector<BakeJob> jobs, int threads) {
 }
 
 void BackgroundBake::take(const BakedJob& job) {
-  task_.update([&](Report& report) {
-    for (Item& item : report.items) {
+  update([&](Report& report) {
+    for (BakeReport::Item& item : report.items) {
       if (std::ranges::find(job.paths, item.path) == job.paths.end()) continue;
-      item.outcome = job.failure.empty() ? Outcome::baked : Outcome::failed;
+      item.outcome = job.failure.empty() ? BakeOutcome::baked : BakeOutcome::failed;
       item.failure = job.failure;
     }
   });

@@ -13,24 +13,35 @@
 #include "support/words.h"
 
 namespace broadmark {
-std::size_t BackgroundBenchmark::Report::failed() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(items, [](const Item& item) { return item.status != Status::ok; }));
+std::size_t BenchmarkReport::failed() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      items, [](const BenchmarkReport::Item& item) { return item.status != Status::ok; }));
 }
 
-std::string BackgroundBenchmark::Report::text() const {
+std::string BenchmarkReport::text() const {
   std::string text = fmt::format("{} of {} run", items.size(), counted(cases, "case"));
   if (failed() > 0) text += fmt::format(", {} failed", failed());
   return text;
 }
 
+JobStatus BackgroundBenchmark::statusOf(const Report& report) const {
+  return {.doing = "Running algorithms: " + report.text() + ".",
+          .outcome = report.failure.empty()
+                         ? fmt::format("{}: {}", report.file.string(), report.text())
+                         : "",
+          .faulty = report.failed() > 0,
+          .values = {{"cases", std::to_string(report.cases)},
+                     {"run", std::to_string(report.items.size())},
+                     {"failed", std::to_string(report.failed())}}};
+}
+
 /// Keeps the report of a run up to date.
 class BackgroundBenchmark::Observer final : public RunObserver {
  public:
-  Observer(BackgroundTask<Report>& task, std::uint64_t steps)
-      : task_(task), steps_(static_cast<double>(std::max<std::uint64_t>(steps, 1))) {}
+  Observer(BackgroundBenchmark& job, std::uint64_t steps)
+      : job_(job), steps_(static_cast<double>(std::max<std::uint64_t>(steps, 1))) {}
 
-  bool cancelled() override { return task_.cancelled(); }
+  bool cancelled() override { return job_.cancelled(); }
 
   void onTaskStart(const std::string& task, std::uint64_t steps) override {
     doing_ = task;
@@ -41,7 +52,7 @@ class BackgroundBenchmark::Observer final : public RunObserver {
   void onProgress(std::uint64_t done, const std::string& detail) override {
     const double share = std::min(1.0, static_cast<double>(begun_ + done) / steps_);
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    task_.update([&](Report& report) {
+    job_.update([&](Report& report) {
       report.doing = detail.empty() ? doing_ : fmt::format("{}: {}", doing_, detail);
       report.fraction = static_cast<float>(share);
       report.seconds_left = share > 0 ? seconds * (1 - share) / share : 0;
@@ -49,24 +60,25 @@ class BackgroundBenchmark::Observer final : public RunObserver {
   }
 
   void onCaseFinished(const CaseResult& result) override {
-    Item item{.id = result.id,
-              .name = fmt::format("{} · {}", caseNameOf(result), recordingId(result.recording)),
-              .status = result.status,
-              .reason = result.reason};
+    BenchmarkReport::Item item{
+        .id = result.id,
+        .name = fmt::format("{} · {}", caseNameOf(result), recordingId(result.recording)),
+        .status = result.status,
+        .reason = result.reason};
     if (!result.repetitions.empty()) item.median_seconds = result.summary().median;
-    task_.update([&](Report& report) { report.items.push_back(std::move(item)); });
+    job_.update([&](Report& report) { report.items.push_back(std::move(item)); });
   }
 
   void onRecordingEnd(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) override {
-    task_.update([](Report& report) {
-      for (Item& item : report.items) item.kept = true;
+    job_.update([](Report& report) {
+      for (BenchmarkReport::Item& item : report.items) item.kept = true;
     });
   }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  BackgroundTask<Report>& task_;
+  BackgroundBenchmark& job_;
   const double steps_;
   const Clock::time_point start_ = Clock::now();
   std::string doing_;
@@ -74,17 +86,18 @@ class BackgroundBenchmark::Observer final : public RunObserver {
   std::uint64_t next_ = 0;   ///< steps of the tasks up to the present one
 };
 
-void BackgroundBenchmark::start(RunRequest request, std::vector<Algorithm> algorithms) {
+void BackgroundBenchmark::start(RunRequest request, std::vector<Algorithm> algorithms,
+                                const HostMaker& make_host) {
   const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
-  task_.begin({.file = file},
-              [this, request = std::move(request), algorithms = std::move(algorithms)] {
-                task_.update([](Report& report) { report.doing = "opening recordings"; });
-                Plan plan = makePlan(request, PlanUse::run, algorithms);
-                task_.update([&](Report& report) { report.cases = caseIds(plan).size(); });
-                Observer observer(task_, stepsOf(plan));
-                return runPlan(plan, make_host_, observer).complete;
-              });
+  begin({.file = file},
+        [this, request = std::move(request), algorithms = std::move(algorithms), make_host] {
+          update([](Report& report) { report.doing = "opening recordings"; });
+          Plan plan = makePlan(request, PlanUse::run, algorithms);
+          update([&](Report& report) { report.cases = caseIds(plan).size(); });
+          Observer observer(*this, stepsOf(plan));
+          return runPlan(plan, make_host, observer).complete;
+        });
 }
 
 }  // namespace broadmark

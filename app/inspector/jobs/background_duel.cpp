@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "broadmark/error.h"
+#include "compare/duel_report.h"
 
 namespace broadmark {
 namespace {
@@ -11,6 +12,13 @@ namespace {
 constexpr double kBetweenReports = 0.2;
 
 }  // namespace
+
+JobStatus BackgroundDuel::statusOf(const Report& report) const {
+  const DuelResult& result = report.result;
+  return {.doing = "A duel goes on.",
+          .values = {{"rounds", std::to_string(result.sides.empty() ? 0 : result.rounds())},
+                     {"verdict", result.places.empty() ? "" : verdictOf(result)}}};
+}
 
 void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<IndexedFrames> frames,
                            double most_seconds, const HostMaker& make_host) {
@@ -24,27 +32,27 @@ void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<Index
     sides.push_back({caseName(run), run, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
-  task_.begin(std::move(first),
-              [this, sides = std::move(sides), frames = std::move(frames), most_seconds] {
-                double reported = 0;
-                DuelResult result = runDuel(sides, *frames,
-                                            {.most_seconds = most_seconds,
-                                             .progress =
-                                                 [&](const DuelResult& so_far, double seconds) {
-                                                   if (seconds < reported + kBetweenReports) return;
-                                                   reported = seconds;
-                                                   task_.update([&](Report& report) {
-                                                     report.result = so_far;
-                                                     report.seconds = seconds;
-                                                   });
-                                                 },
-                                             .cancelled = [this] { return task_.cancelled(); }});
-                task_.update([&](Report& report) {
-                  report.seconds = result.seconds;
-                  report.result = std::move(result);
-                });
-                return true;
-              });
+  begin(std::move(first),
+        [this, sides = std::move(sides), frames = std::move(frames), most_seconds] {
+          double reported = 0;
+          DuelResult result = runDuel(sides, *frames,
+                                      {.most_seconds = most_seconds,
+                                       .progress =
+                                           [&](const DuelResult& so_far, double seconds) {
+                                             if (seconds < reported + kBetweenReports) return;
+                                             reported = seconds;
+                                             update([&](Report& report) {
+                                               report.result = so_far;
+                                               report.seconds = seconds;
+                                             });
+                                           },
+                                       .cancelled = [this] { return cancelled(); }});
+          update([&](Report& report) {
+            report.seconds = result.seconds;
+            report.result = std::move(result);
+          });
+          return true;
+        });
 }
 
 }  // namespace broadmark

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "inspector/jobs/background_task.h"
+#include "inspector/jobs/job.h"
 
 namespace broadmark {
 
@@ -12,23 +12,21 @@ namespace broadmark {
 /// or where it is installed; "": Python knows by itself, or it is not there.
 std::filesystem::path packageFolder(const std::filesystem::path& program);
 
+struct PageReport : TaskReport {
+  std::filesystem::path page;
+};
+
 /// Writes one page at a time.
-class BackgroundReport {
+class BackgroundReport final : public ReportingJob<PageReport> {
  public:
-  struct Report : TaskReport {
-    std::filesystem::path page;
-  };
+  BackgroundReport() : ReportingJob("report page", "report") {}
+  ~BackgroundReport() override { finish(); }
 
   /// Begins. Throws InputError where nothing can be written, and while another one is written.
   void start(const std::filesystem::path& results, const std::filesystem::path& page);
-  void cancel() { task_.cancel(); }
-  [[nodiscard]] bool running() const { return task_.running(); }
-  [[nodiscard]] Report report() const { return task_.report(); }
-  /// Whether one has ended since this was last asked.
-  bool takeEnd() { return task_.takeEnd(); }
 
  private:
-  BackgroundTask<Report> task_{"report page"};
+  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
 };
 
 }  // namespace broadmark

@@ -160,10 +160,11 @@ class AuthorPanel final : public Panel {
       session.document.simulate();
       session.play(true);
     }
-    if (session.bake.running()) {
+    BackgroundBake& bake = session.jobs.get<BackgroundBake>();
+    if (bake.running()) {
       const std::string label =
-          fmt::format("Cancel ({:.0f} %)###Cancel", 100 * session.bake.report().fraction);
-      if (fourth.button(label.c_str(), "Leaves no recording behind")) session.bake.cancel();
+          fmt::format("Cancel ({:.0f} %)###Cancel", 100 * bake.report().fraction);
+      if (fourth.button(label.c_str(), "Leaves no recording behind")) bake.cancel();
     } else if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
                              bodies)) {
       askBakeScene(context.files, session);

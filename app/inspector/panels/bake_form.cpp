@@ -8,13 +8,12 @@
 
 #include "broadmark/error.h"
 #include "inspector/panels/batch_parts.h"
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 #include "support/words.h"
 
 namespace broadmark {
 namespace {
 
-using Outcome = BackgroundBake::Outcome;
 namespace fs = std::filesystem;
 
 /// The choices of a parameter of built-in scenes.
@@ -65,10 +64,11 @@ BakeForm::BakeForm() {
 void BakeForm::draw(PanelContext& context) {
   Ui& ui = context.ui;
   Session& session = context.session;
-  const BackgroundBake::Report report = session.bake.report();
-  const bool running = session.bake.running();
+  BackgroundBake& bake = session.jobs.get<BackgroundBake>();
+  const BakeReport report = bake.report();
+  const bool running = bake.running();
   if (running) {
-    if (drawProgress(ui, report, "Keeps what is finished")) session.bake.cancel();
+    if (drawProgress(ui, report, "Keeps what is finished")) bake.cancel();
   } else {
     if (ui.button("Start", "Bakes in the background; what is there already is kept",
                   ImGui::GetContentRegionAvail().x)) {
@@ -76,7 +76,7 @@ void BakeForm::draw(PanelContext& context) {
       if (!preview_.fault.empty()) {
         session.notices.complain(preview_.fault);
       } else {
-        begun_ = session.notices.attempt([&] { session.bake.start(options_); });
+        begun_ = session.notices.attempt([&] { bake.start(options_); });
       }
     }
   }
@@ -136,16 +136,16 @@ void BakeForm::update() {
 void BakeForm::drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report) {
   ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
   const auto scope = ui.scope("recordings");
-  for (const BackgroundBake::Item& item : report.items) {
-    const bool there = item.outcome == Outcome::kept || item.outcome == Outcome::baked;
+  for (const BakeReport::Item& item : report.items) {
+    const bool there = item.outcome == BakeOutcome::kept || item.outcome == BakeOutcome::baked;
     const std::string name = item.path.filename().string();
     ImGui::PushID(item.path.c_str());
     ImGui::BeginDisabled(!there);
-    const Rgb rgb = item.outcome == Outcome::failed ? ui.theme.bad : ui.theme.good;
+    const Rgb rgb = item.outcome == BakeOutcome::failed ? ui.theme.bad : ui.theme.good;
     if (ui.selectable(
             name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
             there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
-      session.open(item.path);
+      session.opener.open(item.path);
     }
     ImGui::EndDisabled();
     ImGui::PopID();
@@ -163,14 +163,10 @@ void BakeForm::drawPreview(Ui& ui) const {
   ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
                          bytesText(preview_.bytes))
                  .c_str());
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(preview_.recordings.size()));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const auto& [path, bytes] = preview_.recordings[static_cast<std::size_t>(i)];
-      ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
-    }
-  }
+  clipped(preview_.recordings.size(), [&](std::size_t row) {
+    const auto& [path, bytes] = preview_.recordings[row];
+    ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
+  });
 }
 
 }  // namespace broadmark

@@ -14,7 +14,6 @@ void drawFolder(PanelContext& context, const char* label, const char* title, std
   }
   context.files.ask({.title = title,
                      .purpose = FileDialog::Purpose::directory,
-                     .extensions = {},
                      .suggestion = folder,
                      .chosen = [&folder, &changed](const std::filesystem::path& path) {
                        folder = path.string();

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "inspector/jobs/background_task.h"
+#include "inspector/jobs/job.h"
 #include "inspector/panels/panel.h"
 
 namespace broadmark {

@@ -7,7 +7,7 @@
 
 #include "broadmark/error.h"
 #include "inspector/panels/batch_parts.h"
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 #include "request/cases.h"
 #include "support/words.h"
 
@@ -42,14 +42,15 @@ std::vector<std::string> checkModes() {
 void BenchmarkForm::draw(PanelContext& context) {
   Ui& ui = context.ui;
   Session& session = context.session;
-  const BackgroundBenchmark::Report report = session.benchmark.report();
-  const bool running = session.benchmark.running();
+  BackgroundBenchmark& benchmark = session.jobs.get<BackgroundBenchmark>();
+  const BackgroundBenchmark::Report report = benchmark.report();
+  const bool running = benchmark.running();
   if (running) {
-    if (drawProgress(ui, report, "Keeps the cases that are finished")) session.benchmark.cancel();
+    if (drawProgress(ui, report, "Keeps the cases that are finished")) benchmark.cancel();
   } else if (ui.button("Start", "Runs in the background; best while nothing is played",
                        ImGui::GetContentRegionAvail().x)) {
     session.notices.attempt(
-        [&] { session.benchmark.start(request(), session.lanes.algorithms()); });
+        [&] { benchmark.start(request(), session.lanes.algorithms(), session.jobs.make_host); });
   }
   ImGui::BeginDisabled(running);
   drawOptions(context);
@@ -140,33 +141,26 @@ void BenchmarkForm::drawPreview(Ui& ui, const Session& session) {
 
 void BenchmarkForm::drawItems(Ui& ui, Session& session, const BackgroundBenchmark::Report& report) {
   ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
-  const bool any_kept = std::ranges::any_of(report.items, &BackgroundBenchmark::Item::kept);
+  const bool any_kept = std::ranges::any_of(report.items, &BenchmarkReport::Item::kept);
   if (report.state != TaskState::running && any_kept &&
       ui.button("Open results", "Lists them in the panel Cases",
                 ImGui::GetContentRegionAvail().x)) {
-    session.open(report.file);
+    session.opener.open(report.file);
   }
   const auto scope = ui.scope("cases");
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(report.items.size()));
-  while (clipper.Step()) {
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const BackgroundBenchmark::Item& item = report.items[static_cast<std::size_t>(i)];
-      const bool ok = item.status == Status::ok;
-      const bool opens = item.kept || report.state != TaskState::running;
-      ImGui::PushID(i);
-      ImGui::BeginDisabled(!opens);
-      const std::string right =
-          ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
-      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
-                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
-        session.openCase(report.file, item.id);
-      }
-      if (i == 0) ui.note("first");
-      ImGui::EndDisabled();
-      ImGui::PopID();
+  clipped(report.items.size(), [&](std::size_t row) {
+    const BenchmarkReport::Item& item = report.items[row];
+    const bool ok = item.status == Status::ok;
+    ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
+    const std::string right =
+        ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
+    if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                      item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+      session.opener.openCase(report.file, item.id);
     }
-  }
+    if (row == 0) ui.note("first");
+    ImGui::EndDisabled();
+  });
 }
 
 }  // namespace broadmark

@@ -146,7 +146,7 @@ void CasePlots::drawBodies(PanelContext& context, OpenedResults& results) const 
               {point.at.x - kPointPlace, point.at.y - kPointPlace},
               {point.at.x + kPointPlace, point.at.y + kPointPlace});
   }
-  if (done.clicked) context.session.openCase(row_of(*done.hovered));
+  if (done.clicked) context.session.opener.openCase(row_of(*done.hovered));
 }
 
 }  // namespace broadmark

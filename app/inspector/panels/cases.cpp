@@ -11,7 +11,6 @@
 #include "broadmark/render/plot.h"
 #include "inspector/panels/case_plots.h"
 #include "inspector/panels/panel.h"
-#include "inspector/ui/two_parts.h"
 #include "support/child_program.h"
 #include "support/table.h"
 
@@ -80,9 +79,10 @@ class CasesPanel final : public Panel {
   static void drawReport(PanelContext& context, const OpenedResults& results) {
     Ui& ui = context.ui;
     Session& session = context.session;
-    const BackgroundReport::Report report = session.report_page.report();
+    BackgroundReport& work = session.jobs.get<BackgroundReport>();
+    const BackgroundReport::Report report = work.report();
     if (report.state == TaskState::running) {
-      if (ui.button("Cancel report", "It is being written")) session.report_page.cancel();
+      if (ui.button("Cancel report", "It is being written")) work.cancel();
       return;
     }
     if (ui.button("Report page…",
@@ -106,7 +106,8 @@ class CasesPanel final : public Panel {
                        .suggestion = page.replace_extension(".html"),
                        .chosen = [&session = context.session,
                                   file = results.file()](const std::filesystem::path& chosen) {
-                         session.notices.attempt([&] { session.report_page.start(file, chosen); });
+                         session.notices.attempt(
+                             [&] { session.jobs.get<BackgroundReport>().start(file, chosen); });
                        }});
   }
 
@@ -212,7 +213,7 @@ class CasesPanel final : public Panel {
     const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
                                                  : "Cannot be opened: " + row.obstacle;
     ui.tooltip(tip.c_str());
-    if (pressed) context.session.openCase(row);
+    if (pressed) context.session.opener.openCase(row);
   }
 
   /// Nothing: as all text.

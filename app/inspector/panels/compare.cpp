@@ -10,9 +10,8 @@
 
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
-#include "inspector/session/time_ratios.h"
+#include "inspector/session/lane_statistics.h"
 #include "inspector/session/wrong_pair.h"
-#include "inspector/ui/two_parts.h"
 #include "support/words.h"
 
 namespace broadmark::panels::compare {
@@ -30,12 +29,12 @@ class ComparePanel final : public Panel {
 
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
-    if (!context.session.second) {
+    if (!context.session.second.wish) {
       ui.paragraph(
           "A second view beside the first one shows another algorithm's answer, another frame or "
           "another recording. Here stands then who finds what, and who is slower where.");
       if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
-        context.session.showSecond(true);
+        context.session.second.show(true);
       }
       return;
     }
@@ -62,18 +61,13 @@ class ComparePanel final : public Panel {
     ui.tooltip("Look colours the bodies of these pairs: First and second view");
     ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
     const std::size_t firsts = comparison->first_only.size();
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(firsts + comparison->second_only.size()));
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const auto index = static_cast<std::size_t>(i);
-        const bool of_first = index < firsts;
-        drawPair(context,
-                 of_first ? comparison->first_only[index] : comparison->second_only[index - firsts],
-                 of_first);
-        if (i == 0) ui.note("first pair");
-      }
-    }
+    clipped(firsts + comparison->second_only.size(), [&](std::size_t row) {
+      const bool of_first = row < firsts;
+      drawPair(context,
+               of_first ? comparison->first_only[row] : comparison->second_only[row - firsts],
+               of_first);
+      if (row == 0) ui.note("first pair");
+    });
     ImGui::EndChild();
   }
 
@@ -90,20 +84,12 @@ class ComparePanel final : public Panel {
     ImGui::PopID();
   }
 
-  /// The lane of this number, or null.
-  static const LaneReport* laneOf(const PanelContext& context, int number) {
-    const auto& lanes = context.progress.lanes;
-    const auto found = std::ranges::find_if(
-        lanes, [&](const LaneReport& lane) { return lane.spec.number == number; });
-    return found == lanes.end() ? nullptr : &*found;
-  }
-
   void drawTimes(PanelContext& context) {
     Ui& ui = context.ui;
     const Session& session = context.session;
-    const LaneReport* const first = laneOf(context, session.lanes.shown());
-    const LaneReport* const second = laneOf(context, session.second->lane);
-    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
+    const LaneReport* const first = laneOf(context.progress.lanes, session.lanes.shown());
+    const LaneReport* const second = laneOf(context.progress.lanes, session.second.wish->lane);
+    if (first == nullptr || second == nullptr || first == second || session.second.wish->footage) {
       ui.faintParagraph(
           "Times are compared where the views show two algorithms on the same recording.");
       return;

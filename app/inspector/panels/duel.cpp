@@ -10,7 +10,6 @@
 #include "compare/duel_report.h"
 #include "inspector/panels/panel.h"
 #include "inspector/ui/histogram.h"
-#include "inspector/ui/two_parts.h"
 #include "support/words.h"
 
 namespace broadmark::panels::duel {
@@ -29,7 +28,7 @@ class DuelPanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     Session& session = context.session;
-    const BackgroundDuel::Report report = session.duel.report();
+    const BackgroundDuel::Report report = session.jobs.get<BackgroundDuel>().report();
     drawControls(ui, session, report);
     if (report.state == TaskState::idle) {
       ui.paragraph(
@@ -53,8 +52,9 @@ class DuelPanel final : public Panel {
 
  private:
   void drawControls(Ui& ui, Session& session, const BackgroundDuel::Report& report) {
-    if (session.duel.running()) {
-      if (ui.button("Cancel", "Ends it without a verdict")) session.duel.cancel();
+    if (report.state == TaskState::running) {
+      if (ui.button("Cancel", "Ends it without a verdict"))
+        session.jobs.get<BackgroundDuel>().cancel();
       ImGui::SameLine();
       ImGui::AlignTextToFramePadding();
       ui.faint(fmt::format("{}, {:.0f} of at most {:.0f} s",

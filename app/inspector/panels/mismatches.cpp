@@ -162,26 +162,12 @@ class MismatchesPanel final : public Panel {
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
-  /// Draws those of `count` rows that are in sight.
-  template <class Row>
-  static void clipped(std::size_t count, Row row) {
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(count));
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        ImGui::PushID(i);
-        row(static_cast<std::size_t>(i));
-        ImGui::PopID();
-      }
-    }
-  }
-
   /// The button that begins an export.
   static void drawCase(PanelContext& context, const LaneReport& lane) {
     Session& session = context.session;
     const bool wrong = showsAnswerOf(context, lane) &&
                        context.progress.snapshot->difference.isMismatch() &&
-                       !session.case_export.running();
+                       !session.jobs.get<CaseExport>().running();
     ImGui::BeginDisabled(!wrong);
     if (context.ui.button("Export case…",
                           "Writes the smallest recording on which the algorithm is still wrong",
@@ -200,7 +186,7 @@ class MismatchesPanel final : public Panel {
 
   static void drawExport(PanelContext& context) {
     Ui& ui = context.ui;
-    CaseExport& case_export = context.session.case_export;
+    CaseExport& case_export = context.session.jobs.get<CaseExport>();
     const CaseExport::Report report = case_export.report();
     if (report.state == TaskState::idle) return;
     const auto scope = ui.scope("export");
@@ -238,7 +224,7 @@ class MismatchesPanel final : public Panel {
     }
     ImGui::SameLine();
     if (ui.button("Open it", "Looks at the exported recording instead")) {
-      context.session.openExport();
+      context.session.opener.openExport(report);
     }
   }
 

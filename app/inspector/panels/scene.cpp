@@ -18,10 +18,10 @@ class ScenePanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     Session& session = context.session;
-    const bool draft_is_open = session.draftIsOpen();
+    const bool draft_is_open = session.draft.isOpen();
     const bool anew = seen_ != session.playback.footage();
     seen_ = session.playback.footage();
-    if (anew) parameters_ = session.openParameters();
+    if (anew) parameters_ = sceneParametersOf(session.playback.footage().get());
     if (seen_) drawOpen(context, draft_is_open);
     // The parameters of a simulation that might be are not to be taken for those of what is open.
     if (anew) {
@@ -56,20 +56,20 @@ class ScenePanel final : public Panel {
                   "Starts the scene anew with these parameters; frames are simulated "
                   "as they are watched",
                   ImGui::GetContentRegionAvail().x)) {
-      session.notices.attempt([&] { session.simulate(); });
+      session.notices.attempt([&] { session.draft.simulate(); });
     }
     ui.heading("Parameters");
-    session.notices.attempt([&] { ui.parameters(*session.draft); });
+    session.notices.attempt([&] { ui.parameters(session.draft.scene()); });
   }
 
   static void chooseScene(Ui& ui, Session& session) {
     const std::vector<SceneListing> scenes = builtinScenes();
     std::vector<std::string> ids;
     for (const SceneListing& scene : scenes) ids.push_back(scene.id);
-    const auto& present = session.draft->listing().id;
+    const auto& present = session.draft.scene().listing().id;
     auto chosen = static_cast<std::size_t>(std::ranges::find(ids, present) - ids.begin());
     if (ui.combo("scene", chosen, ids, "What happens")) {
-      session.notices.attempt([&] { session.chooseScene(ids[chosen]); });
+      session.notices.attempt([&] { session.draft.choose(ids[chosen]); });
     }
     if (chosen < scenes.size()) {
       ui.faintParagraph(scenes[chosen].summary);

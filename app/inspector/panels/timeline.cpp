@@ -13,10 +13,9 @@
 
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
-#include "inspector/session/span_statistics.h"
+#include "inspector/session/lane_statistics.h"
 #include "inspector/ui/curve_colours.h"
 #include "inspector/ui/histogram.h"
-#include "inspector/ui/two_parts.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {
@@ -91,12 +90,13 @@ class TimelinePanel final : public Panel {
     ui.faint("budget");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
-    ui.entry("budget", context.session.budget_ms, 0, 1e5,
+    ui.entry("budget", context.session.timeline.budget_ms, 0, 1e5,
              "What a frame may take, in milliseconds: a line in the plot; 0: none");
     ImGui::SameLine();
     std::uint64_t over = 0;
     for (const LaneReport& lane : context.progress.lanes) {
-      if (context.session.budget_ms > 0) over += framesOver(lane, context.session.budget_ms);
+      if (context.session.timeline.budget_ms > 0)
+        over += framesOver(lane, context.session.timeline.budget_ms);
     }
     ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
     ui.note("over");
@@ -212,7 +212,7 @@ class TimelinePanel final : public Panel {
         .first = timeline.first(),
         .last = timeline.last(),
         .playhead = context.session.playback.frame(),
-        .limit = quantity_ == 0 ? 0 : context.session.budget_ms * 1e-3,
+        .limit = quantity_ == 0 ? 0 : context.session.timeline.budget_ms * 1e-3,
         .limit_colour = theme.warning,
         .span = span,
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,

@@ -88,15 +88,15 @@ class ViewPanel final : public Panel {
     Ui& ui = context.ui;
     Session& session = context.session;
     ui.heading("Beside");
-    bool on = session.second.has_value();
+    bool on = session.second.wish.has_value();
     if (ui.checkbox("second view", on,
                     "Another algorithm's answer, another frame or another recording beside the "
                     "first view (V); selecting a body in one selects it in both")) {
-      session.showSecond(on);
+      session.second.show(on);
     }
-    if (!session.second) return;
+    if (!session.second.wish) return;
     const auto scope = ui.scope("second");
-    SecondWish& second = *session.second;
+    SecondWish& second = *session.second.wish;
     drawSecondAnswer(ui, session, second);
     bool stays = second.frame.has_value();
     if (ui.checkbox("at frame", stays, "Stays at a frame while the first view plays")) {
@@ -119,7 +119,7 @@ class ViewPanel final : public Panel {
       ui.tooltip(second.footage->recording.string().c_str());
       if (ui.button("The same recording", "As in the first view", width)) second.footage.reset();
     }
-    ui.checkbox("cameras linked", session.linked, "One camera moves both views");
+    ui.checkbox("cameras linked", session.second.linked, "One camera moves both views");
   }
 
   static void drawSecondAnswer(Ui& ui, Session& session, SecondWish& second) {
@@ -146,7 +146,7 @@ class ViewPanel final : public Panel {
                                          ? context.session.playback.footage()->recording
                                          : std::filesystem::path(),
                        .chosen = [&session = context.session](const std::filesystem::path& path) {
-                         session.showBeside(path);
+                         session.second.showRecording(path);
                        }});
   }
 

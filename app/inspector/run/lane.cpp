@@ -26,6 +26,12 @@ void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
   mismatches.set(frame, record.mismatch ? 1 : FrameValues::kUnknown);
 }
 
+const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number) {
+  const auto found =
+      std::ranges::find(lanes, number, [](const LaneReport& lane) { return lane.spec.number; });
+  return found == lanes.end() ? nullptr : &*found;
+}
+
 std::uint64_t framesOver(const LaneReport& lane, double ms) {
   return static_cast<std::uint64_t>(
       std::ranges::count_if(lane.frames, [&](const FrameRecord& frame) {

@@ -46,14 +46,14 @@ struct LaneSpec {
   Case run;
 
   /// Whether both would do the same.
-  [[nodiscard]] bool same(const LaneSpec& other) const {
-    return number == other.number && run.device == other.run.device &&
-           caseName(run) == caseName(other.run);
+  friend bool operator==(const LaneSpec& a, const LaneSpec& b) {
+    return a.number == b.number && a.run.device == b.run.device &&
+           caseName(a.run) == caseName(b.run);
   }
 };
 
-/// What is known of a lane; a copy of it can be looked at while the lane works on.
-struct LaneReport {
+/// Where a lane is, and how it fares.
+struct LaneState {
   LaneSpec spec;
   Status status = Status::ok;
   std::string reason;       ///< for every status but ok
@@ -61,10 +61,14 @@ struct LaneReport {
   std::uint32_t frame = 0;  ///< up to which it has come
   std::int64_t initialize_ns = 0;
   float margin = 0;
-  std::vector<FrameRecord> frames;                ///< frame k at [k - 1]
-  LaneCurves curves;                              ///< of these; kept by the run thread
   std::map<std::string, std::uint64_t> setup;     ///< counted once, in the initialisation
   std::map<std::string, std::uint64_t> counters;  ///< of work, in the last frame
+};
+
+/// What is known of a lane; a copy of it can be looked at while the lane works on.
+struct LaneReport : LaneState {
+  std::vector<FrameRecord> frames;  ///< frame k at [k - 1]
+  LaneCurves curves;                ///< of these; kept by the run thread
 
   /// The record of a frame, or null when nothing is known of it.
   [[nodiscard]] const FrameRecord* record(std::uint32_t index) const {
@@ -72,6 +76,9 @@ struct LaneReport {
     return &frames[index - 1];
   }
 };
+
+/// The lane of this number, or null.
+const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number);
 
 /// How many of the frames took longer.
 std::uint64_t framesOver(const LaneReport& lane, double ms);

@@ -156,8 +156,8 @@ void RunThread::fail(std::string reason) {
 
 bool RunThread::isUnwanted(const LaneSpec& spec) {
   const std::lock_guard lock(mutex_);
-  const auto is_same = [&](const LaneSpec& wished) { return wished.same(spec); };
-  return stopping_ || wished_.footage != opened_ || std::ranges::none_of(wished_.lanes, is_same);
+  return stopping_ || wished_.footage != opened_ ||
+         std::ranges::find(wished_.lanes, spec) == wished_.lanes.end();
 }
 
 bool RunThread::isUnwantedBeside(const LaneSpec& spec) {
@@ -200,7 +200,7 @@ void RunThread::openFootage() {
 /// Brings the lanes in line with those wished for. Returns whether there was anything to do.
 bool RunThread::reconcileLanes() {
   const auto stands = [&](std::size_t i) {
-    return i < lanes_.size() && lanes_[i]->spec().same(current_.lanes[i]);
+    return i < lanes_.size() && lanes_[i]->spec() == current_.lanes[i];
   };
   bool same = lanes_.size() == current_.lanes.size();
   for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
@@ -209,8 +209,8 @@ bool RunThread::reconcileLanes() {
   std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
   lanes_.clear();
   for (const LaneSpec& spec : current_.lanes) {
-    const auto found = std::ranges::find_if(
-        kept, [&](const auto& lane) { return lane && lane->spec().same(spec); });
+    const auto found =
+        std::ranges::find_if(kept, [&](const auto& lane) { return lane && lane->spec() == spec; });
     lanes_.push_back(found != kept.end() ? std::move(*found)
                                          : std::make_unique<Lane>(spec, make_host_, [this, spec] {
                                              return isUnwanted(spec);
@@ -227,7 +227,7 @@ bool RunThread::reconcileLanes() {
   std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
   for (const auto& lane : lanes_) {
     const auto report = std::ranges::find_if(
-        reports, [&](const LaneReport& known) { return known.spec.same(lane->spec()); });
+        reports, [&](const LaneReport& known) { return known.spec == lane->spec(); });
     if (report != reports.end()) {
       progress_.lanes.push_back(std::move(*report));
     } else {
@@ -335,33 +335,19 @@ bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
 void RunThread::report(const Lane& lane) {
   const LaneReport& now = lane.report();
   const std::lock_guard lock(mutex_);
-  const auto shown = std::ranges::find_if(progress_.lanes, [&](const LaneReport& report) {
-    return report.spec.number == now.spec.number;
-  });
+  const auto shown = std::ranges::find(progress_.lanes, now.spec.number,
+                                       [](const LaneReport& report) { return report.spec.number; });
   if (shown == progress_.lanes.end()) return;
-  // Its history changes at the present frame only, and is too long to be copied every time.
-  std::vector<FrameRecord> frames = std::move(shown->frames);
-  LaneCurves curves = std::move(shown->curves);
-  frames.resize(now.frames.size());
-  if (now.frame > 0) {
-    const FrameRecord& record = now.frames[now.frame - 1];
-    frames[now.frame - 1] = record;
-    curves.set(now.frame, record);
-    if (now.spec.run.answer == AnswerKind::pairs && now.spec.run.algorithm.traits.finds_pairs) {
-      progress_.pairs.set(now.frame, static_cast<float>(rightPairs(record)));
-    }
+  static_cast<LaneState&>(*shown) = now;
+  // The history changes at the present frame only, and is too long to be copied every time.
+  shown->frames.resize(now.frames.size());
+  if (now.frame == 0) return;
+  const FrameRecord& record = now.frames[now.frame - 1];
+  shown->frames[now.frame - 1] = record;
+  shown->curves.set(now.frame, record);
+  if (now.spec.run.answer == AnswerKind::pairs && now.spec.run.algorithm.traits.finds_pairs) {
+    progress_.pairs.set(now.frame, static_cast<float>(rightPairs(record)));
   }
-  *shown = {.spec = now.spec,
-            .status = now.status,
-            .reason = now.reason,
-            .ended = now.ended,
-            .frame = now.frame,
-            .initialize_ns = now.initialize_ns,
-            .margin = now.margin,
-            .frames = std::move(frames),
-            .curves = std::move(curves),
-            .setup = now.setup,
-            .counters = now.counters};
 }
 
 Lane* RunThread::shownLane() const {
@@ -423,6 +409,36 @@ void RunThread::show() {
   progress_.second = std::move(second);
   progress_.comparison = std::move(comparison);
   progress_.second_failure = current_.second ? second_.failure() : "";
+}
+
+bool RunThread::hasSeen(std::uint32_t frame) const {
+  if (const Lane* lane = shownLane()) {
+    return seen_.holds(lane->spec().number, frame, current_.check);
+  }
+  return seen_.holds(0, frame, false);
+}
+
+bool RunThread::mayRest(const Lane& lane) const {
+  if (current_.playing) return false;
+  const std::uint32_t frame = target();
+  if (frame == 0) return lane.standsAt(lane.report().frame);
+  const FrameRecord* record = lane.report().record(frame);
+  const bool judges = current_.check && lane.spec().run.algorithm.traits.finds_pairs;
+  if (record == nullptr || (judges && !record->checked)) return false;
+  if (&lane == shownLane()) return hasSeen(frame) && !current_.structure;
+  // Of another one the second view wants the answer itself.
+  return !current_.second || current_.second->lane != lane.spec().number;
+}
+
+/// Shows a frame that has been seen before any algorithm is run. Returns whether it did.
+bool RunThread::lookBack() {
+  const std::uint32_t frame = target();
+  const Lane* lane = shownLane();
+  const bool stands = lane != nullptr && lane->standsAt(frame);
+  const bool there = shown_ && progress_.snapshot->frame == frame;
+  if (current_.playing || current_.second || stands || there || !hasSeen(frame)) return false;
+  show();
+  return true;
 }
 
 }  // namespace broadmark

@@ -27,7 +27,6 @@
 #include "inspector/run/second_run.h"
 #include "inspector/run/seen_answers.h"
 #include "inspector/run/snapshot.h"
-#include "inspector/session/pair_comparison.h"
 
 namespace broadmark {
 
@@ -46,6 +45,8 @@ struct Wish {
   bool structure = false;              ///< whether its structure is looked at, too
   std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
   std::optional<SecondWish> second = {};  ///< what the second view shows, if there is one
+
+  friend bool operator==(const Wish&, const Wish&) = default;
 };
 
 /// How far the thread has got.

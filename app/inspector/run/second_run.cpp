@@ -4,8 +4,30 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 
 namespace broadmark {
+namespace {
+
+std::vector<Pair> sorted(std::span<const Pair> pairs) {
+  std::vector<Pair> copy(pairs.begin(), pairs.end());
+  std::ranges::sort(copy);
+  const auto twice = std::ranges::unique(copy);
+  copy.erase(twice.begin(), twice.end());
+  return copy;
+}
+
+}  // namespace
+
+PairComparison comparePairs(std::span<const Pair> first, std::span<const Pair> second) {
+  const std::vector<Pair> a = sorted(first);
+  const std::vector<Pair> b = sorted(second);
+  PairComparison comparison;
+  std::ranges::set_difference(a, b, std::back_inserter(comparison.first_only));
+  std::ranges::set_difference(b, a, std::back_inserter(comparison.second_only));
+  comparison.both = a.size() - comparison.first_only.size();
+  return comparison;
+}
 
 std::uint32_t SecondRun::frameOfFirst(const SecondWish& wish, const SceneInfo& scene) {
   return wish.footage || !wish.frame ? 0 : std::min(*wish.frame, scene.frames);
@@ -47,7 +69,7 @@ Lane* SecondRun::lane(const SecondWish& wish, const First& first) {
   if (frame == 0) return nullptr;  // which has no answer
   Lane& of_first = **found;
   if (!opened_ && frame == first.frame) return &of_first;
-  if (!lane_ || !lane_->spec().same(of_first.spec())) {
+  if (!lane_ || lane_->spec() != of_first.spec()) {
     const LaneSpec spec = of_first.spec();
     lane_ = std::make_unique<Lane>(spec, make_host_, [this, spec] { return unwanted_(spec); });
   }

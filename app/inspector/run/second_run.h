@@ -8,9 +8,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "broadmark/pair.h"
 #include "inspector/run/draw_gate.h"
 #include "inspector/run/snapshot.h"
 
@@ -71,5 +73,14 @@ class SecondRun {
   std::string failure_;
   std::string doing_;
 };
+
+struct PairComparison {
+  std::vector<Pair> first_only;   ///< ascending
+  std::vector<Pair> second_only;  ///< likewise
+  std::uint64_t both = 0;
+};
+
+/// Of pairs in any order; what an answer holds twice counts once. O(n log n).
+PairComparison comparePairs(std::span<const Pair> first, std::span<const Pair> second);
 
 }  // namespace broadmark

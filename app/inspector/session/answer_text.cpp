@@ -11,12 +11,6 @@
 namespace broadmark {
 namespace {
 
-const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number) {
-  const auto found = std::ranges::find_if(
-      lanes, [&](const LaneReport& lane) { return lane.spec.number == number; });
-  return found == lanes.end() ? nullptr : &*found;
-}
-
 /// Its id, with the parameters where another lane has the same.
 std::string ownerName(const std::vector<LaneReport>& lanes, const LaneReport& lane) {
   const std::string& id = lane.spec.run.algorithm.id;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "broadmark/names.h"
+#include "inspector/session/text_lists.h"
 
 namespace broadmark {
 
@@ -15,11 +17,7 @@ std::vector<std::uint32_t> parseIds(std::string_view text, std::string_view what
   const auto number = [&](std::string_view word) {
     return static_cast<std::uint32_t>(parseInteger(word, what, 0, last));
   };
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find_first_of(", ", start), text.size());
-    const std::string_view word = text.substr(start, end - start);
-    start = end + 1;
-    if (word.empty()) continue;
+  for (const std::string& word : wordsIn(text)) {
     const std::size_t dash = word.find('-', 1);
     const std::uint32_t from = number(word.substr(0, dash));
     const std::uint32_t to = dash == word.npos ? from : number(word.substr(dash + 1));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -24,6 +25,12 @@ struct Notices {
   /// Brings a panel to the front in the next picture.
   void bringUp(std::string panel) { wanted_panels.push_back(std::move(panel)); }
 
+  /// Reports a file that has been opened or saved.
+  void noteFile(const std::filesystem::path& file) const {
+    if (on_file) on_file(file);
+  }
+
+  std::function<void(const std::filesystem::path&)> on_file;  ///< set by the owner
   Message status;
   std::deque<std::string> errors;  ///< not yet acknowledged
   std::vector<std::string> wanted_panels;

@@ -51,6 +51,7 @@ class Playback {
   [[nodiscard]] bool playing() const { return playing_; }
 
   bool loop = false;
+  bool swept = false;             ///< what is opened is shown as swept boxes
   double frames_per_second = 30;  ///< no more; an algorithm may need longer
 
   // Set by the owner.

@@ -44,6 +44,8 @@ class Timeline {
   void select(double from, double to);
   void clearSpan() { span_.reset(); }
 
+  double budget_ms = 16.7;  ///< that a frame may take; 0: any
+
  private:
   /// How much there is to be shown.
   [[nodiscard]] double whole() const;

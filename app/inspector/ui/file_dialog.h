@@ -16,8 +16,8 @@ class FileDialog {
   struct Request {
     std::string title;
     Purpose purpose = Purpose::open;
-    std::vector<std::string> extensions;  ///< shown ones, such as ".aabbs"; empty: all
-    std::filesystem::path suggestion;     ///< a file, or the directory to begin in
+    std::vector<std::string> extensions = {};  ///< shown ones, such as ".aabbs"; empty: all
+    std::filesystem::path suggestion = {};     ///< a file, or the directory to begin in
     std::function<void(const std::filesystem::path&)> chosen;
   };
 

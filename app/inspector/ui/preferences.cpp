@@ -21,6 +21,20 @@ void take(const Json& json, const char* key, Value& value) {
   }
 }
 
+/// Calls visit() with the name and the value of each.
+template <class Of, class Visit>
+void visitAll(Of& preferences, const Visit& visit) {
+  visit("dark", preferences.dark);
+  visit("scale", preferences.scale);
+  visit("window_width", preferences.window_width);
+  visit("window_height", preferences.window_height);
+  visit("left", preferences.left);
+  visit("right", preferences.right);
+  visit("bottom", preferences.bottom);
+  visit("tabs", preferences.tabs);
+  visit("recent", preferences.recent);
+}
+
 double within(double value, double low, double high) {
   return value >= low && value <= high ? value : low;
 }
@@ -56,15 +70,7 @@ Preferences parsePreferences(std::string_view text) {
   Preferences read;
   const Json json = jsonOrNull(text);
   if (!json.is_object()) return read;
-  take(json, "dark", read.dark);
-  take(json, "scale", read.scale);
-  take(json, "window_width", read.window_width);
-  take(json, "window_height", read.window_height);
-  take(json, "left", read.left);
-  take(json, "right", read.right);
-  take(json, "bottom", read.bottom);
-  take(json, "tabs", read.tabs);
-  take(json, "recent", read.recent);
+  visitAll(read, [&](const char* name, auto& value) { take(json, name, value); });
   read.scale = read.scale >= 0.5 && read.scale <= 4 ? read.scale : 0;
   read.window_width = std::clamp(read.window_width, 320, 16384);
   read.window_height = std::clamp(read.window_height, 240, 16384);
@@ -76,15 +82,8 @@ Preferences parsePreferences(std::string_view text) {
 }
 
 std::string formatPreferences(const Preferences& preferences) {
-  const Json json = {{"dark", preferences.dark},
-                     {"scale", preferences.scale},
-                     {"window_width", preferences.window_width},
-                     {"window_height", preferences.window_height},
-                     {"left", preferences.left},
-                     {"right", preferences.right},
-                     {"bottom", preferences.bottom},
-                     {"tabs", preferences.tabs},
-                     {"recent", preferences.recent}};
+  Json json;
+  visitAll(preferences, [&](const char* name, const auto& value) { json[name] = value; });
   return formatJson(json, 2);
 }
 

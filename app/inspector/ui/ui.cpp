@@ -153,11 +153,14 @@ void Ui::labelledWidth() const {
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * kInputShare);
 }
 
-bool Ui::button(const char* label, const char* tip, float width) {
-  const bool pressed = ImGui::Button(label, {width, 0});
+bool Ui::noted(bool acted, const char* label, const char* tip) {
   note(label);
   tooltip(tip);
-  return pressed;
+  return acted;
+}
+
+bool Ui::button(const char* label, const char* tip, float width) {
+  return noted(ImGui::Button(label, {width, 0}), label, tip);
 }
 
 bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
@@ -174,10 +177,7 @@ bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
 }
 
 bool Ui::checkbox(const char* label, bool& value, const char* tip) {
-  const bool changed = ImGui::Checkbox(label, &value);
-  note(label);
-  tooltip(tip);
-  return changed;
+  return noted(ImGui::Checkbox(label, &value), label, tip);
 }
 
 bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
@@ -209,10 +209,7 @@ bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::st
 }
 
 bool Ui::selectable(const char* label, bool selected, const char* tip) {
-  const bool pressed = ImGui::Selectable(label, selected);
-  note(label);
-  tooltip(tip);
-  return pressed;
+  return noted(ImGui::Selectable(label, selected), label, tip);
 }
 
 bool Ui::selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
@@ -309,9 +306,7 @@ bool Ui::slider(const char* label, int& value, int min, int max) {
 }
 
 bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool enabled) {
-  const bool pressed = ImGui::MenuItem(label, shortcut, selected, enabled);
-  note(label);
-  return pressed;
+  return noted(ImGui::MenuItem(label, shortcut, selected, enabled), label);
 }
 
 bool Ui::beginMenu(const char* label) {
@@ -446,6 +441,30 @@ void Ui::faintParagraph(std::string_view words) {
   ImGui::PushTextWrapPos(0);
   faint(words);
   ImGui::PopTextWrapPos();
+}
+
+void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos(position);
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin(id, nullptr,
+               flags | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
+}
+
+bool TwoParts::both() const { return ImGui::GetContentRegionAvail().x >= narrowest; }
+
+void TwoParts::draw(const std::function<void()>& first, const std::function<void()>& second) const {
+  const bool both = this->both();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const auto part = [](const char* id, float extent, const std::function<void()>& draw_it) {
+    ImGui::BeginChild(id, {extent, 0}, false, ImGuiWindowFlags_NavFlattened);
+    draw_it();
+    ImGui::EndChild();
+  };
+  if (both || !second_alone) part("first", both ? share * width : 0, first);
+  if (both) ImGui::SameLine();
+  if (both || second_alone) part("second", 0, second);
 }
 
 }  // namespace broadmark

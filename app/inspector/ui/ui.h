@@ -154,6 +154,8 @@ class Ui {
 
  private:
   [[nodiscard]] std::string fullName(std::string_view label) const;
+  /// Notes the item drawn last with its tooltip. Returns `acted`.
+  bool noted(bool acted, const char* label, const char* tooltip = nullptr);
   /// An input for a number, noted as `name`, as wide as has been set.
   template <class Number>
   bool enterNumber(const char* label, std::string_view name, Number& value, Number min, Number max,
@@ -177,6 +179,34 @@ std::string fittingText(std::string text, float room, ImFont* font = nullptr);
 /// in sight is seen wholly: half a number would be a wrong one. The first `always` are shown
 /// anyhow.
 float widthOfWholeColumns(const char* table, int always);
+
+/// A panel of two parts: beside each other, or, where there is no room for that, one of them.
+struct TwoParts {
+  float share = 0.5F;         ///< of the width: the first one's
+  float narrowest = 0;        ///< pixels that both need
+  bool second_alone = false;  ///< which of them, where there is room for one only
+
+  [[nodiscard]] bool both() const;
+  void draw(const std::function<void()>& first, const std::function<void()>& second) const;
+};
+
+/// Draws those of `count` rows that are in sight.
+template <class Row>
+void clipped(std::size_t count, const Row& row) {
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(count));
+  while (clipper.Step()) {
+    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+      ImGui::PushID(i);
+      row(static_cast<std::size_t>(i));
+      ImGui::PopID();
+    }
+  }
+}
+
+inline constexpr float kSplitterSize = 5;  ///< units: between two parts of the window
+/// Opens a window that fills a rectangle.
+void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0);
 
 /// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
 void applyTheme(Ui& ui, bool dark, float scale);

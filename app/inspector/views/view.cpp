@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "broadmark/render/input_queue.h"
 #include "broadmark/render/ui_renderer.h"
 #include "inspector/views/view_overlay.h"
 
@@ -47,8 +46,6 @@ std::span<const FlyKey> flyKeys() {
   return kKeys;
 }
 
-View::View(const Gl& gl, Role role) : role_(role), scene_(gl) {}
-
 double View::aspect() const { return static_cast<double>(width_) / height_; }
 
 void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); }
@@ -86,15 +83,6 @@ void View::takeFlightRequest(Session& session) {
   fly(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
 }
 
-void View::update(Session& session, const RunProgress& progress, bool dark) {
-  const auto& snapshot = role_ == Role::first ? progress.snapshot : progress.second;
-  if (!snapshot || !content_.update(snapshot, progress.comparison, session, dark)) return;
-  placeCamera(*snapshot);
-  const int chosen =
-      role_ == Role::second && session.second ? session.second->lane : session.lanes.shown();
-  answer_ = answerText(*snapshot, progress.lanes, chosen, content_.selection());
-}
-
 void View::placeCamera(const Snapshot& snapshot) {
   const auto seen = std::exchange(footage_, snapshot.footage);
   const bool new_scene =
@@ -112,7 +100,7 @@ void View::follow(const View& leader) {
   flight_.reset();
 }
 
-void View::drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size) {
+void View::drawEmpty(Ui& ui, const std::string& hint, ImVec2 corner, ImVec2 size) {
   ImGui::InvisibleButton("scene", size);
   ui.note("scene");
   const std::string shown = fittingText(hint, size.x);
@@ -132,25 +120,21 @@ void View::drawScene(const Ui& ui, ImVec2 corner, ImVec2 size) {
                                        {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
 }
 
-void View::draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader) {
-  const bool first = role_ == Role::first;
-  const auto scope = ui.scope(first ? "View" : "Second view");
+void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Shown& shown) {
+  const auto scope = ui.scope(shown.name);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
   width_ = static_cast<int>(size.x);
   height_ = static_cast<int>(size.y);
   moved_ = false;
-  update(session, progress, ui.theme.dark);
-  if (!content_.snapshot() || (!first && !progress.second)) {
-    const char* hint = first ? "Simulate a scene, or drop a recording here"
-                       : progress.second_failure.empty() ? "Nothing is shown yet"
-                                                         : progress.second_failure.c_str();
-    drawEmpty(ui, hint, corner, size);
-    return;
+  if (!shown.snapshot) return drawEmpty(ui, shown.hint, corner, size);
+  if (content_.update(shown.snapshot, progress.comparison, session, ui.theme.dark)) {
+    placeCamera(*shown.snapshot);
+    answer_ = answerText(*shown.snapshot, progress.lanes, shown.lane, content_.selection());
   }
-  if (leader != nullptr) {
-    follow(*leader);
+  if (shown.leader != nullptr) {
+    follow(*shown.leader);
   } else {
     takeFlightRequest(session);
   }
@@ -173,21 +157,15 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Vie
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     seen.mouse = Pixel{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
   }
-  if (first) hands_.look(seen);
+  if (shown.has_hands) hands_.look(seen);
   handleMouse(ui, seen, corner, size);
-  if (first) hands_.draw(ui, seen, corner);
+  if (shown.has_hands) hands_.draw(ui, seen, corner);
   moved_ = camera_ != before;
-  answer_.where = session.second ? whereText(*content_.snapshot()) : "";
+  answer_.where = session.second.wish ? whereText(*content_.snapshot()) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
-  const bool tools = first && session.document.shown();
+  const bool tools = shown.has_hands && session.document.shown();
   const float free = tools ? drawTools(ui, session, corner, size) : size.y;
-  drawLegend(ui,
-             {.legend = content_.legend(),
-              .oracle = content_.oracleLegend(),
-              .owner = answer_.owner,
-              .cells = content_.cellLegend(),
-              .left_out = content_.leftOut()},
-             corner, {size.x, free}, taken);
+  drawLegend(ui, content_, answer_.owner, corner, {size.x, free}, taken);
   if (session.view.axes) drawAxisNames(corner, ui.scale);
 }
 
@@ -195,10 +173,10 @@ void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
   const ImGuiIO& io = ImGui::GetIO();
   drag_from_ = mouse;
   dragged_ = false;
-  drag_ = !io.MouseDown[0]                             ? Drag::pan
-          : io.KeyShift                                ? Drag::rectangle
-          : role_ == Role::first && hands_.press(seen) ? Drag::hands
-                                                       : Drag::orbit;
+  drag_ = !io.MouseDown[0]     ? Drag::pan
+          : io.KeyShift        ? Drag::rectangle
+          : hands_.press(seen) ? Drag::hands
+                               : Drag::orbit;
   flight_.reset();
 }
 

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broadmark/render/gl.h"
@@ -29,12 +31,19 @@ std::span<const FlyKey> flyKeys();
 
 class View {
  public:
-  /// Whether it shows what is played, where the hands are, or what stands beside that.
-  enum class Role { first, second };
-  explicit View(const Gl& gl, Role role = Role::first);
+  /// What a view shows in a picture.
+  struct Shown {
+    const char* name = "";
+    std::shared_ptr<const Snapshot> snapshot;  ///< null: nothing…
+    std::string hint;                          ///< …for this reason
+    int lane = 0;                              ///< whose answer, by number; 0: the oracle's
+    bool has_hands = false;                    ///< the document's bodies can be moved in it
+    const View* leader = nullptr;              ///< whose camera it takes over; null: its own
+  };
+  explicit View(const Gl& gl) : scene_(gl) {}
 
-  /// Fills the current window. `leader`: whose camera it takes over; null: it has its own.
-  void draw(Ui& ui, Session& session, const RunProgress& progress, const View* leader = nullptr);
+  /// Fills the current window.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, const Shown& shown);
   /// Takes over the other one's camera.
   void follow(const View& leader);
   /// Whether the user has moved the camera in the last picture.
@@ -58,8 +67,7 @@ class View {
     float part = 0;
   };
 
-  void update(Session& session, const RunProgress& progress, bool dark);
-  void drawEmpty(Ui& ui, const char* hint, ImVec2 corner, ImVec2 size);
+  void drawEmpty(Ui& ui, const std::string& hint, ImVec2 corner, ImVec2 size);
   void drawScene(const Ui& ui, ImVec2 corner, ImVec2 size);
   /// Of a scene that has not been looked at so far.
   void placeCamera(const Snapshot& snapshot);
@@ -76,7 +84,6 @@ class View {
   void drawAxisNames(ImVec2 corner, float scale) const;
   [[nodiscard]] double aspect() const;
 
-  const Role role_;
   SceneView scene_;
   ViewContent content_;
   ViewSpace space_;

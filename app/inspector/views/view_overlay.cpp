@@ -34,16 +34,17 @@ struct LegendRow {
   std::array<std::string, 3> texts;
 };
 
-std::vector<LegendRow> legendRows(const ViewLegend& legend) {
+std::vector<LegendRow> legendRows(const ViewContent& content, const std::string& owner) {
   std::vector<LegendRow> rows;
-  if (!legend.oracle.empty()) rows.push_back({{}, {"", legend.owner, "oracle"}});
-  for (std::size_t i = 0; i < legend.legend.size(); ++i) {
-    const LegendEntry& entry = legend.legend[i];
+  if (!content.oracleLegend().empty()) rows.push_back({{}, {"", owner, "oracle"}});
+  for (std::size_t i = 0; i < content.legend().size(); ++i) {
+    const LegendEntry& entry = content.legend()[i];
     rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
-    if (!legend.oracle.empty()) rows.back().texts[2] = std::to_string(legend.oracle[i].count);
+    if (!content.oracleLegend().empty())
+      rows.back().texts[2] = std::to_string(content.oracleLegend()[i].count);
   }
-  if (!legend.cells.empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
-  for (const LegendEntry& entry : legend.cells) {
+  if (!content.cellLegend().empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
+  for (const LegendEntry& entry : content.cellLegend()) {
     rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
   }
   return rows;
@@ -97,13 +98,14 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   return end;
 }
 
-void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 size, ImVec2 taken) {
+void drawLegend(const Ui& ui, const ViewContent& content, const std::string& owner, ImVec2 corner,
+                ImVec2 size, ImVec2 taken) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeightWithSpacing();
   const float pad = 0.5F * line;
-  const std::vector<LegendRow> rows = legendRows(legend);
+  const std::vector<LegendRow> rows = legendRows(content, owner);
   std::array<float, 3> widths{};
-  const std::size_t columns = legend.oracle.empty() ? 2 : widths.size();
+  const std::size_t columns = content.oracleLegend().empty() ? 2 : widths.size();
   float width = line;
   for (std::size_t column = 0; column < columns; ++column) {
     for (const LegendRow& row : rows) {
@@ -112,7 +114,7 @@ void drawLegend(const Ui& ui, const ViewLegend& legend, ImVec2 corner, ImVec2 si
     width += widths[column] + pad;
   }
   const std::string left_out =
-      legend.left_out > 0 ? fmt::format("{} lines left out", legend.left_out) : "";
+      content.leftOut() > 0 ? fmt::format("{} lines left out", content.leftOut()) : "";
   const auto height = static_cast<float>(rows.size() + (left_out.empty() ? 0 : 1)) * line;
   const float left = corner.x + size.x - width - 2 * pad;
   const float top = left > taken.x + pad ? corner.y : taken.y;

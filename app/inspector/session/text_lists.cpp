@@ -1,4 +1,4 @@
-#include "inspector/ui/text_lists.h"
+#include "inspector/session/text_lists.h"
 
 #include <algorithm>
 

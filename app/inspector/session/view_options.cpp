@@ -1,4 +1,4 @@
-#include "inspector/session/body_filter.h"
+#include "inspector/session/view_options.h"
 
 #include <limits>
 

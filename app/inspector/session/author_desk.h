@@ -8,8 +8,8 @@
 
 #include "broadmark/scenes/brush.h"
 #include "broadmark/scenes/scene_editor.h"
-#include "inspector/authoring/tools.h"
 #include "inspector/run/footage.h"
+#include "inspector/session/tools.h"
 
 namespace broadmark {
 

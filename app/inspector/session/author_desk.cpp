@@ -1,4 +1,4 @@
-#include "inspector/authoring/author_desk.h"
+#include "inspector/session/author_desk.h"
 
 #include <utility>
 

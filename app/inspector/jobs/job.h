@@ -1,8 +1,9 @@
-// Work on a thread of its own, and the report of how far it is.
+// Work in the background: what all its kinds have in common, and the thread it runs on.
 #pragma once
 
 #include <atomic>
 #include <exception>
+#include <map>
 #include <mutex>
 #include <new>
 #include <string>
@@ -34,23 +35,73 @@ struct WorkReport : TaskReport {
   std::string doing = {};   ///< at present, in words
 };
 
-/// One piece of work at a time. `Report` is derived from TaskReport.
-template <class Report>
-class BackgroundTask {
+/// State as text, by name.
+using Values = std::map<std::string, std::string>;
+
+/// What every kind of job states about itself.
+struct JobStatus {
+  std::string doing;         ///< while it is running, as a sentence
+  std::string outcome = {};  ///< once it has ended, for the status bar; "": nothing
+  bool faulty = false;       ///< the outcome is an error
+  Values values = {};        ///< for scripts and tests
+  std::string failure = {};  ///< of a failed one
+};
+
+/// Work in the background, one piece at a time.
+class Job {
  public:
+  explicit Job(std::string prefix) : value_prefix(std::move(prefix)) {}
+  virtual ~Job() = default;
+  Job(const Job&) = delete;
+  Job& operator=(const Job&) = delete;
+
+  [[nodiscard]] virtual JobStatus status() const = 0;
+  [[nodiscard]] virtual bool running() const = 0;
+  /// Ends the work soon; what is finished is kept.
+  virtual void cancel() = 0;
+  /// Whether it has ended since this was last asked.
+  virtual bool takeEnd() = 0;
+
+  const std::string value_prefix;  ///< of its values' names: "batch"
+};
+
+/// A job that reports its progress. `Report` is derived from TaskReport.
+template <class R>
+class ReportingJob : public Job {
+ public:
+  using Report = R;
+
+  void cancel() override { cancelled_ = true; }
+  [[nodiscard]] bool running() const override {
+    const std::lock_guard lock(mutex_);
+    return report_.state == TaskState::running;
+  }
+  [[nodiscard]] Report report() const {
+    const std::lock_guard lock(mutex_);
+    return report_;
+  }
+  [[nodiscard]] JobStatus status() const override {
+    const Report now = report();
+    JobStatus status = statusOf(now);
+    status.failure = now.failure;
+    status.values["state"] = kTaskStates.nameOf(now.state);
+    return status;
+  }
+  bool takeEnd() override { return ended_.exchange(false); }
+
+ protected:
   /// `name` stands for the work in messages: "baking".
-  explicit BackgroundTask(std::string name) : name_(std::move(name)) {}
-  /// Cancels what is running, and waits for it.
-  ~BackgroundTask() {
+  ReportingJob(std::string name, std::string prefix)
+      : Job(std::move(prefix)), name_(std::move(name)) {}
+
+  /// Cancels the work, and waits for its end. For the derived class's destructor: the work uses it.
+  void finish() {
     cancel();
     if (thread_.joinable()) thread_.join();
   }
-  BackgroundTask(const BackgroundTask&) = delete;
-  BackgroundTask& operator=(const BackgroundTask&) = delete;
-
   /// Begins with the report `first`. `work()` asks cancelled() now and then, and returns whether it
-  /// went through to the end; what it throws becomes the failure. Throws InputError while the work
-  /// before is still running.
+  /// was completed; what it throws becomes the failure. Throws InputError while earlier work is
+  /// running.
   template <class Work>
   void begin(Report first, Work work) {
     if (running()) throw InputError(name_ + ": still running: wait for its end, or cancel it");
@@ -61,27 +112,15 @@ class BackgroundTask {
     update([&](Report& report) { report = std::move(first); });
     thread_ = std::thread([this, work = std::move(work)]() mutable { perform(work); });
   }
-  /// Ends it soon.
-  void cancel() { cancelled_ = true; }
   [[nodiscard]] bool cancelled() const { return cancelled_; }
-
-  [[nodiscard]] Report report() const {
-    const std::lock_guard lock(mutex_);
-    return report_;
-  }
-  [[nodiscard]] bool running() const {
-    const std::lock_guard lock(mutex_);
-    return report_.state == TaskState::running;
-  }
-  /// Whether it has ended since this was last asked.
-  bool takeEnd() { return ended_.exchange(false); }
-
-  /// Changes the report while nobody reads it.
+  /// Changes the report under its lock.
   template <class Change>
   void update(Change&& change) {
     const std::lock_guard lock(mutex_);
     change(report_);
   }
+  /// All but the failure; of the values not the state.
+  [[nodiscard]] virtual JobStatus statusOf(const Report& report) const = 0;
 
  private:
   template <class Work>
@@ -104,7 +143,7 @@ class BackgroundTask {
     });
   }
 
-  std::string name_;
+  const std::string name_;
   std::atomic<bool> cancelled_ = false;
   std::atomic<bool> ended_ = false;
   mutable std::mutex mutex_;

@@ -1,4 +1,4 @@
-#include "inspector/authoring/document.h"
+#include "inspector/session/document.h"
 
 #include <fmt/format.h>
 
@@ -97,7 +97,7 @@ bool Document::save(const fs::path& path) {
   return notices_.attempt([&] {
     desk.save(path);
     notices_.say(fmt::format("saved: {}", desk.path().string()));
-    on_save(desk.path());
+    notices_.noteFile(desk.path());
   });
 }
 

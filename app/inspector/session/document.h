@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "broadmark/scenes/authored_simulation.h"
-#include "inspector/authoring/author_desk.h"
 #include "inspector/jobs/background_bake.h"
+#include "inspector/session/author_desk.h"
 #include "inspector/session/body_selection.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
@@ -52,8 +52,6 @@ class Document {
 
   AuthorDesk desk;                ///< its selection is the inspector's, while shown()
   std::function<void()> leaving;  ///< waits for unsaved changes to be saved or given up
-  /// Set by the owner; called with the file.
-  std::function<void(const std::filesystem::path&)> on_save;
 
  private:
   /// A frame that becomes a scene when `shown` is open.

@@ -1,0 +1,83 @@
+#include "inspector/session/footage_requests.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "broadmark/error.h"
+#include "broadmark/recordings/recording.h"
+#include "broadmark/recordings/swept_frames.h"
+#include "run/recordings.h"
+#include "sources/make_source.h"
+
+namespace broadmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The parameters that a recording was baked with; "": unknown. Only the frames have to be right.
+std::string parametersOf(const Recording& recording, const fs::path& path) {
+  try {
+    const std::string& stated = recording.origin().scene_parameters;
+    const std::string text = stated.empty() ? bakedParameters(path) : stated;
+    return text.empty() ? "" : formatSceneParameters(*parseSceneParameters(text, path.string()));
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+}  // namespace
+
+FootageRequest simulationFootage(Simulation& simulation, bool swept) {
+  const std::string text = formatSceneParameters(simulation);
+  return {.open =
+              [text, swept] {
+                return std::make_unique<Footage>(parseSceneParameters(text, "scene parameters"),
+                                                 swept);
+              },
+          .source = FootageSource::simulation,
+          .title = simulation.listing().name,
+          .scene_parameters = text};
+}
+
+FootageRequest recordingFootage(const fs::path& path, const std::string& hash, bool swept) {
+  // A bad one is an error at once, and changes nothing.
+  const std::string parameters = parametersOf(*openRecordingFile(path), path);
+  const auto open = [path, hash, swept] {
+    std::unique_ptr<Recording> recording = openRecordingFile(path);
+    if (!hash.empty()) {
+      requireHash(path.string(), swept ? sweptHash(recording->hash()) : recording->hash(), hash);
+    }
+    return std::make_unique<Footage>(std::move(recording), swept);
+  };
+  return {.open = open,
+          .source = FootageSource::recording,
+          .title = path.filename().string(),
+          .recording = path,
+          .scene_parameters = parameters};
+}
+
+FootageRequest importFootage(const RecordingReference& reference, bool swept) {
+  const auto open = [reference, swept]() -> std::unique_ptr<Footage> {
+    ReadingOptions reading;
+    setParameters(reading, reference.reading);
+    const auto import = importOf(reference.path);
+    if (!import) throw InputError(fmt::format("{}: no longer there", reference.path));
+    Source source = importedSource({reference.path}, *import, reading);
+    return std::make_unique<Footage>(std::move(source.imported), swept);
+  };
+  return {.open = open,
+          .source = FootageSource::import,
+          .title = fs::path(reference.path).filename().string()};
+}
+
+ParameterValues sceneParametersOf(const FootageRequest* footage) {
+  if (footage == nullptr || footage->scene_parameters.empty()) return {};
+  const auto simulation = parseSceneParameters(footage->scene_parameters, footage->title);
+  ParameterValues values = parameterValues(*simulation);
+  values["scene"] = simulation->listing().id;
+  return values;
+}
+
+}  // namespace broadmark

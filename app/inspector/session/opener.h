@@ -1,0 +1,61 @@
+// Opens files of all kinds, cases of results, and plans.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "inspector/jobs/case_export.h"
+#include "inspector/session/document.h"
+#include "inspector/session/draft.h"
+#include "inspector/session/lanes.h"
+#include "inspector/session/mismatches.h"
+#include "inspector/session/notices.h"
+#include "inspector/session/opened_results.h"
+#include "inspector/session/playback.h"
+#include "run/plan.h"
+
+namespace broadmark {
+
+class Opener {
+ public:
+  /// The parts that show what is opened; they outlive it.
+  struct Parts {
+    Notices& notices;
+    Playback& playback;
+    Lanes& lanes;
+    Mismatches& mismatches;
+    Document& document;
+    Draft& draft;
+    std::optional<OpenedResults>& results;
+  };
+  explicit Opener(const Parts& parts) : to_(parts) {}
+
+  /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
+  /// file all cases are listed; of a file that names a case, that becomes the only lane.
+  void open(const std::filesystem::path& path);
+  /// Opens the first entry with its cases as lanes, or lists those of results; without either
+  /// there are only lanes. Throws InputError.
+  void open(Plan plan);
+  /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
+  /// error.
+  void openCase(const std::filesystem::path& file, const std::string& id);
+  /// Opens a row of the listed results in the same way. Why it cannot be opened is kept there, and
+  /// said.
+  void openCase(OpenedResults::Row& row);
+  /// Opens what has been exported, at the wrong frame.
+  void openExport(const ExportReport& report);
+
+ private:
+  /// How an authored scene is shown first.
+  enum class Opened { at_rest, in_motion };
+  void openEntry(PlanEntry entry, Opened document_is);
+  void enter(PlanEntry& entry, Opened document_is);
+  /// `case_id`: of results; "": it is no case of any.
+  void enterSource(Source& source, Opened document_is, const std::string& case_id);
+  void listCases(const std::filesystem::path& file, Results listed);
+
+  Parts to_;
+};
+
+}  // namespace broadmark
