@@ -11,7 +11,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/harness/memory_limit.h"
-#include "command_line/command_line.h"
+#include "commands/command_line.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 

@@ -1,9 +1,9 @@
 // Stands for the folder inspector/ in a build without it.
 
 #include "broadmark/error.h"
-#include "command_line/option_types.h"
 #include "inspector/run_inspector.h"
 #include "run/plan.h"
+#include "support/build_parts.h"
 
 namespace broadmark {
 

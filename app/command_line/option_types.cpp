@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <thread>
 
 #include "broadmark/scenes/simulation.h"
 #include "request/sweep.h"
@@ -118,13 +117,6 @@ double parseShare(const std::string& text, std::string_view option, bool open) {
   return parseNumber(text.substr(0, text.size() - 1), option, 0, open) / 100;
 }
 
-int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
-
-int parseThreadCount(const std::string& text) {
-  constexpr long long kMostThreads = 1024;
-  return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
-}
-
 CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
                       std::function<void(const std::string&)> set, const ValueText& get,
                       const std::string& doc) {
@@ -188,14 +180,6 @@ CLI::Option* addRepeatable(CLI::App& app, const std::string& name, const std::st
       ->type_name(type)
       ->allow_extra_args(false)
       ->default_function([&] { return fmt::format("{}", fmt::join(target, "\n")); });
-}
-
-std::string leftOut(const BuildPart& part) {
-  return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
-}
-
-void requirePart(const BuildPart& part, std::string_view option) {
-  if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
 }
 
 void showWith(const BuildPart& part, const std::vector<CLI::Option*>& options) {

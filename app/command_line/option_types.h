@@ -15,12 +15,12 @@
 #include "broadmark/error.h"
 #include "broadmark/harness/case.h"
 #include "broadmark/names.h"
-#include "parts.h"
 #include "request/hosts.h"
 #include "request/picture_options.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
 #include "request/scene_options.h"
+#include "support/build_parts.h"
 
 namespace CLI {
 class App;
@@ -34,11 +34,6 @@ double parseNumber(const std::string& text, std::string_view option, double min,
 
 /// A share, "1%" or "0.01", > 0 or, unless `open`, 0.
 double parseShare(const std::string& text, std::string_view option, bool open);
-
-/// As many threads as this process has cores.
-int allCores();
-/// A number of threads.
-int parseThreadCount(const std::string& text);
 
 /// The value called `text` in a NameTable.
 template <class Table>
@@ -106,10 +101,6 @@ CLI::Option* addList(CLI::App&, const std::string& name, const std::string& type
 CLI::Option* addRepeatable(CLI::App&, const std::string& name, const std::string& type,
                            std::vector<std::string>& target, const std::string& doc);
 
-/// "this build has no renderer (BROADMARK_RENDER=OFF)"
-std::string leftOut(const BuildPart&);
-/// Throws InputError if a part that `option` needs has been left out of this build.
-void requirePart(const BuildPart&, std::string_view option);
 /// Hides options from help if the part that they need has been left out of this build: they then
 /// have no description.
 void showWith(const BuildPart&, const std::vector<CLI::Option*>& options);

@@ -13,6 +13,7 @@
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "run/recordings.h"
+#include "sources/make_source.h"
 #include "support/interrupt.h"
 #include "support/progress.h"
 #include "support/words.h"

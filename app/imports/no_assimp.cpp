@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "broadmark/error.h"
-#include "command_line/option_types.h"
 #include "imports/mesh.h"
+#include "support/build_parts.h"
 
 namespace broadmark::imports {
 

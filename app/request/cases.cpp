@@ -9,10 +9,10 @@
 #include <cctype>
 #include <iterator>
 #include <map>
+#include <thread>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
-#include "command_line/option_types.h"
 #include "original/ids.h"
 #include "request/plugins.h"
 #include "request/sdk_plugins.h"
@@ -137,6 +137,13 @@ void takeCasePart(Case& made, const std::string& part, const std::string& name) 
 }
 
 }  // namespace
+
+int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+
+int parseThreadCount(const std::string& text) {
+  constexpr long long kMostThreads = 1024;
+  return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
+}
 
 const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known) {
   const auto found = std::ranges::find(known, id, &Algorithm::id);

@@ -10,6 +10,11 @@
 
 namespace broadmark {
 
+/// As many threads as this process has cores.
+int allCores();
+/// A number of threads.
+int parseThreadCount(const std::string& text);
+
 /// Which cases to make.
 struct CaseOptions {
   std::vector<std::string> algorithms;  ///< ids, families, globs, "all"; empty: all

@@ -123,10 +123,6 @@ void requireRecordingName(const fs::path& path) {
                                path.string(), fmt::join(extensions, " or ")));
 }
 
-std::string recordingKindsText() {
-  return fmt::format("recordings ({})", fmt::join(recordingExtensions(), ", "));
-}
-
 void makeDirectory(const fs::path& directory) {
   std::vector<fs::path> missing;
   for (fs::path at = fs::absolute(directory); !fs::exists(at); at = at.parent_path()) {

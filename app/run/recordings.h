@@ -37,9 +37,6 @@ void requireHash(const std::string& what, const std::string& hash, const std::st
 /// Throws InputError unless the name ends like that of a recording of boxes.
 void requireRecordingName(const std::filesystem::path&);
 
-/// "recordings (.aabbs, …)", for help.
-std::string recordingKindsText();
-
 /// Creates a directory and its parents. Throws InputError.
 void makeDirectory(const std::filesystem::path&);
 

@@ -112,6 +112,10 @@ RecordingReference referenceTo(Simulation& simulation) {
 
 }  // namespace
 
+std::string recordingKindsText() {
+  return fmt::format("recordings ({})", fmt::join(recordingExtensions(), ", "));
+}
+
 bool isSceneId(const std::string& name) {
   return std::ranges::any_of(builtinScenes(),
                              [&](const SceneListing& scene) { return scene.id == name; });

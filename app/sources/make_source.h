@@ -13,6 +13,9 @@ namespace broadmark {
 /// In results, beside the parameters of an authored scene: where its file is.
 inline constexpr const char* kSceneFile = "scene_file";
 
+/// "recordings (.aabbs, …)", for help.
+std::string recordingKindsText();
+
 /// Whether a built-in scene has this id.
 bool isSceneId(const std::string& name);
 

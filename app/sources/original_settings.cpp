@@ -1,7 +1,7 @@
 // Settings files of the original Broadmark: a recording and the case to run on it.
 
-#include "original/case.h"
 #include "sources/make_source.h"
+#include "sources/original_case.h"
 
 namespace broadmark::sources::original_settings {
 namespace {

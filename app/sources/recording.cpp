@@ -1,6 +1,5 @@
 // Recordings: every file that is not JSON.
 
-#include "run/recordings.h"
 #include "sources/make_source.h"
 
 namespace broadmark::sources::recording {

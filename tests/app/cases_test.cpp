@@ -9,9 +9,9 @@
 
 #include "broadmark/algorithms.h"
 #include "engine/helpers.h"
-#include "original/case.h"
 #include "original/ids.h"
 #include "parts.h"
+#include "sources/original_case.h"
 
 namespace broadmark::tests {
 namespace {

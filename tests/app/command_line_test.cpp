@@ -1,6 +1,6 @@
 // What is understood on a command line, and what is refused. Nothing is run.
 
-#include "command_line/command_line.h"
+#include "commands/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

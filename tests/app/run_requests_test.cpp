@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "broadmark/files.h"
-#include "command_line/command_line.h"
+#include "commands/command_line.h"
 #include "engine/helpers.h"
 
 namespace broadmark::tests {

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "broadmark/files.h"
-#include "command_line/command_line.h"
+#include "commands/command_line.h"
 #include "engine/helpers.h"
 
 namespace broadmark::tests {

@@ -1,6 +1,6 @@
 // The main command with the others as its subcommands, and complaints about bad usage.
 
-#include "command_line/command_line.h"
+#include "commands/command_line.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // Settings of the original as a case of ours.
 
-#include "original/case.h"
+#include "sources/original_case.h"
 
 #include <fmt/format.h>
 
