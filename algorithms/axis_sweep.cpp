@@ -223,15 +223,14 @@ class AxisSweep final : public BulletBroadPhase {
     if (reportsEvents()) addTouching();
   }
 
-  /// Each axis of the world, the one along which the fewest bodies meet in another colour.
+  /// Each axis of the world, the one along which the fewest bodies meet as the chosen one.
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kAxisColour = 0xFFA500;
-    constexpr Rgb kBestColour = 0xFF4000;
     for (int axis = 0; axis < 3; ++axis) {
       std::array<float, 3> from = {world_.min[0], world_.min[1], world_.min[2]};
       std::array<float, 3> to = from;
       to[axis] = world_.max[axis];
-      draw.line(from, to, axis == sweep_->bestAxis() ? kBestColour : kAxisColour);
+      draw.line(from, to,
+                axis == sweep_->bestAxis() ? StructureRole::best_split : StructureRole::split);
     }
   }
 

@@ -169,10 +169,8 @@ class Draw final : public ColumnVisitor {
   Draw(DebugDraw& draw, const Aabb& bounds) : draw_(draw), bounds_(bounds) {}
 
   void column(Walk& walk, const Part&) override {
-    constexpr Rgb kColumnColour = 0x4FA3D1;
     const Sorted& sorted = walk.sorted();
-    draw_.cell(walk.box(bounds_), kColumnColour, walk.level(),
-               static_cast<std::uint32_t>(sorted.size));
+    draw_.cell(walk.box(bounds_), walk.level(), static_cast<std::uint32_t>(sorted.size));
     TestCounts tests(sorted.size);
     tests.addWindows({sorted.ends.data(), sorted.size});
     tests.tell(draw_, [&](std::size_t i) { return bodyNumber(sorted.copies[i].body); });

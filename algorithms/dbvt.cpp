@@ -114,10 +114,8 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kMovingColour = 0xFFA500;
-    constexpr Rgb kRestingColour = 0x4080FF;
-    drawTree(draw, tree_.m_sets[Tree::DYNAMIC_SET], kMovingColour);
-    drawTree(draw, tree_.m_sets[Tree::FIXED_SET], kRestingColour);
+    drawTree(draw, tree_.m_sets[Tree::DYNAMIC_SET], StructureRole::moving_node);
+    drawTree(draw, tree_.m_sets[Tree::FIXED_SET], StructureRole::resting_node);
   }
 
   void visitCounters(const CounterVisitor& visit) const override {
@@ -248,13 +246,13 @@ class Dbvt final : public BulletBroadPhase {
     tree_.calculateOverlappingPairs(nullptr);
   }
 
-  static void drawTree(DebugDraw& draw, const btDbvt& tree, Rgb colour) {
+  static void drawTree(DebugDraw& draw, const btDbvt& tree, StructureRole role) {
     std::vector<std::pair<const btDbvtNode*, int>> open;
     if (tree.m_root != nullptr) open.emplace_back(tree.m_root, 0);
     while (!open.empty()) {
       const auto [node, depth] = open.back();
       open.pop_back();
-      draw.box(boxOf(node->volume), colour, depth);
+      draw.box(boxOf(node->volume), role, depth);
       if (node->isleaf()) continue;
       for (const btDbvtNode* const child : node->childs) open.emplace_back(child, depth + 1);
     }

@@ -35,7 +35,6 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
  public:
   /// Reads the boxes back and draws the cells that hold bodies.
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kCellColour = 0x40FF80;
     constexpr std::size_t kMostCells = 20'000;
     if (count() < 2) return;
     std::map<Cell, std::uint32_t> populations;
@@ -43,7 +42,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
     std::size_t drawn = 0;
     for (const auto& [cell, population] : populations) {
       if (++drawn > kMostCells) return;
-      draw.cell(boxOf(cell), kCellColour, cell.level, population);
+      draw.cell(boxOf(cell), cell.level, population);
     }
   }
 

@@ -28,7 +28,6 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
   /// Reads the tree back and draws its inner nodes, to a depth that an eye can follow.
   void drawStructure(DebugDraw& draw) const override {
     constexpr int kDeepest = 12;
-    constexpr Rgb kNodeColour = 0x40C0FF;
     if (count() < 2) return;
     const auto nodes = read<Node>(nodes_, count() - 1);
     std::vector<std::pair<std::uint32_t, int>> stack = {{0, 0}};
@@ -38,7 +37,7 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
       for (Aabb box : nodes[number].child) {
         const auto child = std::bit_cast<std::uint32_t>(box.min[3]);
         box.min[3] = box.max[3] = 0;
-        draw.box(box, kNodeColour, depth);
+        draw.box(box, StructureRole::cell, depth);
         if ((child & kLeaf) == 0 && depth < kDeepest) stack.emplace_back(child, depth + 1);
       }
     }

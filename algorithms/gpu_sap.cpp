@@ -18,7 +18,6 @@ namespace {
 class GpuSap final : public opencl::DeviceBroadPhase {
  public:
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kAxisColour = 0xFFA500;
     std::array<float, 3> from{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       from[axis] = bounds_.min[axis] / 2 + bounds_.max[axis] / 2;
@@ -26,7 +25,7 @@ class GpuSap final : public opencl::DeviceBroadPhase {
     std::array<float, 3> to = from;
     from[axis_] = bounds_.min[axis_];
     to[axis_] = bounds_.max[axis_];
-    draw.line(from, to, kAxisColour);
+    draw.line(from, to, StructureRole::split);
   }
 
  protected:

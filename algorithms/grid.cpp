@@ -264,7 +264,6 @@ class Grid final : public PairBroadPhase {
 void Grid::drawStructure(DebugDraw& draw) const {
   // More would hide one another. The fullest cells are drawn.
   constexpr std::size_t kMostDrawn = 10'000;
-  constexpr Rgb kCellColour = 0x4FA3D1;
   std::vector<std::size_t> cells;
   for (std::size_t cell = kLarge + 1; cell < cellCount(); ++cell) {
     if (starts_[cell] < starts_[cell + 1]) cells.push_back(cell);
@@ -275,7 +274,7 @@ void Grid::drawStructure(DebugDraw& draw) const {
     cells.resize(kMostDrawn);
   }
   for (const std::size_t cell : cells) {
-    draw.cell(grid_.cell(cell - 1, bounds_), kCellColour, 0, copies(cell));
+    draw.cell(grid_.cell(cell - 1, bounds_), 0, copies(cell));
   }
   TestCounts tests(ends_.size());
   tests.addWindows(ends_);

@@ -111,13 +111,12 @@ class SweepAndPrune final : public PairBroadPhase {
   }
 
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kAxisColour = 0xFFA500;
     std::array<float, 3> from{};
     for (int axis = 0; axis < 3; ++axis) from[axis] = (world_.min[axis] + world_.max[axis]) / 2;
     std::array<float, 3> to = from;
     from[axes_[0]] = world_.min[axes_[0]];
     to[axes_[0]] = world_.max[axes_[0]];
-    draw.line(from, to, kAxisColour);
+    draw.line(from, to, StructureRole::split);
     TestCounts tests(ends_.size());
     tests.addWindows(ends_);
     tests.tell(draw, [this](std::size_t i) { return bodies_[i]; });

@@ -350,20 +350,18 @@ class Tracy final : public BroadPhase {
 
 /// Level 0: the occupied cells; level 1: how the first axis is cut into chunks in each of them.
 void Tracy::drawStructure(DebugDraw& draw) const {
-  constexpr Rgb kCellColour = 0x4080FF;
-  constexpr Rgb kSegmentColour = 0x808080;
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (cells_[cell].size() == 0) continue;
     const Aabb bounds = grid_.bounds(grid_.position(cell));
-    draw.cell(bounds, kCellColour, 0, cells_[cell].size());
+    draw.cell(bounds, 0, cells_[cell].size());
     Aabb segment = bounds;
     cells_[cell].forEachSegment([&](float begin) {
       segment.max[0] = std::clamp(begin, bounds.min[0], bounds.max[0]);
-      if (segment.max[0] > segment.min[0]) draw.box(segment, kSegmentColour, 1);
+      if (segment.max[0] > segment.min[0]) draw.box(segment, StructureRole::cell_part, 1);
       segment.min[0] = segment.max[0];
     });
     segment.max[0] = bounds.max[0];
-    draw.box(segment, kSegmentColour, 1);
+    draw.box(segment, StructureRole::cell_part, 1);
   }
 }
 

@@ -32,14 +32,14 @@ Viewpoint axesViewpoint(const Viewpoint& viewpoint, float scale) {
   return result;
 }
 
-std::vector<Primitive> axesCross(const Camera& camera, float scale) {
+std::vector<Primitive> axesCross(const Camera& camera, const Palette& theme, float scale) {
   const std::array<float, 3> back = axesOf(camera).back;
   std::array<std::size_t, 3> order = {0, 1, 2};
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return back[a] < back[b]; });
   std::vector<Primitive> lines;
   for (const std::size_t axis : order) {
-    Primitive line{{}, static_cast<float>(kAxisColours[axis]), {}, kAxesWidth * scale};
+    Primitive line{{}, static_cast<float>(theme.axis[axis]), {}, kAxesWidth * scale};
     line.to[axis] = 1;
     lines.push_back(line);
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "broadmark/render/camera.h"
+#include "broadmark/render/palette.h"
 #include "primitive_renderer.h"
 
 namespace broadmark {
@@ -14,6 +15,6 @@ inline constexpr float kAxesMargin = 8;  ///< pixels, before scaling
 Viewpoint axesViewpoint(const Viewpoint& viewpoint, float scale);
 
 /// The axes as lines, from the farthest to the nearest.
-std::vector<Primitive> axesCross(const Camera& camera, float scale);
+std::vector<Primitive> axesCross(const Camera& camera, const Palette& theme, float scale);
 
 }  // namespace broadmark

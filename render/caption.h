@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
+#include "broadmark/render/colour.h"
 #include "broadmark/render/picture.h"
 
 namespace broadmark {

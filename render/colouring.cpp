@@ -1,7 +1,4 @@
 // Every mode sorts the bodies into a few classes, each with a colour and an entry of the legend.
-// Scales grow darker on a light background and brighter on a dark one, so that lightness alone
-// tells their steps apart. Single colours begin with Okabe and Ito's; a test sees to it that they
-// stay apart for colour-blind eyes.
 #include "broadmark/render/colouring.h"
 
 #include <fmt/format.h>
@@ -11,46 +8,11 @@
 #include <cmath>
 #include <limits>
 
+#include "broadmark/render/palette.h"
 #include "count_steps.h"
-#include "draw_frame.h"
 
 namespace broadmark {
 namespace {
-
-using Scale = std::array<Rgb, CountSteps::kMost>;
-using Hues = std::array<Rgb, 8>;
-
-/// The colours for one background.
-struct Palette {
-  Rgb quiet;  ///< bodies of no interest
-  Rgb overlapping;
-  Rgb right;
-  Rgb missed;
-  Rgb false_pair;
-  Rgb moving;
-  Hues layers;
-  Scale heat;
-  Scale size;
-};
-
-Palette paletteOf(const ColouringInput& input) {
-  const auto choose = [&](auto light, auto dark) { return input.dark ? dark : light; };
-  return {
-      .quiet = choose(kFreeBox, Rgb{0x707C89}),
-      .overlapping = choose(kOverlappingBox, Rgb{0xFF8A3D}),
-      .right = choose(Rgb{0x8CBFB4}, Rgb{0x2F5D57}),
-      .missed = choose(Rgb{0xD1003F}, Rgb{0xFF5C5C}),
-      .false_pair = choose(Rgb{0x2563C9}, Rgb{0x62A5FF}),
-      .moving = choose(Rgb{0x0072B2}, Rgb{0x56B4E9}),
-      .layers = choose(
-          Hues{0x8C9BA4, 0x2354C9, 0xE6690D, 0x4FAC6E, 0xBA78D1, 0x614800, 0x34305D, 0x5F1626},
-          Hues{0x5C5F5F, 0x9399FF, 0xE4672E, 0x62D593, 0xDE83B8, 0xE6D727, 0x7D398B, 0xEDFAFF}),
-      .heat = choose(Scale{0xFFDF8A, 0xFDBB4E, 0xF98B2B, 0xE65518, 0xB92D14, 0x7A1616},
-                     Scale{0x6A3B78, 0xA03468, 0xC5475D, 0xEC6E3C, 0xFBA51F, 0xF9E26B}),
-      .size = choose(Scale{0xD3E6EF, 0xA3CDE0, 0x6DAFCF, 0x3D8BB8, 0x21649C, 0x123F75},
-                     Scale{0x2F5288, 0x2F7393, 0x2E938B, 0x4CB37B, 0x8CCF5C, 0xE6E34E}),
-  };
-}
 
 /// Gives each body the colour of its class, the legend's entry number classOf(body), and counts the
 /// bodies of each class. Absent ones have none.
@@ -84,14 +46,14 @@ void mark(std::vector<std::uint8_t>& marks, std::span<const Pair> pairs, std::ui
 }
 
 void colourOverlapping(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
-  colourByClass(input.boxes, {{"overlapping", palette.overlapping}, {"free", palette.quiet}},
+  const Palette& palette = paletteOf(input.dark);
+  colourByClass(input.boxes, {{"overlapping", palette.overlapping}, {"free", palette.free}},
                 colouring, [&](std::size_t body) { return overlapsOf(input, body) > 0 ? 0U : 1U; });
 }
 
 void colourByCount(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
-  std::vector<LegendEntry> legend = {{"0", palette.quiet}, {"1", palette.heat[0]}};
+  const Palette& palette = paletteOf(input.dark);
+  std::vector<LegendEntry> legend = {{"0", palette.free}, {"1", palette.heat[0]}};
   const std::size_t last = palette.heat.size() - 1;
   for (std::size_t step = 1; step < last; ++step) {
     legend.push_back({fmt::format("{} to {}", 1U << step, (2U << step) - 1), palette.heat[step]});
@@ -106,27 +68,27 @@ void colourByCount(const ColouringInput& input, Colouring& colouring) {
 }
 
 /// Two sets of pairs that ought to be the same: those only in the first, those only in the second.
+/// `legend` is of bodies in these and of others in pairs.
 void colourByDifference(const ColouringInput& input, std::span<const Pair> first_only,
-                        std::span<const Pair> second_only, const std::array<std::string, 3>& labels,
+                        std::span<const Pair> second_only, std::vector<LegendEntry> legend,
                         Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  legend.push_back({"free", paletteOf(input.dark).free});
   std::vector<std::uint8_t> classes(input.boxes.size());
   for (std::size_t body = 0; body < classes.size(); ++body) {
     classes[body] = overlapsOf(input, body) > 0 ? 2 : 3;
   }
   mark(classes, second_only, 1);
   mark(classes, first_only, 0);  // last: a missed pair is the worse fault
-  colourByClass(input.boxes,
-                {{labels[0], palette.missed},
-                 {labels[1], palette.false_pair},
-                 {labels[2], palette.right},
-                 {"free", palette.quiet}},
-                colouring, [&](std::size_t body) { return classes[body]; });
+  colourByClass(input.boxes, std::move(legend), colouring,
+                [&](std::size_t body) { return classes[body]; });
 }
 
 void colourByCorrectness(const ColouringInput& input, Colouring& colouring) {
-  colourByDifference(input, input.missed, input.false_pairs, {"missed", "false", "right"},
-                     colouring);
+  const Palette& palette = paletteOf(input.dark);
+  colourByDifference(
+      input, input.missed, input.false_pairs,
+      {{"missed", palette.missed}, {"false", palette.false_pair}, {"right", palette.right}},
+      colouring);
 }
 
 /// All bodies in one class.
@@ -136,9 +98,9 @@ void colourAlike(const ColouringInput& input, const std::string& label, Rgb colo
 }
 
 void colourByTests(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  const Palette& palette = paletteOf(input.dark);
   if (input.tests.size() != input.boxes.size()) {
-    colourAlike(input, "not told", palette.quiet, colouring);
+    colourAlike(input, "not told", palette.unknown, colouring);
     return;
   }
   std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
@@ -147,7 +109,7 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
     if (count > 0) least = std::min(least, count);
     most = std::max(most, count);
   }
-  std::vector<LegendEntry> legend = {{"0", palette.quiet}};
+  std::vector<LegendEntry> legend = {{"0", palette.free}};
   const CountSteps steps(std::min(least, most), most);
   for (std::size_t step = 0; step < steps.size() && most > 0; ++step) {
     legend.push_back({steps.text(step), palette.heat[steps.place(step)]});
@@ -159,34 +121,38 @@ void colourByTests(const ColouringInput& input, Colouring& colouring) {
 }
 
 void colourByComparison(const ColouringInput& input, Colouring& colouring) {
+  const Palette& palette = paletteOf(input.dark);
   if (input.comparison == nullptr) {
-    colourAlike(input, "no second view", paletteOf(input).quiet, colouring);
+    colourAlike(input, "no second view", palette.unknown, colouring);
     return;
   }
   colourByDifference(input, input.comparison->first_only, input.comparison->second_only,
-                     {"first only", "second only", "both"}, colouring);
+                     {{"first only", palette.first_only},
+                      {"second only", palette.second_only},
+                      {"both", palette.right}},
+                     colouring);
 }
 
 void colourByMotion(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  const Palette& palette = paletteOf(input.dark);
   if (input.previous.size() != input.boxes.size()) {
-    colourAlike(input, "no previous frame", palette.quiet, colouring);
+    colourAlike(input, "no previous frame", palette.unknown, colouring);
     return;
   }
   colourByClass(
-      input.boxes, {{"moving", palette.moving}, {"static", palette.quiet}}, colouring,
+      input.boxes, {{"moving", palette.moving}, {"static", palette.still}}, colouring,
       [&](std::size_t body) { return input.boxes[body] != input.previous[body] ? 0U : 1U; });
 }
 
 void colourByChange(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  const Palette& palette = paletteOf(input.dark);
   if (input.previous.size() != input.boxes.size()) {
-    colourAlike(input, "no previous frame", palette.quiet, colouring);
+    colourAlike(input, "no previous frame", palette.unknown, colouring);
     return;
   }
   colourByClass(
       input.boxes,
-      {{"appeared", palette.overlapping}, {"moved", palette.moving}, {"unchanged", palette.quiet}},
+      {{"appeared", palette.appeared}, {"moved", palette.moving}, {"unchanged", palette.still}},
       colouring, [&](std::size_t body) {
         if (isEmpty(input.previous[body])) return 0U;
         return input.boxes[body] != input.previous[body] ? 1U : 2U;
@@ -194,9 +160,9 @@ void colourByChange(const ColouringInput& input, Colouring& colouring) {
 }
 
 void colourByLayer(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  const Palette& palette = paletteOf(input.dark);
   if (input.layers.size() != input.boxes.size()) {
-    colourAlike(input, "layer 0", palette.layers[0], colouring);
+    colourAlike(input, "layer 0", palette.layer[0], colouring);
     return;
   }
   std::array<std::size_t, LayerMatrix::kLayers> entries{};
@@ -206,7 +172,7 @@ void colourByLayer(const ColouringInput& input, Colouring& colouring) {
     if (entries[layer] == 0) continue;
     entries[layer] = legend.size();
     legend.push_back(
-        {fmt::format("layer {}", layer), palette.layers[legend.size() % palette.layers.size()]});
+        {fmt::format("layer {}", layer), palette.layer[legend.size() % palette.layer.size()]});
   }
   colourByClass(input.boxes, std::move(legend), colouring,
                 [&](std::size_t body) { return entries[input.layers[body]]; });
@@ -218,7 +184,7 @@ float sizeOf(const Aabb& box) {
 }
 
 void colourBySize(const ColouringInput& input, Colouring& colouring) {
-  const Palette palette = paletteOf(input);
+  const Palette& palette = paletteOf(input.dark);
   constexpr float kMost = std::numeric_limits<float>::max();
   float smallest = kMost;
   float largest = 0;
@@ -233,7 +199,7 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
   }
   // Steps of equal ratio. Points belong to the first step, like the smallest bodies.
   const std::size_t steps = palette.size.size();
-  std::array<float, std::tuple_size_v<Scale>> begins{};
+  std::array<float, std::tuple_size_v<decltype(Palette::size)>> begins{};
   std::vector<LegendEntry> legend;
   const auto border = [&](std::size_t step) {
     const double part = static_cast<double>(step) / static_cast<double>(steps);

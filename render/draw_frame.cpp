@@ -7,14 +7,14 @@
 
 #include "broadmark/render/camera.h"
 #include "broadmark/render/framebuffer.h"
+#include "broadmark/render/palette.h"
 #include "broadmark/render/scene_view.h"
 #include "caption.h"
 
 namespace broadmark {
 namespace {
 
-constexpr Rgb kTitle = 0x1F2933;
-constexpr Rgb kText = 0x52606D;
+constexpr const Palette& kPalette = kLightPalette;
 
 /// For each body whether it is in a pair. A wrong pair may name bodies that do not exist or are
 /// absent.
@@ -46,14 +46,15 @@ void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
       static_cast<std::uint64_t>(std::count(overlapping.begin(), overlapping.end(), true));
   const auto absent = static_cast<std::uint64_t>(std::ranges::count_if(frame.boxes, isEmpty));
   const std::uint64_t bodies = frame.boxes.size() - absent;
-  drawCaption(
-      picture,
-      {{{fmt::format("{} {}", abbreviated(scene.name), abbreviated(scene.object_type)), kTitle},
-        {fmt::format("frame {}", frame.index), kText}},
-       {{counted(bodies, "body", "bodies"), kText}, {counted(pairs, "pair", "pairs"), kText}},
-       {{fmt::format("{} overlapping", in_pairs), kText, kOverlappingBox}},
-       {{fmt::format("{} free", bodies - in_pairs), kText, kFreeBox}}},
-      kLightScene.background);
+  drawCaption(picture,
+              {{{fmt::format("{} {}", abbreviated(scene.name), abbreviated(scene.object_type)),
+                 kPalette.text},
+                {fmt::format("frame {}", frame.index), kPalette.faint}},
+               {{counted(bodies, "body", "bodies"), kPalette.faint},
+                {counted(pairs, "pair", "pairs"), kPalette.faint}},
+               {{fmt::format("{} overlapping", in_pairs), kPalette.faint, kPalette.overlapping}},
+               {{fmt::format("{} free", bodies - in_pairs), kPalette.faint, kPalette.free}}},
+              kPalette.background);
 }
 
 }  // namespace
@@ -71,7 +72,7 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   const std::vector<bool> overlapping = overlappingBodies(frame.boxes, overlaps);
   std::vector<Rgb> colours(frame.boxes.size());
   for (std::size_t body = 0; body < colours.size(); ++body) {
-    colours[body] = overlapping[body] ? kOverlappingBox : kFreeBox;
+    colours[body] = overlapping[body] ? kPalette.overlapping : kPalette.free;
   }
 
   SceneViewContent content;

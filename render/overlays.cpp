@@ -6,6 +6,7 @@
 #include <span>
 #include <tuple>
 
+#include "broadmark/render/palette.h"
 #include "count_steps.h"
 
 namespace broadmark {
@@ -40,16 +41,28 @@ Aabb boundsOf(const RecordedDrawing::Line& line) {
   return bounds;
 }
 
-/// Of viridis' kind: lightness alone tells the steps apart, and so do colour-blind eyes. Lines are
-/// thin: the steps nearest to the background stand out from it, too.
-constexpr std::array<Rgb, CountSteps::kMost> kOnLight = {0x7AC74F, 0x2DAA7B, 0x1F8A8C,
-                                                         0x2F678E, 0x3F4788, 0x440154};
-constexpr std::array<Rgb, CountSteps::kMost> kOnDark = {0x3F4F96, 0x2F7494, 0x21968B,
-                                                        0x3DB875, 0x93D741, 0xFDE725};
+Rgb colourOf(StructureRole role, const Palette& palette) {
+  switch (role) {
+    case StructureRole::cell:
+      return palette.cell;
+    case StructureRole::cell_part:
+      return palette.cell_part;
+    case StructureRole::split:
+      return palette.split;
+    case StructureRole::best_split:
+      return palette.best_split;
+    case StructureRole::moving_node:
+      return palette.moving_node;
+    case StructureRole::resting_node:
+      return palette.resting_node;
+  }
+  return palette.cell;  // a worker process may send anything
+}
 
-/// Colours the boxes that tell their populations, and puts the fullest first. Returns what the
-/// colours mean.
-std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& boxes, bool dark) {
+/// Puts the fullest boxes first, and gives those that tell their populations a colour each. Returns
+/// what the colours mean.
+std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& boxes,
+                                            const Palette& palette, std::vector<Rgb>& colours) {
   std::ranges::stable_sort(boxes, std::ranges::greater(), &RecordedDrawing::Box::population);
   const auto told = static_cast<std::size_t>(
       std::ranges::count_if(boxes, [](const auto& box) { return box.population > 0; }));
@@ -57,11 +70,11 @@ std::vector<LegendEntry> colourByPopulation(std::vector<RecordedDrawing::Box>& b
   const CountSteps steps(boxes[told - 1].population, boxes.front().population);
   std::vector<LegendEntry> legend;
   for (std::size_t step = 0; step < steps.size(); ++step) {
-    legend.push_back({steps.text(step), (dark ? kOnDark : kOnLight)[steps.place(step)]});
+    legend.push_back({steps.text(step), palette.population[steps.place(step)]});
   }
-  for (RecordedDrawing::Box& box : std::span(boxes).first(told)) {
+  for (const RecordedDrawing::Box& box : std::span(boxes).first(told)) {
     LegendEntry& entry = legend[steps.stepOf(box.population)];
-    box.colour = entry.swatch;
+    colours.push_back(entry.swatch);
     ++entry.count;
   }
   return legend;
@@ -100,16 +113,21 @@ Overlay structureOverlay(const RecordedDrawing& drawing, const StructureLook& lo
     if (is_near(box.box)) boxes.push_back(box);
   }
   Overlay overlay;
-  if (look.by_population) overlay.legend = colourByPopulation(boxes, look.dark);
-  for (const RecordedDrawing::Box& box : boxes) {
-    const bool told = look.by_population && box.population > 0;
+  const Palette& palette = paletteOf(look.dark);
+  std::vector<Rgb> by_population;  // of the first boxes
+  if (look.by_population) overlay.legend = colourByPopulation(boxes, palette, by_population);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const bool told = i < by_population.size();
     addUpTo(look.most, overlay.boxes,
-            {box.box, box.colour, told ? kPopulationWidth : kStructureWidth}, overlay);
+            {boxes[i].box, told ? by_population[i] : colourOf(boxes[i].role, palette),
+             told ? kPopulationWidth : kStructureWidth},
+            overlay);
   }
   if (look.by_population) std::ranges::reverse(overlay.boxes);
   for (const RecordedDrawing::Line& line : drawing.lines()) {
     if (!is_near(boundsOf(line))) continue;
-    addUpTo(look.most, overlay.lines, {line.from, line.to, line.colour, kStructureWidth}, overlay);
+    addUpTo(look.most, overlay.lines,
+            {line.from, line.to, colourOf(line.role, palette), kStructureWidth}, overlay);
   }
   return overlay;
 }

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "colour.h"
+#include "broadmark/render/colour.h"
 #include "look.h"
 #include "render_assets.h"
 

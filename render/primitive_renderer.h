@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
 #include "broadmark/render/camera.h"
+#include "broadmark/render/colour.h"
 #include "broadmark/render/gl.h"
 
 namespace broadmark {

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "broadmark/range.h"
-#include "colour.h"
+#include "broadmark/render/colour.h"
 
 namespace broadmark {
 namespace {
@@ -111,7 +111,7 @@ void setBodies(ScenePrimitives& scene, const SceneViewContent& content, ThreadTe
       if (!is_visible(body)) continue;
       Rgb colour = content.colours[body];
       if (!is_selected.empty() && is_selected[body]) {
-        colour = mixed(colour, content.theme.selection, kSelectionTint);
+        colour = mixed(colour, content.theme.selected, kSelectionTint);
       }
       *box++ = boxPrimitive(content.boxes[body], colour, content.space, kBoxLook.smallest_pixels);
     }
@@ -124,7 +124,7 @@ void setOutlines(ScenePrimitives& scene, const SceneViewContent& content) {
   for (const std::uint32_t body :
        content.selected.first(std::min(kMostOutlines, content.selected.size()))) {
     if (body >= content.boxes.size() || isEmpty(content.boxes[body])) continue;
-    append(outlines, wireframe(content.boxes[body], content.theme.selection,
+    append(outlines, wireframe(content.boxes[body], content.theme.selected,
                                kOutlineWidth * content.scale, content.space));
   }
 }

@@ -8,7 +8,6 @@
 
 #include "axes_cross.h"
 #include "broadmark/render/framebuffer.h"
-#include "colour.h"
 #include "primitive_renderer.h"
 #include "scene_primitives.h"
 #include "splatter.h"
@@ -100,7 +99,7 @@ class SceneView::Painter {
     std::uint64_t lines_revision = 0;
     ViewSpace space;
     Aabb world;
-    SceneTheme theme;
+    Palette theme;
     bool shows_world = false;
     bool shows_grid = false;
     bool shows_axes = false;
@@ -230,7 +229,7 @@ void SceneView::Painter::drawAxes(const Viewpoint& viewpoint) const {
   gl_->Disable(GL_DEPTH_TEST);
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
   gl_->Enable(GL_BLEND);
-  lines_.draw(lines_.upload(axesCross(viewpoint.camera, scale)), corner);
+  lines_.draw(lines_.upload(axesCross(viewpoint.camera, drawn_->theme, scale)), corner);
   gl_->Disable(GL_BLEND);
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
@@ -269,7 +268,7 @@ void SceneView::update(const SceneViewContent& content) {
   if (painter_->update(content)) is_up_to_date_ = false;
 }
 
-void SceneView::drawFrom(const Camera& camera, const SceneTheme& theme) {
+void SceneView::drawFrom(const Camera& camera, const Palette& theme) {
   const Viewpoint viewpoint{camera, framebuffer_->width(), framebuffer_->height(),
                             theme.background};
   if (is_up_to_date_ && viewpoint == viewpoint_) return;

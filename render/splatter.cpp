@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "broadmark/render/camera.h"
-#include "colour.h"
+#include "broadmark/render/colour.h"
 #include "look.h"
 
 namespace broadmark {

@@ -29,12 +29,10 @@ void UpdateCounts::visit(const CounterVisitor& visitor) const {
 void Tree::draw(DebugDraw& draw, const Aabb& world) const { drawNode(draw, root_, world, 0); }
 
 void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int level) const {
-  constexpr Rgb kCellColour = 0x4FA3D1;
-  constexpr Rgb kPlaneColour = 0xFFA500;
   if (node.own > 0) {
-    draw.cell(region, kCellColour, level, node.own);
+    draw.cell(region, level, node.own);
   } else {
-    draw.box(region, kCellColour, level);
+    draw.box(region, StructureRole::cell, level);
   }
   if (node.isLeaf()) return;
   Aabb left = region;
@@ -44,7 +42,7 @@ void Tree::drawNode(DebugDraw& draw, const Node& node, const Aabb& region, int l
   left.max[node.axis] = right.min[node.axis] = plane;
   Aabb plane_box = left;
   plane_box.min[node.axis] = plane;
-  draw.box(plane_box, kPlaneColour, level);
+  draw.box(plane_box, StructureRole::split, level);
   drawNode(draw, node.left(), left, level + 1);
   drawNode(draw, node.right(), right, level + 1);
 }

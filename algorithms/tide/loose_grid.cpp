@@ -286,7 +286,6 @@ void LooseGrid::boxes(std::vector<Aabb>& into) const {
 
 /// The cells that bodies are in, by level.
 void LooseGrid::draw(DebugDraw& draw) const {
-  constexpr Rgb kCellColour = 0x3FA7A0;
   std::map<std::array<std::int32_t, 4>, std::uint32_t> populations;
   for (const Body& body : bodies_) {
     if (isEmpty(body.box)) continue;
@@ -298,7 +297,7 @@ void LooseGrid::draw(DebugDraw& draw) const {
   }
   for (const auto& [cell, population] : populations) {
     const Aabb box = cells_.boxOf(std::bit_cast<Steps>(cell), static_cast<std::uint32_t>(cell[3]));
-    draw.cell(box, kCellColour, cell[3], population);
+    draw.cell(box, cell[3], population);
   }
 }
 

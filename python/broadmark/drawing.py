@@ -1,14 +1,15 @@
 """Pictures that are the same bytes for the same input, and how algorithms look in them.
 
-The paper's algorithms keep the paper's style, others get one of their own. No display is needed, and
-nothing outside is changed: figures are made without pyplot, with settings that hold only meanwhile.
+The colour says the family, the marker the algorithm; the paper's algorithms keep the paper's markers.
+No display is needed, and nothing outside is changed: figures are made without pyplot, with settings
+that hold only meanwhile.
 """
 
 from __future__ import annotations
 
 import os
 import pathlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,6 +20,7 @@ from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullForma
 
 from broadmark.errors import InputError
 from broadmark.files import whole_file
+from broadmark.palette import LIGHT, curves_of, light
 from broadmark.paper.algorithms import BY_ID
 
 #: Formats, with what keeps dates and versions out of the files.
@@ -41,7 +43,7 @@ SETTINGS = {
     "axes.spines.right": False,
     "axes.axisbelow": True,
     "axes.grid": True,
-    "grid.color": "#e4e4e4",
+    "grid.color": light("line"),
     "grid.linewidth": 0.5,
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
@@ -81,7 +83,7 @@ class Style:
 
     def of_line(self) -> dict[str, Any]:
         """For Axes.plot."""
-        face = self.colour if self.filled else "white"
+        face = self.colour if self.filled else light("page")
         return {"color": self.colour, "linestyle": self.line, **self._of_marker(face)}
 
     def of_points(self) -> dict[str, Any]:
@@ -96,33 +98,29 @@ class Style:
             "markeredgewidth": 0.9,
         }
 
-    def darker(self) -> Style:
+    def lighter(self) -> Style:
         """For a parallel variant beside its sequential twin of the same style."""
-        return replace(self, colour=to_hex([0.55 * part for part in to_rgb(self.colour)]))
+        return replace(self, colour=to_hex([0.4 + 0.6 * part for part in to_rgb(self.colour)]))
 
 
-#: Colours and markers of algorithms that are not in the paper.
-OWN_COLOURS = ["#a0522d", "#e377c2", "#17a2a8"]
+#: Of algorithms that are not in the paper.
 OWN_MARKERS = ["P", "X", "*", "h", "<", ">", "8", "H"]
 
 
-def styles(algorithms: Iterable[str]) -> dict[str, Style]:
-    """A style for each of these ids. A variant on several threads (-mt) looks like that on one, as
-    in the paper."""
-    own = sorted({_stem(one) for one in algorithms if one not in BY_ID})
+def styles(families: Mapping[str, str]) -> dict[str, Style]:
+    """A style for each of these ids of algorithms, of the family beside it. A variant on several
+    threads (-mt) looks like that on one, as in the paper."""
+    curves = curves_of(families.values())
+    own = sorted({_stem(one) for one in families if one not in BY_ID})
     found = {}
-    for id_ in algorithms:
+    for id_, family in families.items():
+        colour = LIGHT["curve"][curves[family]]
         if id_ in BY_ID:
             paper = BY_ID[id_]
-            found[id_] = Style(paper.colour, paper.marker, paper.filled, paper.line)
+            found[id_] = Style(colour, paper.marker, paper.filled, paper.line)
         else:
-            number = own.index(_stem(id_))
-            found[id_] = Style(
-                OWN_COLOURS[number % len(OWN_COLOURS)],
-                OWN_MARKERS[number % len(OWN_MARKERS)],
-                True,
-                "--" if id_.startswith("gpu-") else "-",
-            )
+            marker = OWN_MARKERS[own.index(_stem(id_)) % len(OWN_MARKERS)]
+            found[id_] = Style(colour, marker, True, "--" if id_.startswith("gpu-") else "-")
     return found
 
 

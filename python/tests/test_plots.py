@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pathlib
+import re
 import subprocess
 import sys
 from typing import Any
@@ -15,6 +16,7 @@ from made_results import case, paper_cases, write
 
 import broadmark
 from broadmark.drawing import SETTINGS, styles
+from broadmark.palette import CURVES, curves_of
 from broadmark.paper.algorithms import BY_ID, PARALLEL, SCENES, SINGLE
 from broadmark.paper.figures import Look, curves, fastest_single, figure
 from broadmark.paper.times import times_by_machine
@@ -104,14 +106,25 @@ def test_range_follows_the_results_unless_full(tmp_path: pathlib.Path) -> None:
 
 def test_own_algorithms_have_styles_of_their_own(tmp_path: pathlib.Path) -> None:
     own = ["kd-mt", "grid2d-sap", "mine", "yours-mt", "gpu-grid"]
-    found = styles([*BY_ID, *own])
-    papers = {(found[id_].colour, found[id_].marker) for id_ in BY_ID}
+    found = styles(dict.fromkeys(own, "Any"))
+    papers = {(one.colour, one.marker) for one in BY_ID.values()}
     others = {(found[id_].colour, found[id_].marker) for id_ in own}
     assert len(others) == len(own) and not papers & others
     cases = [case("Brownian", 1000, id_, 0.1) for id_ in own]
     single, parallel = drawn(write(tmp_path / "a.json", cases), Look()).axes
     assert labels(single) == ["grid2d-sap", "mine"]
     assert set(labels(parallel)) >= {"kd-mt", "yours-mt", "gpu-grid"}
+
+
+def test_families_have_their_curve_colours_and_unknown_ones_what_is_left() -> None:
+    rows = re.findall(r"^   \S+ +(\S+(?: \S+)*)", call("list", "algorithms"), re.MULTILINE)
+    assert set(rows) - {"self-check"} <= CURVES.keys()
+    assert curves_of(["new", "KD", "Grid SAP", "Embree"]) == {
+        "Grid SAP": CURVES["Grid SAP"],
+        "KD": CURVES["KD"],
+        "Embree": CURVES["KD"],
+        "new": 2,
+    }
 
 
 def test_the_fastest_is_that_at_the_largest_size(tmp_path: pathlib.Path) -> None:

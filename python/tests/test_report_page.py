@@ -14,6 +14,8 @@ import pytest
 from browser import Page, start_browser  # skips these tests without selenium
 from report_results import case, standard_cases, write_results
 
+from broadmark.palette import CURVES, DARK, LIGHT
+
 from selenium.webdriver.common.keys import Keys
 
 
@@ -278,6 +280,18 @@ def test_dark_by_the_system_and_by_the_button(opened: Page, standard: pathlib.Pa
     assert opened.js(colour) == dark
     opened.find("#theme").click()
     assert opened.js(colour) == light
+
+
+def test_curves_have_the_colours_of_their_families(opened: Page, standard: pathlib.Path) -> None:
+    for dark, colours in ((False, LIGHT), (True, DARK)):
+        opened.show(standard, dark=dark)
+        opened.section("scaling")
+        opened.wait("return document.querySelector('#scaling .series')")
+        symbol = opened.find('#scaling .series[data-variant="kd"] .symbol')
+        part = [int(colours["curve"][CURVES["KD"]][i : i + 2], 16) for i in (1, 3, 5)]
+        assert opened.js("return getComputedStyle(arguments[0]).stroke", symbol) == (
+            "rgb({}, {}, {})".format(*part)
+        )
 
 
 def test_it_prints_on_a4(opened: Page, standard: pathlib.Path) -> None:

@@ -170,11 +170,11 @@ TEST_P(Dbvt, DrawsBothTrees) {
     for (std::size_t i = 0; i < kMoving; ++i) boxes[i] = inputs::uniform(100, frame, 1)[i];
     step(dbvt, boxes);
   }
-  std::map<Rgb, std::size_t> nodes;
+  std::map<StructureRole, std::size_t> nodes;
   int roots = 0;
   const RecordedDrawing drawing = drawingOf(dbvt.broadPhase());
   for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
-    ++nodes[drawn.colour];
+    ++nodes[drawn.role];
     if (drawn.level == 0) ++roots;
   }
   EXPECT_EQ(roots, 2);

@@ -81,7 +81,9 @@ class Witness final : public BroadPhase {
     return {{&began_run_, 1}, {&ended_run_, 1}};
   }
   [[nodiscard]] TransferTimes transfers() const override { return {1, 2}; }
-  void drawStructure(DebugDraw& draw) const override { draw.box(boxes_.front(), 0, 0); }
+  void drawStructure(DebugDraw& draw) const override {
+    draw.box(boxes_.front(), StructureRole::cell, 0);
+  }
   void visitCounters(const CounterVisitor& visit) const override {
     visit("changed", changed_.size());
     visit("bodies", boxes_.size());

@@ -4,8 +4,9 @@
 
 #include <array>
 #include <cmath>
+#include <string_view>
+#include <vector>
 
-#include "inspector/ui/curve_colours.h"
 #include "inspector/ui/ui.h"
 #include "support/colour_vision.h"
 
@@ -44,7 +45,13 @@ TEST_P(ThemeTest, EveryTextCanBeReadOnEveryGround) {
                                      {"accent", ui.theme.accent},
                                      {"good", ui.theme.good},
                                      {"bad", ui.theme.bad},
-                                     {"warning", ui.theme.warning}}) {
+                                     {"warning", ui.theme.warning},
+                                     {"missed", ui.theme.missed},
+                                     {"false", ui.theme.false_pair},
+                                     {"invalid", ui.theme.invalid},
+                                     {"allowed extra", ui.theme.allowed_extra},
+                                     {"first only", ui.theme.first_only},
+                                     {"second only", ui.theme.second_only}}) {
       EXPECT_GE(contrastOf(text, styleColour(ground)), kReadable)
           << name << " on " << ImGui::GetStyleColorName(ground);
     }
@@ -56,7 +63,7 @@ TEST_P(ThemeTest, TextOfSpecialGroundsCanBeRead) {
   for (const Rgb shown : {text, ui.theme.faint, ui.theme.good, ui.theme.bad, ui.theme.warning}) {
     EXPECT_GE(contrastOf(shown, ui.theme.background), kReadable) << "over the view";
   }
-  EXPECT_GE(contrastOf(0xFFFFFF, ui.theme.fill), kReadable) << "what is switched on";
+  EXPECT_GE(contrastOf(ui.theme.fill_text, ui.theme.fill), kReadable) << "what is switched on";
   for (const ImGuiCol_ pressed : {ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}) {
     EXPECT_GE(contrastOf(text, styleColour(pressed)), kReadable);
   }
@@ -66,18 +73,29 @@ TEST_P(ThemeTest, TextOfSpecialGroundsCanBeRead) {
 }
 
 TEST_P(ThemeTest, CurvesAreToldApartByColourBlindEyesAndReadAsNames) {
-  for (int a = 1; a <= 8; ++a) {
-    const Rgb colour = curveColour(a, GetParam());
+  const auto& curves = ui.theme.curve;
+  for (std::size_t a = 0; a < curves.size(); ++a) {
     for (const ImGuiCol_ ground : {ImGuiCol_WindowBg, ImGuiCol_Header, ImGuiCol_HeaderHovered}) {
-      EXPECT_GE(contrastOf(colour, styleColour(ground)), kReadable) << "curve " << a;
+      EXPECT_GE(contrastOf(curves[a], styleColour(ground)), kReadable) << "curve " << a;
     }
-    for (int b = 1; b < a; ++b) {
+    for (std::size_t b = 0; b < a; ++b) {
       for (const Eye& eye : kEyes) {
-        EXPECT_GT(differenceOf(colour, curveColour(b, GetParam()), eye), 15)
+        EXPECT_GT(differenceOf(curves[a], curves[b], eye), 15)
             << a << " and " << b << ", " << eye.name;
       }
     }
   }
+}
+
+TEST_P(ThemeTest, AFamilyHasItsColourAndTheOthersWhatIsLeft) {
+  const auto& curves = ui.theme.curve;
+  const auto [kd, place] = kFamilyCurves[2];
+  const std::vector<std::string_view> families = {kd, "unheard of", kd, kFamilyCurves[0].first};
+  const std::vector<Rgb> colours = curveColours(families, ui.theme);
+  EXPECT_EQ(colours, (std::vector<Rgb>{curves[place], curves[2], curves[3], curves[0]}));
+  const std::vector<Rgb> many =
+      curveColours(std::vector<std::string_view>(2 * curves.size()), ui.theme);
+  for (std::size_t i = 0; i < many.size(); ++i) EXPECT_EQ(many[i], curves[i % curves.size()]);
 }
 
 INSTANTIATE_TEST_SUITE_P(DarkAndLight, ThemeTest, testing::Bool());

@@ -8,8 +8,8 @@
 #include <numeric>
 #include <set>
 
+#include "broadmark/render/colour.h"
 #include "broadmark/render/overlays.h"
-#include "colour.h"
 #include "support/colour_vision.h"
 
 namespace broadmark::tests {
@@ -279,7 +279,7 @@ TEST(Colouring, ClassesAreToldApartByColourBlindEyes) {
     for (const ColourMode& mode : colourModes()) {
       std::vector<LegendEntry> entries = coloured(mode.id, input).legend;
       EXPECT_GT(entries.size(), 1U) << mode.id;
-      entries.push_back({"selected", (dark ? kDarkScene : kLightScene).selection});
+      entries.push_back({"selected", paletteOf(dark).selected});
       for (std::size_t a = 0; a < entries.size(); ++a) {
         for (std::size_t b = 0; b < a; ++b) {
           for (const Eye& eye : kEyes) {
@@ -317,12 +317,13 @@ TEST(PairLines, GoFromMiddleToMiddle) {
 TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
   RecordedDrawing drawing;
   EXPECT_EQ(deepestLevel(drawing), 0);
-  drawing.box(boxOf(0, 100), 1, 0);
-  drawing.box(boxOf(0, 10), 2, 1);
-  drawing.box(boxOf(50, 10), 3, 1);
-  drawing.box(boxOf(50, 5), 4, 2);
-  drawing.line({0, 0, 0}, {5, 5, 5}, 5);
-  drawing.line({90, 90, 90}, {50, 50, 50}, 6);
+  using enum StructureRole;
+  drawing.box(boxOf(0, 100), cell, 0);
+  drawing.box(boxOf(0, 10), cell_part, 1);
+  drawing.box(boxOf(50, 10), moving_node, 1);
+  drawing.box(boxOf(50, 5), resting_node, 2);
+  drawing.line({0, 0, 0}, {5, 5, 5}, split);
+  drawing.line({90, 90, 90}, {50, 50, 50}, best_split);
   EXPECT_EQ(deepestLevel(drawing), 2);
 
   const auto shown = [&](const StructureLook& filter) {
@@ -332,15 +333,17 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
     for (const SceneLine& line : overlay.lines) colours.push_back(line.colour);
     return colours;
   };
-  EXPECT_THAT(shown({}), ElementsAre(1, 2, 3, 4, 5, 6));
+  const Palette& c = kLightPalette;
+  EXPECT_THAT(shown({}), ElementsAre(c.cell, c.cell_part, c.moving_node, c.resting_node, c.split,
+                                     c.best_split));
   StructureLook filter;
   filter.first_level = filter.last_level = 1;
-  EXPECT_THAT(shown(filter), ElementsAre(2, 3, 5, 6));
+  EXPECT_THAT(shown(filter), ElementsAre(c.cell_part, c.moving_node, c.split, c.best_split));
   filter.near = boxOf(52, 1);
-  EXPECT_THAT(shown(filter), ElementsAre(3, 6));
+  EXPECT_THAT(shown(filter), ElementsAre(c.moving_node, c.best_split));
   filter = {};
   filter.most = 1;
-  EXPECT_THAT(shown(filter), ElementsAre(1, 5));
+  EXPECT_THAT(shown(filter), ElementsAre(c.cell, c.split));
   EXPECT_EQ(structureOverlay(drawing, filter).left_out, 4U);
 }
 
@@ -348,7 +351,7 @@ TEST(StructureOverlay, IsFilteredByLevelAndPlace) {
 RecordedDrawing cellsOf(const std::vector<std::uint32_t>& populations) {
   RecordedDrawing drawing;
   for (std::size_t i = 0; i < populations.size(); ++i) {
-    drawing.cell(boxOf(static_cast<float>(i), 1), 0x123456, 0, populations[i]);
+    drawing.cell(boxOf(static_cast<float>(i), 1), 0, populations[i]);
   }
   return drawing;
 }
@@ -364,15 +367,15 @@ std::vector<std::string> texts(const std::vector<LegendEntry>& legend) {
 TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
   RecordedDrawing drawing = cellsOf({3, 1, 64, 1, 8});
   EXPECT_TRUE(tellsPopulations(drawing));
-  drawing.box(boxOf(0, 100), 0xABCDEF, 0);
+  drawing.box(boxOf(0, 100), StructureRole::split, 0);
   const Overlay plain = structureOverlay(drawing, {});
   EXPECT_TRUE(plain.legend.empty());
-  EXPECT_EQ(plain.boxes[0].colour, 0x123456U);
+  EXPECT_EQ(plain.boxes[0].colour, kLightPalette.cell);
   const Overlay overlay = structureOverlay(drawing, {.near = {}, .by_population = true});
   EXPECT_THAT(texts(overlay.legend), ElementsAre("1: 2", "2 to 3: 1", "4 to 7: 0", "8 to 15: 1",
                                                  "16 to 31: 0", "32 to 64: 1"));
   ASSERT_EQ(overlay.boxes.size(), 6U);
-  EXPECT_EQ(overlay.boxes[0].colour, 0xABCDEFU) << "it does not tell, and keeps its own";
+  EXPECT_EQ(overlay.boxes[0].colour, kLightPalette.split) << "it does not tell, and keeps its own";
   EXPECT_EQ(overlay.boxes[1].colour, overlay.legend[0].swatch);
   EXPECT_EQ(overlay.boxes[5].colour, overlay.legend[5].swatch);
   EXPECT_EQ(overlay.boxes[5].box, boxOf(2, 1));
@@ -382,7 +385,7 @@ TEST(StructureOverlay, ColoursCellsByPopulationTheFullestLast) {
   EXPECT_EQ(few.boxes[0].box, boxOf(4, 1));
   EXPECT_FALSE(tellsPopulations(RecordedDrawing()));
   RecordedDrawing untold;
-  untold.box(boxOf(0, 1), 1, 0);
+  untold.box(boxOf(0, 1), StructureRole::cell, 0);
   EXPECT_FALSE(tellsPopulations(untold));
   EXPECT_TRUE(structureOverlay(untold, {.near = {}, .by_population = true}).legend.empty());
 }
@@ -406,7 +409,7 @@ TEST(StructureOverlay, StepsOfPopulationAreToldApartByAllEyesAndFromTheBackgroun
         structureOverlay(drawing, {.near = {}, .by_population = true, .dark = dark}).legend;
     ASSERT_EQ(legend.size(), 6U);
     for (std::size_t a = 0; a < legend.size(); ++a) {
-      EXPECT_GT(contrastOf(legend[a].swatch, (dark ? kDarkScene : kLightScene).background), 1.8);
+      EXPECT_GT(contrastOf(legend[a].swatch, paletteOf(dark).background), 1.8);
       for (std::size_t b = 0; b < a; ++b) {
         for (const Eye& eye : kEyes) {
           EXPECT_GT(differenceOf(legend[a].swatch, legend[b].swatch, eye), 9.9)

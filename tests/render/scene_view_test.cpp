@@ -137,7 +137,7 @@ TEST_P(SceneViewTest, DrawsTheGoldenPictures) {
   };
   view->draw(content, wholeWorld());
   EXPECT_TRUE(looksLikeGolden(view->read(), golden("scene-light.png")));
-  content.theme = kDarkScene;
+  content.theme = kDarkPalette;
   view->draw(content, wholeWorld());
   EXPECT_TRUE(looksLikeGolden(view->read(), golden("scene-dark.png")));
 }
@@ -319,7 +319,7 @@ TEST_P(SceneViewTest, BothTechniquesGiveTheSamePicture) {
     for (const Direction direction : {Direction::figure, Direction::top, Direction::bottom}) {
       SceneViewContent content = contentOf(bodies);
       content.bodies_revision = static_cast<std::uint64_t>(count);
-      content.theme = direction == Direction::top ? kDarkScene : kLightScene;
+      content.theme = direction == Direction::top ? kDarkPalette : kLightPalette;
       content.lines = lines;
       content.lines_revision = 1;
       by_gl->draw(content, wholeWorld(direction));

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
+#include "broadmark/render/colour.h"
 
 namespace broadmark::tests {
 

@@ -75,12 +75,12 @@ class FatBoxes final : public BoxBroadPhase {
   }
 
   void drawStructure(DebugDraw& draw) const override {
-    constexpr Rgb kResting = 0x4f81bd;
-    constexpr Rgb kMoved = 0xe0a030;
     for (std::size_t body = 0; body < fat_.size(); ++body) {
-      draw.box(fat_[body], has_moved_[body] != 0 ? kMoved : kResting, 0);
+      draw.box(fat_[body],
+               has_moved_[body] != 0 ? StructureRole::moving_node : StructureRole::resting_node, 0);
     }
-    for (const Pair pair : candidates_) draw.line(centre(pair.a), centre(pair.b), kResting);
+    for (const Pair pair : candidates_)
+      draw.line(centre(pair.a), centre(pair.b), StructureRole::resting_node);
   }
 
  private:

@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "broadmark/reference_pairs.h"
 #include "broadmark/plugin.h"
+#include "broadmark/reference_pairs.h"
 
 namespace broadmark::unruly {
 namespace {
@@ -88,7 +88,7 @@ class Unruly final : public BoxBroadPhase {
 
   void drawStructure(DebugDraw& draw) const override {
     misbehaveIn("draw");
-    for (const Aabb& box : boxes()) draw.box(box, 0x4f81bd, 0);
+    for (const Aabb& box : boxes()) draw.box(box, StructureRole::cell, 0);
   }
 
  private:

@@ -24,7 +24,6 @@ constexpr float kBetweenDabs = 12;
 
 constexpr std::size_t kMostGhosts = 1000;
 constexpr int kMostDabsAtOnce = 8;  // in a picture, between two places of the mouse
-constexpr Rgb kHot = 0xF2B53C;
 
 /// A box that stands for many bodies.
 scenes::AuthoredBody bodyAround(const Aabb& box) {
@@ -38,9 +37,9 @@ scenes::AuthoredBody bodyAround(const Aabb& box) {
   return body;
 }
 
-Rgb colourOf(Handle handle, const Theme& theme) {
+Rgb colourOf(Handle handle, const Palette& theme) {
   // A plane has the colour of the axis across it.
-  return handle == Handle::all ? theme.accent : kAxisColours[static_cast<std::size_t>(handle) % 3];
+  return handle == Handle::all ? theme.accent : theme.axis[static_cast<std::size_t>(handle) % 3];
 }
 
 }  // namespace
@@ -252,7 +251,7 @@ void Hands::drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sigh
   if (points.size() < 2) return;
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const bool hot = hot_ == shape.handle;
-  const Rgb rgb = hot ? kHot : colourOf(shape.handle, ui.theme);
+  const Rgb rgb = hot ? ui.theme.handle : colourOf(shape.handle, ui.theme);
   const float width = (hot ? 4.0F : 3.0F) * ui.scale;
   const int count = static_cast<int>(points.size());
   if (shape.filled) draw.AddConvexPolyFilled(points.data(), count, colour(rgb, hot ? 0.6F : 0.35F));
@@ -275,7 +274,7 @@ void Hands::drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sigh
 
 void Hands::drawGhosts(const Ui& ui, const Sight& sight, ImVec2 corner) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const ImU32 line = colour((ui.theme.dark ? kDarkScene : kLightScene).selection);
+  const ImU32 line = colour(ui.theme.selected);
   for (const scenes::AuthoredBody& body : ghosts_) {
     const Vec3 edges = edgesOf(body.shape);
     std::array<std::optional<Pixel>, 8> seen;

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "broadmark/render/plot.h"
 #include "broadmark/render/point_plot.h"
-#include "inspector/ui/curve_colours.h"
 
 namespace broadmark {
 namespace {
@@ -18,10 +19,6 @@ constexpr std::size_t kMostCurves = 24;  // more could not be told apart
 constexpr float kPointPlace = 3;         // pixels around a point that are noted as its place
 
 using Row = OpenedResults::Row;
-
-Rgb colourOfCurve(const Ui& ui, std::size_t curve) {
-  return curveColour(static_cast<int>(curve) + 1, ui.theme.dark);
-}
 
 /// As many as are plotted; says so where these are not all.
 template <class Curve>
@@ -35,20 +32,29 @@ std::span<const Curve> firstOf(Ui& ui, const std::vector<Curve>& curves, const c
 
 }  // namespace
 
-std::optional<Rgb> CasePlots::colourOf(const Ui& ui, OpenedResults& results,
-                                       std::size_t row) const {
-  const auto colour_at = [&](const auto& curves, const auto& isOf) -> std::optional<Rgb> {
-    const auto found = std::ranges::find_if(curves, isOf);
-    if (found == curves.end()) return {};
-    return colourOfCurve(ui, static_cast<std::size_t>(found - curves.begin()));
-  };
-  if (!overBodies()) {
-    return colour_at(results.curves(phase()),
-                     [&](const OpenedResults::Curve& curve) { return curve.row == row; });
+std::vector<std::optional<Rgb>> CasePlots::rowColours(const Palette& palette,
+                                                      OpenedResults& results) const {
+  std::vector<std::vector<std::size_t>> rows_of_curves;
+  if (overBodies()) {
+    for (const ScalingCurve& curve : results.scaling(phase())) {
+      auto& rows = rows_of_curves.emplace_back();
+      std::ranges::transform(curve.points, std::back_inserter(rows), &ScalingPoint::row);
+    }
+  } else {
+    for (const OpenedResults::Curve& curve : results.curves(phase())) {
+      rows_of_curves.push_back({curve.row});
+    }
   }
-  return colour_at(results.scaling(phase()), [&](const ScalingCurve& curve) {
-    return std::ranges::find(curve.points, row, &ScalingPoint::row) != curve.points.end();
-  });
+  std::vector<std::string_view> families;
+  for (const auto& rows : rows_of_curves) {
+    families.emplace_back(results.rows()[rows.front()].result.family);
+  }
+  const std::vector<Rgb> colours = curveColours(families, palette);
+  std::vector<std::optional<Rgb>> by_row(results.rows().size());
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    for (const std::size_t row : rows_of_curves[i]) by_row[row] = colours[i];
+  }
+  return by_row;
 }
 
 void CasePlots::draw(PanelContext& context, OpenedResults& results) {
@@ -72,7 +78,7 @@ void CasePlots::drawFrames(PanelContext& context, OpenedResults& results) {
     return;
   }
   const auto curves = firstOf(context.ui, results.curves(phase()), "marked");
-  const Theme& theme = context.ui.theme;
+  const Palette& theme = context.ui.theme;
   const FootageRequest* open = context.session.playback.footage().get();
   const bool is_open = open != nullptr && open->source == FootageSource::results;
   std::vector<PlotCurve> plotted;
@@ -81,11 +87,12 @@ void CasePlots::drawFrames(PanelContext& context, OpenedResults& results) {
   const bool one_recording = std::ranges::all_of(curves, [&](const OpenedResults::Curve& curve) {
     return results.rows()[curve.row].recording == recording;
   });
+  const auto colours = rowColours(theme, results);
   std::uint32_t last = 1;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Row& row = results.rows()[curves[i].row];
     plotted.push_back({.label = one_recording ? row.algorithm : row.result.id,
-                       .colour = colourOfCurve(context.ui, i),
+                       .colour = *colours[curves[i].row],
                        .values = &curves[i].seconds,
                        .circled = nullptr});
     wrong.frames.push_back(&curves[i].mismatches);
@@ -122,12 +129,13 @@ void CasePlots::drawBodies(PanelContext& context, OpenedResults& results) const 
     return;
   }
   const auto curves = firstOf(ui, results.scaling(phase()), "curves");
+  const auto colours = rowColours(ui.theme, results);
   std::vector<PointCurve> plotted;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     PointCurve& curve = plotted.emplace_back();
     curve.label = fmt::format("{}  n^{:.2f}", curves[i].algorithm, curves[i].exponent);
     if (!curves[i].scene.empty()) curve.label += "  " + curves[i].scene;
-    curve.colour = colourOfCurve(ui, i);
+    curve.colour = *colours[curves[i].points.front().row];
     for (const ScalingPoint& point : curves[i].points) {
       curve.points.push_back(
           {.across = static_cast<double>(point.objects), .value = point.seconds});

@@ -15,8 +15,8 @@ class CasePlots {
  public:
   /// The choices, and below them the plot.
   void draw(PanelContext& context, OpenedResults& results);
-  /// The colour of the curve that a case has or belongs to.
-  std::optional<Rgb> colourOf(const Ui& ui, OpenedResults& results, std::size_t row) const;
+  /// By row: the colour of the curve that the case has or belongs to.
+  std::vector<std::optional<Rgb>> rowColours(const Palette& palette, OpenedResults& results) const;
 
  private:
   void drawChoices(Ui& ui);

@@ -138,9 +138,11 @@ class CasesPanel final : public Panel {
     sort(results);
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(results.listed().size()));
+    const auto curves = plots_.rowColours(context.ui.theme, results);
     while (clipper.Step()) {
       for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        drawRow(context, results, static_cast<std::size_t>(i));
+        const std::size_t index = results.listed()[static_cast<std::size_t>(i)];
+        drawRow(context, results, index, curves[index], i == 0);
       }
     }
     ImGui::EndTable();
@@ -169,9 +171,9 @@ class CasesPanel final : public Panel {
                  by.SortDirection == ImGuiSortDirection_Descending);
   }
 
-  void drawRow(PanelContext& context, OpenedResults& results, std::size_t place) const {
+  void drawRow(PanelContext& context, OpenedResults& results, std::size_t index,
+               std::optional<Rgb> curve, bool first) const {
     Ui& ui = context.ui;
-    const std::size_t index = results.listed()[place];
     Row& row = results.rows()[index];
     ImGui::PushID(static_cast<int>(index));
     ImGui::TableNextRow();
@@ -187,8 +189,7 @@ class CasesPanel final : public Panel {
       ImGui::TableNextColumn();
       const std::optional<Rgb> rgb = colourOf(ui, row, column->key);
       if (column == columns_.front()) {
-        const std::optional<Rgb> curve = plots_.colourOf(ui, results, index);
-        drawOpener(context, row, curve ? curve : rgb, place == 0);
+        drawOpener(context, row, curve ? curve : rgb, first);
       } else {
         rgb ? ui.coloured(*rgb, textOf(row, *column)) : ui.plain(textOf(row, *column));
         if (column->key == kStatus) ui.tooltip(row.result.reason.c_str());

@@ -55,9 +55,10 @@ class ComparePanel final : public Panel {
       return;
     }
     ui.plain(fmt::format("{} in both", counted(comparison->both, "pair")));
-    ui.coloured(ui.theme.bad, fmt::format("{} first only", comparison->first_only.size()));
+    ui.coloured(ui.theme.first_only, fmt::format("{} first only", comparison->first_only.size()));
     ImGui::SameLine();
-    ui.coloured(ui.theme.accent, fmt::format("{} second only", comparison->second_only.size()));
+    ui.coloured(ui.theme.second_only,
+                fmt::format("{} second only", comparison->second_only.size()));
     ui.tooltip("Look colours the bodies of these pairs: First and second view");
     ImGui::BeginChild("list", {0, 0}, true, ImGuiWindowFlags_NavFlattened);
     const std::size_t firsts = comparison->first_only.size();
@@ -77,7 +78,7 @@ class ComparePanel final : public Panel {
     const bool is_selected = selected.size() == 2 && selected[0] == pair.a && selected[1] == pair.b;
     ImGui::PushID(of_first ? 0 : 1);
     if (ui.selectable(pairName(pair).c_str(), is_selected, of_first ? "first only" : "second only",
-                      of_first ? ui.theme.bad : ui.theme.accent,
+                      of_first ? ui.theme.first_only : ui.theme.second_only,
                       "Selects both bodies and flies to them")) {
       context.session.selection.visit(pair);
     }

@@ -19,6 +19,10 @@
 namespace broadmark::panels::mismatches {
 namespace {
 
+/// By WrongPair::Kind.
+constexpr Rgb Palette::*kColours[] = {&Palette::missed, &Palette::false_pair, &Palette::invalid,
+                                      &Palette::allowed_extra};
+
 /// Height of the lists, in rows.
 constexpr float kListRows = 4.6F;
 
@@ -147,7 +151,8 @@ class MismatchesPanel final : public Panel {
           fmt::format("{} {}", kWrongPairs.nameOf(one.kind), pairName(one.pair));
       const std::vector<std::uint32_t> bodies = {one.pair.a, one.pair.b};
       const bool allowed = one.kind == WrongPair::Kind::allowed_extra;
-      ImGui::PushStyleColor(ImGuiCol_Text, colour(allowed ? ui.theme.faint : ui.theme.bad));
+      ImGui::PushStyleColor(ImGuiCol_Text,
+                            colour(ui.theme.*kColours[static_cast<std::size_t>(one.kind)]));
       const bool clicked =
           ImGui::Selectable(name.c_str(), context.session.selection.bodies() == bodies);
       ImGui::PopStyleColor();

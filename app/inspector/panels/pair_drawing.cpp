@@ -8,7 +8,7 @@
 namespace broadmark {
 namespace {
 
-Rgb relationColour(const Theme& theme, AxisRelation::Kind kind) {
+Rgb relationColour(const Palette& theme, AxisRelation::Kind kind) {
   switch (kind) {
     case AxisRelation::Kind::overlap:
       return theme.good;
@@ -28,8 +28,6 @@ void cell(Ui& ui, Rgb rgb, const std::string& upper, const std::string& lower) {
   ui.coloured(rgb, upper);
   ui.coloured(rgb, lower);
 }
-
-Rgb textColour(const Ui& ui) { return ui.theme.dark ? 0xE4E7EB : 0x1C232B; }
 
 void plainRect(ImVec2 min, ImVec2 max, Rgb rgb, float alpha, float rounding = 0) {
   ImGui::GetWindowDrawList()->AddRectFilled(min, max, colour(rgb, alpha), rounding);
@@ -66,9 +64,9 @@ void drawPairTable(Ui& ui, const BoxPair& pair) {
       if (axis == deciding) ui.tooltip("The axis that decides");
       const std::string kind(kRelations.nameOf(relation.kind));
       const std::string extent = exactly(std::abs(static_cast<float>(relation.gap)));
-      cell(ui, textColour(ui), exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
+      cell(ui, ui.theme.text, exactly(pair.a.min[axis]), exactly(pair.a.max[axis]));
       if (narrow) ui.coloured(rgb, kind);
-      cell(ui, textColour(ui), exactly(pair.b.min[axis]), exactly(pair.b.max[axis]));
+      cell(ui, ui.theme.text, exactly(pair.b.min[axis]), exactly(pair.b.max[axis]));
       if (narrow) ui.coloured(rgb, extent);
       if (!narrow) cell(ui, rgb, kind, extent);
     }
@@ -190,7 +188,7 @@ std::optional<std::uint32_t> drawPairHistory(Ui& ui, const PairTrack& track) {
   const float offset = (ImGui::GetIO().MousePos.x - origin.x - label) / step;
   const auto at =
       static_cast<std::size_t>(std::clamp(offset, 0.0F, static_cast<float>(frames - 1)));
-  plainRect({left(at), origin.y}, {right(at), origin.y + height}, textColour(ui), 0.18F);
+  plainRect({left(at), origin.y}, {right(at), origin.y + height}, ui.theme.text, 0.18F);
   const std::uint32_t frame = track.a.first + static_cast<std::uint32_t>(at);
   std::string text = fmt::format("frame {}", frame);
   for (const Track* body : {&track.a, &track.b}) {

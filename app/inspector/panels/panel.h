@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/names.h"
@@ -25,6 +26,15 @@ struct PanelContext {
   const RunProgress& progress;
   View& view;
   FileDialog& files;  ///< to ask for a file
+
+  /// Of the curves of `progress`'s lanes.
+  [[nodiscard]] std::vector<Rgb> laneColours() const {
+    std::vector<std::string_view> families;
+    for (const LaneReport& lane : progress.lanes) {
+      families.emplace_back(lane.spec.run.algorithm.family);
+    }
+    return curveColours(families, ui.theme);
+  }
 };
 
 /// One implementation per file, listed in CMakeLists.txt. Keeps what only it needs between two

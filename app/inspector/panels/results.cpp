@@ -8,7 +8,6 @@
 
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
-#include "inspector/ui/curve_colours.h"
 
 namespace broadmark::panels::results {
 namespace {
@@ -53,7 +52,8 @@ class ResultsPanel final : public Panel {
     ImGui::TableSetupScrollFreeze(1, 1);
     for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
     ImGui::TableHeadersRow();
-    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], rows[i]);
+    const std::vector<Rgb> colours = context.laneColours();
+    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], rows[i], colours[i]);
     ImGui::EndTable();
   }
 
@@ -108,13 +108,13 @@ class ResultsPanel final : public Panel {
     return row;
   }
 
-  static void drawLane(PanelContext& context, const LaneReport& lane, const Row& row) {
+  static void drawLane(PanelContext& context, const LaneReport& lane, const Row& row, Rgb curve) {
     Ui& ui = context.ui;
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
     const bool shown = context.session.lanes.shown() == lane.spec.number;
-    ImGui::PushStyleColor(ImGuiCol_Text, colour(curveColour(lane.spec.number, ui.theme.dark)));
+    ImGui::PushStyleColor(ImGuiCol_Text, colour(curve));
     if (ImGui::Selectable(row.name.c_str(), shown, ImGuiSelectableFlags_SpanAllColumns)) {
       context.session.lanes.show(lane.spec.number);
     }

@@ -14,19 +14,11 @@
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
-#include "inspector/ui/curve_colours.h"
 #include "inspector/ui/histogram.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {
 namespace {
-
-Rgb rgbOf(ImGuiCol_ which) {
-  const ImU32 packed = ImGui::GetColorU32(which);
-  const auto channel = [&](int shift) { return (packed >> shift) & 0xFFU; };
-  return channel(IM_COL32_R_SHIFT) << 16 | channel(IM_COL32_G_SHIFT) << 8 |
-         channel(IM_COL32_B_SHIFT);
-}
 
 constexpr float kPlotShare = 0.56F;  // of the width, beside a span's statistics
 constexpr float kRoomForBoth = 600;  // units: narrower, it is either the one or the other
@@ -114,7 +106,7 @@ class TimelinePanel final : public Panel {
     ImGui::SameLine();
     if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
     summarise(context, {first, last});
-    drawStatistics(ui, context.progress.lanes);
+    drawStatistics(context);
     const auto shown = std::ranges::find(context.progress.lanes, context.session.lanes.shown(),
                                          [](const LaneReport& lane) { return lane.spec.number; });
     const std::size_t which =
@@ -138,7 +130,10 @@ class TimelinePanel final : public Panel {
     }
   }
 
-  void drawStatistics(Ui& ui, const std::vector<LaneReport>& lanes) const {
+  void drawStatistics(PanelContext& context) const {
+    Ui& ui = context.ui;
+    const std::vector<LaneReport>& lanes = context.progress.lanes;
+    const std::vector<Rgb> colours = context.laneColours();
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
     const float height =
@@ -157,7 +152,7 @@ class TimelinePanel final : public Panel {
       const SpanStatistics& of = statistics_[i];
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ui.coloured(curveColour(lanes[i].spec.number, ui.theme.dark), caseName(lanes[i].spec.run));
+      ui.coloured(colours[i], caseName(lanes[i].spec.run));
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
         ImGui::TableNextColumn();
         ui.plain(of.values.empty() ? "–" : valueText(of.quantile(share)));
@@ -184,22 +179,22 @@ class TimelinePanel final : public Panel {
 
   PlotResult drawCurves(PanelContext& context) const {
     const RunProgress& progress = context.progress;
-    const Theme& theme = context.ui.theme;
+    const Palette& theme = context.ui.theme;
     const Timeline& timeline = context.session.timeline;
     std::vector<PlotCurve> curves;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
+    const std::vector<Rgb> colours = context.laneColours();
     for (const LaneReport& lane : progress.lanes) {
       curves.push_back({.label = caseName(lane.spec.run),
-                        .colour = curveColour(lane.spec.number, theme.dark),
+                        .colour = colours[curves.size()],
                         .values = &valuesOf(lane),
                         .circled = &lane.curves.disturbed,
                         .hidden = hidden_.contains(lane.spec.number)});
       wrong.frames.push_back(&lane.curves.mismatches);
       disturbed.frames.push_back(&lane.curves.disturbed);
     }
-    const PlotCurve pairs{
-        .label = "pairs", .colour = rgbOf(ImGuiCol_Text), .values = &progress.pairs};
+    const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress.pairs};
     const PlotCurve bodies{
         .label = "bodies", .colour = theme.faint, .values = &progress.population};
     std::optional<std::array<double, 2>> span;

@@ -1,20 +1,14 @@
 // Colours and sizes of all widgets.
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <tuple>
+
 #include "inspector/ui/ui.h"
 
 namespace broadmark {
 namespace {
-
-/// The colours that differ between light and dark.
-struct Palette {
-  Rgb window, panel, input, hover, border, text, faint, accent, header;
-  Rgb pressed;  ///< behind text
-  Rgb fill;     ///< behind white text
-};
-constexpr Palette kDark = {0x17191D, 0x1E2126, 0x2A2E35, 0x363C46, 0x343941, 0xE4E7EB,
-                           0xA3ACB8, 0x7FB2FF, 0x2C313A, 0x29549B, 0x2F6BD0};
-constexpr Palette kLight = {0xE9ECF0, 0xF7F8FA, 0xFFFFFF, 0xDCE4EE, 0xCBD2DA, 0x1C232B,
-                            0x565F6A, 0x1558C0, 0xDDE3EA, 0xA9C8FA, 0x1F6FEB};
 
 /// What each of Dear ImGui's colours is.
 struct ColourUse {
@@ -75,24 +69,44 @@ void setColours(const Palette& palette) {
   for (const ColourUse& use : kColourUses) {
     colours[use.which] = colourVector(palette.*use.source, use.alpha);
   }
-  colours[ImGuiCol_ModalWindowDimBg] = colourVector(0x000000, 0.45F);
+  colours[ImGuiCol_ModalWindowDimBg] = {0, 0, 0, 0.45F};
 }
 
 }  // namespace
 
 ImVec4 colourVector(Rgb rgb, float alpha) {
-  const auto component = [&](int shift) {
-    return static_cast<float>((rgb >> shift) & 0xFFU) / 255.0F;
-  };
-  return {component(16), component(8), component(0), alpha};
+  const std::array all = components(rgb);
+  return {all[0], all[1], all[2], alpha};
 }
 
 ImU32 colour(Rgb rgb, float alpha) {
   return ImGui::ColorConvertFloat4ToU32(colourVector(rgb, alpha));
 }
 
+std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette) {
+  std::vector<Rgb> colours(families.size());
+  std::vector<std::size_t> others;
+  std::array<bool, std::tuple_size_v<decltype(Palette::curve)>> taken{};
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    const auto* const own = std::ranges::find(kFamilyCurves, families[i],
+                                              [](const auto& entry) { return entry.first; });
+    if (own == std::end(kFamilyCurves) || taken[own->second]) {
+      others.push_back(i);
+    } else {
+      taken[own->second] = true;
+      colours[i] = palette.curve[own->second];
+    }
+  }
+  for (const std::size_t i : others) {
+    if (std::ranges::count(taken, false) == 0) taken = {};  // then they repeat
+    bool* const left = std::ranges::find(taken, false);
+    *left = true;
+    colours[i] = palette.curve[static_cast<std::size_t>(left - taken.begin())];
+  }
+  return colours;
+}
+
 void applyTheme(Ui& ui, bool dark, float scale) {
-  const Palette& palette = dark ? kDark : kLight;
   ImGuiStyle style;
   style.WindowPadding = {10, 8};
   style.FramePadding = {7, 3};
@@ -114,18 +128,9 @@ void applyTheme(Ui& ui, bool dark, float scale) {
   style.WindowMenuButtonPosition = ImGuiDir_None;
   style.ScaleAllSizes(scale);
   ImGui::GetStyle() = style;
-  setColours(palette);
   ui.scale = scale;
-  ui.theme = {.dark = dark,
-              .accent = palette.accent,
-              .fill = palette.fill,
-              .good = dark ? 0x5BC77AU : 0x146B2EU,
-              .bad = dark ? 0xFF8080U : 0xB4232CU,
-              .warning = dark ? 0xF2B84BU : 0x7A5200U,
-              .first = dark ? 0x6FB4F5U : 0x1B5FA8U,
-              .second = dark ? 0xC79BEEU : 0x7D3FB0U,
-              .faint = palette.faint,
-              .background = dark ? 0x202329U : 0xF5F6F8U};
+  ui.theme = paletteOf(dark);
+  setColours(ui.theme);
 }
 
 }  // namespace broadmark

@@ -168,7 +168,7 @@ bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
   if (was_on) {
     ImGui::PushStyleColor(ImGuiCol_Button, colourVector(theme.fill));
     ImGui::PushStyleColor(ImGuiCol_ButtonHovered, colourVector(theme.fill));
-    ImGui::PushStyleColor(ImGuiCol_Text, colourVector(0xFFFFFF));
+    ImGui::PushStyleColor(ImGuiCol_Text, colourVector(theme.fill_text));
   }
   const bool pressed = button(label, tip, width);
   if (was_on) ImGui::PopStyleColor(3);

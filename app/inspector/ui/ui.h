@@ -8,12 +8,13 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
 #include "broadmark/parameters.h"
+#include "broadmark/render/palette.h"
 #include "inspector/ui/letters.h"
 
 namespace broadmark {
@@ -24,20 +25,6 @@ struct WidgetPlace {
   ImVec2 max;
   bool enabled = true;
   bool visible = true;  ///< not scrolled or clipped away
-};
-
-/// Colours that stand for something.
-struct Theme {
-  bool dark = true;
-  Rgb accent = 0;
-  Rgb fill = 0;  ///< behind the white text of what is switched on
-  Rgb good = 0;
-  Rgb bad = 0;
-  Rgb warning = 0;
-  Rgb first = 0;       ///< of two bodies
-  Rgb second = 0;      ///< likewise
-  Rgb faint = 0;       ///< text of less importance
-  Rgb background = 0;  ///< of the view
 };
 
 ImVec4 colourVector(Rgb rgb, float alpha = 1);
@@ -148,7 +135,7 @@ class Ui {
   std::function<void(const std::string&)> on_correction;
 
   Letters letters;  ///< of all texts that pass through here
-  Theme theme;
+  Palette theme = kDarkPalette;
   float scale = 1;          ///< pixels per unit
   ImFont* large = nullptr;  ///< for what is to be seen first
 
@@ -207,6 +194,10 @@ void clipped(std::size_t count, const Row& row) {
 inline constexpr float kSplitterSize = 5;  ///< units: between two parts of the window
 /// Opens a window that fills a rectangle.
 void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags = 0);
+
+/// The colours of curves in one plot, by the families of their algorithms: the first of a family
+/// has its own, the others have those that are left.
+std::vector<Rgb> curveColours(std::span<const std::string_view> families, const Palette& palette);
 
 /// Sets colours, sizes and fonts of the current Dear ImGui context, and `ui`'s theme.
 void applyTheme(Ui& ui, bool dark, float scale);

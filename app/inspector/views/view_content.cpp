@@ -10,9 +10,6 @@ namespace {
 
 constexpr std::size_t kMostXrayed = 2000;
 
-constexpr Rgb kMissed = 0xE5484D;
-constexpr Rgb kLine = 0x4C8DFF;
-
 }  // namespace
 
 Aabb ViewContent::boundsOf(std::span<const std::uint32_t> bodies) const {
@@ -36,7 +33,7 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
   picture_.shows_world = session.view.world_box;
   picture_.shows_grid = session.view.ground;
   picture_.shows_axes = session.view.axes;
-  picture_.theme = dark ? kDarkScene : kLightScene;
+  picture_.theme = paletteOf(dark);
   ++revision_;
   updateBodies();
   updateVisible();
@@ -111,7 +108,7 @@ void ViewContent::addXray() {
   for (const std::uint32_t body :
        std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
     wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
-                           .colour = picture_.theme.selection,
+                           .colour = picture_.theme.selected,
                            .width = 2.5F,
                            .behind = Behind::shown});
   }
@@ -137,7 +134,7 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
       };
       lines_.push_back({.from = middle(track.boxes[i - 1]),
                         .to = middle(track.boxes[i]),
-                        .colour = picture_.theme.selection,
+                        .colour = picture_.theme.selected,
                         .behind = Behind::faint});
     }
   }
@@ -156,11 +153,11 @@ void ViewContent::updateLines() {
                            : std::optional<std::span<const std::uint32_t>>(shown_.selection);
   if (options.pair_lines) {
     const PairRun run = snapshot.pairs;
-    add(pairLines(boxes, {&run, 1}, {.colour = kLine}, selected));
+    add(pairLines(boxes, {&run, 1}, {.colour = picture_.theme.pair}, selected));
   }
   if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
     add(pairLines(boxes, {&missed, 1},
-                  {.colour = kMissed, .width = 2.5F, .behind = Behind::shown}));
+                  {.colour = picture_.theme.missed, .width = 2.5F, .behind = Behind::shown}));
   }
   if (snapshot.structure && options.structure) {
     StructureLook look{.by_population = options.structure_population, .dark = shown_.dark};

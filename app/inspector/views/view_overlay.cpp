@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kBackdrop = 0.82F;  // opacity behind what is written
 
-Rgb verdictColour(const Theme& theme, AnswerText::Verdict verdict) {
+Rgb verdictColour(const Palette& theme, AnswerText::Verdict verdict) {
   switch (verdict) {
     case AnswerText::Verdict::right:
       return theme.good;

@@ -16,12 +16,13 @@ class RenamedBodies final : public DebugDraw {
   RenamedBodies(DebugDraw& draw, std::span<const std::uint32_t> bodies)
       : draw_(draw), bodies_(bodies) {}
 
-  void box(const Aabb& box, Rgb colour, int level) override { draw_.box(box, colour, level); }
-  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
-    draw_.line(from, to, colour);
+  void box(const Aabb& box, StructureRole role, int level) override { draw_.box(box, role, level); }
+  void line(const std::array<float, 3>& from, const std::array<float, 3>& to,
+            StructureRole role) override {
+    draw_.line(from, to, role);
   }
-  void cell(const Aabb& bounds, Rgb colour, int level, std::uint32_t population) override {
-    draw_.cell(bounds, colour, level, population);
+  void cell(const Aabb& bounds, int level, std::uint32_t population) override {
+    draw_.cell(bounds, level, population);
   }
   void tests(std::uint32_t body, std::uint32_t count) override {
     if (body < bodies_.size()) draw_.tests(bodies_[body], count);

@@ -7,6 +7,8 @@ import functools
 import pathlib
 from dataclasses import dataclass
 
+from broadmark.palette import light
+
 #: An algorithm is shown up to the first size at which a frame takes longer.
 CAP_SECONDS = 0.5
 
@@ -45,33 +47,31 @@ class Algorithm:
 
 SINGLE, PARALLEL = "single-threaded", "multi-threaded and GPU"
 
-GREEN = "#2e9e3f"  # the original's own
-BLUE = "#2166c4"  # Bullet 2
-RED = "#d62728"  # Bullet 3
-YELLOW = "#dba800"  # independent ones
-LAVENDER = "#a785dd"
-BLACK = "#000000"
+ORIGINAL = light("paper_original")
+BULLET2 = light("paper_bullet2")
+BULLET3 = light("paper_bullet3")
+INDEPENDENT = light("paper_independent")
 
 #: In the order of Table 2.
 ALGORITHMS = [
-    Algorithm("BF ST", "bf", GREEN, "o", False, SINGLE),
-    Algorithm("BF MT", "bf-simd-mt", GREEN, "o", False, PARALLEL),
-    Algorithm("SAP ST", "sap", GREEN, "^", False, SINGLE),
-    Algorithm("SAP MT", "sap-simd-mt", GREEN, "^", False, PARALLEL),
-    Algorithm("Grid BF ST", "grid-bf", GREEN, "s", False, SINGLE),
-    Algorithm("Grid BF MT", "grid-bf-mt", GREEN, "s", False, PARALLEL),
-    Algorithm("Grid SAP ST", "grid-sap", GREEN, "s", True, SINGLE),
-    Algorithm("Grid SAP MT", "grid-sap-mt", GREEN, "s", True, PARALLEL),
-    Algorithm("AxisSweep", "axis-sweep", BLUE, "^", True, SINGLE),
-    Algorithm("DBVT F", "dbvt-f", BLUE, "D", False, SINGLE),
-    Algorithm("DBVT D", "dbvt-d", BLUE, "D", True, SINGLE),
-    Algorithm("Tracy ST", "tracy", YELLOW, "v", True, SINGLE),
-    Algorithm("Tracy MT", "tracy-mt", YELLOW, "v", True, PARALLEL),
-    Algorithm("CGAL", "cgal", LAVENDER, "p", True, SINGLE),
-    Algorithm("KD", "kd", BLACK, "d", True, SINGLE),
-    Algorithm("GPU SAP", "b3-sap", RED, "^", True, PARALLEL, "--"),
-    Algorithm("GPU LBVH", "b3-lbvh", RED, "s", True, PARALLEL, "--"),
-    Algorithm("GPU Grid", "b3-grid", RED, "o", True, PARALLEL, "--"),
+    Algorithm("BF ST", "bf", ORIGINAL, "o", False, SINGLE),
+    Algorithm("BF MT", "bf-simd-mt", ORIGINAL, "o", False, PARALLEL),
+    Algorithm("SAP ST", "sap", ORIGINAL, "^", False, SINGLE),
+    Algorithm("SAP MT", "sap-simd-mt", ORIGINAL, "^", False, PARALLEL),
+    Algorithm("Grid BF ST", "grid-bf", ORIGINAL, "s", False, SINGLE),
+    Algorithm("Grid BF MT", "grid-bf-mt", ORIGINAL, "s", False, PARALLEL),
+    Algorithm("Grid SAP ST", "grid-sap", ORIGINAL, "s", True, SINGLE),
+    Algorithm("Grid SAP MT", "grid-sap-mt", ORIGINAL, "s", True, PARALLEL),
+    Algorithm("AxisSweep", "axis-sweep", BULLET2, "^", True, SINGLE),
+    Algorithm("DBVT F", "dbvt-f", BULLET2, "D", False, SINGLE),
+    Algorithm("DBVT D", "dbvt-d", BULLET2, "D", True, SINGLE),
+    Algorithm("Tracy ST", "tracy", INDEPENDENT, "v", True, SINGLE),
+    Algorithm("Tracy MT", "tracy-mt", INDEPENDENT, "v", True, PARALLEL),
+    Algorithm("CGAL", "cgal", light("paper_cgal"), "p", True, SINGLE),
+    Algorithm("KD", "kd", light("paper_kd"), "d", True, SINGLE),
+    Algorithm("GPU SAP", "b3-sap", BULLET3, "^", True, PARALLEL, "--"),
+    Algorithm("GPU LBVH", "b3-lbvh", BULLET3, "s", True, PARALLEL, "--"),
+    Algorithm("GPU Grid", "b3-grid", BULLET3, "o", True, PARALLEL, "--"),
 ]
 
 BY_NAME = {algorithm.name: algorithm for algorithm in ALGORITHMS}

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullLocator
 
 from broadmark.drawing import Style, log_scale, styles
+from broadmark.palette import light
 from broadmark.paper.algorithms import (
     BY_ID,
     CAP_SECONDS,
@@ -26,6 +27,10 @@ from broadmark.paper.algorithms import (
     table2,
 )
 from broadmark.paper.times import Place, Times
+
+PAPER_STYLES = {
+    one.id: Style(one.colour, one.marker, one.filled, one.line) for one in BY_ID.values()
+}
 
 Points = list[tuple[float, float]]  #: thousands of objects, seconds
 
@@ -108,7 +113,7 @@ def figure(times: Times, scene: Scene, look: Look) -> Figure:
     """Figure 5, 6 or 7."""
     ours = curves(times, scene.name)
     theirs = paper_curves(scene.name, look.log) if look.paper else []
-    looks = styles([*BY_ID, *times.own])
+    looks = {**PAPER_STYLES, **styles({id_: times.families[id_] for id_ in times.own})}
     result = Figure(figsize=(9.8, 4.6), layout="constrained")
     result.suptitle(f"{scene.title}: mean time of a frame")
     panels = result.subplots(1, 2, sharey=True)
@@ -122,9 +127,11 @@ def figure(times: Times, scene: Scene, look: Look) -> Figure:
         for curve in drawn:
             _draw(axes, curve, looks[curve.algorithm])
         if theirs:
-            axes.plot([], [], color="#999999", linewidth=2.2, alpha=0.5, label="faint: the paper’s")
+            axes.plot(
+                [], [], color=light("faint"), linewidth=2.2, alpha=0.5, label="faint: the paper’s"
+            )
         if any(curve.timeout for curve in drawn):
-            axes.plot([], [], "x", color="#666666", label="time limit crossed")
+            axes.plot([], [], "x", color=light("faint"), label="time limit crossed")
         axes.legend(
             loc="upper center",
             bbox_to_anchor=(0.5, -0.14),
@@ -135,7 +142,7 @@ def figure(times: Times, scene: Scene, look: Look) -> Figure:
         _set_axes(axes, ours, look)
     panels[0].set_ylabel("time per frame" if look.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
-    result.supxlabel("; ".join(notes), fontsize=6.5, color="#666666")
+    result.supxlabel("; ".join(notes), fontsize=6.5, color=light("faint"))
     return result
 
 
@@ -174,4 +181,4 @@ def _set_axes(axes: Any, ours: list[Curve], look: Look) -> None:
             axes.set_xticks(range(0, MOST_THOUSANDS + 1, 128))
         else:
             axes.xaxis.set_major_locator(MaxNLocator(8))
-    axes.axhline(CAP_SECONDS, color="#bbbbbb", linewidth=0.7, zorder=1)
+    axes.axhline(CAP_SECONDS, color=light("border"), linewidth=0.7, zorder=1)

@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from broadmark.drawing import log_scale
+from broadmark.palette import light
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import by_scene_and_size, label_rows
 
@@ -28,7 +29,7 @@ def bars(cases: Cases) -> Figure:
                 part.loc[known, f"ci95_{end}_seconds"].astype(float) * 1e3
                 for end in ("low", "high")
             )
-            axes.hlines(y[known], low.clip(lower=0), high, color="#444444", linewidth=0.8)
+            axes.hlines(y[known], low.clip(lower=0), high, color=light("text"), linewidth=0.8)
         if cases.log:
             log_scale(axes, "x")
             axes.set_xlim(milliseconds.min() / 2, milliseconds.max() * 1.5)
@@ -42,7 +43,7 @@ def bars(cases: Cases) -> Figure:
                 ha="right",
                 va="center",
                 fontsize=5.5,
-                bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+                bbox={"facecolor": light("page"), "edgecolor": "none", "pad": 0.6},
             )
         label_rows(axes, list(rows))
 

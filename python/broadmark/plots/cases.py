@@ -30,10 +30,10 @@ class Cases:
     @property
     def looks(self) -> dict[str, Style]:
         """Styles by label. Variants of one algorithm share its style."""
-        found = styles(self.table["algorithm"].unique())
+        found = styles(dict(zip(self.table["algorithm"], self.table["family"])))
         algorithms = dict(zip(self.table["label"], self.table["algorithm"]))
         return {
-            label: found[algorithm].darker() if algorithm.endswith("-mt") else found[algorithm]
+            label: found[algorithm].lighter() if algorithm.endswith("-mt") else found[algorithm]
             for label, algorithm in algorithms.items()
         }
 

@@ -9,11 +9,10 @@ from matplotlib.figure import Figure
 
 from broadmark.drawing import log_scale
 from broadmark.errors import InputError
+from broadmark.palette import LIGHT, light
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import by_scene, by_scene_and_size
 from broadmark.results import PHASES, TRANSFERS
-
-PHASE_COLOURS = ["#4477aa", "#bbbbbb", "#ddaa33", "#bb5566"]
 
 #: Points above which a scatter plot is a picture in an SVG or PDF, which would be too large.
 MOST_POINTS = 20_000
@@ -80,13 +79,13 @@ def phases(cases: Cases) -> Figure:
             means["frame"],
             [means[f"{phase}_ns"] / 1e6 for phase in PHASES],
             labels=[phase.replace("_", " ") for phase in PHASES],
-            colors=PHASE_COLOURS,
+            colors=LIGHT["phase"],
             linewidth=0,
         )
         transfers = sum(means[f"{phase}_ns"] for phase in TRANSFERS) / 1e6
         if transfers.any():
             label = f"of these {' and '.join(TRANSFERS)}"
-            axes.plot(means["frame"], transfers, color="black", linewidth=0.8, label=label)
+            axes.plot(means["frame"], transfers, color=light("text"), linewidth=0.8, label=label)
         axes.set(xlim=(means["frame"].min(), means["frame"].max()), ylim=(0, None))
         handles, names = axes.get_legend_handles_labels()
         axes.legend(handles[::-1], names[::-1], loc="center left", bbox_to_anchor=(1.01, 0.5))

@@ -9,12 +9,13 @@ from typing import Any
 import pandas as pd
 from matplotlib.figure import Figure
 
+from broadmark.palette import light
 from broadmark.plots.cases import Cases
 
 #: Draws the cases of a panel.
 Painter = Callable[[Any, pd.DataFrame], None]
 
-NOTE = {"fontsize": 6.5, "color": "#666666"}
+NOTE = {"fontsize": 6.5, "color": light("faint")}
 
 
 def by_scene_and_size(cases: Cases, paint: Painter, **about: Any) -> Figure:

@@ -9,6 +9,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
+from broadmark.palette import light
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import by_scene_and_size, label_rows
 
@@ -30,7 +31,7 @@ def violins(cases: Cases) -> Figure:
                 [values], [rows[label]], vert=False, widths=0.9, showextrema=False
             )
             body["bodies"][0].set(facecolor=looks[label].colour, alpha=0.75, linewidth=0)
-            axes.plot(np.median(values), rows[label], "|", color="black", markersize=5)
+            axes.plot(np.median(values), rows[label], "|", color=light("text"), markersize=5)
         if cases.log:
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
             axes.xaxis.set_major_formatter(FuncFormatter(lambda power, _: f"{10**power:g}"))

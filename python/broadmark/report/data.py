@@ -11,6 +11,7 @@ import shlex
 from collections.abc import Iterable
 from typing import Any
 
+from broadmark.palette import curves_of
 from broadmark.report import labels, rerun
 from broadmark.results import COLUMNS, Results
 
@@ -68,6 +69,7 @@ def page_data(results: Results) -> dict[str, Any]:
         "recordings": recordings,
         "fields": COLUMNS,
         "columns": columns,
+        "curves": curves_of(map(str, cases.get("family", []))),
         "parameters": _varying_parameters(details),
         "wrong_frames": _wrong_frames(details),
     }

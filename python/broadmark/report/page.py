@@ -17,6 +17,7 @@ from typing import Any
 
 from broadmark.errors import InputError
 from broadmark.files import whole_file
+from broadmark.palette import DARK, LIGHT, css
 from broadmark.report.data import page_data
 from broadmark.report.pictures import draw_pictures
 from broadmark.report.timelines import points_of_a_case, timeline
@@ -70,8 +71,9 @@ def write_report(
 
 
 def _page(data: dict[str, Any], timelines: str, d3: str) -> str:
-    style = (FOLDER / "report.css").read_text("utf-8")
-    dark = (FOLDER / "dark.css").read_text("utf-8")
+    style = f":root {{ color-scheme: light; {css(LIGHT)} }}\n"
+    style += (FOLDER / "report.css").read_text("utf-8")
+    dark = f":root {{ color-scheme: dark; {css(DARK)} }}"  # if the style element's media says so
     own = "\n".join((FOLDER / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
     script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
     template = string.Template((FOLDER / "page.html").read_text("utf-8"))

@@ -18,14 +18,14 @@ class RecordedDrawing final : public DebugDraw {
 
   struct Box {
     Aabb box;
-    Rgb colour = 0;
+    StructureRole role = StructureRole::cell;
     int level = 0;
     std::uint32_t population = 0;  ///< 0: not told
   };
   struct Line {
     std::array<float, 3> from{};
     std::array<float, 3> to{};
-    Rgb colour = 0;
+    StructureRole role = StructureRole::split;
   };
 
   /// Of a scene of so many bodies; what is told of others is not kept.
@@ -39,12 +39,15 @@ class RecordedDrawing final : public DebugDraw {
         left_out_(left_out),
         tests_(std::move(tests)) {}
 
-  void box(const Aabb& box, Rgb colour, int level) override { keep(boxes_, {box, colour, level}); }
-  void cell(const Aabb& box, Rgb colour, int level, std::uint32_t population) override {
-    keep(boxes_, {box, colour, level, population});
+  void box(const Aabb& box, StructureRole role, int level) override {
+    keep(boxes_, {box, role, level});
   }
-  void line(const std::array<float, 3>& from, const std::array<float, 3>& to, Rgb colour) override {
-    keep(lines_, {from, to, colour});
+  void cell(const Aabb& box, int level, std::uint32_t population) override {
+    keep(boxes_, {box, StructureRole::cell, level, population});
+  }
+  void line(const std::array<float, 3>& from, const std::array<float, 3>& to,
+            StructureRole role) override {
+    keep(lines_, {from, to, role});
   }
   void tests(std::uint32_t body, std::uint32_t count) override {
     if (body >= bodies_) return;

@@ -3,27 +3,27 @@
 
 const kSymbols = [d3.symbolCircle, d3.symbolSquare, d3.symbolTriangle, d3.symbolDiamond, d3.symbolStar,
                   d3.symbolWye, d3.symbolCross];
-const kColours = 12;
 const kDashes = ["", "6 3", "2 3", "9 3 2 3"];
 let pinned = null;  // the variant whose button in a legend is pressed
 
 const kReach = 26;  // pixels from which the pointer finds a point
 
-// Colour: family; shape: algorithm in it; solid: several threads; dashes: parameters.
+// Colour: family; shape: algorithm among those of a colour; solid: several threads; dashes: parameters.
 const styles = new Map();
 {
-  const families = distinct(cases.map((one) => one.family));
-  const algorithms = new Map(families.map((family) => [family, []]));
+  const algorithms = new Map(Object.values(data.curves).map((curve) => [curve, []]));
   const alike = new Map();
   for (const one of cases) {
     if (styles.has(one.variant)) continue;
-    const family = algorithms.get(one.family);
-    if (!family.includes(one.algorithm)) family.push(one.algorithm);
-    const key = `${one.algorithm} ${one.threads > 1}`;
+    const curve = data.curves[one.family];
+    const sharing = algorithms.get(curve);
+    if (!sharing.includes(one.algorithm)) sharing.push(one.algorithm);
+    const symbol = sharing.indexOf(one.algorithm) % kSymbols.length;
+    const key = `${curve} ${symbol} ${one.threads > 1}`;
     alike.set(key, (alike.get(key) ?? -1) + 1);
     styles.set(one.variant, {
-      colour: `var(--series-${families.indexOf(one.family) % kColours})`,
-      symbol: kSymbols[family.indexOf(one.algorithm) % kSymbols.length],
+      colour: `var(--curve-${curve})`,
+      symbol: kSymbols[symbol],
       solid: one.threads > 1,
       dash: kDashes[alike.get(key) % kDashes.length],
     });
@@ -33,7 +33,7 @@ const styles = new Map();
 function drawSymbol(node, style) {
   return node.append("path").attr("class", "symbol")
     .attr("d", d3.symbol().type(style.symbol).size(46)())
-    .style("stroke", style.colour).style("fill", style.solid ? style.colour : "var(--surface)");
+    .style("stroke", style.colour).style("fill", style.solid ? style.colour : "var(--page)");
 }
 
 // The part of a logarithmic axis that values need, rounded outward.

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
 #include "broadmark/pair.h"
+#include "broadmark/render/colour.h"
 
 namespace broadmark {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
+#include "broadmark/render/colour.h"
 #include "broadmark/render/frame_values.h"
 
 namespace broadmark {

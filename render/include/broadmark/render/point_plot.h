@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/debug_draw.h"
+#include "broadmark/render/colour.h"
 
 namespace broadmark {
 

@@ -10,32 +10,16 @@
 #include <span>
 #include <thread>
 
-#include "broadmark/debug_draw.h"
 #include "broadmark/execution.h"
 #include "broadmark/render/camera.h"
 #include "broadmark/render/gl.h"
 #include "broadmark/render/orbit_camera.h"
+#include "broadmark/render/palette.h"
 #include "broadmark/render/picking.h"
 
 namespace broadmark {
 
 class Framebuffer;
-
-/// The colours of everything but the bodies.
-struct SceneTheme {
-  Rgb background = 0;
-  Rgb floor = 0;
-  Rgb grid = 0;
-  Rgb world = 0;      ///< edges of the world
-  Rgb selection = 0;  ///< outlines and tint of selected bodies
-
-  friend bool operator==(const SceneTheme&, const SceneTheme&) = default;
-};
-inline constexpr SceneTheme kLightScene = {0xF5F6F8, 0xE9ECF0, 0xC6CED8, 0x8A97A6, 0x8800FF};
-inline constexpr SceneTheme kDarkScene = {0x1B1F24, 0x23282E, 0x363E47, 0x6B7785, 0x9955FF};
-
-/// Colours of the axes: x, y, z.
-inline constexpr Rgb kAxisColours[3] = {0xD64545, 0x3D9A50, 0x3B7DD8};
 
 /// How a line is drawn where bodies hide it.
 enum class Behind { hidden, faint, shown };
@@ -73,7 +57,7 @@ struct SceneViewContent {
   std::span<const SceneLine> lines;
   std::span<const SceneWireBox> wire_boxes;
 
-  SceneTheme theme = kLightScene;
+  Palette theme = kLightPalette;  ///< of all but the bodies and lines
   bool shows_world = true;
   bool shows_grid = true;   ///< and the floor under it
   bool shows_axes = false;  ///< a small cross in the lower left corner, see axisTips()
@@ -125,7 +109,7 @@ class SceneView {
   class Painter;
 
   void update(const SceneViewContent& content);
-  void drawFrom(const Camera& camera, const SceneTheme& theme);
+  void drawFrom(const Camera& camera, const Palette& theme);
 
   const Gl* gl_;
   std::unique_ptr<Painter> painter_;

@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
-#include "broadmark/debug_draw.h"
-
 namespace broadmark {
+
+using Rgb = std::uint32_t;  ///< 0xRRGGBB
 
 /// Red, green and blue, each 0 to 255.
 constexpr std::array<std::uint32_t, 3> channels(Rgb colour) {
