@@ -10,7 +10,6 @@
 #include <random>
 #include <set>
 #include <sstream>
-#include <thread>
 
 #include "broadmark/algorithms.h"
 #include "broadmark/names.h"
@@ -23,8 +22,6 @@
 
 namespace broadmark::tests {
 namespace {
-
-using namespace std::chrono_literals;
 
 class InspectorTest : public testing::Test {
  protected:
@@ -40,7 +37,7 @@ class InspectorTest : public testing::Test {
     // A batch that has been begun writes below the directory that is about to go.
     BackgroundBake& bake = inspector.session().bake;
     bake.cancel();
-    while (bake.running()) std::this_thread::sleep_for(1ms);
+    bake.wait();
     std::filesystem::current_path(former_directory);
   }
 
@@ -61,7 +58,7 @@ class InspectorTest : public testing::Test {
   void settle() {
     for (int i = 0; i < 400; ++i) {
       draw();
-      inspector.session().runs.settle(60s);
+      inspector.session().runs.settle(kForever);
       if (i > 2 && input.empty()) return;
     }
   }

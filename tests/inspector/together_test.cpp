@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "broadmark/algorithms.h"
@@ -17,8 +16,6 @@
 
 namespace broadmark::tests {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// Works as another algorithm does, but reports no pairs.
 class Silent final : public BroadPhase {
@@ -56,15 +53,11 @@ std::unique_ptr<Simulation> bulletScene() {
   return scene;
 }
 
-void waitFor(const BackgroundBake& bake) {
-  while (bake.running()) std::this_thread::sleep_for(1ms);
-}
-
 TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   const TemporaryDirectory directory;
   BackgroundBake alone;
   alone.start(bulletScene(), directory / "alone.aabbs");
-  waitFor(alone);
+  alone.wait();
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
   Session session(builtinAlgorithms());
@@ -91,8 +84,8 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
     last = settled(session);
     if (round > 0 && !session.bake.running() && !session.case_export.running()) break;
   }
-  waitFor(session.bake);
-  while (session.case_export.running()) std::this_thread::sleep_for(1ms);
+  session.bake.wait();
+  session.case_export.wait();
 
   EXPECT_EQ(last.lanes[0].status, Status::mismatch);
   for (const std::size_t lane : {1U, 2U}) {

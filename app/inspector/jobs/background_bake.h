@@ -40,6 +40,7 @@ class BackgroundBake {
   void start(std::unique_ptr<Simulation> simulation, std::filesystem::path path);
   /// Ends soon; finished recordings stay, others leave nothing behind.
   void cancel() { task_.cancel(); }
+  void wait() { task_.wait(); }
   [[nodiscard]] bool running() const { return task_.running(); }
   [[nodiscard]] Report report() const { return task_.report(); }
   /// Whether a batch has ended since this was last asked.

@@ -25,6 +25,7 @@ class BackgroundDuel {
   void start(const std::vector<Case>& cases, std::unique_ptr<IndexedFrames> frames,
              double most_seconds, const HostMaker& make_host);
   void cancel() { task_.cancel(); }
+  void wait() { task_.wait(); }
   [[nodiscard]] bool running() const { return task_.running(); }
   [[nodiscard]] Report report() const { return task_.report(); }
   /// Whether one has ended since this was last asked.

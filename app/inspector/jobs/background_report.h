@@ -22,6 +22,7 @@ class BackgroundReport {
   /// Begins. Throws InputError where nothing can be written, and while another one is written.
   void start(const std::filesystem::path& results, const std::filesystem::path& page);
   void cancel() { task_.cancel(); }
+  void wait() { task_.wait(); }
   [[nodiscard]] bool running() const { return task_.running(); }
   [[nodiscard]] Report report() const { return task_.report(); }
   /// Whether one has ended since this was last asked.

@@ -43,7 +43,7 @@ class BackgroundTask {
   /// Cancels what is running, and waits for it.
   ~BackgroundTask() {
     cancel();
-    if (thread_.joinable()) thread_.join();
+    wait();
   }
   BackgroundTask(const BackgroundTask&) = delete;
   BackgroundTask& operator=(const BackgroundTask&) = delete;
@@ -54,7 +54,7 @@ class BackgroundTask {
   template <class Work>
   void begin(Report first, Work work) {
     if (running()) throw InputError(name_ + ": still running: wait for its end, or cancel it");
-    if (thread_.joinable()) thread_.join();
+    wait();
     cancelled_ = false;
     ended_ = false;
     first.state = TaskState::running;
@@ -63,6 +63,10 @@ class BackgroundTask {
   }
   /// Ends it soon.
   void cancel() { cancelled_ = true; }
+  /// Returns when it has ended.
+  void wait() {
+    if (thread_.joinable()) thread_.join();
+  }
   [[nodiscard]] bool cancelled() const { return cancelled_; }
 
   [[nodiscard]] Report report() const {

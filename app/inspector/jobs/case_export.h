@@ -34,6 +34,7 @@ class CaseExport {
              std::filesystem::path file, const HostMaker& make_host = makeLocalHost);
   /// Ends it soon; nothing is written then.
   void cancel() { task_.cancel(); }
+  void wait() { task_.wait(); }
   [[nodiscard]] bool running() const { return task_.running(); }
   [[nodiscard]] Report report() const { return task_.report(); }
   /// Whether it has ended since this was last asked.
