@@ -85,7 +85,7 @@ TEST(Usage, EveryOptionOfTheReadmeIsThere) {
       EXPECT_TRUE(names.contains((*found)[1])) << text;
     }
   }
-  EXPECT_GT(options, 50);
+  EXPECT_GT(options, 20);
 }
 
 TEST(Usage, OfTheManual) {

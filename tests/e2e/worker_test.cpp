@@ -3,11 +3,9 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/pidfd.h>
 
 #include <csignal>
 
-#include "broadmark/files.h"
 #include "e2e/end_to_end.h"
 #include "engine/helpers.h"
 #include "support/places.h"
@@ -150,7 +148,7 @@ TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
   Program program(directory_, call({"deed=hang"}));
   ASSERT_TRUE(program.waitForText("hanging on purpose"));
   std::vector<FileDescriptor> workers;
-  for (const pid_t worker : program.children()) workers.emplace_back(::pidfd_open(worker, 0));
+  for (const pid_t worker : program.children()) workers.push_back(processDescriptor(worker));
   EXPECT_THAT(workers, Not(IsEmpty()));
   program.signal(SIGKILL);
   program.wait();

@@ -10,6 +10,7 @@
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
 #include "inspector/session/session.h"
+#include "support/wrapped_host.h"
 
 namespace broadmark::tests {
 namespace {
@@ -109,19 +110,21 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
 TEST_F(CaseExportTest, CanBeCancelled) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport& work = session.case_export;
-  // It is cancelled when it makes its first process, or a later one.
+  // It is cancelled in the first frame of its trials, or in a later one.
   for (const int last : {1, 2, 5}) {
     std::unique_ptr<IndexedFrames> frames;
     session.runs.withFootage(
         [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
-    int hosts = 0;
+    int steps = 0;
+    const std::function<void()> before_step = [&] {
+      if (++steps == last) work.cancel();
+    };
     work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
-               directory / "a.aabbs", [&](const Case& test_case, const CancelQuery& cancelled) {
-                 if (++hosts == last) work.cancel();
-                 return makeLocalHost(test_case, cancelled);
+               directory / "a.aabbs", [&](const Case& test_case, const CancelQuery&) {
+                 return std::make_unique<WatchedHost>(test_case, before_step);
                });
     EXPECT_EQ(waitForEnd().state, State::cancelled);
-    EXPECT_EQ(hosts, last);
+    EXPECT_EQ(steps, last);
     EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
   }
   EXPECT_TRUE(work.takeEnd());

@@ -91,21 +91,6 @@ TEST_F(LookingBackTest, ItsStructureIsDrawnOnceItHasRunAgain) {
   EXPECT_FALSE(seen.snapshot->structure->boxes().empty());
 }
 
-/// Calls the test before each frame is run.
-class WatchedHost final : public WrappedHost {
- public:
-  WatchedHost(const Case& test_case, const std::function<void()>& before_step)
-      : WrappedHost(test_case), before_step_(before_step) {}
-
-  FrameRun step(const Frame& frame) override {
-    before_step_();
-    return WrappedHost::step(frame);
-  }
-
- private:
-  const std::function<void()>& before_step_;
-};
-
 TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   std::function<void()> before_step = [] {};
   Session watched(algorithmsAndFaultyOnes(), [&](const Case& test_case, const CancelQuery&) {

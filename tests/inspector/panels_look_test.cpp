@@ -159,7 +159,7 @@ TEST_P(PanelsLook, AsTheyDid) {
   prepare();
   const auto& [size, dark] = GetParam();
   for (const auto& panel : makePanels()) {
-    // At the sides only the height differs.
+    // At the sides it is as wide, but for 3 pixels.
     if (!dark && panel->place() != Place::bottom) continue;
     const std::string name = fmt::format("{}-{}x{}-{}.png", panel->name(), size.first, size.second,
                                          dark ? "dark" : "light");

@@ -2,8 +2,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -16,7 +16,6 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "broadmark/files.h"
 #include "support/folder_watch.h"
 #include "support/places.h"
 
@@ -36,6 +35,13 @@ std::string contents(std::FILE* file) {
 }
 
 }  // namespace
+
+FileDescriptor processDescriptor(pid_t process) {
+  // glibc 2.36 declares pidfd_open() for C only.
+  const auto descriptor = static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+  if (descriptor < 0) throw std::runtime_error("cannot watch a process");
+  return FileDescriptor(descriptor);
+}
 
 Program::Program(const std::filesystem::path& directory, const Arguments& arguments,
                  const Surroundings& around)
@@ -75,7 +81,7 @@ bool Program::runs() {
 bool Program::waitUntil(const std::function<bool()>& condition) const {
   const FolderWatch watch(directory_);
   watch.add(::fileno(err_.get()));
-  const FileDescriptor process(::pidfd_open(pid_, 0));
+  const FileDescriptor process = processDescriptor(pid_);
   return watch.waitUntil(condition, process.get());
 }
 

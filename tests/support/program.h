@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/files.h"
+
 namespace broadmark::tests {
 
 /// What a program left when it ended.
@@ -31,6 +33,9 @@ struct Surroundings {
   std::optional<rlim_t> most_memory;               ///< bytes; beyond it there is none
   std::string standard_output;                     ///< a file to print to instead of Ended::out
 };
+
+/// Readable, as poll() says, once the process has ended.
+FileDescriptor processDescriptor(pid_t process);
 
 /// A program that runs. It is killed when this goes, and when the test is.
 class Program {

@@ -32,6 +32,21 @@ class WrappedHost : public CaseHost {
   std::unique_ptr<CaseHost> inner_;
 };
 
+/// Calls the test before each frame is run.
+class WatchedHost final : public WrappedHost {
+ public:
+  WatchedHost(const Case& test_case, const std::function<void()>& before_step)
+      : WrappedHost(test_case), before_step_(before_step) {}
+
+  FrameRun step(const Frame& frame) override {
+    before_step_();
+    return WrappedHost::step(frame);
+  }
+
+ private:
+  const std::function<void()>& before_step_;
+};
+
 /// Says that initialising and every frame took what the test wants, on whatever machine.
 class HostOfTimes final : public WrappedHost {
  public:
