@@ -308,10 +308,9 @@ def test_ten_thousand_cases_open_quickly(opened: Page) -> None:
         many.append(one)
     opened.show(write_results(opened.folder / "many.jsonl", many))
     assert opened.texts("#found") == ["10,000 cases"]
-    milliseconds = opened.js("return performance.getEntriesByType('navigation')[0].domComplete")
     opened.wait("return document.querySelector('table[role=grid]')")
-    print(f"10,000 cases: page complete after {milliseconds:.0f} ms")
-    assert milliseconds < 6000  # two seconds on a machine that does nothing else
+    # What makes it quick: most cases have no element.
+    assert opened.js("return document.getElementsByTagName('*').length") < 10_000
     opened.filter("algorithm", "algorithm7")
     assert opened.texts("#found") == ["250 of 10,000 cases"]
 
