@@ -262,7 +262,8 @@ std::vector<Algorithm> variants() {
                  .changing_worlds = ChangingWorlds::native,
                  .instance_per_world = true,
                  .max_objects =
-                     std::min<std::uint64_t>(kMaxMarkedBodies - 1, LooseGrid::kMostBodies)},
+                     std::min<std::uint64_t>(kMaxMarkedBodies - 1, LooseGrid::kMostBodies),
+                 .rare_parameters = {{"from_scratch_cost", "1000000"}}},
       .description = {.principle = "grid",
                       .optimisations = "events without pairs, several sizes of cells",
                       .time = "O(m · k), m bodies that move, k around each; O(n) if many move",

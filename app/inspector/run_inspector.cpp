@@ -35,7 +35,7 @@ struct Script {
   explicit Script(const fs::path& path)
       : player(parseScript(readTextFile(path), path.string()), path.string()) {}
 
-  WritingBelow limit{fs::current_path()};
+  WriteSandbox sandbox{fs::current_path()};
   ScriptPlayer player;
 };
 

@@ -129,7 +129,7 @@ void makeDirectory(const fs::path& directory) {
     missing.push_back(at);
   }
   if (missing.empty() && fs::is_directory(directory)) return;
-  requireAllowed(directory);
+  requireInSandbox(directory);
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) {

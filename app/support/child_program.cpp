@@ -127,7 +127,7 @@ bool isProgramThere(const std::string& name) {
 }
 
 void openByDesktop(const fs::path& file) {
-  if (writingIsLimited()) {
+  if (isSandboxed()) {
     throw InputError(fmt::format("{}: scripts open nothing by other programs", file.string()));
   }
   // In a session of its own it outlives this program, and nobody waits for it.

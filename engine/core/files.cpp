@@ -103,15 +103,9 @@ void requireRegular(const std::filesystem::path& path) {
   }
 }
 
-/// Where this process may write; nothing: anywhere. Tasks in the background ask, too.
-struct WritingPlace {
-  std::mutex mutex;
-  std::optional<std::filesystem::path> folder;
-};
-WritingPlace& writingPlace() {
-  static WritingPlace place;
-  return place;
-}
+// Where this process may write; nothing: anywhere. Tasks in the background ask, too.
+std::mutex sandbox_mutex;
+std::optional<std::filesystem::path> sandbox_folder;  ///< guarded by it
 
 }  // namespace
 
@@ -188,7 +182,7 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
 
 AtomicFile::AtomicFile(std::filesystem::path path, std::chrono::milliseconds patience)
     : path_(throughLinks(std::move(path))), partial_(path_.string() + ".part") {
-  requireAllowed(path_);
+  requireInSandbox(path_);
   requireRegular(path_);
   // What a killed writer left is taken over; it is cut only now that the lock is held.
   file_ = openLocked(partial_, path_, patience);
@@ -225,7 +219,7 @@ FileDescriptor AtomicFile::commitAndKeep() {
 
 AppendedFile::AppendedFile(std::filesystem::path path)
     : path_(throughLinks(std::move(path))), made_(!std::filesystem::exists(path_)), stored_(true) {
-  requireAllowed(path_);
+  requireInSandbox(path_);
   requireRegular(path_);
   file_ = openLocked(path_, path_, {});
 }
@@ -287,24 +281,24 @@ void requireBelow(const std::filesystem::path& folder, const std::filesystem::pa
                   path.string(), folder.string()));
 }
 
-WritingBelow::WritingBelow(const std::filesystem::path& folder) {
-  const std::lock_guard guard(writingPlace().mutex);
-  writingPlace().folder = folder;
+WriteSandbox::WriteSandbox(const std::filesystem::path& folder) {
+  const std::lock_guard guard(sandbox_mutex);
+  sandbox_folder = folder;
 }
 
-WritingBelow::~WritingBelow() {
-  const std::lock_guard guard(writingPlace().mutex);
-  writingPlace().folder.reset();
+WriteSandbox::~WriteSandbox() {
+  const std::lock_guard guard(sandbox_mutex);
+  sandbox_folder.reset();
 }
 
-bool writingIsLimited() {
-  const std::lock_guard guard(writingPlace().mutex);
-  return writingPlace().folder.has_value();
+bool isSandboxed() {
+  const std::lock_guard guard(sandbox_mutex);
+  return sandbox_folder.has_value();
 }
 
-void requireAllowed(const std::filesystem::path& path) {
-  const std::lock_guard guard(writingPlace().mutex);
-  if (writingPlace().folder) requireBelow(*writingPlace().folder, path);
+void requireInSandbox(const std::filesystem::path& path) {
+  const std::lock_guard guard(sandbox_mutex);
+  if (sandbox_folder) requireBelow(*sandbox_folder, path);
 }
 
 }  // namespace broadmark

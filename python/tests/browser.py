@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pathlib
-import time
 from typing import Any
 
 import pytest
@@ -49,13 +48,26 @@ class Page:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, script: str, *arguments: Any) -> Any:
-        """Until a script returns something true."""
-        deadline = time.monotonic() + 20
-        while time.monotonic() < deadline:
-            if found := self.js(script, *arguments):
-                return found
-            time.sleep(0.02)
-        raise AssertionError(f"never true: {script}")
+        """Until a script, asked after every change of the page, returns something true."""
+        return self.driver.execute_async_script(
+            """
+            const done = arguments[arguments.length - 1];
+            const values = [...arguments].slice(1, -1);
+            const script = new Function(arguments[0]);
+            const observer = new MutationObserver(ask);
+            function ask() {
+              const found = script(...values);
+              if (!found) return;
+              observer.disconnect();
+              done(found);
+            }
+            const what = {subtree: true, childList: true, attributes: true, characterData: true};
+            observer.observe(document, what);
+            ask();
+            """,
+            script,
+            *arguments,
+        )
 
     def texts(self, selector: str) -> list[str]:
         script = "return [...document.querySelectorAll(arguments[0])].map((n) => n.textContent)"
@@ -102,4 +114,6 @@ def start_browser(home: pathlib.Path) -> Any:
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     folders = dict.fromkeys(("HOME", "XDG_CONFIG_HOME", "TMPDIR"), str(home))
     service = Service(str(CHROMEDRIVER), env={"PATH": "/usr/bin:/bin", **folders})
-    return webdriver.Chrome(options=options, service=service)
+    driver = webdriver.Chrome(options=options, service=service)
+    driver.set_script_timeout(24 * 3600)  # the limit on a test's time is the only one
+    return driver

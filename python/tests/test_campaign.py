@@ -9,12 +9,12 @@ import pathlib
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 from conftest import SOURCE_FOLDER
+from folder_watch import wait_until
 
 import broadmark
 from broadmark.campaign.attempts import PART, read_attempt
@@ -23,8 +23,6 @@ from broadmark.campaign.estimate import Estimate
 from broadmark.campaign.ledger import Ledger, Outcome
 from broadmark.campaign.plan import Recording, planned_recordings
 from broadmark.campaign.slurm import planned_jobs
-
-PATIENCE = 60  # seconds
 
 BLOCK = {"scenes": "brownian", "objects": [20, 40], "frames": 5, "engine": "kinematic"}
 
@@ -298,13 +296,6 @@ def long_campaign(write: Any) -> pathlib.Path:
     return pathlib.Path(path)
 
 
-def wait_for_cases(folder: pathlib.Path, count: int) -> None:
-    end = time.monotonic() + PATIENCE
-    while len(kept_cases(folder)) < count:
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 @pytest.mark.parametrize(
     "interruption", ["kill everything", "kill the command", "Ctrl-C", "termination"]
 )
@@ -316,7 +307,7 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     tmp_path: pathlib.Path,
 ) -> None:
     process = start(long_campaign)
-    wait_for_cases(tmp_path, 2)
+    wait_until(tmp_path, lambda: len(kept_cases(tmp_path)) >= 2)
     if interruption == "kill everything":
         os.killpg(process.pid, signal.SIGKILL)
     elif interruption == "kill the command":  # the program goes on, and is waited for
@@ -362,7 +353,7 @@ def test_after_a_failure_of_the_disc_the_same_command_goes_on(
         "BROADMARK_FAULT_LOG": str(tmp_path / "calls.txt"),
     }
     process = start(file, **environment, BROADMARK_FAULT=fault)
-    _, err = process.communicate(timeout=PATIENCE)
+    _, err = process.communicate()
     assert f"\n{fault.split()[1]} " in "\n" + (tmp_path / "calls.txt").read_text()
     killed = fault.startswith("kill")
     assert process.returncode in ((2, -signal.SIGKILL) if killed else (2,)), err

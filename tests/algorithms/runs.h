@@ -68,16 +68,15 @@ inline std::vector<Configuration> eventConfigurations(const Algorithm& algorithm
   return ways;
 }
 
-/// All of both; with other values of parameters, too, where these decide what is run at all: `tide`
-/// would hardly ever use its grid.
+/// All of both, and with the algorithm's rare parameters.
 inline std::vector<Configuration> everyConfiguration(const Algorithm& algorithm) {
   std::vector<Configuration> all = configurations(algorithm);
   const std::vector<Configuration> of_events = eventConfigurations(algorithm);
   all.insert(all.end(), of_events.begin(), of_events.end());
-  if (algorithm.id != "tide") return all;
+  if (algorithm.traits.rare_parameters.empty()) return all;
   for (std::size_t i = all.size(); i-- > 0;) {
     all.push_back(all[i]);
-    all.back().parameters = {{"from_scratch_cost", "1000000"}};
+    all.back().parameters = algorithm.traits.rare_parameters;
   }
   return all;
 }

@@ -57,7 +57,7 @@ SceneInfo sceneFor(std::size_t bodies) {
   return scene;
 }
 
-const ParameterValues kGridOnly = {{"from_scratch_cost", "1000000"}};
+const ParameterValues kGridOnly = algorithmOf("tide").traits.rare_parameters;
 
 /// Each kind of answer, with the parameters.
 std::vector<TestRun> runsOf(const ParameterValues& parameters) {

@@ -29,8 +29,7 @@ TEST(ExitStatus, AreExplainedInTheReadme) {
   const std::string readme = readTextFile(places::source("README.md"));
   std::set<int> values;
   for (const auto& [value, meaning] : kExitStatuses.entries) {
-    EXPECT_THAT(readme,
-                testing::HasSubstr(fmt::format("| {} | {} |", static_cast<int>(value), meaning)));
+    EXPECT_THAT(readme, testing::HasSubstr(fmt::format("\n| {} | ", static_cast<int>(value))));
     EXPECT_TRUE(values.insert(value).second);
   }
 }

@@ -14,6 +14,7 @@
 #include "broadmark/files.h"
 #include "commands/command_line.h"
 #include "engine/helpers.h"
+#include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
@@ -51,10 +52,6 @@ bool hasWord(const std::string& text, const std::string& name) {
 
 TEST(Usage, EveryOptionOfHelpIsEverywhere) {
   const std::set<std::string> names = shownOptions();
-  for (const char* known :
-       {"help", "version", "json", "param", "scenes", "fail-above", "describe"}) {
-    EXPECT_TRUE(names.contains(known)) << known;
-  }
   const std::string bash = printedBy({"completion", "bash"});
   const std::string zsh = printedBy({"completion", "zsh"});
   const std::string fish = printedBy({"completion", "fish"});
@@ -72,6 +69,23 @@ TEST(Usage, EveryOptionOfHelpIsEverywhere) {
   for (const char* command : {"bake", "list", "verify", "compare", "duel", "manual"}) {
     for (const std::string& text : {bash, zsh, fish, manual}) EXPECT_TRUE(hasWord(text, command));
   }
+}
+
+// In the README's commands, of this program alone.
+TEST(Usage, EveryOptionOfTheReadmeIsThere) {
+  const std::string readme = readTextFile(places::source("README.md"));
+  const std::set<std::string> names = shownOptions();
+  const std::regex command(R"((^|`|\n *)broadmark (([^`\n\\]|\\\n)*))");
+  const std::regex option(R"(--([a-z][a-z-]*))");
+  int options = 0;
+  for (std::sregex_iterator call(readme.begin(), readme.end(), command), end; call != end; ++call) {
+    const std::string text = (*call)[2];
+    for (std::sregex_iterator found(text.begin(), text.end(), option); found != end; ++found) {
+      ++options;
+      EXPECT_TRUE(names.contains((*found)[1])) << text;
+    }
+  }
+  EXPECT_GT(options, 20);
 }
 
 TEST(Usage, OfTheManual) {

@@ -171,12 +171,12 @@ TEST_F(BadInput, PlacesThatCannotBeWrittenAreFoundBeforeTheRun) {
   writeFile(file("plain"), "");
   fs::create_directory(file("folder.png"));
   ASSERT_EQ(::mkfifo(file("fifo.png").c_str(), 0600), 0);
-  // As large and long as this is, only an early complaint comes in time.
+  // As large and long as this is, only an early complaint ever comes.
   const auto refused = [&](const Arguments& more, const std::vector<std::string>& words) {
     Arguments call = {"--headless", "gravity", "--objects", "100000",
                       "--frames",   "100000",  "--quiet"};
     call.insert(call.end(), more.begin(), more.end());
-    expectRefusal(call, words, {.patience = std::chrono::seconds(20)});
+    expectRefusal(call, words);
   };
   std::vector<std::string> options = {"--json", "--csv", "--csv-frames"};
   if (parts::kRenderer.included) options.emplace_back("--screenshot");

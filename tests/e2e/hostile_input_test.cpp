@@ -140,11 +140,9 @@ TEST_F(HostileInput, AWorkerHasDroppedWhatItDoesNotNeed) {
   Program program(directory_, {"--headless", "brownian", "--objects", "20", "--frames", "4",
                                "--plugin", places::unrulyPlugin(), "--algorithm", "unruly",
                                "--param", "deed=hang", "--quiet", "--jsonl", "results.jsonl"});
-  ASSERT_TRUE(program.waitUntil([&] {
-    return !program.children().empty() &&
-           processLine(program.children().front(), "status", "NoNewPrivs:") == "1";
-  })) << "it may get more rights";
-  const pid_t worker = program.children().front();
+  ASSERT_TRUE(program.waitForText("hanging on purpose"));
+  const pid_t worker = program.children().at(0);
+  EXPECT_EQ(processLine(worker, "status", "NoNewPrivs:"), "1") << "it may get more rights";
   EXPECT_THAT(processLine(worker, "limits", "Max core file size"), StartsWith("0 0 "));
   for (const auto& entry : fs::directory_iterator("/proc/" + std::to_string(worker) + "/fd")) {
     std::error_code gone;

@@ -416,7 +416,7 @@ TEST_F(SharedFolder, ARecordingThatAnotherReplacesIsReadToItsEnd) {
   bakeRecording("some.aabbs", "20", "20");
   bakeRecording("other.aabbs", "20", "20", "2");
   Program program(directory_, longRun({"--repetitions", "2"}));
-  ASSERT_TRUE(program.waitUntil([&] { return !program.children().empty(); }));
+  ASSERT_TRUE(waitForFirstCase(program));
   const Ended verified = run({"verify", "some.aabbs"});
   fs::rename(file("other.aabbs"), file("some.aabbs"));
   const Ended ended = program.wait();

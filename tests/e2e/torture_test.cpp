@@ -1,7 +1,6 @@
 // The command 'torture': what it finds, what it writes, and how it goes on.
 
 #include <algorithm>
-#include <thread>
 
 #include "broadmark/recordings/recording.h"
 #include "e2e/end_to_end.h"
@@ -116,13 +115,13 @@ TEST_F(Torture, BeginsAnewWithAnotherBuildOfAPlugin) {
 }
 
 TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
-  const Arguments subject = {"--algorithm", "bf", "--jobs", "2"};
+  const Arguments subject = {"--case", places::unrulyPlugin() + ":unruly/frame=1/deed=print",
+                             "--jobs", "2"};
   Arguments endless = call(subject, "cut");
   endless.insert(endless.end(), {"--minutes", "100"});
   Program program(directory_, endless);
-  ASSERT_TRUE(program.waitUntil([&] { return program.children().size() == 2; }));
-  // It is written every ten seconds, and when it ends.
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  // A round has up to forty worlds, and plays each of them a few times.
+  ASSERT_TRUE(program.waitForText("printed on purpose", 300));
   program.signal(SIGINT);
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 130);

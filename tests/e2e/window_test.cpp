@@ -6,18 +6,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
-#include <thread>
 
 #include "e2e/end_to_end.h"
 
 namespace broadmark::tests {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// An X server of our own, without a screen.
 class Screen {
@@ -52,7 +49,6 @@ class Screen {
   void tool(const std::string& arguments) const {
     const std::string command = "DISPLAY=" + name_ + " xdotool " + arguments;
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
-    std::this_thread::sleep_for(150ms);
   }
 
  private:
@@ -62,15 +58,17 @@ class Screen {
 
 class WindowTest : public EndToEnd {
  protected:
+  void start(const Screen& screen, const Arguments& arguments) {
+    program_.emplace(directory_, arguments,
+                     Surroundings{.environment = {{"DISPLAY", screen.name()},
+                                                  {"XDG_CONFIG_HOME", file("config").string()}}});
+  }
+
   /// Waits for what the script tells of the widgets' places; the middle of one of them.
   std::pair<int, int> middleOf(const std::string& places, const std::string& widget) {
-    const auto deadline = std::chrono::steady_clock::now() + 90s;
-    while (!std::filesystem::exists(file(places))) {
-      if (std::chrono::steady_clock::now() > deadline) {
-        ADD_FAILURE() << places << " does not come";
-        return {0, 0};
-      }
-      std::this_thread::sleep_for(50ms);
+    if (!program_->waitUntil([&] { return fs::exists(file(places)); })) {
+      ADD_FAILURE() << places << " does not come";
+      return {0, 0};
     }
     for (const std::string& line : linesOf(readFile(file(places)))) {
       std::istringstream fields(line);
@@ -112,6 +110,8 @@ class WindowTest : public EndToEnd {
   static void press(const Screen& screen, const std::string& keys) {
     screen.tool("key --delay 60 " + keys);
   }
+
+  std::optional<Program> program_;
 };
 
 TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
@@ -149,10 +149,7 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
             "places saving\n"
             "expect dialog = no\n"
             "expect status ~ recorded\n");
-  Program program(file(""),
-                  {"brownian", "--objects", "150", "--frames", "40", "--script", "script.txt"},
-                  {.environment = {{"DISPLAY", screen.name()},
-                                   {"XDG_CONFIG_HOME", (file("config")).string()}}});
+  start(screen, {"brownian", "--objects", "150", "--frames", "40", "--script", "script.txt"});
   click(screen, "opened", "Playback/Play");
   click(screen, "playing", "Playback/Play");
   click(screen, "paused", "View/scene");
@@ -170,14 +167,10 @@ TEST_F(WindowTest, OpenPlayPickChangeTypeSaveClose) {
   press(screen, "ctrl+a");
   screen.tool("type --delay 40 mine.aabbs");
   press(screen, "Return");
-  const auto deadline = std::chrono::steady_clock::now() + 60s;
-  while (!std::filesystem::exists(file("mine.aabbs")) &&
-         std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(50ms);
-  }
+  EXPECT_TRUE(program_->waitUntil([&] { return fs::exists(file("mine.aabbs")); }));
   moveTo(screen, 640, 300);
   press(screen, "ctrl+q");
-  const Ended ended = program.wait();
+  const Ended ended = program_->wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(run({"verify", "mine.aabbs"}).status, 0);
   EXPECT_THAT(readFile(file("config/broadmark/inspector.json")),
@@ -235,9 +228,7 @@ TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
             "expect author.path ~ before.json\n"
             "expect dialog = no\n"
             "places reopened\n");
-  Program program(file(""), {"--script", "script.txt"},
-                  {.environment = {{"DISPLAY", screen.name()},
-                                   {"XDG_CONFIG_HOME", (file("config")).string()}}});
+  start(screen, {"--script", "script.txt"});
   fs::copy_file(file("scene.json"), file("before.json"));
   click(screen, "opened", "View/scene");
   drag(screen, "selected", "View/gizmo y", 0, -90);
@@ -272,7 +263,7 @@ TEST_F(WindowTest, AGizmoMovesABodyAndKeysAnswerDialogs) {
   press(screen, "Return");
   middleOf("reopened", "View/scene");
   press(screen, "ctrl+q");
-  const Ended ended = program.wait();
+  const Ended ended = program_->wait();
   EXPECT_EQ(ended.status, 0) << ended.err;
 }
 

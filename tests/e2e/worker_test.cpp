@@ -2,10 +2,9 @@
 // theirs, and the run its exit status.
 
 #include <fmt/format.h>
+#include <poll.h>
 
-#include <chrono>
 #include <csignal>
-#include <thread>
 
 #include "e2e/end_to_end.h"
 #include "engine/helpers.h"
@@ -14,7 +13,6 @@
 namespace broadmark::tests {
 namespace {
 
-using std::chrono::steady_clock;
 using ::testing::AllOf;
 
 class Worker : public EndToEnd {
@@ -71,10 +69,8 @@ TEST_F(Worker, ACrashIsAnErrorWithSignalAndFrame) {
 }
 
 TEST_F(Worker, AHangEndsAtTheHardLimit) {
-  const auto begin = steady_clock::now();
   expectFailure({"deed=hang"}, "timeout", {"frame 2", "hard limit of 0.5 s"},
                 {"--hard-limit", "0.5"});
-  EXPECT_LT(steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
 TEST_F(Worker, WhatIsThrownIsAnError) {
@@ -138,9 +134,9 @@ TEST_F(Worker, InThisProcessMemoryIsNotKnown) {
 
 TEST_F(Worker, CtrlCEndsAHangAtOnce) {
   Program program(directory_, call({"deed=hang"}));
-  ASSERT_TRUE(program.waitUntil([&] { return !program.children().empty(); }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  ASSERT_TRUE(program.waitForText("hanging on purpose"));
   const std::vector<pid_t> workers = program.children();
+  EXPECT_THAT(workers, Not(IsEmpty()));
   program.signal(SIGINT);
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 130);
@@ -150,17 +146,15 @@ TEST_F(Worker, CtrlCEndsAHangAtOnce) {
 
 TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
   Program program(directory_, call({"deed=hang"}));
-  ASSERT_TRUE(program.waitUntil([&] { return !program.children().empty(); }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  const std::vector<pid_t> workers = program.children();
+  ASSERT_TRUE(program.waitForText("hanging on purpose"));
+  std::vector<FileDescriptor> workers;
+  for (const pid_t worker : program.children()) workers.push_back(processDescriptor(worker));
+  EXPECT_THAT(workers, Not(IsEmpty()));
   program.signal(SIGKILL);
   program.wait();
-  const auto end = steady_clock::now() + std::chrono::seconds(10);
-  for (const pid_t worker : workers) {
-    while (::kill(worker, 0) == 0 && steady_clock::now() < end) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_NE(::kill(worker, 0), 0);
+  for (const FileDescriptor& worker : workers) {
+    pollfd ended{worker.get(), POLLIN, 0};
+    EXPECT_EQ(::poll(&ended, 1, -1), 1);  // waits for its end
   }
 }
 

@@ -6,14 +6,15 @@
 #include <sys/resource.h>
 
 #include <atomic>
-#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 
+#include "broadmark/reference_pairs.h"
 #include "engine/helpers.h"
+#include "torture/inputs.h"
 
 namespace broadmark::tests {
 namespace {
@@ -73,12 +74,13 @@ TEST(ThreadTeam, ManyShortRunsLoseNothing) {
 
 // Whether it is woken once, twice or never, and whether it has gone back to sleep by then.
 TEST(ThreadTeam, RunsOnceAWakeUp) {
+  const std::vector<Aabb> boxes = inputs::uniform(2000, 1, 1);
   for (const int size : {1, 2, 3, 5}) {
     ThreadTeam team(size);
     constexpr int kRuns = kSanitized ? 100 : 1000;
     for (int run = 0; run < kRuns; ++run) {
       for (int time = 0; time < run % 3; ++time) team.wake();
-      if (run % 100 == 99) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      if (run % 100 == 99) bruteForcePairs(boxes);  // takes longer than workers stay awake
       std::atomic<int> ran = 0;
       team.run([&](int) { ++ran; });
       ASSERT_EQ(ran, size);

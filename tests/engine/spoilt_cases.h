@@ -1,11 +1,9 @@
 // Cases that are wrong, slow or failing on purpose, and a scene for them.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -16,10 +14,6 @@ namespace broadmark::tests {
 
 inline constexpr std::uint32_t kChainFrames = 6;
 inline constexpr std::uint32_t kFaultyFrame = 3;
-
-inline void wait(double seconds) {
-  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-}
 
 /// A chain of bodies that moves as a whole.
 class ChainSource final : public IndexedFrames {

@@ -4,8 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
@@ -15,7 +13,6 @@
 namespace broadmark::tests {
 namespace {
 
-using namespace std::chrono_literals;
 using scenes::AuthoredBody;
 using scenes::AuthoredScene;
 using scenes::SceneEditor;
@@ -238,7 +235,7 @@ TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
 TEST_F(AuthoringTest, BakesTheWholeScene) {
   session.document.start(threeBodies());
   session.document.bake(directory / "three");
-  while (session.jobs.get<BackgroundBake>().running()) std::this_thread::sleep_for(1ms);
+  session.jobs.get<BackgroundBake>().wait();
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done);

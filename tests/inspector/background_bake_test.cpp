@@ -5,16 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
+#include "support/folder_watch.h"
 
 namespace broadmark::tests {
 namespace {
 
-using namespace std::chrono_literals;
 using Outcome = BakeOutcome;
 
 class BackgroundBakeTest : public testing::Test {
@@ -32,7 +31,7 @@ class BackgroundBakeTest : public testing::Test {
   }
 
   BackgroundBake::Report wait() {
-    while (bake.running()) std::this_thread::sleep_for(1ms);
+    bake.wait();
     EXPECT_TRUE(bake.takeEnd());
     EXPECT_FALSE(bake.takeEnd());
     return bake.report();
@@ -61,8 +60,9 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
 }
 
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
+  const FolderWatch watch(directory / "");
   bake.start(options({3000}, 100'000));
-  while (bake.running() && bake.report().items.empty()) std::this_thread::sleep_for(1ms);
+  watch.waitUntil([&] { return !bake.report().items.empty(); });  // before its file is begun
   EXPECT_THROW(bake.start(options({20}, 5)), InputError);
   bake.cancel();
   const BackgroundBake::Report report = wait();

@@ -3,10 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <chrono>
-#include <thread>
-
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "engine/helpers.h"
@@ -38,10 +34,9 @@ TEST(RunProgram, SaysThatThereIsNone) {
 }
 
 TEST(RunProgram, EndsWithAllThatItHasStarted) {
-  const auto start = std::chrono::steady_clock::now();
-  EXPECT_THROW(runProgram({"sh", "-c", "sleep 60 & sleep 60; :"}, {}, [] { return true; }),
-               Cancelled);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+  EXPECT_THROW(
+      runProgram({"sh", "-c", "sleep infinity & sleep infinity; :"}, {}, [] { return true; }),
+      Cancelled);
 }
 
 TEST(PackageFolder, IsBesideTheSourceOrWhereItIsInstalled) {
@@ -66,7 +61,7 @@ TEST(BackgroundReport, SaysWhatIsWrong) {
   BackgroundReport report;
   EXPECT_THROW(report.start("results.json", directory / "none/page.html"), InputError);
   report.start(directory / "none.json", directory / "page.html");
-  while (report.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  report.wait();
   EXPECT_TRUE(report.takeEnd());
   EXPECT_EQ(report.report().state, TaskState::failed);
   EXPECT_THAT(report.report().failure, HasSubstr("no report page"));
@@ -82,13 +77,13 @@ TEST(BackgroundReport, RunsNothingFromTheCurrentFolder) {
   fs::current_path(directory / "");
   BackgroundReport report;
   report.start(directory / "none.json", directory / "page.html");
-  while (report.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  report.wait();
   fs::current_path(before);
   EXPECT_FALSE(fs::exists(directory / "ran"));
 }
 
 TEST(OpenByDesktop, RefusesWhileAScriptIsPlayed) {
-  const WritingBelow limit(fs::current_path());
+  const WriteSandbox sandbox(fs::current_path());
   EXPECT_THROW(openByDesktop("page.html"), InputError);
 }
 

@@ -4,19 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <thread>
-
 #include "broadmark/algorithms.h"
 #include "broadmark/files.h"
 #include "broadmark/recordings/recording.h"
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
 #include "inspector/session/session.h"
+#include "support/wrapped_host.h"
 
 namespace broadmark::tests {
 namespace {
 
-using namespace std::chrono_literals;
 using State = TaskState;
 
 class CaseExportTest : public testing::Test {
@@ -39,9 +37,7 @@ class CaseExportTest : public testing::Test {
   }
 
   CaseExport::Report waitForEnd() {
-    for (int i = 0; i < 60000 && session.jobs.get<CaseExport>().running(); ++i) {
-      std::this_thread::sleep_for(1ms);
-    }
+    session.jobs.get<CaseExport>().wait();
     return session.jobs.get<CaseExport>().report();
   }
 
@@ -114,19 +110,22 @@ TEST_F(CaseExportTest, AnotherSceneMeanwhileIsTold) {
 TEST_F(CaseExportTest, CanBeCancelled) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport& work = session.jobs.get<CaseExport>();
-  // It is cancelled before the first trial, then while it may be at any point, or be over.
-  for (const auto pause : {0ms, 2ms, 10ms}) {
+  // It is cancelled in the first frame of its trials, or in a later one.
+  for (const int last : {1, 2, 5}) {
     std::unique_ptr<IndexedFrames> frames;
     session.runs.withFootage(
         [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
+    int steps = 0;
+    const std::function<void()> before_step = [&] {
+      if (++steps == last) work.cancel();
+    };
     work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
-               directory / "a.aabbs");
-    std::this_thread::sleep_for(pause);
-    work.cancel();
-    const State state = waitForEnd().state;
-    EXPECT_TRUE(state == State::cancelled || state == State::done);
-    EXPECT_EQ(std::filesystem::exists(directory / "a.aabbs"), state == State::done);
-    std::filesystem::remove(directory / "a.aabbs");
+               directory / "a.aabbs", [&](const Case& test_case, const CancelQuery&) {
+                 return std::make_unique<WatchedHost>(test_case, before_step);
+               });
+    EXPECT_EQ(waitForEnd().state, State::cancelled);
+    EXPECT_EQ(steps, last);
+    EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
   }
   EXPECT_TRUE(work.takeEnd());
   EXPECT_FALSE(work.takeEnd());

@@ -28,12 +28,15 @@ inline std::vector<Algorithm> algorithmsAndFaultyOnes() {
   return all;
 }
 
+/// The limit on a test's time is the only one.
+inline constexpr std::chrono::hours kForever{24};
+
 /// Commits, waits, and takes note, several times, as pictures do.
 inline RunProgress settled(Session& session) {
   RunProgress seen;
   for (int picture = 0; picture < 4; ++picture) {
     session.commit();
-    EXPECT_TRUE(session.runs.settle(std::chrono::seconds(60)));
+    EXPECT_TRUE(session.runs.settle(kForever));
     session.runs.look([&](const RunProgress& progress) {
       session.advance(progress, 0);
       seen = progress;

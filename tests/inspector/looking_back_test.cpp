@@ -3,17 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
-#include <thread>
+#include <functional>
+#include <memory>
+#include <optional>
 
 #include "engine/helpers.h"
 #include "inspector/helpers.h"
 #include "inspector/session/session.h"
+#include "support/wrapped_host.h"
 
 namespace broadmark::tests {
 namespace {
-
-using namespace std::chrono_literals;
 
 class LookingBackTest : public testing::Test {
  protected:
@@ -92,23 +92,28 @@ TEST_F(LookingBackTest, ItsStructureIsDrawnOnceItHasRunAgain) {
 }
 
 TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
-  simulate("bf", 100);
-  session.view.structure = true;
-  session.playback.goTo(90);
-  session.runs.gate().beginDrawing();  // no frame is run meanwhile
-  session.commit();
-  RunProgress held;
-  const auto deadline = std::chrono::steady_clock::now() + 60s;
-  while (held.doing != "running bf again up to frame 90" &&
-         std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(1ms);
-    session.runs.look([&](const RunProgress& progress) { held = progress; });
-  }
-  session.runs.gate().endDrawing();
-  EXPECT_EQ(held.doing, "running bf again up to frame 90");
-  EXPECT_EQ(held.snapshot->frame, 90U);
-  EXPECT_FALSE(held.snapshot->pairs.empty());
-  EXPECT_EQ(held.lanes[0].frame, 0U);
+  std::function<void()> before_step = [] {};
+  Session watched(algorithmsAndFaultyOnes(), [&](const Case& test_case, const CancelQuery&) {
+    return std::make_unique<WatchedHost>(test_case, before_step);
+  });
+  watched.chooseScene("brownian");
+  setParameters(*watched.draft, {{"objects", "200"}, {"frames", "300"}});
+  watched.simulate();
+  watched.lanes.add("bf");
+  watched.playback.goTo(100);
+  settled(watched);
+  std::optional<RunProgress> first;
+  before_step = [&] {
+    if (!first) watched.runs.look([&](const RunProgress& progress) { first = progress; });
+  };
+  watched.view.structure = true;
+  watched.playback.goTo(90);
+  settled(watched);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->doing, "running bf again up to frame 90");
+  EXPECT_EQ(first->snapshot->frame, 90U);
+  EXPECT_FALSE(first->snapshot->pairs.empty());
+  EXPECT_EQ(first->lanes[0].frame, 0U);
 }
 
 TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
@@ -119,7 +124,7 @@ TEST_F(LookingBackTest, WhoPlaysOnHasEveryStateRight) {
   session.play(true);
   for (int picture = 0; picture < 2000 && session.playback.frame() < 60; ++picture) {
     session.commit();
-    session.runs.settle(60s);
+    session.runs.settle(kForever);
     session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
   }
   const RunProgress seen = seek(session.playback.frame());

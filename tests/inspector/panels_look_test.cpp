@@ -1,5 +1,5 @@
-// What every panel looks like, in small and large windows and both themes, with something of all
-// that it can show.
+// What every panel looks like, with something of all that it can show: in a large window, and those
+// that have another width in a small one, there in the other theme.
 #include <gtest/gtest.h>
 #include <imgui_internal.h>
 
@@ -8,7 +8,6 @@
 #include <memory>
 #include <set>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 
@@ -17,53 +16,31 @@
 #include "inspector/inspector.h"
 #include "support/pictures.h"
 #include "support/places.h"
+#include "support/wrapped_host.h"
 
 namespace broadmark::tests {
 namespace {
 
-using namespace std::chrono_literals;
 using scenes::SceneEditor;
 
 /// Panels are flat: what moves, or has another colour, is seen in fewer pixels than in a scene.
 constexpr double kMostOfPanel = 0.3;
 
-/// Runs its case as usual, but says that a frame took what a rule makes of its number, and longer
-/// where the algorithm's name is longer: times look the same whenever they are drawn.
-class RuledHost final : public CaseHost {
- public:
-  explicit RuledHost(const Case& run)
-      : inner_(makeLocalHost(run, {})),
-        length_(static_cast<std::int64_t>(run.algorithm.id.size())) {}
-
-  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
-    frame_ = 0;
-    inner_->start(scene, first);
-    return 1'000'000;
-  }
-  FrameRun step(const Frame& frame) override {
-    FrameRun run = inner_->step(frame);
-    ++frame_;
-    run.times = {};
-    run.times[Phase::update_objects] = 3'000 * length_;
-    run.times[Phase::search_overlaps] =
-        (4'000 + frame_ * 7'919 % 5'000) * length_ + 100 * (frame_ * length_ % 13);
-    run.times[Phase::total] = run.times[Phase::update_objects] + run.times[Phase::search_overlaps];
-    return run;
-  }
-  void stop() override { inner_->stop(); }
-  PairDigest digest() override { return inner_->digest(); }
-  PairRuns answer() override { return inner_->answer(); }
-  PairEvents events() override { return inner_->events(); }
-  Counts counters() override { return inner_->counters(); }
-  Counts setup() override { return inner_->setup(); }
-  RecordedDrawing structure() override { return inner_->structure(); }
-  std::string validate() override { return inner_->validate(); }
-
- private:
-  std::unique_ptr<CaseHost> inner_;
-  std::int64_t length_;
-  std::int64_t frame_ = 0;
-};
+/// Says that a frame took what a rule makes of its number, and longer where the algorithm's name is
+/// longer: times look the same whenever they are drawn.
+std::unique_ptr<CaseHost> ruledHost(const Case& test_case, const CancelQuery&) {
+  const auto length = static_cast<std::int64_t>(test_case.algorithm.id.size());
+  const auto rule = [length](std::uint32_t frame) {
+    FrameTimes times;
+    times[Phase::update_objects] = 3'000 * length;
+    times[Phase::search_overlaps] =
+        (4'000 + frame * 7'919 % 5'000) * length + 100 * (frame * length % 13);
+    times[Phase::total] = times[Phase::update_objects] + times[Phase::search_overlaps];
+    return times;
+  };
+  return std::make_unique<HostOfTimes>(
+      test_case, HostOfTimes::Times{.initialize_ns = 1'000'000, .of_frame = rule});
+}
 
 /// Three cases, one of them wrong and one without any time.
 Results threeCases() {
@@ -114,9 +91,8 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
   PanelsLook()
       : context(makeOffscreenContext(GlSource::automatic)),
         gl(*context),
-        inspector(
-            gl, algorithmsAndFaultyOnes(), {.dark = std::get<bool>(GetParam())}, 1,
-            [](const Case& run, const CancelQuery&) { return std::make_unique<RuledHost>(run); }),
+        inspector(gl, algorithmsAndFaultyOnes(), {.dark = std::get<bool>(GetParam())}, 1,
+                  ruledHost),
         session(inspector.session()) {}
 
   /// Gives every panel something to show. Nothing is drawn meanwhile, which would disturb frames.
@@ -141,7 +117,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     settled(session);
     session.startDuel(20);
     session.commit();
-    while (session.jobs.get<BackgroundDuel>().running()) std::this_thread::sleep_for(1ms);
+    session.jobs.get<BackgroundDuel>().wait();
 
     setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
@@ -183,6 +159,8 @@ TEST_P(PanelsLook, AsTheyDid) {
   prepare();
   const auto& [size, dark] = GetParam();
   for (const auto& panel : makePanels()) {
+    // At the sides it is as wide, but for 3 pixels.
+    if (!dark && panel->place() != Place::bottom) continue;
     const std::string name = fmt::format("{}-{}x{}-{}.png", panel->name(), size.first, size.second,
                                          dark ? "dark" : "light");
     EXPECT_TRUE(looksLikeGolden(
@@ -191,8 +169,8 @@ TEST_P(PanelsLook, AsTheyDid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SizesAndThemes, PanelsLook,
-                         testing::Combine(testing::Values(Size{1024, 700}, Size{1920, 1080}),
-                                          testing::Bool()));
+                         testing::Values(std::tuple(Size{1920, 1080}, true),
+                                         std::tuple(Size{1024, 700}, false)));
 
 }  // namespace
 }  // namespace broadmark::tests

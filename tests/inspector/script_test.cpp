@@ -31,9 +31,7 @@ TEST(Script, WrongLinesAreNamed) {
 TEST(Script, EveryVerbIsDocumented) {
   const std::string text = readTextFile(places::source("docs/inspector.md"));
   for (const ScriptVerb& verb : scriptVerbs()) {
-    const std::string row =
-        "| `" + std::string(verb.name) + " " + verb.arguments + "` | " + verb.doc + " |\n";
-    EXPECT_THAT(text, testing::HasSubstr(row));
+    EXPECT_THAT(text, testing::HasSubstr(fmt::format("\n| `{} {}` | ", verb.name, verb.arguments)));
   }
 }
 

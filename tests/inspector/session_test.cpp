@@ -15,8 +15,6 @@
 namespace broadmark::tests {
 namespace {
 
-using namespace std::chrono_literals;
-
 class SessionTest : public testing::Test {
  protected:
   SessionTest() : session(algorithmsAndFaultyOnes()) {
@@ -29,7 +27,7 @@ class SessionTest : public testing::Test {
   void playOn(int most = 2000) {
     for (int picture = 0; picture < most && session.playback.playing(); ++picture) {
       session.commit();
-      session.runs.settle(60s);
+      session.runs.settle(kForever);
       session.runs.look([&](const RunProgress& progress) { session.advance(progress, 1); });
     }
   }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <thread>
 #include <vector>
 
 #include "broadmark/algorithms.h"
@@ -17,8 +16,6 @@
 
 namespace broadmark::tests {
 namespace {
-
-using namespace std::chrono_literals;
 
 /// Works as another algorithm does, but reports no pairs.
 class Silent final : public BroadPhase {
@@ -56,15 +53,11 @@ std::unique_ptr<Simulation> bulletScene() {
   return scene;
 }
 
-void waitFor(const BackgroundBake& bake) {
-  while (bake.running()) std::this_thread::sleep_for(1ms);
-}
-
 TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   const TemporaryDirectory directory;
   BackgroundBake alone;
   alone.start(bulletScene(), directory / "alone.aabbs");
-  waitFor(alone);
+  alone.wait();
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
   Session session(builtinAlgorithms());
@@ -93,8 +86,8 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
         !session.jobs.get<CaseExport>().running())
       break;
   }
-  waitFor(session.jobs.get<BackgroundBake>());
-  while (session.jobs.get<CaseExport>().running()) std::this_thread::sleep_for(1ms);
+  session.jobs.get<BackgroundBake>().wait();
+  session.jobs.get<CaseExport>().wait();
 
   EXPECT_EQ(last.lanes[0].status, Status::mismatch);
   for (const std::size_t lane : {1U, 2U}) {

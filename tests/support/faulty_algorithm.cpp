@@ -44,11 +44,11 @@ class FatBoxes final : public BoxBroadPhase {
            .value = &margin_,
            .min = 0,
            .max = 1000});
-    visit({.name = "sleep_ms",
-           .doc = "how long it sleeps in every frame, to be caught at work, in milliseconds",
-           .value = &sleep_ms_,
+    visit({.name = "hold",
+           .doc = "1: no frame ends once there is a file hold.txt, so that it is caught at work",
+           .value = &hold_,
            .min = 0,
-           .max = 1000});
+           .max = 1});
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
@@ -62,7 +62,7 @@ class FatBoxes final : public BoxBroadPhase {
   }
 
   void updateStructures() override {
-    std::this_thread::sleep_for(std::chrono::milliseconds(sleep_ms_));
+    while (hold_ != 0 && ::access("hold.txt", F_OK) == 0) ::pause();
     moved_.clear();
     for (std::uint32_t body = 0; body < fat_.size(); ++body) {
       has_moved_[body] = merged(fat_[body], boxes()[body]) != fat_[body];
@@ -128,7 +128,7 @@ class FatBoxes final : public BoxBroadPhase {
 
   Fault fault_;
   double margin_ = 1.5;
-  std::int64_t sleep_ms_ = 0;
+  std::int64_t hold_ = 0;
   std::vector<Aabb> fat_;
   std::vector<char> has_moved_;  ///< by body; not bool: read in the innermost loop
   std::vector<std::uint32_t> moved_;

@@ -2,39 +2,50 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
-#include <thread>
 
+#include "support/folder_watch.h"
 #include "support/places.h"
 
 namespace broadmark::tests {
 namespace {
 
 std::string contents(std::FILE* file) {
-  std::string text;
-  std::array<char, 4096> part{};
-  std::rewind(file);
-  while (const std::size_t got = std::fread(part.data(), 1, part.size(), file)) {
-    text.append(part.data(), got);
+  // The program writes at the position that it shares with us: reading must not move that.
+  std::string text(1 << 12, '\0');
+  std::size_t size = 0;
+  while ((size = readAll(::fileno(file), std::as_writable_bytes(std::span(text)), 0)) ==
+         text.size()) {
+    text.resize(2 * size);
   }
+  text.resize(size);
   return text;
 }
 
 }  // namespace
 
+FileDescriptor processDescriptor(pid_t process) {
+  // glibc 2.36 declares pidfd_open() for C only.
+  const auto descriptor = static_cast<int>(::syscall(SYS_pidfd_open, process, 0));
+  if (descriptor < 0) throw std::runtime_error("cannot watch a process");
+  return FileDescriptor(descriptor);
+}
+
 Program::Program(const std::filesystem::path& directory, const Arguments& arguments,
                  const Surroundings& around)
-    : patience_(around.patience) {
+    : directory_(directory) {
   std::string program = places::program();
   std::vector<char*> argv = {program.data()};
   Arguments copies = arguments;
@@ -67,21 +78,25 @@ bool Program::runs() {
   return pid_ > 0;
 }
 
-bool Program::waitUntil(const std::function<bool()>& condition) {
-  const auto end = std::chrono::steady_clock::now() + patience_;
-  while (!condition()) {
-    if (!runs() || std::chrono::steady_clock::now() > end) return condition();
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
+bool Program::waitUntil(const std::function<bool()>& condition) const {
+  const FolderWatch watch(directory_);
+  watch.add(::fileno(err_.get()));
+  const FileDescriptor process = processDescriptor(pid_);
+  return watch.waitUntil(condition, process.get());
+}
+
+bool Program::waitForText(const std::string& text, int times) const {
+  return waitUntil([&] {
+    const std::string printed = contents(err_.get());
+    int found = 0;
+    for (std::size_t at = 0; (at = printed.find(text, at)) != std::string::npos; ++at) ++found;
+    return found >= times;
+  });
 }
 
 Ended Program::wait() {
-  if (!waitUntil([&] { return !runs(); })) {
-    signal(SIGKILL);
-    ::waitpid(pid_, &wait_status_, 0);
-    pid_ = 0;
-  }
+  if (pid_ > 0) ::waitpid(pid_, &wait_status_, 0);
+  pid_ = 0;
   const int status =
       WIFEXITED(wait_status_) ? WEXITSTATUS(wait_status_) : 128 + WTERMSIG(wait_status_);
   Ended ended{.status = status, .out = contents(out_.get())};
@@ -98,6 +113,7 @@ Ended Program::wait() {
 
 void Program::enter(const std::filesystem::path& directory, const Surroundings& around,
                     char** argv) const {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const auto& [name, value] : around.environment) ::setenv(name.c_str(), value.c_str(), 1);
   const auto limit = [](auto resource, rlim_t most) {
     const rlimit both{most, most};

@@ -3,7 +3,6 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "broadmark/files.h"
 
 namespace broadmark::tests {
 
@@ -31,10 +32,12 @@ struct Surroundings {
   std::optional<rlim_t> largest_file;              ///< bytes; beyond it writing fails (EFBIG)
   std::optional<rlim_t> most_memory;               ///< bytes; beyond it there is none
   std::string standard_output;                     ///< a file to print to instead of Ended::out
-  std::chrono::seconds patience{120};              ///< then it is killed: status 137
 };
 
-/// A program that runs. It is killed when this goes.
+/// Readable, as poll() says, once the process has ended.
+FileDescriptor processDescriptor(pid_t process);
+
+/// A program that runs. It is killed when this goes, and when the test is.
 class Program {
  public:
   using Arguments = std::vector<std::string>;
@@ -53,8 +56,11 @@ class Program {
   /// Whether it has not ended yet.
   [[nodiscard]] bool runs();
 
-  /// Waits until `condition` holds. False when the program ended, or patience did, before.
-  bool waitUntil(const std::function<bool()>& condition);
+  /// Waits until `condition` on the files in its directory, or on what it prints, holds. False
+  /// when the program ended before.
+  bool waitUntil(const std::function<bool()>& condition) const;
+  /// Waits until it has printed `text` to standard error, `times` times. False as above.
+  bool waitForText(const std::string& text, int times = 1) const;
 
   Ended wait();
 
@@ -70,7 +76,7 @@ class Program {
 
   File out_{std::tmpfile()};
   File err_{std::tmpfile()};
-  std::chrono::seconds patience_;
+  std::filesystem::path directory_;
   pid_t pid_ = 0;
   int wait_status_ = 0;
 };

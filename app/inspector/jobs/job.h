@@ -88,6 +88,10 @@ class ReportingJob : public Job {
     return status;
   }
   bool takeEnd() override { return ended_.exchange(false); }
+  /// Returns when the work has ended.
+  void wait() {
+    if (thread_.joinable()) thread_.join();
+  }
 
  protected:
   /// `name` stands for the work in messages: "baking".
@@ -97,7 +101,7 @@ class ReportingJob : public Job {
   /// Cancels the work, and waits for its end. For the derived class's destructor: the work uses it.
   void finish() {
     cancel();
-    if (thread_.joinable()) thread_.join();
+    wait();
   }
   /// Begins with the report `first`. `work()` asks cancelled() now and then, and returns whether it
   /// was completed; what it throws becomes the failure. Throws InputError while earlier work is
@@ -105,7 +109,7 @@ class ReportingJob : public Job {
   template <class Work>
   void begin(Report first, Work work) {
     if (running()) throw InputError(name_ + ": still running: wait for its end, or cancel it");
-    if (thread_.joinable()) thread_.join();
+    wait();
     cancelled_ = false;
     ended_ = false;
     first.state = TaskState::running;

@@ -50,6 +50,9 @@ struct AlgorithmTraits {
   /// The process-wide state that its calls depend on, as in exclusive_use.h; "": none. Between two
   /// calls others may have used it.
   std::string exclusive = {};
+  /// Parameter values that select code which the default values hardly ever reach: tests run each
+  /// configuration with these, too.
+  ParameterValues rare_parameters = {};
 };
 
 /// What the paper's Table 1 tells of an algorithm, beyond its traits.

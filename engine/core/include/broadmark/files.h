@@ -108,21 +108,19 @@ void writeAll(int fd, std::span<const std::byte> bytes, const std::filesystem::p
 /// `.bashrc` is.
 void requireBelow(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// While it lives, whatever this process is about to write must fulfil requireBelow(). There is at
-/// most one.
-class WritingBelow {
+/// While it lives, this process writes only what fulfils requireBelow(). There is at most one.
+class WriteSandbox {
  public:
-  explicit WritingBelow(const std::filesystem::path& folder);
-  ~WritingBelow();
-  WritingBelow(const WritingBelow&) = delete;
-  WritingBelow& operator=(const WritingBelow&) = delete;
+  explicit WriteSandbox(const std::filesystem::path& folder);
+  ~WriteSandbox();
+  WriteSandbox(const WriteSandbox&) = delete;
+  WriteSandbox& operator=(const WriteSandbox&) = delete;
 };
 
-/// Whether there is one: a stranger's file decides what this process does.
-bool writingIsLimited();
+/// Whether there is one: an untrusted file decides what this process does.
+bool isSandboxed();
 
-/// Throws InputError for a path that must not be written. AtomicFile and AppendedFile ask by
-/// themselves.
-void requireAllowed(const std::filesystem::path& path);
+/// Throws InputError for a path outside the sandbox. AtomicFile and AppendedFile call it.
+void requireInSandbox(const std::filesystem::path& path);
 
 }  // namespace broadmark

@@ -22,15 +22,17 @@ using YardstickTimes = ValueOfEach<Yardstick, std::int64_t, kYardsticks.entries.
 
 class Yardsticks {
  public:
+  using Clock = std::chrono::steady_clock;
+
   Yardsticks();
   /// A time of each: measured now, which takes about 3 ms, or within the last 30 ms. One alone says
   /// little; of many the least is how fast the machine can be.
-  YardstickTimes recent();
+  YardstickTimes recent(Clock::time_point now = Clock::now());
 
  private:
   YardstickTimes measure();
 
-  std::optional<std::chrono::steady_clock::time_point> measured_;
+  std::optional<Clock::time_point> measured_;
   YardstickTimes times_;
   std::vector<std::uint32_t> memory_;
   std::uint64_t sink_ = 0;  ///< what was computed, so that it is

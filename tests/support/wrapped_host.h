@@ -1,0 +1,76 @@
+// A host that runs its case as usual, for tests that change or watch one of the calls.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "broadmark/harness/case_host.h"
+
+namespace broadmark::tests {
+
+class WrappedHost : public CaseHost {
+ public:
+  explicit WrappedHost(const Case& test_case) : inner_(makeLocalHost(test_case, {})) {}
+
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
+    return inner_->start(scene, first);
+  }
+  FrameRun step(const Frame& frame) override { return inner_->step(frame); }
+  void stop() override { inner_->stop(); }
+  PairDigest digest() override { return inner_->digest(); }
+  PairRuns answer() override { return inner_->answer(); }
+  PairEvents events() override { return inner_->events(); }
+  Counts counters() override { return inner_->counters(); }
+  Counts setup() override { return inner_->setup(); }
+  RecordedDrawing structure() override { return inner_->structure(); }
+  std::string validate() override { return inner_->validate(); }
+
+ private:
+  std::unique_ptr<CaseHost> inner_;
+};
+
+/// Calls the test before each frame is run.
+class WatchedHost final : public WrappedHost {
+ public:
+  WatchedHost(const Case& test_case, const std::function<void()>& before_step)
+      : WrappedHost(test_case), before_step_(before_step) {}
+
+  FrameRun step(const Frame& frame) override {
+    before_step_();
+    return WrappedHost::step(frame);
+  }
+
+ private:
+  const std::function<void()>& before_step_;
+};
+
+/// Says that initialising and every frame took what the test wants, on whatever machine.
+class HostOfTimes final : public WrappedHost {
+ public:
+  struct Times {
+    std::int64_t initialize_ns = 0;
+    std::function<FrameTimes(std::uint32_t frame)> of_frame = [](std::uint32_t) {
+      return FrameTimes();
+    };
+  };
+  HostOfTimes(const Case& test_case, Times times)
+      : WrappedHost(test_case), times_(std::move(times)) {}
+
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
+    WrappedHost::start(scene, first);
+    return times_.initialize_ns;
+  }
+  FrameRun step(const Frame& frame) override {
+    FrameRun result = WrappedHost::step(frame);
+    result.times = times_.of_frame(frame.index);
+    return result;
+  }
+
+ private:
+  Times times_;
+};
+
+}  // namespace broadmark::tests
