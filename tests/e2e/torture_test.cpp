@@ -121,7 +121,7 @@ TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
   endless.insert(endless.end(), {"--minutes", "100"});
   Program program(directory_, endless);
   // A round has up to forty worlds, and plays each of them a few times.
-  ASSERT_TRUE(program.waitForText("printed on purpose", 300));
+  ASSERT_TRUE(program.waitForText("printed on purpose", 80));
   program.signal(SIGINT);
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 130);

@@ -43,7 +43,7 @@ class MarginChanger {
       const ExclusiveUse use(kBulletTreeMargin);
       const float before = std::exchange(gDbvtMargin, kOtherMargin);
       changed_.release();
-      for (int turn = 0; turn < 100; ++turn) std::this_thread::yield();
+      for (int turn = 0; turn < 20; ++turn) std::this_thread::yield();
       gDbvtMargin = before;
     }
   }
