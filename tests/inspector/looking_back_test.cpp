@@ -96,9 +96,9 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   Session watched(algorithmsAndFaultyOnes(), [&](const Case& test_case, const CancelQuery&) {
     return std::make_unique<WatchedHost>(test_case, before_step);
   });
-  watched.chooseScene("brownian");
-  setParameters(*watched.draft, {{"objects", "200"}, {"frames", "300"}});
-  watched.simulate();
+  watched.draft.chooseScene("brownian");
+  setParameters(watched.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
+  watched.draft.simulate();
   watched.lanes.add("bf");
   watched.playback.goTo(100);
   settled(watched);
