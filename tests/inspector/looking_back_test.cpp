@@ -96,7 +96,7 @@ TEST_F(LookingBackTest, ThePictureComesBeforeWhatHasToRun) {
   Session watched(algorithmsAndFaultyOnes(), [&](const Case& test_case, const CancelQuery&) {
     return std::make_unique<WatchedHost>(test_case, before_step);
   });
-  watched.draft.chooseScene("brownian");
+  watched.draft.choose("brownian");
   setParameters(watched.draft.scene(), {{"objects", "200"}, {"frames", "300"}});
   watched.draft.simulate();
   watched.lanes.add("bf");
