@@ -285,7 +285,7 @@ class SceneReader final : public JsonEvents {
     } else if (in_ == In::body && key_ == "vanishes") {
       body_.vanishes = frame(exact);
     } else if (in_ == In::body && key_ == "group") {
-      body_.group = group(exact);
+      body_.group = integer(exact, kMostBodies, faultOfGroup);
     } else if (in_ == In::body && key_ == "sphere") {
       body_.shape = SphereShape{value};
     } else if (in_ == In::body && key_ == "mass") {
@@ -296,27 +296,23 @@ class SceneReader final : public JsonEvents {
     return true;
   }
 
-  /// The layer of this number.
+  /// The number as an integer from 0 to `max`; any other has the fault that `fault` words.
+  template <class Fault>
+  [[nodiscard]] std::uint32_t integer(double number, std::size_t max, Fault fault) const {
+    const bool right = number >= 0 && number <= static_cast<double>(max);
+    if (!right || number != std::floor(number)) fail(fault());
+    return static_cast<std::uint32_t>(number);
+  }
+
   [[nodiscard]] std::uint8_t layer(double number) const {
-    if (!(number >= 0 && number < LayerMatrix::kLayers) || number != std::floor(number)) {
-      fail(faultOfLayer(key_));
-    }
-    return static_cast<std::uint8_t>(number);
+    return static_cast<std::uint8_t>(
+        integer(number, LayerMatrix::kLayers - 1, [&] { return faultOfLayer(key_); }));
   }
 
-  /// The frame of this number.
   [[nodiscard]] std::uint32_t frame(double number) const {
-    if (!(number >= 0 && number <= kMostFrames) || number != std::floor(number)) {
-      fail(fmt::format("{}: a frame from 0 to {} is expected", key_, kMostFrames));
-    }
-    return static_cast<std::uint32_t>(number);
-  }
-
-  [[nodiscard]] std::uint32_t group(double number) const {
-    if (!(number >= 0 && number <= kMostBodies) || number != std::floor(number)) {
-      fail(faultOfGroup());
-    }
-    return static_cast<std::uint32_t>(number);
+    return integer(number, kMostFrames, [&] {
+      return fmt::format("{}: a frame from 0 to {} is expected", key_, kMostFrames);
+    });
   }
 
   /// Stores the array that has just been read.

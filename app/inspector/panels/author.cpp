@@ -109,13 +109,8 @@ class AuthorPanel final : public Panel {
     inputs_.grouped = std::ranges::any_of(
         selection_, [&](std::uint32_t id) { return scene.bodies[id].group != 0; });
     const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
-    if (const auto* sphere = std::get_if<scenes::SphereShape>(&body.shape)) {
-      inputs_.sphere = true;
-      inputs_.size.fill(2 * static_cast<double>(sphere->radius));
-    } else {
-      const Vec3& half = std::get<scenes::BoxShape>(body.shape).half_extents;
-      for (std::size_t axis = 0; axis < 3; ++axis) inputs_.size[axis] = 2.0 * half[axis];
-    }
+    inputs_.sphere = std::holds_alternative<scenes::SphereShape>(body.shape);
+    inputs_.size = numbers(scenes::edgesOf(body.shape));
     inputs_.mass = body.mass;
     inputs_.frozen = body.frozen;
     inputs_.velocity = numbers(body.linear_velocity);
