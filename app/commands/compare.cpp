@@ -93,11 +93,15 @@ std::function<int()> add(CLI::App& app) {
   ComparisonOptions& comparison = options->comparison;
   addPath(app, "A", "A", options->before, "results to compare with (.json, .jsonl)")->required();
   app.add_option("B", options->after, "results to judge")->type_name("B");
-  addRepeatable(app, "--baseline", "FILE", options->baselines,
-                "another run like A (repeatable): three or more tell how much runs differ");
-  addShare(app, "--margin", comparison.margin, false, "differences within it are 'same'");
+  addRepeatable(
+      app, "--baseline", "FILE", options->baselines,
+      "another run like A (repeatable); where there are fewer than four cases, three or more "
+      "tell how much runs differ");
+  addShare(app, "--margin", comparison.margin, false,
+           "differences within it are 'same'; not more than --fail-above");
   addShare(app, "--fail-above", comparison.fail_above, false,
-           "slow-down that counts as a regression");
+           "a case is a regression when it is slower and its ratio is beyond this");
+  app.add_flag("--fail-undecided", comparison.fail_undecided, "undecided cases are failures");
   app.add_option("--by", comparison.by,
                  "compare across this instead of each case with itself: algorithm, threads, isa or "
                  "a parameter; with the first such case of A")

@@ -34,9 +34,6 @@ struct Candidate {
   [[nodiscard]] const Environment& environment() const {
     return results->environments[result->environment];
   }
-  [[nodiscard]] CaseInRun inRun() const {
-    return {.result = result, .pace = paceOf(*results, result->recording.hash)};
-  }
 };
 
 /// Which cases belong together: the recording's hash, what is left of the case's name, and which of
@@ -117,37 +114,31 @@ std::vector<ConditionDifference> differencesOf(const Candidate& before, const Ca
   return differences;
 }
 
-Verdict verdictOn(const Interval& ratio, const ComparisonOptions& options) {
-  const Verdict verdict = verdictOn(ratio, options.margin);
-  const bool is_tolerated = verdict != Verdict::slower || ratio.low <= 1 + options.fail_above;
+Verdict verdictOn(const Estimate& ratio, const ComparisonOptions& options) {
+  const Verdict verdict = verdictOn(ratio.ci95, std::min(options.margin, options.fail_above));
+  const bool is_tolerated = verdict != Verdict::slower || ratio.value <= 1 + options.fail_above;
   return is_tolerated ? verdict : Verdict::regressed;
 }
 
-/// `before` has one case or, of several baselines, that case of each.
+/// All but the times. `before` has one case or, of several baselines, that case of each. The
+/// verdict is not_timed for a case whose times are to be compared.
 CaseComparison compareCase(std::span<const Candidate> before, const Candidate& after,
                            const ComparisonOptions& options) {
   const CaseResult& a = *before.front().result;
   const CaseResult& b = *after.result;
   CaseComparison compared{.id = b.id,
                           .baseline = a.id == b.id ? "" : a.id,
+                          .verdict = Verdict::not_timed,
                           .conditions = differencesOf(before.front(), after),
                           .status_before = a.status,
                           .status_after = b.status};
-  const auto refused = [](const ConditionDifference& one) { return one.refused; };
+  const auto refused = [](const ConditionDifference& difference) { return difference.refused; };
   if (a.status != b.status) {
     compared.verdict = a.status == Status::ok ? Verdict::regressed : Verdict::other_status;
   } else if (b.status != Status::ok) {
     compared.verdict = Verdict::not_ok;
   } else if (!options.any_conditions && std::ranges::any_of(compared.conditions, refused)) {
     compared.verdict = Verdict::other_conditions;
-  } else {
-    std::vector<CaseInRun> runs;
-    for (const Candidate& one : before) {
-      if (one.result->status == Status::ok) runs.push_back(one.inRun());
-    }
-    compared.ratio = ratioOfRuns(runs, after.inRun());
-    compared.verdict =
-        compared.ratio ? verdictOn(compared.ratio->ratio.ci95, options) : Verdict::not_timed;
   }
   return compared;
 }
@@ -168,11 +159,12 @@ void noteRun(const NamedResults& run, std::vector<std::string>& notes) {
   }
 }
 
-/// Finds for each case of B what it is compared with.
+/// Finds for each case of B what it is compared with, and compares them.
 class Matching {
  public:
-  Matching(std::span<const NamedResults> before, const ComparisonOptions& options)
-      : options_(options) {
+  Matching(std::span<const NamedResults> before, const NamedResults& after,
+           const ComparisonOptions& options)
+      : options_(options), within_a_run_(before.size() == 1 && before[0].name == after.name) {
     for (const NamedResults& run : before) {
       std::set<CaseKey> first_ones;  // of this run
       for (const auto& [key, candidate] : keysOf(run.results, options.by)) {
@@ -182,14 +174,29 @@ class Matching {
         if (options.by.empty()) by_id_[candidate.result->id] = key;
       }
     }
+    for (const auto& [key, candidate] : keysOf(after.results, options.by)) take(key, candidate);
+    for (const CaseKey& key : order_) {
+      if (met_.contains(key)) continue;
+      cases_.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
+    }
+    compareTimes();
   }
 
-  void take(const CaseKey& key, const Candidate& after, std::vector<CaseComparison>& cases) {
+  std::vector<CaseComparison> takeCases() { return std::move(cases_); }
+
+ private:
+  void take(const CaseKey& key, const Candidate& after) {
     if (const auto found = before_.find(key); found != before_.end()) {
       met_.insert(key);
-      const CaseResult& first = *found->second.front().result;
-      if (options_.by.empty() || first.id != after.result->id) {
-        cases.push_back(compareCase(found->second, after, options_));
+      const std::vector<Candidate>& before = found->second;
+      if (!options_.by.empty() && before.front().result->id == after.result->id) return;
+      cases_.push_back(compareCase(before, after, options_));
+      if (cases_.back().verdict != Verdict::not_timed) return;
+      PairedCase& paired = timed_.emplace_back();
+      timed_cases_.push_back(cases_.size() - 1);
+      paired.after = after.result;
+      for (const Candidate& candidate : before) {
+        if (candidate.result->status == Status::ok) paired.before.push_back(candidate.result);
       }
       return;
     }
@@ -197,23 +204,39 @@ class Matching {
     const bool other =
         namesake != by_id_.end() && std::get<0>(namesake->second) != after.result->recording.hash;
     if (other) met_.insert(namesake->second);
-    cases.push_back(
+    cases_.push_back(
         {.id = after.result->id, .verdict = other ? Verdict::other_recording : Verdict::added});
   }
 
-  void addMissing(std::vector<CaseComparison>& cases) const {
-    for (const CaseKey& key : order_) {
-      if (met_.contains(key)) continue;
-      cases.push_back({.id = before_.at(key).front().result->id, .verdict = Verdict::missing});
+  void compareTimes() {
+    const std::vector<std::optional<RunRatio>> ratios = ratiosOfTimed();
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      CaseComparison& compared = cases_[timed_cases_[i]];
+      compared.ratio = ratios[i];
+      if (ratios[i]) compared.verdict = verdictOn(ratios[i]->ratio, options_);
     }
   }
 
- private:
+  /// Variants are not expected to drift alike: with --by each is judged alone.
+  [[nodiscard]] std::vector<std::optional<RunRatio>> ratiosOfTimed() const {
+    if (options_.by.empty()) return ratiosOfRuns(timed_);
+    std::vector<std::optional<RunRatio>> ratios;
+    for (const PairedCase& paired : timed_) {
+      ratios.push_back(within_a_run_ ? ratioWithinRun(*paired.before.front(), *paired.after)
+                                     : ratiosOfRuns({&paired, 1}).front());
+    }
+    return ratios;
+  }
+
   const ComparisonOptions& options_;
+  bool within_a_run_;
   std::map<CaseKey, std::vector<Candidate>> before_;
   std::map<std::string, CaseKey> by_id_;
   std::vector<CaseKey> order_;
   std::set<CaseKey> met_;
+  std::vector<CaseComparison> cases_;
+  std::vector<PairedCase> timed_;
+  std::vector<std::size_t> timed_cases_;  ///< for each timed one its place among the cases
 };
 
 /// "+5.3 %"
@@ -229,7 +252,8 @@ std::size_t Comparison::count(Verdict verdict) const {
 
 bool Comparison::fails(const CaseComparison& compared) const {
   return compared.verdict == Verdict::regressed ||
-         (compared.verdict == Verdict::missing && !options.allow_missing);
+         (compared.verdict == Verdict::missing && !options.allow_missing) ||
+         (compared.verdict == Verdict::undecided && options.fail_undecided);
 }
 
 bool Comparison::comparable() const {
@@ -241,13 +265,12 @@ bool Comparison::comparable() const {
 }
 
 std::optional<double> Comparison::drift() const {
-  std::optional<double> most;
+  std::vector<double> drifts;
   for (const CaseComparison& compared : cases) {
-    if (!compared.ratio || !compared.ratio->drift) continue;
-    const double drift = *compared.ratio->drift;
-    if (!most || std::abs(drift) > std::abs(*most)) most = drift;
+    if (compared.ratio && compared.ratio->drift) drifts.push_back(*compared.ratio->drift);
   }
-  return most;
+  if (drifts.empty()) return std::nullopt;
+  return quantile(drifts, 0.5);
 }
 
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
@@ -256,11 +279,14 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
   Comparison comparison{.options = options, .cases = {}, .notes = {}};
   for (const NamedResults& run : before) noteRun(run, comparison.notes);
   noteRun(after, comparison.notes);
-  Matching matching(before, comparison.options);
-  for (const auto& [key, candidate] : keysOf(after.results, options.by)) {
-    matching.take(key, candidate, comparison.cases);
+  comparison.cases = Matching(before, after, comparison.options).takeCases();
+  const double drift = comparison.drift().value_or(0);
+  if (std::abs(drift) > options.margin) {
+    comparison.notes.push_back(fmt::format(
+        "all cases together took {:+.1f} % time: the machine changed, or something that "
+        "they share; each is judged relative to the others",
+        100 * drift));
   }
-  matching.addMissing(comparison.cases);
   return comparison;
 }
 
@@ -277,6 +303,11 @@ std::string verdictText(const CaseComparison& compared) {
       (compared.verdict == Verdict::regressed && compared.ratio)) {
     return fmt::format("{} {}", verdict, slowdownText(compared.ratio->ratio));
   }
+  if (compared.verdict == Verdict::undecided) {
+    const auto& [ratio, interval] = compared.ratio->ratio;
+    return fmt::format("{}: cannot tell within ±{:.0f} %", verdict,
+                       100 * (interval.high / ratio - 1));
+  }
   return verdict;
 }
 
@@ -289,7 +320,7 @@ std::string summaryText(const Comparison& comparison) {
   std::string text =
       fmt::format("{}: {}", counted(comparison.cases.size(), "case"), fmt::join(parts, ", "));
   if (const auto drift = comparison.drift()) {
-    text += fmt::format("; the machine drifted by up to {:+.1f} %", 100 * *drift);
+    text += fmt::format("; drift {:+.1f} %", 100 * *drift);
   }
   return text;
 }

@@ -31,13 +31,14 @@ struct CaseComparison {
 };
 
 struct ComparisonOptions {
-  double margin = 0.02;      ///< differences within it do not matter
   double fail_above = 0.05;  ///< a slow-down by more than this share is a regression
+  double margin = 0.05;      ///< smaller differences do not matter; at most `fail_above` counts
   /// "": each case is compared with itself. Else with the first case of A that differs at most in
   /// this: "algorithm", "threads", "isa" or a parameter.
   std::string by;
   bool any_conditions = false;  ///< compares what is refused otherwise
   bool allow_missing = false;   ///< cases that are only in A are no failure
+  bool fail_undecided = false;
 };
 
 struct Comparison {
@@ -51,7 +52,7 @@ struct Comparison {
   [[nodiscard]] bool fails(const CaseComparison& compared) const;
   /// Whether any case ran on the same recording in both runs.
   [[nodiscard]] bool comparable() const;
-  /// The largest drift of any case, as RunRatio::drift.
+  /// The median drift of the cases, as RunRatio::drift.
   [[nodiscard]] std::optional<double> drift() const;
 };
 

@@ -170,13 +170,10 @@ class PlanRun {
     if (!planned.run) {
       planned.run = std::make_unique<CaseRun>(test_case, request_.policy, make_host_, cancelled);
     }
-    const YardstickTimes yardsticks = measured ? yardsticks_.recent() : YardstickTimes();
-    const std::size_t before = result.repetitions.size();
     const RunHooks hooks{.cancelled = cancelled, .progress = [&](std::uint32_t frame) {
                            observer_.onProgress(steps + frame, test_case.algorithm.id);
                          }};
     if (!runRepetition(result, *planned.run, recording, oracle, hooks, measured)) return false;
-    if (result.repetitions.size() > before) result.repetitions.back().yardsticks = yardsticks;
     timed_out_.add(result, test_case);
     return true;
   }
@@ -236,7 +233,6 @@ class PlanRun {
   RunWarnings warnings_;
   ResultFiles files_;
   TimedOutVariants timed_out_;
-  Yardsticks yardsticks_;
   std::vector<PlannedCase> cases_;  ///< of the present recording
 };
 

@@ -13,13 +13,13 @@
 namespace broadmark {
 namespace {
 
-/// Between two runs of one repetition each, nothing tells how much repetitions differ: this much is
-/// taken for it, as a logarithm. Whole runs on shared machines differ by that.
-constexpr double kUnknownSpread = 0.15;
-/// As many baselines tell how much runs differ, beside what repetitions and yardsticks show. Fewer
-/// do not: then this much is taken for it, likewise.
-constexpr std::size_t kFewestRuns = 3;
+/// Fewer other cases do not tell how much runs differ, nor do fewer baselines. Half of an interval,
+/// as a logarithm, is then taken for it, since whole runs on shared machines differ by that, and
+/// another one where a side has a single repetition.
+constexpr std::size_t kMinOthers = 3;
+constexpr std::size_t kMinBaselines = 3;
 constexpr double kUnknownRunSpread = 0.08;
+constexpr double kUnknownRepetitionSpread = 0.15;
 
 using PassTimes = std::vector<double>;  ///< seconds of each frame
 
@@ -110,19 +110,18 @@ double varianceOfLevel(const std::vector<const PassTimes*>& passes, std::size_t 
          static_cast<double>(passes.size() - half);
 }
 
-/// What repetitions differ by: half of an interval, as a logarithm.
+/// Noise from repetition to repetition of both sides: half of an interval, as a logarithm.
 double repetitionNoise(std::span<const TimedRun> before, std::span<const TimedRun> after,
                        std::size_t frames) {
   const std::vector<const PassTimes*> a = passesOf(before);
   const std::vector<const PassTimes*> b = passesOf(after);
-  if (a.size() < 2 || b.size() < 2) return kUnknownSpread;
+  if (a.size() < 2 || b.size() < 2) return 0;
   const auto degrees = static_cast<double>(a.size() + b.size() - 2);
   return studentT975(degrees) * std::sqrt(varianceOfLevel(a, frames) + varianceOfLevel(b, frames));
 }
 
-/// What runs differ by, as far as there are enough of them to tell: likewise.
-double runNoise(std::span<const TimedRun> before, std::size_t frames) {
-  if (before.size() < kFewestRuns) return kUnknownRunSpread;
+/// What one more run differs by from the mean of the baselines, likewise.
+double baselineSpread(std::span<const TimedRun> before, std::size_t frames) {
   std::vector<double> levels;
   for (const TimedRun& run : before) {
     const std::vector<const PassTimes*> passes = passesOf({&run, 1});
@@ -131,34 +130,11 @@ double runNoise(std::span<const TimedRun> before, std::size_t frames) {
     levels.push_back(levelOf(passes, all, frames));
   }
   const auto runs = static_cast<double>(levels.size());
-  // Of their mean, and of one more run.
   return studentT975(runs - 1) * standardDeviation(levels) * std::sqrt(1 / runs + 1);
 }
 
-/// Mean logarithm of a yardstick's least times in these runs; nothing unless all have it.
-std::optional<double> levelOf(std::span<const CaseInRun> runs, Yardstick which) {
-  double sum = 0;
-  for (const CaseInRun& run : runs) {
-    if (!run.pace) return std::nullopt;
-    sum += std::log(static_cast<double>(std::max<std::int64_t>((*run.pace)[which], 1)));
-  }
-  return sum / static_cast<double>(runs.size());
-}
-
-/// By how much the machine was slower during `after`, as a logarithm.
-std::optional<double> driftBetween(std::span<const CaseInRun> before, const CaseInRun& after) {
-  double most = 0;
-  for (const auto& yardstick : kYardsticks.entries) {
-    const auto a = levelOf(before, yardstick.value);
-    const auto b = levelOf({&after, 1}, yardstick.value);
-    if (!a || !b) return std::nullopt;
-    if (std::abs(*b - *a) > std::abs(most)) most = *b - *a;
-  }
-  return most;
-}
-
-/// Of the logarithm of the sums' ratio: noise from frame to frame.
-Interval frameNoise(std::span<const double> before, std::span<const double> after) {
+/// Noise from frame to frame: half of an interval of the sums' ratio, as a logarithm.
+double frameNoise(std::span<const double> before, std::span<const double> after) {
   const auto log_of = [&](std::span<const std::size_t> drawn) {
     double a = 0;
     double b = 0;
@@ -175,31 +151,25 @@ Interval frameNoise(std::span<const double> before, std::span<const double> afte
   std::vector<double> influence(before.size());
   std::ranges::transform(before, after, influence.begin(),
                          [&](double a, double b) { return b - std::exp(estimate) * a; });
-  return blockBootstrap95(before.size(), safeBlockLength(influence), estimate, log_of);
+  const Interval interval =
+      blockBootstrap95(before.size(), safeBlockLength(influence), estimate, log_of);
+  return (interval.high - interval.low) / 2;
 }
 
-}  // namespace
+/// A case by itself, without what the other cases tell. Ratio and noise are logarithms.
+struct OwnRatio {
+  double before = 0;  ///< seconds
+  double after = 0;
+  double ratio = 0;
+  double noise = 0;        ///< within the runs: half of an interval
+  double spread = 0;       ///< from run to run: half of an interval
+  bool identical = false;  ///< the very same times in both runs
+};
 
-std::optional<YardstickTimes> paceOf(const Results& results, const std::string& recording_hash) {
-  std::optional<YardstickTimes> pace;
-  for (const CaseResult& result : results.cases) {
-    if (result.recording.hash != recording_hash) continue;
-    for (const Repetition& repetition : result.repetitions) {
-      if (!repetition.yardsticks) continue;
-      if (!pace) pace = repetition.yardsticks;
-      for (const auto& yardstick : kYardsticks.entries) {
-        std::int64_t& least = (*pace)[yardstick.value];
-        least = std::min(least, (*repetition.yardsticks)[yardstick.value]);
-      }
-    }
-  }
-  return pace;
-}
-
-std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const CaseInRun& after) {
+std::optional<OwnRatio> ownRatio(const PairedCase& paired) {
   std::vector<TimedRun> runs;
-  for (const CaseInRun& run : before) runs.push_back(runOf(*run.result));
-  const TimedRun judged = runOf(*after.result);
+  for (const CaseResult* result : paired.before) runs.push_back(runOf(*result));
+  const TimedRun judged = runOf(*paired.after);
   const std::span<const TimedRun> alone(&judged, 1);
   const std::size_t frames = std::min(framesOf(runs), framesOf(alone));
   if (frames == 0) return std::nullopt;
@@ -207,19 +177,102 @@ std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const Cas
   const std::size_t drawn = std::min(passesOf(runs).size(), judged.passes.size());
   const std::vector<double> a = leastTimes(runs, frames, drawn);
   const std::vector<double> b = leastTimes(alone, frames, drawn);
-  RunRatio result{.before = mean(a), .after = mean(b), .ratio = {}, .drift = {}};
-  const double estimate = std::log(result.after / result.before);
-  const std::optional<double> drift = driftBetween(before, after);
-  const double between = std::hypot(repetitionNoise(runs, alone, frames), runNoise(runs, frames));
-  const Interval noise = frameNoise(a, b);
-  const auto half = [&](double of_frames) {
-    return std::hypot(of_frames, between) + std::abs(drift.value_or(0));
-  };
-  result.ratio = {std::exp(estimate),
-                  {std::exp(estimate - half(estimate - noise.low)),
-                   std::exp(estimate + half(noise.high - estimate))}};
-  if (drift) result.drift = std::expm1(*drift);
-  return result;
+  OwnRatio own{.before = mean(a), .after = mean(b)};
+  own.identical = runs.size() == 1 && runs.front().passes == judged.passes;
+  if (own.identical) return own;
+  own.ratio = std::log(own.after / own.before);
+  own.noise = std::hypot(frameNoise(a, b), repetitionNoise(runs, alone, frames));
+  own.spread =
+      std::hypot(runs.size() < kMinBaselines ? kUnknownRunSpread : baselineSpread(runs, frames),
+                 drawn < 2 ? kUnknownRepetitionSpread : 0);
+  return own;
+}
+
+RunRatio ratioFrom(const OwnRatio& own, double drift, double half) {
+  const double ratio = own.ratio - drift;
+  return {.before = own.before,
+          .after = own.after,
+          .ratio = {std::exp(ratio), {std::exp(ratio - half), std::exp(ratio + half)}},
+          .drift = std::nullopt};
+}
+
+/// The cases of two runs, each by itself: nothing for those without times.
+class OwnRatios {
+ public:
+  explicit OwnRatios(std::span<const PairedCase> cases) : cases_(cases) {
+    std::ranges::transform(cases, std::back_inserter(ratios_), ownRatio);
+  }
+
+  [[nodiscard]] const std::optional<OwnRatio>& operator[](std::size_t i) const {
+    return ratios_[i];
+  }
+
+  /// Median ratio of the other cases on the same recording, which took turns with this one, or of
+  /// all others where there are fewer than two of those. Nothing if there are no others.
+  [[nodiscard]] std::optional<double> driftOf(std::size_t i) const {
+    constexpr std::size_t kMinTurns = 2;
+    std::vector<double> others = othersOf(i, true);
+    if (others.size() < kMinTurns) others = othersOf(i, false);
+    if (others.empty()) return std::nullopt;
+    return quantile(others, 0.5);
+  }
+
+  /// Half of an interval of what the other cases' ratios differ from their drift by, which contains
+  /// the noise within their runs. Nothing if there are too few.
+  [[nodiscard]] std::optional<double> spreadWithout(std::size_t i) const {
+    std::vector<double> deviations;
+    for (std::size_t j = 0; j < ratios_.size(); ++j) {
+      if (j != i && ratios_[j]) deviations.push_back(std::abs(ratios_[j]->ratio - *driftOf(j)));
+    }
+    if (deviations.size() < kMinOthers) return std::nullopt;
+    constexpr double kSigmas = 1.4826;  // of a normal distribution, in its median deviation
+    return studentT975(static_cast<double>(deviations.size() - 1)) * kSigmas *
+           quantile(deviations, 0.5);
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> othersOf(std::size_t i, bool on_the_same_recording) const {
+    std::vector<double> others;
+    for (std::size_t j = 0; j < ratios_.size(); ++j) {
+      const bool counts = !on_the_same_recording ||
+                          cases_[j].after->recording.hash == cases_[i].after->recording.hash;
+      if (j != i && ratios_[j] && counts) others.push_back(ratios_[j]->ratio);
+    }
+    return others;
+  }
+
+  std::span<const PairedCase> cases_;
+  std::vector<std::optional<OwnRatio>> ratios_;
+};
+
+}  // namespace
+
+std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases) {
+  const OwnRatios own(cases);
+  std::vector<std::optional<RunRatio>> ratios(cases.size());
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!own[i]) continue;
+    if (own[i]->identical) {
+      ratios[i] = ratioFrom(*own[i], 0, 0);
+      continue;
+    }
+    const std::optional<double> drift = own.driftOf(i);
+    if (const std::optional<double> spread = own.spreadWithout(i)) {
+      ratios[i] = ratioFrom(*own[i], *drift, std::max(own[i]->noise, *spread));
+    } else {
+      // One or two others may have changed themselves: the ratio is their drift or this case's.
+      ratios[i] = ratioFrom(
+          *own[i], 0, std::hypot(own[i]->noise, own[i]->spread) + std::abs(drift.value_or(0)));
+    }
+    if (drift) ratios[i]->drift = std::expm1(*drift);
+  }
+  return ratios;
+}
+
+std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResult& after) {
+  const std::optional<OwnRatio> own = ownRatio({.before = {&before}, .after = &after});
+  if (!own) return std::nullopt;
+  return ratioFrom(*own, 0, own->noise);
 }
 
 Verdict verdictOn(const Interval& ratio, double margin) {

@@ -66,10 +66,10 @@ std::vector<Repetition> framesFrom(const JsonFields& json, const Json& initializ
 
 /// An array for each name of a table: get(value of the name, place) for each of `count` places.
 template <class Table, class Get>
-Json arraysOf(const Table& table, std::string_view suffix, std::size_t count, Get&& get) {
+Json arraysOf(const Table& table, std::size_t count, Get&& get) {
   Json json = Json::object();
   for (const auto& [which, name] : table.entries) {
-    Json& array = json[fmt::format("{}{}", name, suffix)] = Json::array();
+    Json& array = json[std::string(name)] = Json::array();
     for (std::size_t place = 0; place < count; ++place) array.push_back(get(which, place));
   }
   return json;
@@ -78,11 +78,11 @@ Json arraysOf(const Table& table, std::string_view suffix, std::size_t count, Ge
 /// Calls take(value of the name, place, element, name for messages) for each element of these
 /// arrays, each of which must have `count`, or `complaint` says what is wrong.
 template <class Table, class Take>
-void readArrays(const JsonFields& json, const Table& table, std::string_view suffix, bool optional,
-                std::size_t count, std::string_view complaint, Take&& take) {
+void readArrays(const JsonFields& json, const Table& table, std::size_t count,
+                std::string_view complaint, Take&& take) {
   for (const auto& [which, name] : table.entries) {
-    const std::string key = fmt::format("{}{}", name, suffix);
-    if (optional && !json.has(key.c_str())) continue;
+    const std::string key(name);
+    if (!json.has(key.c_str())) continue;
     const Json& array = json.array(key.c_str());
     const std::string path = json.path(key.c_str());
     if (array.size() != count) throw InputError(fmt::format("{}: {}", path, complaint));
@@ -93,7 +93,7 @@ void readArrays(const JsonFields& json, const Table& table, std::string_view suf
 /// Those of wrong pairs only where there are any.
 Json frameCountsToJson(const std::vector<FrameCounts>& frames) {
   const auto get = [&](FrameCount which, std::size_t f) { return frames[f][which]; };
-  Json json = arraysOf(kFrameCounts, "", frames.size(), get);
+  Json json = arraysOf(kFrameCounts, frames.size(), get);
   for (const auto& [which, name] : kFrameCounts.entries) {
     const bool always = which == FrameCount::pairs || which == FrameCount::changed_bodies;
     const auto counted = [which = which](const FrameCounts& frame) { return frame[which] != 0; };
@@ -110,15 +110,10 @@ void addFrames(Json& json, const CaseResult& result) {
   for (const Repetition& repetition : repetitions) {
     json["initialize_ns"].push_back(repetition.initialize_ns);
   }
-  json["yardsticks"] =
-      arraysOf(kYardsticks, "_ns", repetitions.size(), [&](Yardstick which, std::size_t r) {
-        const auto& times = repetitions[r].yardsticks;
-        return times ? Json((*times)[which]) : Json(nullptr);
+  json["processor"] =
+      arraysOf(kProcessorCounters, repetitions.size(), [&](ProcessorCounter which, std::size_t r) {
+        return orNull(repetitions[r].processor[which]);
       });
-  json["processor"] = arraysOf(kProcessorCounters, "", repetitions.size(),
-                               [&](ProcessorCounter which, std::size_t r) {
-                                 return orNull(repetitions[r].processor[which]);
-                               });
   json["frame_counts"] = frameCountsToJson(result.frames);
   json["frames"] = framesToJson(repetitions);
 }
@@ -129,7 +124,7 @@ void readFrames(const JsonFields& json, CaseResult& result) {
       framesFrom(json.object("frames"), json.array("initialize_ns"), json.path("initialize_ns"));
   if (json.has("processor")) {
     readArrays(
-        json.object("processor"), kProcessorCounters, "", true, repetitions.size(),
+        json.object("processor"), kProcessorCounters, repetitions.size(),
         "one count per repetition is expected",
         [&](ProcessorCounter which, std::size_t r, const Json& sum, const std::string& name) {
           if (sum.is_null()) return;
@@ -139,18 +134,10 @@ void readFrames(const JsonFields& json, CaseResult& result) {
   if (!json.has("conditions")) return;  // results/1 has no more
   const JsonFields counts = json.object("frame_counts");
   result.frames.resize(counts.array("pairs").size());
-  readArrays(counts, kFrameCounts, "", true, result.frames.size(),
+  readArrays(counts, kFrameCounts, result.frames.size(),
              "all counts must have the same number of frames",
              [&](FrameCount which, std::size_t f, const Json& count, const std::string& name) {
                result.frames[f][which] = JsonFields::integerOf<std::uint64_t>(count, name);
-             });
-  readArrays(json.object("yardsticks"), kYardsticks, "_ns", false, repetitions.size(),
-             "one time per repetition is expected",
-             [&](Yardstick which, std::size_t r, const Json& time, const std::string& name) {
-               if (time.is_null()) return;
-               std::optional<YardstickTimes>& times = repetitions[r].yardsticks;
-               if (!times) times.emplace();
-               (*times)[which] = JsonFields::integerOf<std::int64_t>(time, name, 1);
              });
 }
 

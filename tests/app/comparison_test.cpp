@@ -50,9 +50,10 @@ Comparison comparisonOf(const NamedResults& before, const NamedResults& after,
 }
 
 /// The verdict on one case in both runs.
-Verdict verdictOn(const CaseResult& before, const CaseResult& after, double fail_above = 0.05) {
-  const Comparison comparison =
-      comparisonOf(resultsOf({before}), resultsOf({after}), {.fail_above = fail_above});
+Verdict verdictOn(const CaseResult& before, const CaseResult& after, double fail_above = 0.05,
+                  double margin = 0.05) {
+  const Comparison comparison = comparisonOf(resultsOf({before}), resultsOf({after}),
+                                             {.fail_above = fail_above, .margin = margin});
   EXPECT_EQ(comparison.cases.size(), 1U);
   const CaseComparison& compared = comparison.cases.front();
   EXPECT_EQ(comparison.fails(compared), compared.verdict == Verdict::regressed);
@@ -73,7 +74,7 @@ TEST(Compare, WithItselfIsTheSame) {
 TEST(Compare, TimesDecide) {
   const CaseResult normal = resultOf("a", 1'000'000);
   EXPECT_EQ(verdictOn(normal, resultOf("a", 1'500'000)), Verdict::regressed);
-  EXPECT_EQ(verdictOn(normal, resultOf("a", 1'030'000)), Verdict::slower);
+  EXPECT_EQ(verdictOn(normal, resultOf("a", 1'030'000), 0.05, 0.02), Verdict::slower);
   EXPECT_EQ(verdictOn(normal, resultOf("a", 700'000)), Verdict::faster);
 }
 
@@ -82,7 +83,7 @@ TEST(Compare, OneBaselineTellsLittle) {
   const auto verdict = [&](std::int64_t ns) {
     return compareResults({&before, 1}, resultsOf({resultOf("a", ns)}), {}).cases[0].verdict;
   };
-  EXPECT_EQ(verdict(1'000'000), Verdict::undecided);
+  EXPECT_EQ(verdict(1'010'000), Verdict::undecided);
   EXPECT_EQ(verdict(1'050'000), Verdict::undecided);
   EXPECT_EQ(verdict(1'200'000), Verdict::regressed);
 }

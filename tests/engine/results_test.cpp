@@ -99,9 +99,7 @@ Results everything() {
                        .invalid_pairs = {{1, 1}, {9, 0xFFFFFFFF}, {0, 1}}}};
   full.setup = {{"kernel_build_ns", 77}};
   full.peak_bytes = 12345;
-  full.repetitions = {{.initialize_ns = 5,
-                       .frames = {times(1000), times(2000)},
-                       .yardsticks = YardstickTimes{{100, 200}}},
+  full.repetitions = {{.initialize_ns = 5, .frames = {times(1000), times(2000)}},
                       {.initialize_ns = 6, .frames = {times(3000)}}};
   full.frames = {{{1, 10, 1, 1, 1, 3}}, {{2, 4, 0, 0, 0, 0}}};
   full.conditions = {.check = CheckMode::hash,
@@ -145,9 +143,6 @@ TEST(ResultsJson, ReadsBackAsItWasWritten) {
   EXPECT_FALSE(copy.cases.at(1).bodies) << "where nobody is ever absent";
   EXPECT_EQ(full.differences.at(0).invalid_pairs.at(1), (Pair{9, 0xFFFFFFFF}));
   EXPECT_EQ(full.repetitions.at(1).frames.at(0)[Phase::total], 3000 + kTotal);
-  ASSERT_TRUE(full.repetitions.at(0).yardsticks);
-  EXPECT_EQ((*full.repetitions[0].yardsticks)[Yardstick::memory], 200);
-  EXPECT_FALSE(full.repetitions.at(1).yardsticks);
   EXPECT_EQ(full.frames.at(0)[FrameCount::invalid], 3U);
   EXPECT_EQ(full.conditions.check, CheckMode::hash);
   EXPECT_EQ(full.conditions.frame_limit_seconds, 0.5);
@@ -234,8 +229,6 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
       {"/complete", 1, "complete", "true or false"},
       {"/cases/1/environment", 1, "case 'bare'", "no environment 1"},
       {"/cases/0/conditions/check", "some", "cases[0]: conditions: check", "'some'"},
-      {"/cases/0/yardsticks/memory_ns", Json::array(), "cases[0]: yardsticks: memory_ns",
-       "one time"},
       {"/cases/0/frame_counts/missed", Json::array({1}), "cases[0]: frame_counts: missed",
        "same number"},
       {"/options", "x", "options", "array"},
@@ -292,7 +285,7 @@ Json asResults1() {
   json.erase("environments");
   json.erase("complete");
   for (Json& one : json["cases"]) {
-    for (const char* key : {"environment", "conditions", "yardsticks", "frame_counts"}) {
+    for (const char* key : {"environment", "conditions", "frame_counts"}) {
       one.erase(key);
     }
   }

@@ -26,20 +26,23 @@ CaseResult resultOf(const std::vector<std::vector<double>>& passes) {
   return result;
 }
 
-/// A case in a run of nothing else.
-CaseInRun inRun(const CaseResult& result) {
-  Results run;
-  run.cases = {result};
-  return {.result = &result, .pace = paceOf(run, result.recording.hash)};
-}
-
 std::optional<RunRatio> ratioOf(const std::vector<CaseResult>& before, const CaseResult& after) {
-  std::vector<CaseInRun> runs;
-  for (const CaseResult& run : before) runs.push_back(inRun(run));
-  return ratioOfRuns(runs, inRun(after));
+  PairedCase paired{.before = {}, .after = &after};
+  for (const CaseResult& result : before) paired.before.push_back(&result);
+  return ratiosOfRuns({&paired, 1}).front();
 }
 RunRatio ratioOf(const CaseResult& before, const CaseResult& after) {
   return ratioOf(std::vector{before}, after).value();
+}
+
+/// The ratios of the cases of two runs.
+std::vector<RunRatio> ratiosOf(const std::vector<CaseResult>& before,
+                               const std::vector<CaseResult>& after) {
+  std::vector<PairedCase> cases;
+  for (std::size_t i = 0; i < after.size(); ++i) cases.push_back({{&before[i]}, &after[i]});
+  std::vector<RunRatio> ratios;
+  for (const std::optional<RunRatio>& ratio : ratiosOfRuns(cases)) ratios.push_back(ratio.value());
+  return ratios;
 }
 
 TEST(RunRatio, IsTheQuotientOfTheMeansOfLeastTimes) {
@@ -72,46 +75,93 @@ TEST(RunRatio, ClockTicksOfZeroStillHaveARatio) {
   EXPECT_DOUBLE_EQ(ratio.ratio.value, 1);
 }
 
-TEST(RunRatio, ThePaceIsTheLeastOfAllCasesThatTookTurns) {
-  CaseResult one = resultOf({{1}, {1}});
-  one.repetitions[0].yardsticks = {{5, 9}};
-  one.repetitions[1].yardsticks = {{7, 8}};
-  CaseResult other = one;
-  other.repetitions[1].yardsticks = {{6, 3}};
-  CaseResult elsewhere = one;
-  elsewhere.recording.hash = "elsewhere";
-  elsewhere.repetitions[0].yardsticks = {{1, 1}};
-  Results run;
-  run.cases = {one, other, elsewhere};
-  const std::optional<YardstickTimes> pace = paceOf(run, "");
-  ASSERT_TRUE(pace);
-  EXPECT_EQ(pace->values, (YardstickTimes{{5, 3}}.values));
-  run.cases = {resultOf({{1}})};
-  EXPECT_FALSE(paceOf(run, ""));
+/// Two repetitions of 50 frames that all take this long, but for a thousandth.
+CaseResult constant(double seconds) {
+  return resultOf({std::vector<double>(50, seconds), std::vector<double>(50, seconds * 1.001)});
 }
 
-TEST(RunRatio, DriftWidensTheIntervalAndMovesNothing) {
-  CaseResult before = resultOf({std::vector<double>(50, 1.0), std::vector<double>(50, 1.001)});
-  CaseResult after = before;
-  const Interval calm = ratioOf(before, after).ratio.ci95;
-  for (Repetition& repetition : before.repetitions) repetition.yardsticks = {{1000, 1000}};
-  for (Repetition& repetition : after.repetitions) repetition.yardsticks = {{1010, 1100}};
-  const RunRatio drifted = ratioOf(before, after);
-  EXPECT_DOUBLE_EQ(drifted.ratio.value, 1);
-  ASSERT_TRUE(drifted.drift);
-  EXPECT_NEAR(*drifted.drift, 0.1, 1e-9);
-  EXPECT_NEAR(drifted.ratio.ci95.high, calm.high * 1.1, 1e-9);
-  EXPECT_NEAR(drifted.ratio.ci95.low, calm.low / 1.1, 1e-9);
+TEST(RunRatio, OfTheSameTimesIsOneWithoutAnInterval) {
+  const Estimate ratio = ratioOf(resultOf({{1, 9}, {4, 3}}), resultOf({{1, 9}, {4, 3}})).ratio;
+  EXPECT_EQ(ratio.value, 1);
+  EXPECT_EQ(ratio.ci95.low, 1);
+  EXPECT_EQ(ratio.ci95.high, 1);
 }
 
-/// A run of so many passes of 100 frames, of different lengths, on an uneven machine.
-CaseResult runOn(UnevenMachine machine, double seconds, int passes) {
+TEST(RunRatio, IsRelativeToTheMedianOfTheOtherCases) {
+  const std::vector<CaseResult> before(5, constant(1));
+  const std::vector<RunRatio> ratios = ratiosOf(
+      before, {constant(1.1), constant(1.1), constant(1.32), constant(1.1), constant(1.1)});
+  EXPECT_NEAR(ratios[2].ratio.value, 1.2, 1e-6);
+  EXPECT_NEAR(ratios[2].drift.value(), 0.1, 1e-6);
+  EXPECT_GT(ratios[2].ratio.ci95.low, 1.19);
+  for (const std::size_t other : {0U, 1U, 3U, 4U}) {
+    EXPECT_NEAR(ratios[other].ratio.value, 1, 1e-6);
+    EXPECT_NEAR(ratios[other].drift.value(), 0.1, 1e-6) << "not moved by the odd one out";
+  }
+}
+
+TEST(RunRatio, TheOtherCasesTellHowMuchRunsDiffer) {
+  const std::vector<CaseResult> before(5, constant(1));
+  const auto half = [&](double spread) {
+    const RunRatio ratio =
+        ratiosOf(before, {constant(1.0001), constant(1 + spread), constant(1 - spread),
+                          constant(1 + 2 * spread), constant(1 - 2 * spread)})
+            .front();
+    return ratio.ratio.ci95.high - 1;
+  };
+  EXPECT_LT(half(0.002), 0.03);
+  EXPECT_GT(half(0.02), 0.05);
+}
+
+TEST(RunRatio, TheDriftOfOneOtherCaseWidensTheInterval) {
+  const RunRatio ratio =
+      ratiosOf({constant(1), constant(1)}, {constant(1.001), constant(0.7)}).front();
+  EXPECT_NEAR(ratio.ratio.value, 1.001, 1e-6);
+  EXPECT_GT(ratio.ratio.ci95.high, 1 / 0.7);
+  EXPECT_LT(ratio.ratio.ci95.low, 0.7);
+}
+
+TEST(RunRatio, CasesOnTheSameRecordingTellTheirDrift) {
+  std::vector<CaseResult> before;
+  std::vector<CaseResult> after;
+  for (const auto& [recording, drift] : {std::pair{"a", 1.02}, {"b", 0.98}, {"c", 1.0}}) {
+    for (int i = 0; i < 3; ++i) {
+      before.push_back(constant(1));
+      after.push_back(constant(drift));
+      after.back().recording.hash = recording;
+    }
+  }
+  for (const RunRatio& ratio : ratiosOf(before, after)) {
+    EXPECT_NEAR(ratio.ratio.value, 1, 1e-6);
+    EXPECT_LT(ratio.ratio.ci95.high, 1.01);
+  }
+}
+
+TEST(RunRatio, IntervalsAreOfPositiveNumbers) {
+  const std::vector<RunRatio> ratios =
+      ratiosOf(std::vector<CaseResult>(4, resultOf({{1e-3}, {1e3}})),
+               {resultOf({{1e-6}, {1e6}}), resultOf({{1}, {1e9}}), resultOf({{1e-9}, {1}}),
+                resultOf({{1e3}, {1e-3}})});
+  for (const RunRatio& ratio : ratios) {
+    EXPECT_GT(ratio.ratio.ci95.low, 0);
+    EXPECT_LE(ratio.ratio.ci95.low, ratio.ratio.value);
+    EXPECT_GE(ratio.ratio.ci95.high, ratio.ratio.value);
+  }
+}
+
+TEST(RunRatio, WithinARunOnlyItsOwnNoiseCounts) {
+  const RunRatio ratio = ratioWithinRun(constant(1), constant(1.02)).value();
+  EXPECT_NEAR(ratio.ratio.value, 1.02, 1e-6);
+  EXPECT_GT(ratio.ratio.ci95.low, 1.01);
+  EXPECT_FALSE(ratio.drift);
+}
+
+/// A case of so many passes of 100 frames, of different lengths, on an uneven machine.
+CaseResult runOn(UnevenMachine& machine, double seconds, int passes) {
   CaseResult result;
   double own_noise = 0;
   for (int pass = 0; pass < passes; ++pass) {
     Repetition& repetition = result.repetitions.emplace_back();
-    YardstickTimes& yardsticks = repetition.yardsticks.emplace();
-    for (std::int64_t& ns : yardsticks.values) ns = nanoseconds(machine.yardstick(1e-3));
     for (int frame = 0; frame < 100; ++frame) {
       const double work = seconds * (1 + 0.01 * frame);
       repetition.frames.emplace_back()[Phase::total] = nanoseconds(machine.time(work, own_noise));
@@ -120,33 +170,69 @@ CaseResult runOn(UnevenMachine machine, double seconds, int passes) {
   return result;
 }
 
-/// Whether two runs, at paces that differ by `unsteadiness` and then wander, claim that one is
-/// slower or faster.
-bool claims(double slower_by, double unsteadiness, double wander, int passes, unsigned seed) {
+/// A run of twelve cases of five repetitions at this pace. Beside it each case has luck of its own
+/// with where its memory lies.
+std::vector<CaseResult> runOfTwelve(double pace, unsigned seed, double first_slower_by = 1) {
+  UnevenMachine machine(seed, pace, 0, 0.001);
   std::mt19937 random(seed);
-  std::normal_distribution<double> pace(0, unsteadiness);
-  const double paces[] = {std::exp(pace(random)), std::exp(pace(random))};
-  const CaseResult before = runOn(UnevenMachine(2 * seed, paces[0], wander), 1e-4, passes);
-  const CaseResult after =
-      runOn(UnevenMachine(2 * seed + 1, paces[1], wander), 1e-4 * slower_by, passes);
-  const Interval ratio = ratioOf(before, after).ratio.ci95;
-  return ratio.low > 1 || ratio.high < 1;
+  std::normal_distribution<double> luck(0, 0.005);
+  std::vector<CaseResult> cases;
+  for (int i = 0; i < 12; ++i) {
+    const double slower_by = i == 0 ? first_slower_by : 1;
+    cases.push_back(runOn(machine, 1e-4 * slower_by * std::exp(luck(random)), 5));
+  }
+  return cases;
 }
 
-TEST(RunRatio, ClaimsNoDifferenceWhereThereIsNone) {
+struct Judged {
+  int same = 0;
+  int claimed = 0;
+};
+/// What 100 pairs of runs say of their first case, on a machine whose pace changes by a tenth.
+Judged judgeFirst(double slower_by, double margin) {
+  Judged judged;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> pace(0, 0.1);
+    const std::vector<CaseResult> before = runOfTwelve(std::exp(pace(random)), 2 * seed);
+    const std::vector<CaseResult> after =
+        runOfTwelve(std::exp(pace(random)), 2 * seed + 1, slower_by);
+    const Verdict verdict = verdictOn(ratiosOf(before, after).front().ratio.ci95, margin);
+    judged.same += verdict == Verdict::same ? 1 : 0;
+    judged.claimed += verdict == Verdict::slower || verdict == Verdict::faster ? 1 : 0;
+  }
+  return judged;
+}
+
+TEST(RunRatio, DecidesWhatTwelveCasesOfTwoRunsAllow) {
+  const Judged alike = judgeFirst(1, 0.05);
+  EXPECT_GE(alike.same, 85);
+  EXPECT_LE(alike.claimed, 5);
+  EXPECT_LE(judgeFirst(1, 0).claimed, 5) << "of intervals without 1";
+  EXPECT_GE(judgeFirst(1.1, 0.05).claimed, 90);
+  EXPECT_GE(judgeFirst(1.05, 0.05).claimed, 60);
+}
+
+TEST(RunRatio, OneCaseAloneClaimsNoDifferenceWhereThereIsNone) {
   constexpr int kComparisons = 100;
-  for (const double unsteadiness : {0.0, 0.1}) {
+  for (const double unsteadiness : {0.0, 0.01}) {
     for (const int passes : {1, 2, 5}) {
       int claimed = 0;
       for (unsigned seed = 0; seed < kComparisons; ++seed) {
-        claimed += claims(1, unsteadiness, 0.002, passes, seed) ? 1 : 0;
+        std::mt19937 random(seed);
+        std::normal_distribution<double> pace(0, unsteadiness);
+        UnevenMachine first(2 * seed, std::exp(pace(random)));
+        UnevenMachine second(2 * seed + 1, std::exp(pace(random)));
+        const CaseResult before = runOn(first, 1e-4, passes);
+        const Interval ratio = ratioOf(before, runOn(second, 1e-4, passes)).ratio.ci95;
+        claimed += ratio.low > 1 || ratio.high < 1 ? 1 : 0;
       }
       EXPECT_LE(claimed, kComparisons / 20) << unsteadiness << ", " << passes << " passes";
     }
   }
 }
 
-// Two runs alone tell no such difference: nobody knows how much runs differ on this machine.
+// Two runs of one case do not show how much runs differ on this machine.
 TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
   constexpr int kComparisons = 100;
   int found = 0;
@@ -156,7 +242,8 @@ TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
     std::normal_distribution<double> pace(0, 0.005);
     unsigned number = 10 * seed;
     const auto run = [&](double seconds) {
-      return runOn(UnevenMachine(number++, std::exp(pace(random)), 0.0003), seconds, 10);
+      UnevenMachine machine(number++, std::exp(pace(random)), 0.0003);
+      return runOn(machine, seconds, 10);
     };
     std::vector<CaseResult> baselines;
     for (int i = 0; i < 5; ++i) baselines.push_back(run(1e-4));
@@ -169,9 +256,6 @@ TEST(RunRatio, FindsADifferenceOfTenPercentWithFiveBaselines) {
 }
 
 TEST(RunRatio, ThreeBaselinesTellHowMuchRunsDiffer) {
-  const auto constant = [](double seconds) {
-    return resultOf({std::vector<double>(50, seconds), std::vector<double>(50, seconds * 1.0001)});
-  };
   const CaseResult one = constant(1);
   const CaseResult two = constant(1.1);
   const CaseResult three = constant(0.9);

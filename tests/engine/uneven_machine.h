@@ -11,23 +11,22 @@ namespace broadmark::tests {
 class UnevenMachine {
  public:
   /// `pace`: how long everything takes at first, against a machine of pace 1. `wander`: by how much
-  /// the pace changes from one piece of work to the next.
-  explicit UnevenMachine(unsigned seed, double pace = 1, double wander = 0.002)
-      : random_(seed), drift_(std::log(pace)), wander_(wander) {}
+  /// the pace changes from one piece of work to the next. `disturbance`: how likely a piece of work
+  /// is the first of those that are slowed down by something else.
+  explicit UnevenMachine(unsigned seed, double pace = 1, double wander = 0.002,
+                         double disturbance = 0.01)
+      : random_(seed), drift_(std::log(pace)), wander_(wander), disturbance_(disturbance) {}
 
   /// The time of work that takes `seconds` on a quiet machine: with noise of its own that resembles
   /// the noise before, and a heavy tail.
   double time(double seconds, double& own_noise) {
     drift_ += wander_ * normal_(random_);
-    if (burst_ == 0 && uniform_(random_) < 0.01) burst_ = 20;
+    if (burst_ == 0 && uniform_(random_) < disturbance_) burst_ = 20;
     if (burst_ > 0) --burst_;
     own_noise = 0.5 * own_noise + 0.03 * normal_(random_);
     const double tail = uniform_(random_) < 0.02 ? 1 + 4 * uniform_(random_) : 1;
     return seconds * std::exp(drift_ + own_noise) * tail * (burst_ > 0 ? 1.5 : 1);
   }
-
-  /// The least time of a little work that is done a few times: noise of one in a hundred is left.
-  double yardstick(double seconds) { return seconds * std::exp(drift_ + 0.01 * normal_(random_)); }
 
  private:
   std::mt19937 random_;
@@ -35,6 +34,7 @@ class UnevenMachine {
   std::uniform_real_distribution<double> uniform_;
   double drift_;
   double wander_;
+  double disturbance_;
   int burst_ = 0;
 };
 

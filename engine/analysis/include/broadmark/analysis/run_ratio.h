@@ -1,10 +1,12 @@
-// How much slower one run of a case is than another, at another time: from the same frames.
+// How much slower the cases of one run are than those of another, at another time: from the same
+// frames.
 //
 // Each frame counts with its least time over the repetitions, since what disturbs a frame makes it
-// slower. What is left between two runs is of three kinds, and the interval covers all of them:
-// noise from frame to frame (a block bootstrap over the frames), noise from repetition to
-// repetition and from run to run (their spread, as Student's t), and the drift of the machine
-// between the runs (what the yardsticks differ by). Nothing is corrected.
+// slower. Between two runs the machine changes, and all cases with it: a case's ratio is taken
+// relative to the drift, the median of the other cases' ratios, in logarithms. Cases on the same
+// recording took turns, so they share more of it. The interval covers the noise within the runs (a
+// block bootstrap over the frames; half samples of the repetitions), or what the other cases differ
+// from their drift by, whichever is more.
 #pragma once
 
 #include <optional>
@@ -23,7 +25,7 @@ enum class Verdict {
   faster,        ///< the whole interval is below 1
   slower,        ///< the whole interval is above 1
   undecided,     ///< the interval is too wide to tell
-  regressed,     ///< slower than is tolerated, or no longer ok
+  regressed,     ///< slower, by more than is tolerated, or no longer ok
   other_status,  ///< another status, but it was not ok before
   not_ok,        ///< the same status in both, not ok: its times say nothing
   not_timed,
@@ -51,26 +53,29 @@ Verdict verdictOn(const Interval& ratio, double margin);
 
 /// Times of B / times of A.
 struct RunRatio {
-  // Mean over the frames of their least times, in seconds. The ratio is their quotient.
+  // Mean over the frames of their least times, in seconds.
   double before = 0;
   double after = 0;
+  /// (after / before) / (1 + drift); not divided where fewer than three others tell the drift.
   Estimate ratio;
-  /// How much slower the machine was during B, by the yardstick that differs most: 0.1 is 10 %.
-  /// Nothing if a run has no yardsticks.
+  /// How much slower the other cases were in B, in the median: 0.1 is 10 %. Nothing if there are no
+  /// others.
   std::optional<double> drift;
 };
 
-/// A case in one run.
-struct CaseInRun {
-  const CaseResult* result = nullptr;
-  /// The yardsticks' least times while the recording was run; nothing if they were not measured.
-  std::optional<YardstickTimes> pace = {};
+/// A case in both runs. Several runs may stand for A.
+struct PairedCase {
+  std::vector<const CaseResult*> before;
+  const CaseResult* after = nullptr;
 };
-/// The least times of all cases on the recording of this hash, which took turns.
-std::optional<YardstickTimes> paceOf(const Results&, const std::string& recording_hash);
 
-/// The ratio of one case in two runs over the same frames. Several runs may stand for A: three or
-/// more tell how much runs differ, too. Nothing if there is no time to compare.
-std::optional<RunRatio> ratioOfRuns(std::span<const CaseInRun> before, const CaseInRun& after);
+/// The ratios of all cases of two runs; nothing for a case without times. With three other cases or
+/// more these tell how much runs differ, else three baselines or more do; without either at least
+/// 8 % are taken for it, and the drift of one or two others widens the interval. The ratio of
+/// identical times is 1.
+std::vector<std::optional<RunRatio>> ratiosOfRuns(std::span<const PairedCase> cases);
+
+/// The ratio of two cases of one run, whose repetitions took turns.
+std::optional<RunRatio> ratioWithinRun(const CaseResult& before, const CaseResult& after);
 
 }  // namespace broadmark

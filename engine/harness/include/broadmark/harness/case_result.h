@@ -16,7 +16,6 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/harness/processor_counters.h"
 #include "broadmark/harness/status.h"
-#include "broadmark/harness/yardsticks.h"
 #include "broadmark/parameters.h"
 #include "broadmark/statistics/statistics.h"
 
@@ -26,7 +25,6 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
-  std::optional<YardstickTimes> yardsticks = {};  ///< as they were just before
   ProcessorCounts processor = {};                 ///< sums over the frames' four phases
 };
 
