@@ -77,6 +77,7 @@ bool isModifier(Key key) { return key >= GLFW_KEY_LEFT_SHIFT && key <= GLFW_KEY_
 struct Touched {
   std::bitset<kKeys> keys;
   std::bitset<kButtons> buttons;
+  bool mouse_moved = false;
   bool wheel = false;
   bool plain_key = false;  ///< other than a modifier
   bool character = false;
@@ -96,7 +97,9 @@ bool separable(const InputEvent& event, const Touched& touched) {
     case InputEvent::Kind::wheel:
       return touched.buttons.none();
     case InputEvent::Kind::button:
-      return !touched.buttons[code] && !touched.plain_key;
+      // Items that others may overlap, such as tabs, are pressed only if the mouse was over them in
+      // the picture before; and what is dragged must see the last move before the release.
+      return !touched.mouse_moved && !touched.buttons[code] && !touched.plain_key;
     case InputEvent::Kind::character:
       return true;
     case InputEvent::Kind::key:
@@ -110,6 +113,7 @@ void apply(const InputEvent& event, Touched& touched, ImGuiIO& io) {
   const auto code = static_cast<std::size_t>(event.code);
   switch (event.kind) {
     case InputEvent::Kind::move:
+      touched.mouse_moved |= io.MousePos.x != event.x || io.MousePos.y != event.y;
       io.MousePos = {event.x, event.y};
       break;
     case InputEvent::Kind::leave:

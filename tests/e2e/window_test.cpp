@@ -46,9 +46,8 @@ class Screen {
   /// "" when it could not be started.
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// At the pace of a hand: what comes sooner, between two pictures of the window, is no click.
   void tool(const std::string& arguments) const {
-    const std::string command = "DISPLAY=" + name_ + " xdotool " + arguments + " && sleep 0.15";
+    const std::string command = "DISPLAY=" + name_ + " xdotool " + arguments;
     ASSERT_EQ(std::system(command.c_str()), 0) << command;
   }
 

@@ -32,16 +32,40 @@ TEST_F(InputQueueTest, AQuickPressIsSeenAsDownAndThenUp) {
   EXPECT_TRUE(queue.empty());
 }
 
-TEST_F(InputQueueTest, TheMouseClicksWhereItWas) {
+TEST_F(InputQueueTest, TheMouseIsSeenWhereItClicksBeforeDuringAndAfter) {
+  const auto move = [&](float x) { queue.push({.kind = InputEvent::Kind::move, .x = x, .y = 6}); };
+  const auto button = [&](bool down) {
+    queue.push({.kind = InputEvent::Kind::button, .code = 0, .down = down});
+  };
+  move(4);
+  move(5);
+  button(true);
+  move(50);
+  button(false);
+  move(60);
+  ImGuiIO& io = ImGui::GetIO();
+  struct Picture {
+    float x;
+    bool down;
+  };
+  for (const Picture& expected : {Picture{5, false}, {5, true}, {50, true}, {50, false}}) {
+    queue.applyTo(io);
+    EXPECT_EQ(io.MousePos.x, expected.x);
+    EXPECT_EQ(io.MouseDown[0], expected.down);
+  }
+}
+
+TEST_F(InputQueueTest, AClickWithoutAMoveTakesTwoPictures) {
   queue.push({.kind = InputEvent::Kind::move, .x = 5, .y = 6});
-  queue.push({.kind = InputEvent::Kind::button, .code = 0, .down = true});
-  queue.push({.kind = InputEvent::Kind::move, .x = 50, .y = 60});
   ImGuiIO& io = ImGui::GetIO();
   queue.applyTo(io);
-  EXPECT_TRUE(io.MouseDown[0]);
-  EXPECT_EQ(io.MousePos.x, 5);
+  queue.push({.kind = InputEvent::Kind::move, .x = 5, .y = 6});
+  queue.push({.kind = InputEvent::Kind::button, .code = 0, .down = true});
+  queue.push({.kind = InputEvent::Kind::button, .code = 0, .down = false});
   queue.applyTo(io);
-  EXPECT_EQ(io.MousePos.x, 50);
+  EXPECT_TRUE(io.MouseDown[0]);
+  queue.applyTo(io);
+  EXPECT_FALSE(io.MouseDown[0]);
 }
 
 TEST_F(InputQueueTest, AModifierIsDownWithItsKey) {
