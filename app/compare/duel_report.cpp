@@ -14,11 +14,12 @@
 namespace broadmark {
 namespace {
 
-/// "5.3 % slower", "1.8 times as fast".
+/// "5.3 % slower than", "3.8 times as fast as".
 std::string changeText(double ratio) {
-  if (ratio >= 2) return fmt::format("{:.2f} times as slow", ratio);
-  if (ratio <= 0.5) return fmt::format("{:.2f} times as fast", 1 / ratio);
-  return fmt::format("{:.1f} % {}", 100 * std::abs(ratio - 1), ratio > 1 ? "slower" : "faster");
+  if (ratio >= 2) return fmt::format("{:.2f} times as slow as", ratio);
+  if (ratio <= 0.5) return fmt::format("{:.2f} times as fast as", 1 / ratio);
+  return fmt::format("{:.1f} % {} than", 100 * std::abs(ratio - 1),
+                     ratio > 1 ? "slower" : "faster");
 }
 
 std::string table(const DuelResult& result) {
@@ -28,11 +29,11 @@ std::string table(const DuelResult& result) {
     const DuelResult::Side& side = result.sides[place.side];
     const bool ties = std::ranges::count(result.places, place.place, &DuelPlace::place) > 1;
     const bool first = place.side == 0;
-    rows.push_back(
-        {fmt::format("{}{}.", ties ? "=" : "", place.place), side.name,
-         durationText(quantile(side.seconds, 0.5)), durationText(quantile(side.seconds, 0)),
-         first ? "1" : fmt::format("{:.4f}", place.ratio.value),
-         first ? "" : fmt::format("{:.4f}…{:.4f}", place.ratio.ci95.low, place.ratio.ci95.high)});
+    rows.push_back({fmt::format("{}{}.", ties ? "=" : "", place.place), side.name,
+                    durationText(quantile(side.seconds, 0.5)),
+                    durationText(quantile(side.seconds, 0)),
+                    first ? "1" : fmt::format("{:.4f}", place.ratio.value),
+                    first ? "" : intervalText(place.ratio.ci95, 4)});
   }
   return alignColumns(rows, {true, false, true, true, true, true});
 }
@@ -63,7 +64,7 @@ std::string verdictOnTwo(const DuelResult& result) {
   if (verdict == Verdict::undecided) {
     return fmt::format("{} against {}: undecided; more time (--seconds) would tell", b, a);
   }
-  return fmt::format("{} is {} than {}", b, changeText(ratio.value), a);
+  return fmt::format("{} is {} {}", b, changeText(ratio.value), a);
 }
 
 std::string failures(const DuelResult& result) {
@@ -76,6 +77,11 @@ std::string failures(const DuelResult& result) {
 }
 
 }  // namespace
+
+std::string intervalText(const Interval& interval, int digits) {
+  if (!std::isfinite(interval.high)) return "too few rounds";
+  return fmt::format("{:.{}f}…{:.{}f}", interval.low, digits, interval.high, digits);
+}
 
 std::string verdictOf(const DuelResult& result) {
   if (result.sides.size() == 2) return verdictOnTwo(result);
@@ -120,11 +126,12 @@ std::string duelJson(const DuelResult& result, const RecordingReference& recordi
                              {"seconds", side.seconds}});
   }
   for (const DuelPlace& place : result.places) {
+    const auto [low, high] = place.ratio.ci95;
     json["ranking"].push_back({{"side", place.side},
                                {"name", result.sides[place.side].name},
                                {"place", place.place},
                                {"ratio", place.ratio.value},
-                               {"ci95", {place.ratio.ci95.low, place.ratio.ci95.high}}});
+                               {"ci95", std::isfinite(high) ? Json{low, high} : Json(nullptr)}});
   }
   return formatJson(json);
 }

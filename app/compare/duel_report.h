@@ -11,7 +11,10 @@ namespace broadmark {
 /// Times, ranking, intervals, and, of two sides, a histogram of the ratios.
 std::string formatDuel(const DuelResult&, const SceneInfo&);
 
-/// Who is the fastest, in one line. Only of a duel that is ok(), with a round.
+/// "1.012…1.034", or that there were too few rounds for one.
+std::string intervalText(const Interval&, int digits);
+
+/// Which one is the fastest, in one line. Only of a duel that is ok(), with a round.
 std::string verdictOf(const DuelResult&);
 
 /// All times and ratios as JSON (schema "broadmark-duel/1").

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <random>
@@ -176,7 +178,12 @@ std::vector<double> DuelResult::ratios(std::size_t a, std::size_t b) const {
 }
 
 Estimate DuelResult::ratio(std::size_t a, std::size_t b) const {
-  return medianOfSeries(ratios(a, b));
+  std::vector<double> logarithms = ratios(a, b);
+  for (double& ratio : logarithms) ratio = std::log(ratio);
+  const auto [median, interval] = medianOfSeries(logarithms);
+  // The largest and the least of five values contain the median in 94 of 100 cases.
+  if (rounds() <= 5) return {std::exp(median), {0, std::numeric_limits<double>::infinity()}};
+  return {std::exp(median), {std::exp(interval.low), std::exp(interval.high)}};
 }
 
 DuelResult runDuel(const std::vector<DuelSide>& sides, FrameSource& frames,

@@ -147,9 +147,11 @@ Estimate medianOfSeries(std::span<const double> values) {
     std::ranges::transform(drawn, sample.begin(), [&](std::size_t place) { return values[place]; });
     const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
     std::ranges::nth_element(sample, middle);
-    return *middle;
+    if (sample.size() % 2 == 1) return *middle;
+    return std::midpoint(*std::max_element(sample.begin(), middle), *middle);
   };
-  return {median, blockBootstrap95(values.size(), block, median, median_of)};
+  const Interval interval = blockBootstrap95(values.size(), block, median, median_of);
+  return {median, {std::min(interval.low, median), std::max(interval.high, median)}};
 }
 
 std::optional<Interval> confidence95(std::span<const double> values) {

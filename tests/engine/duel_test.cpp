@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <random>
 #include <vector>
 
 #include "engine/spoilt_cases.h"
@@ -65,6 +66,32 @@ TEST(Verdict, IsSameOnlyWithinTheMargin) {
   EXPECT_EQ(verdictOn({1.002, 1.02}, 0.01), Verdict::slower);
   EXPECT_EQ(verdictOn({0.9, 0.99}, 0.01), Verdict::faster);
   EXPECT_EQ(verdictOn({0.42, 5.9}, 0.01), Verdict::undecided);
+}
+
+/// Two sides with these times in each round.
+DuelResult resultOf(const std::vector<double>& first, const std::vector<double>& second) {
+  DuelResult result;
+  result.sides = {{.name = "first", .seconds = first}, {.name = "second", .seconds = second}};
+  return result;
+}
+
+TEST(Duel, AnIntervalContainsItsEstimateAndIsOfPositiveNumbers) {
+  std::mt19937 random(1);
+  std::lognormal_distribution<double> wild(0, 3);
+  for (std::size_t rounds = 6; rounds < 40; ++rounds) {
+    std::vector<double> seconds(rounds);
+    for (double& time : seconds) time = wild(random);
+    const auto [ratio, interval] = resultOf(std::vector<double>(rounds, 1), seconds).ratio(1, 0);
+    EXPECT_GT(interval.low, 0) << rounds;
+    EXPECT_LE(interval.low, ratio) << rounds;
+    EXPECT_GE(interval.high, ratio) << rounds;
+  }
+}
+
+TEST(Duel, FiveRoundsAreTooFewForAnInterval) {
+  const Interval none = resultOf({1, 1, 1, 1, 1}, {2, 2, 2, 2, 2}).ratio(1, 0).ci95;
+  EXPECT_EQ(none.low, 0);
+  EXPECT_EQ(verdictOn(none, 0.02), Verdict::undecided);
 }
 
 TEST(Duel, ClaimsNoDifferenceWhereThereIsNone) {

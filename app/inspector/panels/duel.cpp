@@ -123,9 +123,7 @@ class DuelPanel final : public Panel {
     cell(durationText(quantile(seconds, 0.5)));
     cell(durationText(quantile(seconds, 0)));
     cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
-    cell(side == 0 || place == nullptr
-             ? ""
-             : fmt::format("{:.3f}…{:.3f}", place->ratio.ci95.low, place->ratio.ci95.high));
+    cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.

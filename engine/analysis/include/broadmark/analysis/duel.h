@@ -63,7 +63,8 @@ struct DuelResult {
   [[nodiscard]] std::size_t rounds() const { return sides.front().seconds.size(); }
   /// Times of side `a` / times of side `b`, round by round.
   [[nodiscard]] std::vector<double> ratios(std::size_t a, std::size_t b) const;
-  /// The median of those. Only after a round.
+  /// The median of those, its interval in logarithms; (0, infinity) for fewer than six rounds. Only
+  /// after a round.
   [[nodiscard]] Estimate ratio(std::size_t a, std::size_t b) const;
 };
 
