@@ -70,7 +70,7 @@ struct Watched {
     session().draft = simulationOf(setting);
     session().draft.simulate();
     LaneEdit& lane = session().lanes.add(setting.algorithm);
-    lane.threads = 1;
+    lane.run.threads = 1;
     session().lanes.changed();
   }
 

@@ -109,15 +109,14 @@ class ViewPanel final : public Panel {
         second.frame = static_cast<std::uint32_t>(frame);
       }
     }
-    const float width = ImGui::GetContentRegionAvail().x;
     if (!second.footage) {
-      if (ui.button("Another recording…", "Opens it in the second view", width)) {
+      if (wideButton(ui, "Another recording…", "Opens it in the second view")) {
         askRecording(context);
       }
     } else {
-      ui.faint(fittingText(second.footage->title, width));
+      ui.faint(fittingText(second.footage->title, ImGui::GetContentRegionAvail().x));
       ui.tooltip(second.footage->recording.string().c_str());
-      if (ui.button("The same recording", "As in the first view", width)) second.footage.reset();
+      if (wideButton(ui, "The same recording", "As in the first view")) second.footage.reset();
     }
     ui.checkbox("cameras linked", session.second.linked, "One camera moves both views");
   }
@@ -127,7 +126,7 @@ class ViewPanel final : public Panel {
     std::size_t chosen = 0;
     for (const LaneEdit& lane : session.lanes.list) {
       if (lane.number == second.lane) chosen = names.size();
-      names.push_back(caseName(lane.spec().run));
+      names.push_back(caseName(lane.run));
     }
     if (!ui.combo("answer of", chosen, names, "Whose pairs the second view shows")) return;
     second.lane = chosen == 0 ? 0 : session.lanes.list[chosen - 1].number;

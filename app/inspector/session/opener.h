@@ -2,34 +2,20 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "inspector/jobs/case_export.h"
-#include "inspector/session/document.h"
-#include "inspector/session/draft.h"
-#include "inspector/session/lanes.h"
-#include "inspector/session/mismatches.h"
-#include "inspector/session/notices.h"
 #include "inspector/session/opened_results.h"
-#include "inspector/session/playback.h"
 #include "run/plan.h"
 
 namespace broadmark {
 
+class Session;
+
 class Opener {
  public:
-  /// The parts that show what is opened; they outlive it.
-  struct Parts {
-    Notices& notices;
-    Playback& playback;
-    Lanes& lanes;
-    Mismatches& mismatches;
-    Document& document;
-    Draft& draft;
-    std::optional<OpenedResults>& results;
-  };
-  explicit Opener(const Parts& parts) : to_(parts) {}
+  /// `session` shows what is opened, and outlives it.
+  explicit Opener(Session& session) : to_(session) {}
 
   /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
   /// file all cases are listed; of a file that names a case, that becomes the only lane.
@@ -55,7 +41,7 @@ class Opener {
   void enterSource(Source& source, Opened document_is, const std::string& case_id);
   void listCases(const std::filesystem::path& file, Results listed);
 
-  Parts to_;
+  Session& to_;
 };
 
 }  // namespace broadmark

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "broadmark/render/ui_renderer.h"
+#include "inspector/session/wrong_pair.h"
 #include "inspector/views/view_overlay.h"
 
 namespace broadmark {
@@ -20,14 +21,6 @@ constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
 constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
-
-Aabb enlargedBy(const Aabb& box, float factor) {
-  float longest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    longest = std::max(longest, box.max[axis] - box.min[axis]);
-  }
-  return enlarged(box, (factor - 1) * longest / 2);
-}
 
 /// Whole groups, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
@@ -78,7 +71,8 @@ void View::takeFlightRequest(Session& session) {
   }
   const Aabb bounds = content_.boundsOf(bodies);
   if (isEmpty(bounds)) return;  // all of them are absent
-  const Aabb surroundings = space_.toView(enlargedBy(bounds, kSurroundings));
+  const float margin = (kSurroundings - 1) * static_cast<float>(longestEdge(bounds)) / 2;
+  const Aabb surroundings = space_.toView(enlarged(bounds, margin));
   // What stands before them would hide them.
   fly(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
 }
@@ -161,7 +155,9 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   handleMouse(ui, seen, corner, size);
   if (shown.has_hands) hands_.draw(ui, seen, corner);
   moved_ = camera_ != before;
-  answer_.where = session.second.wish ? whereText(*content_.snapshot()) : "";
+  const std::string source = sourceText(shown.snapshot->footage.get());
+  answer_.where =
+      session.second.wish ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
   const bool tools = shown.has_hands && session.document.shown();
   const float free = tools ? drawTools(ui, session, corner, size) : size.y;
@@ -272,13 +268,46 @@ void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
 
 void View::drawAxisNames(ImVec2 corner, float scale) const {
   const auto tips = axisTips(scene_.viewpoint(), scale);
-  constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const ImVec2 text = ImGui::CalcTextSize(kNames[axis]);
+    const ImVec2 text = ImGui::CalcTextSize(kAxes[axis]);
     ImGui::GetWindowDrawList()->AddText(
         {corner.x + tips[axis][0] - text.x / 2, corner.y + tips[axis][1] - text.y / 2},
-        ImGui::GetColorU32(ImGuiCol_Text), kNames[axis]);
+        ImGui::GetColorU32(ImGuiCol_Text), kAxes[axis]);
   }
+}
+
+void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position,
+                 ImVec2 size) {
+  std::vector<View::Shown> shown = {{.name = "View",
+                                     .snapshot = progress.snapshot,
+                                     .hint = "Simulate a scene, or drop a recording here",
+                                     .lane = session.lanes.shown(),
+                                     .has_hands = true}};
+  if (session.second.wish) {
+    const std::string& failure = progress.second_failure;
+    shown.push_back({.name = "Second view",
+                     .snapshot = progress.second,
+                     .hint = failure.empty() ? "Nothing is shown yet" : failure,
+                     .lane = session.second.wish->lane,
+                     .leader = session.second.linked ? &first() : nullptr});
+  }
+  const auto count = static_cast<float>(shown.size());
+  const float gap = kSplitterSize * ui.scale;
+  const float width = std::max((size.x - (count - 1) * gap) / count, 1.0F);
+  // Each view with a camera of its own flies there.
+  const std::optional<BodySelection::Bodies> fly_to = session.selection.fly_to;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    View& view = list_[i];
+    const View::Shown& what = shown[i];
+    if (what.leader == nullptr && !session.selection.fly_to) session.selection.fly_to = fly_to;
+    beginAt(what.name, {position.x + static_cast<float>(i) * (size.x - width), position.y},
+            {width, size.y}, ImGuiWindowFlags_NoScrollbar);
+    view.draw(ui, session, progress, what);
+    ImGui::End();
+    if (what.leader != nullptr && view.moved()) first().follow(view);
+  }
+  ImGui::PopStyleVar();
 }
 
 }  // namespace broadmark

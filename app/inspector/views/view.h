@@ -1,6 +1,7 @@
-// The view of the scene: its camera, and what the mouse does in it.
+// The views of the scene: their cameras, and what the mouse does in them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -98,6 +99,23 @@ class View {
   enum class Drag { none, orbit, pan, rectangle, hands } drag_ = Drag::none;
   ImVec2 drag_from_;
   bool dragged_ = false;  ///< the mouse has moved since the button went down
+};
+
+/// The views, side by side.
+class Views {
+ public:
+  explicit Views(const Gl& gl) : list_{View(gl), View(gl)} {}
+
+  /// Draws those that are wanted into a rectangle.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position, ImVec2 size);
+  /// Whether one moves by itself.
+  [[nodiscard]] bool lively() const { return std::ranges::any_of(list_, &View::lively); }
+  /// Of what is played.
+  [[nodiscard]] View& first() { return list_.front(); }
+  [[nodiscard]] const std::array<View, 2>& list() const { return list_; }
+
+ private:
+  std::array<View, 2> list_;
 };
 
 }  // namespace broadmark

@@ -51,6 +51,8 @@ class ViewContent {
     std::vector<std::uint32_t> selection;
     ViewOptions options;
     bool dark = false;
+
+    friend bool operator==(const Shown&, const Shown&) = default;
   };
 
   void updateBodies();
