@@ -187,22 +187,19 @@ class ViewPanel final : public Panel {
                 "What the algorithm draws of its own structure");
     if (!view.structure) return;
     ui.checkbox("only around the selection", view.structure_near);
-    const Snapshot* snapshot = context.progress.snapshot.get();
-    const int deepest =
-        snapshot != nullptr && snapshot->structure ? deepestLevel(*snapshot->structure) : 0;
-    if (deepest > 0) {
+    const Snapshot* const snapshot = context.progress.snapshot.get();
+    const RecordedDrawing* const drawn = snapshot != nullptr ? snapshot->structure.get() : nullptr;
+    if (const int deepest = drawn != nullptr ? deepestLevel(*drawn) : 0; deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
       const int level = view.structure_level;
       ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
                 view.structure_level, -1, deepest);
     }
-    ImGui::BeginDisabled(snapshot == nullptr || !snapshot->structure ||
-                         !tellsPopulations(*snapshot->structure));
+    ImGui::BeginDisabled(drawn == nullptr || !tellsPopulations(*drawn));
     ui.checkbox("coloured by population", view.structure_population,
                 "Colours tell how many bodies a cell holds, where the algorithm says so");
     ImGui::EndDisabled();
-    if (snapshot != nullptr && snapshot->structure && snapshot->structure->boxes().empty() &&
-        snapshot->structure->lines().empty()) {
+    if (drawn != nullptr && drawn->boxes().empty() && drawn->lines().empty()) {
       ui.faint("It has none to show.");
     }
   }

@@ -52,23 +52,19 @@ std::string sceneOf(const Row& row) {
 
 double exponentOf(const std::vector<ScalingCurve::Point>& points) {
   const auto count = static_cast<double>(points.size());
-  const auto x = [](const ScalingCurve::Point& point) {
-    return std::log(static_cast<double>(point.objects));
-  };
-  const auto y = [](const ScalingCurve::Point& point) { return std::log(point.seconds); };
-  double mean_x = 0;
-  double mean_y = 0;
+  double x_sum = 0;
+  double y_sum = 0;
+  double xx_sum = 0;
+  double xy_sum = 0;
   for (const ScalingCurve::Point& point : points) {
-    mean_x += x(point) / count;
-    mean_y += y(point) / count;
+    const double x = std::log(static_cast<double>(point.objects));
+    const double y = std::log(point.seconds);
+    x_sum += x;
+    y_sum += y;
+    xx_sum += x * x;
+    xy_sum += x * y;
   }
-  double together = 0;
-  double spread = 0;
-  for (const ScalingCurve::Point& point : points) {
-    together += (x(point) - mean_x) * (y(point) - mean_y);
-    spread += (x(point) - mean_x) * (x(point) - mean_x);
-  }
-  return together / spread;
+  return (count * xy_sum - x_sum * y_sum) / (count * xx_sum - x_sum * x_sum);
 }
 
 }  // namespace

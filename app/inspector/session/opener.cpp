@@ -64,7 +64,7 @@ void Opener::openEntry(PlanEntry entry, Opened document_is) {
 }
 
 void Opener::enter(PlanEntry& entry, Opened document_is) {
-  enterSource(entry.source, document_is, entry.known ? entry.known->id : "");
+  enterSource(entry, document_is);
   if (entry.cases.empty()) return;
   to_.lanes.clear();
   for (const Case& run : entry.cases) to_.lanes.add(run);
@@ -75,11 +75,12 @@ void Opener::enter(PlanEntry& entry, Opened document_is) {
   to_.notices.bringUp("Mismatches");
 }
 
-void Opener::enterSource(Source& source, Opened document_is, const std::string& case_id) {
+void Opener::enterSource(PlanEntry& entry, Opened document_is) {
+  Source& source = entry.source;
   const auto show = [&](FootageRequest footage) {
-    if (!case_id.empty()) {
+    if (entry.known) {
       footage.source = FootageSource::results;
-      footage.title = case_id;
+      footage.title = entry.known->id;
     }
     to_.playback.show(std::move(footage));
   };

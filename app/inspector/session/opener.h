@@ -37,8 +37,7 @@ class Opener {
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);
   void enter(PlanEntry& entry, Opened document_is);
-  /// `case_id`: of results; "": it is no case of any.
-  void enterSource(Source& source, Opened document_is, const std::string& case_id);
+  void enterSource(PlanEntry& entry, Opened document_is);
   void listCases(const std::filesystem::path& file, Results listed);
 
   Session& to_;

@@ -78,9 +78,19 @@ class Playback {
            progress.snapshot->frame == frame_;
   }
 
-  /// While it plays: moves on by `seconds`. Call it only when the wished frame is reached.
-  void advance(double seconds) {
-    if (!playing_) return;
+  /// While it plays: counts frames, and moves on by `seconds` once the wished frame is reached.
+  void advance(const RunProgress& progress, double seconds) {
+    if (!playing_) {
+      achieved_.reset();
+      counted_seconds_ = counted_frames_ = 0;
+      return;
+    }
+    counted_seconds_ += seconds;
+    if (counted_seconds_ >= kCountedSeconds) {
+      achieved_ = counted_frames_ / counted_seconds_;
+      counted_seconds_ = counted_frames_ = 0;
+    }
+    if (!hasReached(progress)) return;
     due_ += seconds * frames_per_second;
     if (due_ < 1) return;
     const double frames = std::floor(due_);
@@ -94,22 +104,6 @@ class Playback {
       pause();
     }
   }
-
-  /// Takes note that `seconds` have passed.
-  void passTime(double seconds) {
-    if (!playing_) {
-      achieved_.reset();
-      counted_seconds_ = 0;
-      counted_frames_ = 0;
-      return;
-    }
-    counted_seconds_ += seconds;
-    if (counted_seconds_ < kCountedSeconds) return;
-    achieved_ = counted_frames_ / counted_seconds_;
-    counted_seconds_ = 0;
-    counted_frames_ = 0;
-  }
-
   /// How many frames were shown per second of late; nothing while it does not play.
   [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
 

@@ -38,8 +38,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
-  playback.passTime(seconds);
-  if (playback.hasReached(progress)) playback.advance(seconds);
+  playback.advance(progress, seconds);
 }
 
 bool Session::busy() { return playback.playing() || !runs.settled() || jobs.running(); }

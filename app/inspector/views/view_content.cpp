@@ -98,10 +98,6 @@ void ViewContent::updateVisible() {
   for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
 }
 
-std::size_t ViewContent::hiddenBodies() const {
-  return static_cast<std::size_t>(std::ranges::count(visible_, 0));
-}
-
 void ViewContent::addXray() {
   for (const std::uint32_t body :
        std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
