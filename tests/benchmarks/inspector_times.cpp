@@ -67,7 +67,7 @@ constexpr int kHeight = 720;
 struct Watched {
   Watched(const Gl& gl, const Setting& setting)
       : target(gl, kWidth, kHeight, 1), inspector(gl, builtinAlgorithms(), {}, 1) {
-    session().draft = simulationOf(setting);
+    session().draft.take(simulationOf(setting));
     session().draft.simulate();
     LaneEdit& lane = session().lanes.add(setting.algorithm);
     lane.run.threads = 1;

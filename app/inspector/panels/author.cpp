@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/authoring/author_dialogs.h"
@@ -33,10 +32,8 @@ struct Inputs {
   Numbers world_min{};
   Numbers world_max{};
   scenes::AuthoredParameters parameters;
+  scenes::AuthoredBody body;  ///< the first selected one
   Numbers size{};
-  bool sphere = false;
-  double mass = 1;
-  bool frozen = false;
   Numbers velocity{};
   Numbers spin{};
   double layer = 0;
@@ -88,10 +85,8 @@ class AuthorPanel final : public Panel {
     inputs_.grouped = std::ranges::any_of(
         selection_, [&](std::uint32_t id) { return scene.bodies[id].group != 0; });
     const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
-    inputs_.sphere = std::holds_alternative<scenes::SphereShape>(body.shape);
+    inputs_.body = body;
     inputs_.size = numbers(scenes::edgesOf(body.shape));
-    inputs_.mass = body.mass;
-    inputs_.frozen = body.frozen;
     inputs_.velocity = numbers(body.linear_velocity);
     inputs_.spin = numbers(body.angular_velocity);
     inputs_.layer = body.layer;
@@ -252,17 +247,17 @@ class AuthorPanel final : public Panel {
     ui.heading(selection_.size() == 1
                    ? fmt::format("Body {}", first).c_str()
                    : fmt::format("{} bodies; values of body {}", selection_.size(), first).c_str());
-    std::size_t shape = inputs_.sphere ? 1 : 0;
+    std::size_t shape = inputs_.body.shape.index();
     edit(document, ui.combo("shape", shape, {"box", "sphere"}),
          [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
     edit(document,
          ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
                    "Edges, in world units; of a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
-    edit(document, ui.number("mass", inputs_.mass, 1e-6, 1e9),
-         [&](SceneEditor& editor) { editor.setMass(inputs_.mass); });
-    edit(document, ui.checkbox("frozen", inputs_.frozen, "An immovable obstacle"),
-         [&](SceneEditor& editor) { editor.setFrozen(inputs_.frozen); });
+    edit(document, ui.number("mass", inputs_.body.mass, 1e-6, 1e9),
+         [&](SceneEditor& editor) { editor.setMass(inputs_.body.mass); });
+    edit(document, ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
+         [&](SceneEditor& editor) { editor.setFrozen(inputs_.body.frozen); });
     edit(document, ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
          [&](SceneEditor& editor) { editor.setVelocity(vec(inputs_.velocity)); });
     edit(document,

@@ -1,8 +1,5 @@
 // What each algorithm did in this frame, side by side.
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <string>
 #include <vector>
 
