@@ -16,7 +16,7 @@
 #include "inspector/ui/file_dialog.h"
 #include "inspector/ui/preferences.h"
 #include "inspector/ui/ui.h"
-#include "inspector/views/views.h"
+#include "inspector/views/view.h"
 
 struct ImGuiContext;
 

@@ -204,13 +204,14 @@ Values valuesOf(Session& session, const RunProgress& progress) {
     values["open." + name] = value;
   for (LaneEdit& lane : session.lanes.list) {
     for (const auto& [name, value] : parameterValues(*lane.parameters)) {
-      values[fmt::format("lane.{}.{}", lane.algorithm.id, name)] = value;
+      values[fmt::format("lane.{}.{}", lane.run.algorithm.id, name)] = value;
     }
-    values[fmt::format("lane.{}.threads", lane.algorithm.id)] = std::to_string(lane.threads);
-    values[fmt::format("lane.{}.isa", lane.algorithm.id)] = isaName(lane.isa);
+    values[fmt::format("lane.{}.threads", lane.run.algorithm.id)] =
+        std::to_string(lane.run.threads);
+    values[fmt::format("lane.{}.isa", lane.run.algorithm.id)] = isaName(lane.run.isa);
   }
   const LaneEdit* shown = session.lanes.find(session.lanes.shown());
-  values["shown_lane"] = shown != nullptr ? shown->algorithm.id : "";
+  values["shown_lane"] = shown != nullptr ? shown->run.algorithm.id : "";
   addAuthored(values, session);
   for (const Job* const job : session.jobs.all()) {
     for (const auto& [name, value] : job->status().values) {

@@ -67,10 +67,10 @@ constexpr int kHeight = 720;
 struct Watched {
   Watched(const Gl& gl, const Setting& setting)
       : target(gl, kWidth, kHeight, 1), inspector(gl, builtinAlgorithms(), {}, 1) {
-    session().draft = simulationOf(setting);
+    session().draft.take(simulationOf(setting));
     session().draft.simulate();
     LaneEdit& lane = session().lanes.add(setting.algorithm);
-    lane.threads = 1;
+    lane.run.threads = 1;
     session().lanes.changed();
   }
 

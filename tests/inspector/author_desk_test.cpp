@@ -1,5 +1,5 @@
 // Authoring in the session, without any drawing.
-#include "inspector/session/author_desk.h"
+#include "inspector/session/document.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "broadmark/error.h"
-#include "inspector/session/body_selection.h"
+#include "inspector/session/text_lists.h"
 
 namespace broadmark::tests {
 namespace {

@@ -99,7 +99,7 @@ std::vector<std::string> scalingOf(OpenedResults& results, Phase phase = Phase::
     std::string& text = texts.emplace_back(curve.algorithm);
     if (!curve.scene.empty()) text += ' ' + curve.scene;
     text += ':';
-    for (const ScalingPoint& point : curve.points) text += fmt::format(" {}", point.objects);
+    for (const ScalingCurve::Point& point : curve.points) text += fmt::format(" {}", point.objects);
   }
   return texts;
 }

@@ -110,8 +110,8 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     session.draft.simulate();
     session.lanes.add("sap");
     LaneEdit& parallel = session.lanes.add("bf-simd-mt");
-    parallel.isa = Isa::scalar;
-    parallel.threads = 2;
+    parallel.run.isa = Isa::scalar;
+    parallel.run.threads = 2;
     session.lanes.changed();
     session.playback.goTo(40);
     settled(session);

@@ -71,7 +71,7 @@ TEST(WrongPairs, StandByKindAndAllowedOnesLast) {
   difference.missed_pairs = {{1, 2}};
   std::vector<std::string> names;
   for (const WrongPair& wrong : wrongPairs(difference)) {
-    names.push_back(std::string(kWrongPairs.nameOf(wrong.kind)) + " " + pairName(wrong.pair));
+    names.push_back(std::string(wrong.kind->name) + " " + pairName(wrong.pair));
   }
   EXPECT_THAT(names, testing::ElementsAre("missed 1-2", "false 0-2", "invalid 1-1", "invalid 0-77",
                                           "allowed extra 0-1"));

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "inspector/authoring/gizmo.h"
-#include "inspector/session/author_desk.h"
+#include "inspector/session/document.h"
 
 namespace broadmark {
 

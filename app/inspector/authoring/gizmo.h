@@ -12,7 +12,7 @@
 #include "broadmark/names.h"
 #include "broadmark/render/picking.h"
 #include "broadmark/scenes/transformation.h"
-#include "inspector/session/tools.h"
+#include "inspector/session/document.h"
 
 namespace broadmark {
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -44,9 +43,7 @@ class AlgorithmsPanel final : public Panel {
   void draw(PanelContext& context) override {
     Ui& ui = context.ui;
     Session& session = context.session;
-    if (ui.button("Add…##add", "Adds an algorithm", ImGui::GetContentRegionAvail().x)) {
-      ImGui::OpenPopup("add");
-    }
+    if (wideButton(ui, "Add…##add", "Adds an algorithm")) ImGui::OpenPopup("add");
     drawChoice(ui, session);
     ui.checkbox("check every answer", session.mismatches.check,
                 "Compares every answer with the oracle's, outside the timed region");
@@ -119,20 +116,20 @@ class AlgorithmsPanel final : public Panel {
 
   /// Returns whether it is to be kept.
   static bool drawLane(Ui& ui, Session& session, LaneEdit& lane) {
-    const auto scope = ui.scope(fmt::format("{}", lane.algorithm.id));
+    const std::string& id = lane.run.algorithm.id;
+    const auto scope = ui.scope(id);
     ImGui::PushID(lane.number);
     bool keep = true;
-    const bool open =
-        ImGui::CollapsingHeader(lane.algorithm.id.c_str(), &keep, ImGuiTreeNodeFlags_DefaultOpen);
+    const bool open = ImGui::CollapsingHeader(id.c_str(), &keep, ImGuiTreeNodeFlags_DefaultOpen);
     ui.note("header");
-    ui.tooltip(lane.algorithm.summary.c_str());
+    ui.tooltip(lane.run.algorithm.summary.c_str());
     if (open) {
       bool changed = false;
       bool shown = session.lanes.shown() == lane.number;
       if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
         session.lanes.show(shown ? lane.number : 0);
       }
-      changed |= drawExecution(ui, lane);
+      changed |= drawExecution(ui, lane.run);
       changed |= ui.parameters(*lane.parameters);
       if (changed) session.lanes.changed();
       if (ui.button("Remove")) keep = false;
@@ -141,25 +138,22 @@ class AlgorithmsPanel final : public Panel {
     return keep;
   }
 
-  static bool drawExecution(Ui& ui, LaneEdit& lane) {
+  static bool drawExecution(Ui& ui, Case& run) {
     bool changed = false;
-    if (lane.algorithm.traits.vectorised) {
-      std::vector<std::string> names;
-      std::size_t chosen = 0;
+    if (run.algorithm.traits.vectorised) {
       const std::vector<Isa> isas = supportedIsas();
-      for (const Isa isa : isas) {
-        if (isa == lane.isa) chosen = names.size();
-        names.emplace_back(isaName(isa));
-      }
+      std::vector<std::string> names;
+      for (const Isa isa : isas) names.emplace_back(isaName(isa));
+      auto chosen = static_cast<std::size_t>(std::ranges::find(isas, run.isa) - isas.begin());
       if (ui.combo("isa", chosen, names, "Instruction set of its kernels")) {
-        lane.isa = isas[chosen];
+        run.isa = isas[chosen];
         changed = true;
       }
     }
-    if (lane.algorithm.traits.parallel) {
-      std::int64_t threads = lane.threads;
+    if (run.algorithm.traits.parallel) {
+      std::int64_t threads = run.threads;
       if (ui.integer("threads", threads, 1, 256, "Threads that share the work")) {
-        lane.threads = static_cast<int>(threads);
+        run.threads = static_cast<int>(threads);
         changed = true;
       }
     }

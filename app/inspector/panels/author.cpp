@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/authoring/author_dialogs.h"
@@ -19,33 +18,13 @@ using Numbers = std::array<double, 3>;
 constexpr double kFar = 1e9;
 constexpr double kFast = 1e6;
 
-Numbers numbers(const Vec3& v) { return {v[0], v[1], v[2]}; }
+template <class Vector>
+Numbers numbers(const Vector& v) {
+  return {v[0], v[1], v[2]};
+}
 Vec3 vec(const Numbers& n) {
   return {static_cast<float>(n[0]), static_cast<float>(n[1]), static_cast<float>(n[2])};
 }
-
-/// Several buttons side by side that share the width.
-class ButtonRow {
- public:
-  ButtonRow(Ui& ui, int count) : ui_(&ui), count_(count) {
-    const float gaps = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(count - 1);
-    width_ = std::floor((ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(count));
-    width_ = std::max(width_, 1.0F);
-  }
-  bool button(const char* label, const char* tooltip, bool enabled = true) {
-    if (drawn_++ % count_ != 0) ImGui::SameLine();
-    ImGui::BeginDisabled(!enabled);
-    const bool pressed = ui_->button(label, tooltip, width_);
-    ImGui::EndDisabled();
-    return pressed;
-  }
-
- private:
-  Ui* ui_;
-  int count_;
-  int drawn_ = 0;
-  float width_ = 0;
-};
 
 /// The text of the inputs until it is entered.
 struct Inputs {
@@ -53,10 +32,8 @@ struct Inputs {
   Numbers world_min{};
   Numbers world_max{};
   scenes::AuthoredParameters parameters;
+  scenes::AuthoredBody body;  ///< the first selected one
   Numbers size{};
-  bool sphere = false;
-  double mass = 1;
-  bool frozen = false;
   Numbers velocity{};
   Numbers spin{};
   double layer = 0;
@@ -77,17 +54,17 @@ class AuthorPanel final : public Panel {
     drawBrush(context.ui, session);
     drawSelection(context.ui, session);
     drawSteps(context.ui, session.document.desk.tools);
-    drawScene(context.ui, session);
-    while (!changes_.empty()) {
-      const auto change = std::move(changes_.front());
-      changes_.erase(changes_.begin());
-      session.document.edit(change);
-    }
+    drawScene(context.ui, session.document);
   }
 
  private:
-  /// Done once the panel is drawn.
-  void edit(std::function<void(SceneEditor&)> change) { changes_.push_back(std::move(change)); }
+  /// Changes the document if a button was `pressed` or a value entered. What is refused does not
+  /// stay in the inputs.
+  void edit(Document& document, bool pressed, const std::function<void(SceneEditor&)>& change) {
+    if (!pressed) return;
+    document.edit(change);
+    known_ = false;
+  }
 
   /// Takes over what the document says, if that has changed.
   void reload(const Session& session) {
@@ -100,19 +77,16 @@ class AuthorPanel final : public Panel {
     name_ = session.document.desk.title();
     selection_ = editor.selection();
     const scenes::AuthoredScene& scene = editor.scene();
-    inputs_ = {.name = scene.name, .parameters = scenes::AuthoredParameters(scene.parameters)};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      inputs_.world_min[axis] = scene.world.min[axis];
-      inputs_.world_max[axis] = scene.world.max[axis];
-    }
+    inputs_ = {.name = scene.name,
+               .world_min = numbers(scene.world.min),
+               .world_max = numbers(scene.world.max),
+               .parameters = scenes::AuthoredParameters(scene.parameters)};
     if (selection_.empty()) return;
     inputs_.grouped = std::ranges::any_of(
         selection_, [&](std::uint32_t id) { return scene.bodies[id].group != 0; });
     const scenes::AuthoredBody& body = scene.bodies[selection_.front()];
-    inputs_.sphere = std::holds_alternative<scenes::SphereShape>(body.shape);
+    inputs_.body = body;
     inputs_.size = numbers(scenes::edgesOf(body.shape));
-    inputs_.mass = body.mass;
-    inputs_.frozen = body.frozen;
     inputs_.velocity = numbers(body.linear_velocity);
     inputs_.spin = numbers(body.angular_velocity);
     inputs_.layer = body.layer;
@@ -120,7 +94,7 @@ class AuthorPanel final : public Panel {
     inputs_.vanishes = body.vanishes == scenes::kNever ? 0 : body.vanishes;
   }
 
-  static void drawFile(PanelContext& context) {
+  void drawFile(PanelContext& context) {
     Ui& ui = context.ui;
     Session& session = context.session;
     ButtonRow first(ui, 2);
@@ -142,12 +116,12 @@ class AuthorPanel final : public Panel {
     const auto tip = [](const char* key, const std::string& name) {
       return name.empty() ? std::string(key) : fmt::format("{} ({})", name, key);
     };
-    if (third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo())) {
-      session.document.edit(&SceneEditor::undo);
-    }
-    if (third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo())) {
-      session.document.edit(&SceneEditor::redo);
-    }
+    edit(session.document,
+         third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo()),
+         &SceneEditor::undo);
+    edit(session.document,
+         third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo()),
+         &SceneEditor::redo);
     ButtonRow fourth(ui, 2);
     const bool bodies = !editor.scene().bodies.empty();
     if (fourth.button("Simulate", "Moves the scene on, frame by frame as it is watched (Space)",
@@ -172,12 +146,11 @@ class AuthorPanel final : public Panel {
     ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
     ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
                                   desk.editor.selection().size()));
-    ImGui::BeginDisabled(session.document.atRest());
-    if (ui.button(session.document.shown() ? "Back to the start###show" : "Show the scene###show",
-                  "Shows the bodies where they start", ImGui::GetContentRegionAvail().x)) {
+    if (wideButton(ui,
+                   session.document.shown() ? "Back to the start###show" : "Show the scene###show",
+                   "Shows the bodies where they start", !session.document.atRest())) {
       session.document.show();
     }
-    ImGui::EndDisabled();
   }
 
   static void drawBrush(Ui& ui, Session& session) {
@@ -196,8 +169,7 @@ class AuthorPanel final : public Panel {
     ui.vector("at", at, -kFar, kFar, "The point that is painted at, in world units");
     desk.paint_at = vec(at);
     ui.parameters(desk.paint);
-    if (ui.button("Add", "Paints once, and selects what was added",
-                  ImGui::GetContentRegionAvail().x)) {
+    if (wideButton(ui, "Add", "Paints once, and selects what was added")) {
       session.document.add([&desk] { return desk.stroke(); });
     }
     ImGui::PopID();
@@ -208,12 +180,14 @@ class AuthorPanel final : public Panel {
     const auto scope = ui.scope("Selection");
     ImGui::PushID("selection");
     const bool any = !selection_.empty();
+    Document& document = session.document;
     ButtonRow choose(ui, 2);
-    if (choose.button("All", "Selects all bodies (Ctrl+A)")) edit(&SceneEditor::selectAll);
-    if (choose.button("None", "Selects nothing (Escape)", any)) edit(&SceneEditor::selectNone);
+    edit(document, choose.button("All", "Selects all bodies (Ctrl+A)"), &SceneEditor::selectAll);
+    edit(document, choose.button("None", "Selects nothing (Escape)", any),
+         &SceneEditor::selectNone);
     if (any) {
       drawPlaces(ui, session);
-      drawProperties(ui);
+      drawProperties(ui, document);
     } else {
       ui.faintParagraph(
           "Click a body in the view to select it; drag with Shift to select several.");
@@ -225,105 +199,87 @@ class AuthorPanel final : public Panel {
     ui.vector("by", by_, -kFar, kFar, "How far Move and Duplicate go, in world units");
     ui.number("factor", factor_, 1e-6, 1e6, "Of Scale: on sizes and distances to the centre");
     ButtonRow row(ui, 2);
-    if (row.button("Move", "Moves the selected bodies")) {
-      edit([by = vec(by_)](SceneEditor& editor) { editor.move(by); });
-    }
-    if (row.button("Scale", "Scales places and sizes about the common centre")) {
-      edit([f = static_cast<float>(factor_)](SceneEditor& editor) { editor.scale(f); });
-    }
-    if (row.button("Duplicate", "Copies the selected bodies, moved")) {
-      edit([by = vec(by_)](SceneEditor& editor) { editor.duplicate(by); });
-    }
-    if (row.button("Delete", "Deletes the selected bodies (Delete)")) edit(&SceneEditor::erase);
+    Document& document = session.document;
+    edit(document, row.button("Move", "Moves the selected bodies"),
+         [&](SceneEditor& editor) { editor.move(vec(by_)); });
+    edit(document, row.button("Scale", "Scales places and sizes about the common centre"),
+         [&](SceneEditor& editor) { editor.scale(static_cast<float>(factor_)); });
+    edit(document, row.button("Duplicate", "Copies the selected bodies, moved"),
+         [&](SceneEditor& editor) { editor.duplicate(vec(by_)); });
+    edit(document, row.button("Delete", "Deletes the selected bodies (Delete)"),
+         &SceneEditor::erase);
     const bool several = selection_.size() > 1;
-    if (row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
-                   several)) {
-      edit(&SceneEditor::group);
-    }
-    if (row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped)) {
-      edit(&SceneEditor::ungroup);
-    }
+    edit(document,
+         row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
+                    several),
+         &SceneEditor::group);
+    edit(document,
+         row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped),
+         &SceneEditor::ungroup);
     if (row.button("Fly there", "Looks at the selected bodies (F)")) {
       session.selection.flyThere();
     }
     if (row.button("Paint here", "The brush paints at the centre of the selection")) {
-      session.document.desk.paint_at = session.document.desk.editor.selectionCentre();
+      document.desk.paint_at = document.desk.editor.selectionCentre();
     }
-    drawAlignments(ui);
+    if (several) drawAlignments(ui, document);
   }
 
   /// A row for each axis.
-  void drawAlignments(Ui& ui) {
+  void drawAlignments(Ui& ui, Document& document) {
     using Alignment = SceneEditor::Alignment;
     constexpr std::pair<Alignment, const char*> kAlignments[] = {
         {Alignment::low, "low"}, {Alignment::middle, "middle"}, {Alignment::high, "high"}};
-    if (selection_.size() < 2) return;
     const auto scope = ui.scope("align");
     ButtonRow row(ui, 3);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const auto& [alignment, name] : kAlignments) {
         const std::string label = fmt::format("{} {}", "xyz"[axis], name);
-        if (row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes")) {
-          edit([axis, alignment = alignment](SceneEditor& editor) {
-            editor.align(axis, alignment);
-          });
-        }
+        edit(document,
+             row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes"),
+             [&, to = alignment](SceneEditor& editor) { editor.align(axis, to); });
       }
     }
   }
 
-  void drawProperties(Ui& ui) {
-    if (selection_.size() == 1) {
-      ui.heading(fmt::format("Body {}", selection_.front()).c_str());
-    } else {
-      ui.heading(fmt::format("{} bodies; values of body {}", selection_.size(), selection_.front())
-                     .c_str());
-    }
-    std::size_t shape = inputs_.sphere ? 1 : 0;
-    if (ui.combo("shape", shape, {"box", "sphere"})) {
-      edit(shape == 1 ? &SceneEditor::makeSpheres : &SceneEditor::makeBoxes);
-    }
-    if (ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
-                  "Edges, in world units; of a sphere the first is the diameter")) {
-      edit([size = vec(inputs_.size)](SceneEditor& editor) { editor.setSize(size); });
-    }
-    if (ui.number("mass", inputs_.mass, 1e-6, 1e9)) {
-      edit([mass = inputs_.mass](SceneEditor& editor) { editor.setMass(mass); });
-    }
-    if (ui.checkbox("frozen", inputs_.frozen, "An immovable obstacle")) {
-      edit([frozen = inputs_.frozen](SceneEditor& editor) { editor.setFrozen(frozen); });
-    }
-    if (ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second")) {
-      edit([v = vec(inputs_.velocity)](SceneEditor& editor) { editor.setVelocity(v); });
-    }
-    if (ui.vector("spin", inputs_.spin, -kFast, kFast,
-                  "Angular velocity about each axis, in radians per second")) {
-      edit([v = vec(inputs_.spin)](SceneEditor& editor) { editor.setAngularVelocity(v); });
-    }
-    drawPresence(ui);
-  }
-
-  void drawPresence(Ui& ui) {
-    if (ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
-                  "Which layers collide is in the scene's file")) {
-      edit([layer = static_cast<std::uint8_t>(inputs_.layer)](SceneEditor& editor) {
-        editor.setLayer(layer);
-      });
-    }
-    if (ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in")) {
-      edit([frame = static_cast<std::uint32_t>(inputs_.appears)](SceneEditor& editor) {
-        editor.setAppears(frame);
-      });
-      known_ = false;  // a frame that is refused does not stay
-    }
-    if (ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
-                  "The first frame after that which it is not in; 0: it stays")) {
-      const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
-      edit([frame](SceneEditor& editor) {
-        editor.setVanishes(frame == 0 ? scenes::kNever : frame);
-      });
-      known_ = false;
-    }
+  void drawProperties(Ui& ui, Document& document) {
+    const std::uint32_t first = selection_.front();
+    ui.heading(selection_.size() == 1
+                   ? fmt::format("Body {}", first).c_str()
+                   : fmt::format("{} bodies; values of body {}", selection_.size(), first).c_str());
+    std::size_t shape = inputs_.body.shape.index();
+    edit(document, ui.combo("shape", shape, {"box", "sphere"}),
+         [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
+    edit(document,
+         ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
+                   "Edges, in world units; of a sphere the first is the diameter"),
+         [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
+    edit(document, ui.number("mass", inputs_.body.mass, 1e-6, 1e9),
+         [&](SceneEditor& editor) { editor.setMass(inputs_.body.mass); });
+    edit(document, ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
+         [&](SceneEditor& editor) { editor.setFrozen(inputs_.body.frozen); });
+    edit(document, ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
+         [&](SceneEditor& editor) { editor.setVelocity(vec(inputs_.velocity)); });
+    edit(document,
+         ui.vector("spin", inputs_.spin, -kFast, kFast,
+                   "Angular velocity about each axis, in radians per second"),
+         [&](SceneEditor& editor) { editor.setAngularVelocity(vec(inputs_.spin)); });
+    edit(document,
+         ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
+                   "Which layers collide is in the scene's file"),
+         [&](SceneEditor& editor) { editor.setLayer(static_cast<std::uint8_t>(inputs_.layer)); });
+    edit(document,
+         ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
+         [&](SceneEditor& editor) {
+           editor.setAppears(static_cast<std::uint32_t>(inputs_.appears));
+         });
+    edit(document,
+         ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
+                   "The first frame after that which it is not in; 0: it stays"),
+         [&](SceneEditor& editor) {
+           const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
+           editor.setVanishes(frame == 0 ? scenes::kNever : frame);
+         });
   }
 
   static void drawSteps(Ui& ui, Tools& tools) {
@@ -337,34 +293,27 @@ class AuthorPanel final : public Panel {
     ImGui::PopID();
   }
 
-  void drawScene(Ui& ui, const Session& session) {
+  void drawScene(Ui& ui, Document& document) {
     if (!ImGui::CollapsingHeader("Whole scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto scope = ui.scope("Whole scene");
     ImGui::PushID("scene");
-    if (ui.text("name", inputs_.name)) {
-      edit([name = inputs_.name](SceneEditor& editor) { editor.setName(name); });
-      known_ = false;  // a name that is refused does not stay
-    }
+    edit(document, ui.text("name", inputs_.name),
+         [&](SceneEditor& editor) { editor.setName(inputs_.name); });
     const bool low = ui.vector("world min", inputs_.world_min, -kFar, kFar, "Walls stand there");
     const bool high = ui.vector("world max", inputs_.world_max, -kFar, kFar, "Walls stand there");
-    if (low || high) {
+    edit(document, low || high, [&](SceneEditor& editor) {
       const Vec3 min = vec(inputs_.world_min);
       const Vec3 max = vec(inputs_.world_max);
-      edit([min, max](SceneEditor& editor) {
-        editor.setWorld({{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}});
-      });
-      known_ = false;
-    }
-    if (ui.parameters(inputs_.parameters)) enterParameters(session.document.desk.editor);
+      editor.setWorld({{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}});
+    });
+    edit(document, ui.parameters(inputs_.parameters), [&](SceneEditor& editor) {
+      scenes::AuthoredParameters before(editor.scene().parameters);
+      ParameterValues changed = changedValues(inputs_.parameters.values(), before);
+      // Another engine comes with parameters of its own, which keep their defaults.
+      if (const auto engine = changed.find("engine"); engine != changed.end()) changed = {*engine};
+      editor.setParameters(changed);
+    });
     ImGui::PopID();
-  }
-
-  void enterParameters(const SceneEditor& editor) {
-    scenes::AuthoredParameters before(editor.scene().parameters);
-    ParameterValues changed = changedValues(inputs_.parameters.values(), before);
-    // Another engine comes with parameters of its own, which keep their defaults.
-    if (const auto engine = changed.find("engine"); engine != changed.end()) changed = {*engine};
-    edit([changed](SceneEditor& e) { e.setParameters(changed); });
   }
 
   bool known_ = false;  ///< whether the inputs are those of:
@@ -374,7 +323,6 @@ class AuthorPanel final : public Panel {
   Inputs inputs_;
   Numbers by_ = {1, 0, 0};
   double factor_ = 2;
-  std::vector<std::function<void(SceneEditor&)>> changes_;
 };
 
 }  // namespace

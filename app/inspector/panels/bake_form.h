@@ -1,21 +1,56 @@
 // The part of the panel Batch that bakes recordings: scenes × object types × object counts.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "bake/bake_plan.h"
-#include "inspector/panels/panel.h"
+#include "broadmark/error.h"
+#include "inspector/panels/batch_parts.h"
+#include "inspector/session/text_lists.h"
 
 namespace broadmark {
 
 class BakeForm {
  public:
-  BakeForm();
-  void draw(PanelContext& context);
+  BakeForm() {
+    for (const SceneListing& scene : builtinScenes()) scenes_.push_back(scene.id);
+    for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
+    options_.sources = {scenes_.front()};
+    options_.scene.object_types = {types_.front()};
+    options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
+  }
+
+  void draw(PanelContext& context) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    BackgroundBake& bake = session.jobs.get<BackgroundBake>();
+    const BakeReport report = bake.report();
+    const bool running = bake.running();
+    if (drawStart(ui, bake, "Bakes in the background; what is there already is kept",
+                  "Keeps what is finished")) {
+      update();
+      begun_ = session.notices.attempt([&] {
+        if (!preview_.fault.empty()) throw InputError(preview_.fault);
+        bake.start(options_);
+      });
+    }
+    ImGui::BeginDisabled(running);
+    drawOptions(context);
+    ImGui::EndDisabled();
+    if (stale_) update();
+    // What has just been baked is listed as that.
+    const bool listed = begun_ && report.state == TaskState::done;
+    if (report.state != TaskState::idle) drawItems(ui, session, report);
+    if (!running && !listed) drawPreview(ui);
+  }
 
  private:
   /// What the inputs come to.
@@ -25,16 +60,119 @@ class BakeForm {
     std::string fault;  ///< "": none
   };
 
-  void drawOptions(PanelContext& context);
+  /// The choices of a parameter of built-in scenes.
+  static std::vector<std::string> optionsOf(std::string_view parameter) {
+    std::vector<std::string> options;
+    makeSimulation("freefall")->visitParameters([&](const Parameter& p) {
+      if (Choice* const* choice = std::get_if<Choice*>(&p.value); choice && p.name == parameter) {
+        options = (*choice)->options;
+      }
+    });
+    return options;
+  }
+
+  /// A checkbox for each of `all`; the marked ones are `chosen`.
+  void chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
+                  std::vector<std::string>& chosen) {
+    ui.heading(name);
+    const auto scope = ui.scope(name);
+    const float half = ImGui::GetContentRegionAvail().x / 2;
+    int column = 0;
+    for (const std::string& each : all) {
+      if (column++ % 2 == 1) ImGui::SameLine(half);
+      bool marked = std::ranges::find(chosen, each) != chosen.end();
+      if (!ui.checkbox(each.c_str(), marked)) continue;
+      stale_ = true;
+      if (marked) {
+        chosen.push_back(each);
+      } else {
+        std::erase(chosen, each);
+      }
+    }
+  }
+
+  void drawOptions(PanelContext& context) {
+    Ui& ui = context.ui;
+    chooseSome(ui, "scenes", scenes_, options_.sources);
+    chooseSome(ui, "object types", types_, options_.scene.object_types);
+    chooseSome(ui, "recorders", recorders_, options_.scene.recorders);
+    ui.heading("Each of them");
+    stale_ |= ui.text("objects", counts_, "1000, 8000");
+    ui.tooltip("How many bodies: one recording for each number");
+    stale_ |= ui.integer("frames", frames_, 1, 1'000'000, "Frames after the initial pose");
+    stale_ |= ui.combo("engine", engine_, engines_, "Physics engine");
+    std::int64_t threads = options_.threads;
+    if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
+      options_.threads = static_cast<int>(threads);
+    }
+    drawFolder(context, "output", "Directory for recordings", directory_, stale_);
+  }
+
   /// Takes over the inputs and makes the preview.
-  void update();
-  static void drawItems(Ui& ui, Session& session, const BackgroundBake::Report& report);
-  void drawPreview(Ui& ui) const;
+  void update() {
+    stale_ = begun_ = false;
+    preview_ = {};
+    try {
+      if (options_.sources.empty()) throw InputError("no scene is chosen");
+      if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
+      if (directory_.empty()) throw InputError("an output directory is needed");
+      options_.scene.objects = countsIn(counts_, "number of bodies", kMostBodies);
+      if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
+      options_.scene.parameters = {{"frames", std::to_string(frames_)},
+                                   {"engine", engines_.at(engine_)}};
+      options_.record = directory_;
+      BakeOptions all = options_;
+      all.force = true;  // reads no file
+      const auto plan = planBake(all);
+      preview_.bytes = plan->bytes();
+      for (const BakeJob& job : plan->pending) {
+        for (const std::filesystem::path& path : job.paths) {
+          preview_.recordings.emplace_back(path, leastBytes(path, job.scene));
+        }
+      }
+    } catch (const InputError& error) {
+      preview_.fault = error.what();
+    }
+  }
+
+  static void drawItems(Ui& ui, Session& session, const BakeReport& report) {
+    ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
+    const auto scope = ui.scope("recordings");
+    for (const BakeReport::Item& item : report.items) {
+      const bool there = item.outcome == BakeOutcome::kept || item.outcome == BakeOutcome::baked;
+      const std::string name = item.path.filename().string();
+      ImGui::PushID(item.path.c_str());
+      ImGui::BeginDisabled(!there);
+      const Rgb rgb = item.outcome == BakeOutcome::failed ? ui.theme.bad : ui.theme.good;
+      if (ui.selectable(
+              name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
+              there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
+        session.opener.open(item.path);
+      }
+      ImGui::EndDisabled();
+      ImGui::PopID();
+    }
+  }
+
+  void drawPreview(Ui& ui) const {
+    if (!preview_.fault.empty()) {
+      ui.heading("To bake");
+      drawFault(ui, preview_.fault);
+      return;
+    }
+    ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),
+                           bytesText(preview_.bytes))
+                   .c_str());
+    clipped(preview_.recordings.size(), [&](std::size_t row) {
+      const auto& [path, bytes] = preview_.recordings[row];
+      ui.line(path.filename().string(), bytesText(bytes), ui.theme.faint);
+    });
+  }
 
   std::vector<std::string> scenes_;
-  std::vector<std::string> types_;
   std::vector<std::string> recorders_;
-  std::vector<std::string> engines_;
+  const std::vector<std::string> types_ = optionsOf("object_type");
+  const std::vector<std::string> engines_ = optionsOf("engine");
   BakeOptions options_;
   std::string counts_ = "1000";
   std::int64_t frames_ = 100;

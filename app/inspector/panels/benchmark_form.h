@@ -1,32 +1,164 @@
 // The part of the panel Batch that runs algorithms on recordings.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "inspector/panels/panel.h"
+#include "broadmark/error.h"
+#include "inspector/panels/batch_parts.h"
+#include "inspector/session/text_lists.h"
+#include "request/cases.h"
 #include "request/run_request.h"
 
 namespace broadmark {
 
 class BenchmarkForm {
  public:
-  void draw(PanelContext& context);
+  void draw(PanelContext& context) {
+    Ui& ui = context.ui;
+    Session& session = context.session;
+    BackgroundBenchmark& benchmark = session.jobs.get<BackgroundBenchmark>();
+    const BackgroundBenchmark::Report report = benchmark.report();
+    const bool running = benchmark.running();
+    if (drawStart(ui, benchmark, "Runs in the background; best while nothing is played",
+                  "Keeps the cases that are finished")) {
+      session.notices.attempt(
+          [&] { benchmark.start(request(), session.lanes.algorithms(), session.jobs.make_host); });
+    }
+    ImGui::BeginDisabled(running);
+    drawOptions(context);
+    ImGui::EndDisabled();
+    if (report.state == TaskState::idle) {
+      drawPreview(ui, session);
+    } else {
+      drawItems(ui, session, report);
+    }
+  }
 
  private:
-  void drawOptions(PanelContext& context);
-  void drawRecordings(Ui& ui);
-  static void drawItems(Ui& ui, Session& session, const BackgroundBenchmark::Report& report);
-  void drawPreview(Ui& ui, const Session& session);
-  void findRecordings();
+  using Path = std::filesystem::path;
+
+  /// The recordings of boxes below a folder, sorted; none where there is no such folder.
+  static std::vector<Path> recordingsBelow(const Path& folder) {
+    const std::vector<std::string> extensions = boxRecordingExtensions();
+    std::vector<Path> found;
+    std::error_code failed;
+    for (std::filesystem::recursive_directory_iterator entry(folder, failed), end;
+         !failed && entry != end; entry.increment(failed)) {
+      const bool is_one =
+          std::ranges::find(extensions, entry->path().extension().string()) != extensions.end();
+      if (is_one && entry->is_regular_file(failed)) found.push_back(entry->path());
+    }
+    std::ranges::sort(found);
+    return found;
+  }
+
+  void drawOptions(PanelContext& context) {
+    Ui& ui = context.ui;
+    ui.heading("Recordings");
+    drawFolder(context, "folder", "Folder of recordings", directory_, stale_);
+    if (stale_ || ImGui::IsWindowAppearing()) findRecordings();
+    drawRecordings(ui);
+    ui.heading("How they are run");
+    ui.text("algorithms", algorithms_, "sap*, kd, all");
+    ui.tooltip("Ids, families, patterns, or all, as --algorithm takes them");
+    if (wideButton(ui, "Those in Algorithms", "Takes what the panel Algorithms holds")) {
+      algorithms_.clear();
+      for (const LaneEdit& lane : context.session.lanes.list) {
+        algorithms_ += (algorithms_.empty() ? "" : ", ") + lane.run.algorithm.id;
+      }
+    }
+    ui.text("threads", threads_, "1, 2");
+    ui.tooltip("Of parallel algorithms; each number makes a case");
+    ui.integer("repetitions", repetitions_, 1, 1000, "How often each case is run, in turns");
+    ui.combo("check", check_, kCheckModes.names(),
+             "full: exact pairs in every frame; hash: counts and hashes; off");
+    ui.text("results", results_, "results.json");
+  }
+
+  void findRecordings() {
+    stale_ = false;
+    const auto before = std::exchange(recordings_, {});
+    for (const Path& path : recordingsBelow(directory_)) {
+      const auto known = std::ranges::find(before, path, &std::pair<Path, bool>::first);
+      recordings_.emplace_back(path, known == before.end() || known->second);
+    }
+  }
+
+  void drawRecordings(Ui& ui) {
+    if (recordings_.empty()) {
+      ui.faintParagraph("There are none in this folder: bake some, or choose another one.");
+      return;
+    }
+    const auto scope = ui.scope("recordings");
+    for (auto& [path, marked] : recordings_) {
+      ui.checkbox(path.filename().string().c_str(), marked, path.string().c_str());
+    }
+  }
+
   /// Throws InputError for inputs that mean nothing.
-  [[nodiscard]] RunRequest request() const;
+  [[nodiscard]] RunRequest request() const {
+    RunRequest request;
+    for (const auto& [path, marked] : recordings_) {
+      if (marked) request.sources.push_back(path.string());
+    }
+    if (request.sources.empty()) throw InputError("no recording is chosen");
+    request.cases.algorithms = wordsIn(algorithms_);
+    if (request.cases.algorithms.empty()) throw InputError("no algorithm is chosen");
+    for (const std::uint32_t threads : countsIn(threads_, "number of threads", 256)) {
+      request.cases.threads.push_back(static_cast<int>(threads));
+    }
+    request.repetitions.most = static_cast<int>(repetitions_);
+    request.policy.check = kCheckModes.entries.at(check_).value;
+    if (results_.empty()) throw InputError("a file for the results is needed");
+    request.outputs = {{"json", results_}};
+    return request;
+  }
+
+  /// What would be run, or why nothing would.
+  void drawPreview(Ui& ui, const Session& session) const {
+    ui.heading("To run");
+    try {
+      const RunRequest request = this->request();
+      const auto cases = selectCases(request.cases, {}, session.lanes.algorithms());
+      ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
+                               counted(request.sources.size(), "recording")));
+    } catch (const InputError& error) {
+      drawFault(ui, error.what());
+    }
+  }
+
+  static void drawItems(Ui& ui, Session& session, const BenchmarkReport& report) {
+    ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
+    const bool any_kept = std::ranges::any_of(report.items, &BenchmarkReport::Item::kept);
+    if (report.state != TaskState::running && any_kept &&
+        wideButton(ui, "Open results", "Lists them in the panel Cases")) {
+      session.opener.open(report.file);
+    }
+    const auto scope = ui.scope("cases");
+    clipped(report.items.size(), [&](std::size_t row) {
+      const BenchmarkReport::Item& item = report.items[row];
+      const bool ok = item.status == Status::ok;
+      ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
+      const std::string right =
+          ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
+      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+        session.opener.openCase(report.file, item.id);
+      }
+      if (row == 0) ui.note("first");
+      ImGui::EndDisabled();
+    });
+  }
 
   std::string directory_ = "recordings";
-  std::vector<std::pair<std::filesystem::path, bool>> recordings_;  ///< whether it is marked
-  bool stale_ = true;                                               ///< there may be others
+  std::vector<std::pair<Path, bool>> recordings_;  ///< whether it is marked
+  bool stale_ = true;                              ///< there may be others
   std::string algorithms_ = "sap, kd, grid2d-sap, columns";
   std::string threads_ = "1";
   std::int64_t repetitions_ = 3;

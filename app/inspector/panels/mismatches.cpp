@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "broadmark/recordings/recording.h"
@@ -18,10 +17,6 @@
 
 namespace broadmark::panels::mismatches {
 namespace {
-
-/// By WrongPair::Kind.
-constexpr Rgb Palette::*kColours[] = {&Palette::missed, &Palette::false_pair, &Palette::invalid,
-                                      &Palette::allowed_extra};
 
 /// Height of the lists, in rows.
 constexpr float kListRows = 4.6F;
@@ -101,12 +96,11 @@ class MismatchesPanel final : public Panel {
   static void drawSearch(PanelContext& context) {
     Ui& ui = context.ui;
     Session& session = context.session;
-    const float width = ImGui::GetContentRegionAvail().x;
     if (session.mismatches.searching()) {
-      if (ui.button("Stop here", "Stays at the frame that has been reached", width)) {
+      if (wideButton(ui, "Stop here", "Stays at the frame that has been reached")) {
         session.mismatches.endSearch(context.progress);
       }
-    } else if (ui.button("Next mismatch", "Goes on to the next frame with a mismatch", width)) {
+    } else if (wideButton(ui, "Next mismatch", "Goes on to the next frame with a mismatch")) {
       session.mismatches.goToNext(context.progress);
     }
   }
@@ -146,24 +140,22 @@ class MismatchesPanel final : public Panel {
     const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
     if (wrong.empty()) ui.faint("no wrong pairs");
     clipped(wrong.size(), [&](std::size_t row) {
-      const WrongPair& one = wrong[row];
-      const std::string name =
-          fmt::format("{} {}", kWrongPairs.nameOf(one.kind), pairName(one.pair));
-      const std::vector<std::uint32_t> bodies = {one.pair.a, one.pair.b};
-      const bool allowed = one.kind == WrongPair::Kind::allowed_extra;
-      ImGui::PushStyleColor(ImGuiCol_Text,
-                            colour(ui.theme.*kColours[static_cast<std::size_t>(one.kind)]));
+      const auto& [kind, pair] = wrong[row];
+      const std::string name = fmt::format("{} {}", kind->name, pairName(pair));
+      const std::vector<std::uint32_t> bodies = {pair.a, pair.b};
+      ImGui::PushStyleColor(ImGuiCol_Text, colour(ui.theme.*kind->colour));
       const bool clicked =
           ImGui::Selectable(name.c_str(), context.session.selection.bodies() == bodies);
       ImGui::PopStyleColor();
       ui.note(name);
       if (row == 0) ui.note("first pair");
-      ui.tooltip(allowed ? "Reported though apart, within the algorithm's margin: no mismatch"
-                         : "Selects both bodies and flies there");
-      if (clicked) context.session.selection.visit(one.pair);
+      ui.tooltip(kind == &kWrongKinds.back()
+                     ? "Reported though apart, within the algorithm's margin: no mismatch"
+                     : "Selects both bodies and flies there");
+      if (clicked) context.session.selection.visit(pair);
     });
-    const std::uint64_t all = seen.difference.missed_count + seen.difference.false_count +
-                              seen.difference.allowed_extra_count + seen.difference.invalid_count;
+    std::uint64_t all = 0;
+    for (const WrongKind& kind : kWrongKinds) all += seen.difference.*kind.count;
     if (all > wrong.size()) ui.faint(fmt::format("… and {} more", all - wrong.size()));
   }
 
@@ -173,10 +165,8 @@ class MismatchesPanel final : public Panel {
     const bool wrong = showsAnswerOf(context, lane) &&
                        context.progress.snapshot->difference.isMismatch() &&
                        !session.jobs.get<CaseExport>().running();
-    ImGui::BeginDisabled(!wrong);
-    if (context.ui.button("Export case…",
-                          "Writes the smallest recording on which the algorithm is still wrong",
-                          ImGui::GetContentRegionAvail().x)) {
+    if (wideButton(context.ui, "Export case…",
+                   "Writes the smallest recording on which the algorithm is still wrong", wrong)) {
       context.files.ask(
           {.title = "Export the smallest recording that fails",
            .purpose = FileDialog::Purpose::save,
@@ -186,7 +176,6 @@ class MismatchesPanel final : public Panel {
            .chosen = [&session, run = lane.spec.run, seen = context.progress.snapshot](
                          const auto& file) { session.exportCase(run, seen, file); }});
     }
-    ImGui::EndDisabled();
   }
 
   static void drawExport(PanelContext& context) {

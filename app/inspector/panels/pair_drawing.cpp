@@ -9,15 +9,8 @@ namespace broadmark {
 namespace {
 
 Rgb relationColour(const Palette& theme, AxisRelation::Kind kind) {
-  switch (kind) {
-    case AxisRelation::Kind::overlap:
-      return theme.good;
-    case AxisRelation::Kind::touch:
-      return theme.warning;
-    case AxisRelation::Kind::gap:
-      return theme.bad;
-  }
-  return theme.faint;
+  constexpr Rgb Palette::*kColours[] = {&Palette::good, &Palette::warning, &Palette::bad};
+  return theme.*kColours[static_cast<std::size_t>(kind)];
 }
 
 /// The shortest digits that give the same float again.

@@ -37,6 +37,24 @@ struct PanelContext {
   }
 };
 
+/// Several buttons side by side that share the width.
+class ButtonRow {
+ public:
+  ButtonRow(Ui& ui, int count);
+  bool button(const char* label, const char* tooltip, bool enabled = true);
+
+ private:
+  Ui& ui_;
+  int count_;
+  int drawn_ = 0;
+  float width_;
+};
+
+/// A button as wide as the panel.
+inline bool wideButton(Ui& ui, const char* label, const char* tooltip, bool enabled = true) {
+  return ButtonRow(ui, 1).button(label, tooltip, enabled);
+}
+
 /// One implementation per file, listed in CMakeLists.txt. Keeps what only it needs between two
 /// pictures.
 class Panel {

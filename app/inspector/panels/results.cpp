@@ -1,8 +1,5 @@
 // What each algorithm did in this frame, side by side.
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -11,8 +8,6 @@
 
 namespace broadmark::panels::results {
 namespace {
-
-std::string time(std::int64_t ns) { return withPrefix(static_cast<double>(ns) * 1e-9, "s"); }
 
 /// Mean total of the undisturbed frames, in nanoseconds; below 0: none.
 double meanTotal(const LaneReport& lane) {
@@ -37,10 +32,6 @@ class ResultsPanel final : public Panel {
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
-    std::vector<Row> rows;
-    for (const LaneReport& lane : lanes) {
-      rows.push_back(rowOf(lane, context.session.playback.frame()));
-    }
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
                                        ImGuiTableFlags_ScrollY;
@@ -53,23 +44,11 @@ class ResultsPanel final : public Panel {
     for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
     ImGui::TableHeadersRow();
     const std::vector<Rgb> colours = context.laneColours();
-    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], rows[i], colours[i]);
+    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], colours[i]);
     ImGui::EndTable();
   }
 
  private:
-  struct Cell {
-    std::string text;
-    bool bad = false;
-  };
-  /// The cells beside name and status.
-  struct Row {
-    std::string name;
-    std::string status;
-    std::vector<Cell> cells;
-    bool disturbed = false;
-  };
-
   /// The phases are called as everywhere.
   static std::vector<std::string> columnNames() {
     std::vector<std::string> names = {"algorithm", "status", "total",   "mean",         "pairs",
@@ -80,60 +59,46 @@ class ResultsPanel final : public Panel {
     return names;
   }
 
-  static Row rowOf(const LaneReport& lane, std::uint32_t frame) {
-    const FrameRecord* record = lane.record(frame);
-    Row row{.name = caseName(lane.spec.run),
-            .status = std::string(statusName(lane.status)),
-            .disturbed = record != nullptr && record->disturbed};
-    const auto phase = [&](Phase which) {
-      row.cells.push_back({record == nullptr ? "–" : time(record->times[which])});
-    };
-    phase(Phase::total);
-    if (row.disturbed) row.cells.back().text += " *";
-    const double mean = meanTotal(lane);
-    row.cells.push_back({mean < 0 ? "–" : withPrefix(mean * 1e-9, "s")});
-    row.cells.push_back({record == nullptr ? "–" : std::to_string(record->pairs)});
-    const auto wrong = [&](std::uint64_t FrameRecord::*count, bool allowed = false) {
-      const bool checked = record != nullptr && record->checked;
-      row.cells.push_back({checked ? std::to_string(record->*count) : "–",
-                           checked && !allowed && record->*count > 0});
-    };
-    wrong(&FrameRecord::missed_count);
-    wrong(&FrameRecord::false_count);
-    wrong(&FrameRecord::invalid_count);
-    wrong(&FrameRecord::allowed_extra_count, true);
-    for (const auto& [which, name] : kPhases.entries) {
-      if (which != Phase::total) phase(which);
-    }
-    return row;
-  }
-
-  static void drawLane(PanelContext& context, const LaneReport& lane, const Row& row, Rgb curve) {
+  static void drawLane(PanelContext& context, const LaneReport& lane, Rgb curve) {
     Ui& ui = context.ui;
+    const FrameRecord* const record = lane.record(context.session.playback.frame());
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
     const bool shown = context.session.lanes.shown() == lane.spec.number;
     ImGui::PushStyleColor(ImGuiCol_Text, colour(curve));
-    if (ImGui::Selectable(row.name.c_str(), shown, ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
+                          ImGuiSelectableFlags_SpanAllColumns)) {
       context.session.lanes.show(lane.spec.number);
     }
     ImGui::PopStyleColor();
     ui.note(lane.spec.run.algorithm.id);
-    ImGui::TableNextColumn();
-    const bool bad = lane.status != Status::ok;
-    ui.coloured(bad ? ui.theme.bad : ui.theme.good, row.status);
-    ui.tooltip(lane.reason.c_str());
-    for (std::size_t i = 0; i < row.cells.size(); ++i) {
+    const auto cell = [&](const std::string& text, Rgb rgb) {
       ImGui::TableNextColumn();
-      if (row.cells[i].bad) {
-        ui.coloured(ui.theme.bad, row.cells[i].text);
-      } else {
-        ImGui::TextUnformatted(row.cells[i].text.c_str());
-      }
-      if (i == 0 && row.disturbed) {
-        ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
-      }
+      ui.coloured(rgb, text);
+    };
+    const auto time = [&](Phase phase, const char* mark) {
+      const bool known = record != nullptr;
+      cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark : "–",
+           ui.theme.text);
+    };
+    cell(std::string(statusName(lane.status)),
+         lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
+    ui.tooltip(lane.reason.c_str());
+    const bool disturbed = record != nullptr && record->disturbed;
+    time(Phase::total, disturbed ? " *" : "");
+    if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
+    const double mean = meanTotal(lane);
+    cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"), ui.theme.text);
+    cell(record == nullptr ? "–" : std::to_string(record->pairs), ui.theme.text);
+    for (const auto count : {&FrameRecord::missed_count, &FrameRecord::false_count,
+                             &FrameRecord::invalid_count, &FrameRecord::allowed_extra_count}) {
+      const bool checked = record != nullptr && record->checked;
+      const bool bad = checked && record->*count > 0 && count != &FrameRecord::allowed_extra_count;
+      cell(checked ? std::to_string(record->*count) : "–", bad ? ui.theme.bad : ui.theme.text);
+    }
+    for (const auto& [phase, name] : kPhases.entries) {
+      if (phase != Phase::total) time(phase, "");
     }
     ImGui::PopID();
   }

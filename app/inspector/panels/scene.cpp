@@ -52,10 +52,9 @@ class ScenePanel final : public Panel {
   static void drawDraft(Ui& ui, Session& session) {
     chooseScene(ui, session);
     ImGui::Spacing();
-    if (ui.button("Simulate",
-                  "Starts the scene anew with these parameters; frames are simulated "
-                  "as they are watched",
-                  ImGui::GetContentRegionAvail().x)) {
+    if (wideButton(ui, "Simulate",
+                   "Starts the scene anew with these parameters; frames are simulated as they are "
+                   "watched")) {
       session.notices.attempt([&] { session.draft.simulate(); });
     }
     ui.heading("Parameters");

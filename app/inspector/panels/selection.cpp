@@ -6,6 +6,7 @@
 
 #include "broadmark/analysis/scene_statistics.h"
 #include "inspector/panels/panel.h"
+#include "inspector/session/text_lists.h"
 #include "inspector/session/wrong_pair.h"
 #include "support/words.h"
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "broadmark/render/plot.h"
+#include "broadmark/statistics/statistics.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
 #include "inspector/ui/histogram.h"
@@ -107,13 +107,10 @@ class TimelinePanel final : public Panel {
     if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
     summarise(context, {first, last});
     drawStatistics(context);
-    const auto shown = std::ranges::find(context.progress.lanes, context.session.lanes.shown(),
-                                         [](const LaneReport& lane) { return lane.spec.number; });
-    const std::size_t which =
-        shown == context.progress.lanes.end()
-            ? 0
-            : static_cast<std::size_t>(shown - context.progress.lanes.begin());
-    drawHistogram(ui, statistics_.at(which).values,
+    const std::vector<LaneReport>& lanes = context.progress.lanes;
+    const LaneReport* const shown = laneOf(lanes, context.session.lanes.shown());
+    const std::ptrdiff_t which = shown == nullptr ? 0 : shown - lanes.data();
+    drawHistogram(ui, statistics_.at(static_cast<std::size_t>(which)).values,
                   [this](double value) { return valueText(value); });
   }
 
@@ -155,7 +152,7 @@ class TimelinePanel final : public Panel {
       ui.coloured(colours[i], caseName(lanes[i].spec.run));
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
         ImGui::TableNextColumn();
-        ui.plain(of.values.empty() ? "–" : valueText(of.quantile(share)));
+        ui.plain(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
       }
       ImGui::TableNextColumn();
       ui.plain(of.values.empty() ? "–" : valueText(of.total));

@@ -109,15 +109,14 @@ class ViewPanel final : public Panel {
         second.frame = static_cast<std::uint32_t>(frame);
       }
     }
-    const float width = ImGui::GetContentRegionAvail().x;
     if (!second.footage) {
-      if (ui.button("Another recording…", "Opens it in the second view", width)) {
+      if (wideButton(ui, "Another recording…", "Opens it in the second view")) {
         askRecording(context);
       }
     } else {
-      ui.faint(fittingText(second.footage->title, width));
+      ui.faint(fittingText(second.footage->title, ImGui::GetContentRegionAvail().x));
       ui.tooltip(second.footage->recording.string().c_str());
-      if (ui.button("The same recording", "As in the first view", width)) second.footage.reset();
+      if (wideButton(ui, "The same recording", "As in the first view")) second.footage.reset();
     }
     ui.checkbox("cameras linked", session.second.linked, "One camera moves both views");
   }
@@ -127,7 +126,7 @@ class ViewPanel final : public Panel {
     std::size_t chosen = 0;
     for (const LaneEdit& lane : session.lanes.list) {
       if (lane.number == second.lane) chosen = names.size();
-      names.push_back(caseName(lane.spec().run));
+      names.push_back(caseName(lane.run));
     }
     if (!ui.combo("answer of", chosen, names, "Whose pairs the second view shows")) return;
     second.lane = chosen == 0 ? 0 : session.lanes.list[chosen - 1].number;
@@ -188,22 +187,19 @@ class ViewPanel final : public Panel {
                 "What the algorithm draws of its own structure");
     if (!view.structure) return;
     ui.checkbox("only around the selection", view.structure_near);
-    const Snapshot* snapshot = context.progress.snapshot.get();
-    const int deepest =
-        snapshot != nullptr && snapshot->structure ? deepestLevel(*snapshot->structure) : 0;
-    if (deepest > 0) {
+    const Snapshot* const snapshot = context.progress.snapshot.get();
+    const RecordedDrawing* const drawn = snapshot != nullptr ? snapshot->structure.get() : nullptr;
+    if (const int deepest = drawn != nullptr ? deepestLevel(*drawn) : 0; deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
       const int level = view.structure_level;
       ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
                 view.structure_level, -1, deepest);
     }
-    ImGui::BeginDisabled(snapshot == nullptr || !snapshot->structure ||
-                         !tellsPopulations(*snapshot->structure));
+    ImGui::BeginDisabled(drawn == nullptr || !tellsPopulations(*drawn));
     ui.checkbox("coloured by population", view.structure_population,
                 "Colours tell how many bodies a cell holds, where the algorithm says so");
     ImGui::EndDisabled();
-    if (snapshot != nullptr && snapshot->structure && snapshot->structure->boxes().empty() &&
-        snapshot->structure->lines().empty()) {
+    if (drawn != nullptr && drawn->boxes().empty() && drawn->lines().empty()) {
       ui.faint("It has none to show.");
     }
   }

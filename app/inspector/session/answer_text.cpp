@@ -21,11 +21,9 @@ std::string ownerName(const std::vector<LaneReport>& lanes, const LaneReport& la
 
 std::string differenceText(const FrameDifference& difference) {
   std::string text;
-  for (const auto& [count, kind] : {std::pair{difference.missed_count, "missed"},
-                                    {difference.false_count, "false"},
-                                    {difference.invalid_count, "invalid"},
-                                    {difference.allowed_extra_count, "allowed extra"}}) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind);
+  for (const WrongKind& kind : kWrongKinds) {
+    const std::uint64_t count = difference.*kind.count;
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, kind.name);
   }
   return text;
 }
@@ -81,10 +79,6 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& l
   }
   text.pair = pairText(snapshot, text.owner, selection);
   return text;
-}
-
-std::string whereText(const Snapshot& snapshot) {
-  return fmt::format("frame {}, {}", snapshot.frame, sourceText(snapshot.footage.get()));
 }
 
 std::string sourceText(const FootageRequest* footage) {

@@ -24,9 +24,6 @@ struct AnswerText {
 AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& lanes, int chosen,
                       std::span<const std::uint32_t> selection);
 
-/// Which frame of what it shows.
-std::string whereText(const Snapshot& snapshot);
-
 /// "live simulation: Brownian"; "" for nothing.
 std::string sourceText(const FootageRequest* footage);
 

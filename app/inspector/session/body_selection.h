@@ -1,55 +1,78 @@
 // Which bodies are selected, and which of them the view is to fly to.
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <cstdint>
-#include <functional>
+#include <iterator>
 #include <optional>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "broadmark/pair.h"
+#include "inspector/session/document.h"
 
 namespace broadmark {
-
-/// Ids from text: "17, 40-50", each at most `last`. Throws InputError, naming `what`.
-std::vector<std::uint32_t> parseIds(std::string_view text, std::string_view what,
-                                    std::uint32_t last);
 
 class BodySelection {
  public:
   using Bodies = std::vector<std::uint32_t>;
 
-  /// Ascending.
-  [[nodiscard]] const Bodies& bodies() const { return bodies_; }
-  [[nodiscard]] bool contains(std::uint32_t body) const;
+  /// The parts outlive it.
+  BodySelection(const Playback& playback, Document& document)
+      : playback_(playback), document_(document) {}
+
+  /// Ascending. While the document is shown, those that its editor works on.
+  [[nodiscard]] const Bodies& bodies() const {
+    return document_.shown() ? document_.desk.editor.selection() : bodies_;
+  }
 
   /// Selects these, given in any order; those that do not exist are left out.
-  void select(Bodies bodies);
+  void select(Bodies bodies) {
+    scenes::SceneEditor& editor = document_.desk.editor;
+    const bool of_document = document_.shown();
+    const std::size_t count =
+        of_document ? editor.scene().bodies.size() : playback_.scene().objects;
+    std::ranges::sort(bodies);
+    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+    std::erase_if(bodies, [&](std::uint32_t body) { return body >= count; });
+    if (of_document) {
+      editor.select(std::move(bodies));
+    } else {
+      bodies_ = std::move(bodies);
+    }
+  }
+
   /// Adds bodies (ascending), or takes them away if all of them are selected.
-  void toggle(const Bodies& bodies);
+  void toggle(const Bodies& bodies) {
+    Bodies toggled;
+    if (std::ranges::includes(this->bodies(), bodies)) {
+      std::ranges::set_difference(this->bodies(), bodies, std::back_inserter(toggled));
+    } else {
+      std::ranges::set_union(this->bodies(), bodies, std::back_inserter(toggled));
+    }
+    select(std::move(toggled));
+  }
+
   /// These and all that are selected with them.
   [[nodiscard]] Bodies whole(Bodies bodies) const {
-    return companions ? companions(std::move(bodies)) : bodies;
+    return document_.shown() ? document_.desk.editor.withGroups(std::move(bodies)) : bodies;
   }
+
   /// Selects the two bodies of a pair and flies there.
-  void visit(Pair pair);
-  void flyThere() { fly_to = bodies_; }
-  /// Takes over what has been selected elsewhere (ascending), without calling on_select.
-  void follow(Bodies bodies) { bodies_ = std::move(bodies); }
+  void visit(Pair pair) {
+    select({pair.a, pair.b});
+    flyThere();
+  }
+  void flyThere() { fly_to = bodies(); }
+  /// To be called when other footage is shown.
+  void reset() { bodies_.clear(); }
 
   /// What the view is to fly to, until it takes it; an empty list means everything.
   std::optional<Bodies> fly_to;
 
-  // Set by the owner.
-  std::function<std::size_t()> body_count;
-  std::function<Bodies(Bodies)>
-      companions;  ///< adds those that are selected with them; may be null
-  std::function<void(const Bodies&)> on_select;
-
  private:
-  Bodies bodies_;
+  const Playback& playback_;
+  Document& document_;
+  Bodies bodies_;  ///< of footage that is not the document
 };
 
 }  // namespace broadmark

@@ -5,14 +5,36 @@
 #include <utility>
 
 #include "broadmark/files.h"
+#include "broadmark/scenes/authored_simulation.h"
 #include "support/words.h"
 
 namespace broadmark {
+namespace {
 
 namespace fs = std::filesystem;
 
+/// The scene where its bodies start, as footage of a single frame.
+FootageOpener stillOf(const scenes::AuthoredScene& scene) {
+  const SceneInfo info{.name = scene.name,
+                       .object_type = scenes::objectTypeName(scene),
+                       .objects = static_cast<std::uint32_t>(scene.bodies.size()),
+                       .frames = 0,
+                       .world = scene.world,
+                       .filter = scenes::collisionFilterOf(scene)};
+  const auto boxes = std::make_shared<const std::vector<Aabb>>(boxesOf(scene));
+  return [info, boxes] { return std::make_unique<Footage>(info, *boxes); };
+}
+
+}  // namespace
+
+std::unique_ptr<Simulation> AuthorDesk::simulation() const {
+  return scenes::makeAuthoredSimulation(editor.scene(), path_);
+}
+
 void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
-  desk.start(std::move(scene), std::move(path), unsaved);
+  desk.editor = scenes::SceneEditor(std::move(scene));
+  desk.path_ = std::move(path);
+  desk.unsaved_ = unsaved;
   scene_ = 0;
   show();
   notices_.bringUp("Author");
@@ -27,8 +49,10 @@ void Document::startFromFrame() {
                      .scene = std::make_shared<scenes::AuthoredScene>()};
   playback_.show({.open =
                       [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
-                        *scene = sceneFromFootage(*former, frame);
-                        return stillOf(*scene);
+                        const std::unique_ptr<Footage> footage = former->open();
+                        while (footage->known() < frame) footage->extend();
+                        *scene = footage->authoredScene(frame);
+                        return stillOf(*scene)();
                       },
                   .source = FootageSource::authored,
                   .title = fmt::format("frame {} of {}", wanted.frame, wanted.former->title)});
@@ -49,11 +73,7 @@ void Document::advance(const RunProgress& progress) {
 void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
   const std::uint64_t before = desk.editor.revision();
   notices_.attempt([&] { change(desk.editor); });
-  if (desk.editor.revision() != before || !shown()) {
-    show();
-  } else {
-    selection_.follow(desk.editor.selection());
-  }
+  if (desk.editor.revision() != before || !shown()) show();
 }
 
 void Document::add(const std::function<scenes::Stroke()>& painted) {
@@ -86,18 +106,28 @@ void Document::showAs(FootageOpener open, bool moves) {
                   .scene = scene_});
   footage_ = playback_.footage();
   moves_ = moves;
-  selection_.follow(desk.editor.selection());
 }
 
-void Document::show() { showAs(desk.still(), false); }
+void Document::show() { showAs(stillOf(desk.editor.scene()), false); }
 
-void Document::simulate() { showAs(desk.live(), true); }
+void Document::simulate() {
+  const auto scene = std::make_shared<const scenes::AuthoredScene>(desk.editor.scene());
+  showAs(
+      [scene, path = desk.path()] {
+        return std::make_unique<Footage>(scenes::makeAuthoredSimulation(*scene, path));
+      },
+      true);
+}
 
-bool Document::save(const fs::path& path) {
+bool Document::save(fs::path path) {
+  if (!path.has_extension()) path += ".json";
   return notices_.attempt([&] {
-    desk.save(path);
-    notices_.say(fmt::format("saved: {}", desk.path().string()));
-    notices_.noteFile(desk.path());
+    writeTextFile(path, scenes::formatAuthoredScene(desk.editor.scene()));
+    desk.editor.markSaved();
+    desk.path_ = path;
+    desk.unsaved_ = false;
+    notices_.say(fmt::format("saved: {}", path.string()));
+    notices_.on_file(path);
   });
 }
 

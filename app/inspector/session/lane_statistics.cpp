@@ -8,8 +8,6 @@
 
 namespace broadmark {
 
-double SpanStatistics::quantile(double share) const { return broadmark::quantile(values, share); }
-
 SpanStatistics statisticsOf(const FrameValues& values, const FrameValues& disturbed,
                             FrameSpan span) {
   SpanStatistics statistics;

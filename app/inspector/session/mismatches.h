@@ -1,8 +1,12 @@
 // Checking answers, stopping at a wrong one, and going on to the next.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "inspector/run/run_thread.h"
@@ -10,8 +14,23 @@
 #include "inspector/session/lanes.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
+#include "inspector/session/wrong_pair.h"
 
 namespace broadmark {
+
+/// The next frame after `frame` in which a lane is known to be wrong.
+inline std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<LaneReport>& lanes,
+                                                          std::uint32_t frame) {
+  std::optional<RunProgress::Stop> next;
+  for (const LaneReport& lane : lanes) {
+    for (std::uint32_t index = frame + 1; index <= lane.frames.size(); ++index) {
+      if (!lane.frames[index - 1].mismatch) continue;
+      if (!next || index < next->frame) next = {.frame = index, .lane = lane.spec.number};
+      break;
+    }
+  }
+  return next;
+}
 
 class Mismatches {
  public:
@@ -20,22 +39,56 @@ class Mismatches {
       : playback_(playback), lanes_(lanes), selection_(selection), notices_(notices) {}
 
   /// Takes note of a stop, and visits the first wrong pair once the frame is seen.
-  void advance(const RunProgress& progress);
+  void advance(const RunProgress& progress) {
+    noticeStop(progress);
+    if (!playback_.hasReached(progress)) return;
+    visitStop(*progress.snapshot);
+    if (std::exchange(searching_, false)) {
+      notices_.say(fmt::format("no further mismatch up to frame {}", playback_.frame()));
+    }
+  }
 
   /// Goes on to the next frame in which an algorithm is wrong, running what has not been run yet.
-  void goToNext(const RunProgress& progress);
+  void goToNext(const RunProgress& progress) {
+    playback_.pause();
+    check = stop_at_mismatch = true;
+    if (const auto next = nextKnownMismatch(progress.lanes, playback_.frame())) {
+      playback_.seek(next->frame);
+      lanes_.show(next->lane);
+      return;
+    }
+    playback_.seek(playback_.lastFrame());
+    searching_ = true;
+  }
+
   /// Whether it is on the way to one.
   [[nodiscard]] bool searching() const { return searching_; }
   /// Stays where the algorithms have got to.
-  void endSearch(const RunProgress& progress);
+  void endSearch(const RunProgress& progress) {
+    std::uint32_t reached = progress.snapshot ? progress.snapshot->frame : 0;
+    for (const LaneReport& lane : progress.lanes) reached = std::max(reached, lane.frame);
+    playback_.seek(std::min(reached, playback_.frame()));
+  }
 
   /// To be called when the user moves to another frame, which ends a search. After going on from a
   /// mismatch that mismatch is known.
-  void moved(bool forward);
+  void moved(bool forward) {
+    if (forward && noticed_) known_ = noticed_->frame;
+    searching_ = false;
+  }
+
   /// To be called when the lanes have changed: forgets at which frame it stopped.
-  void forgetStop();
+  void forgetStop() {
+    known_.reset();
+    noticed_.reset();
+  }
+
   /// To be called when other footage is shown: forgets everything.
-  void reset();
+  void reset() {
+    forgetStop();
+    to_visit_.reset();
+    searching_ = false;
+  }
 
   /// See Wish.
   [[nodiscard]] std::optional<std::uint32_t> known() const { return known_; }
@@ -44,8 +97,33 @@ class Mismatches {
   bool stop_at_mismatch = true;  ///< while checking
 
  private:
-  void noticeStop(const RunProgress& progress);
-  void visitStop(const Snapshot& seen);
+  void noticeStop(const RunProgress& progress) {
+    if (!progress.stop) {
+      noticed_.reset();
+      return;
+    }
+    const auto [frame, number] = *progress.stop;
+    const bool is_known = known_ && *known_ >= frame;
+    if (is_known || (noticed_ && noticed_->frame == frame)) return;
+    playback_.goTo(frame);
+    lanes_.show(number);
+    noticed_ = to_visit_ = progress.stop;
+    notices_.bringUp("Mismatches");
+    const LaneEdit* wrong = lanes_.find(number);
+    notices_.say(fmt::format("{} is wrong in frame {}",
+                             wrong ? wrong->run.algorithm.id : "an algorithm", frame),
+                 Message::Kind::error);
+  }
+
+  void visitStop(const Snapshot& seen) {
+    if (!to_visit_ || !seen.checked || seen.frame != to_visit_->frame ||
+        seen.lane != to_visit_->lane) {
+      return;
+    }
+    to_visit_.reset();
+    const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
+    if (!wrong.empty()) selection_.visit(wrong.front().pair);
+  }
 
   Playback& playback_;
   Lanes& lanes_;
@@ -56,9 +134,5 @@ class Mismatches {
   std::optional<RunProgress::Stop> to_visit_;  ///< stopped at, not seen yet
   bool searching_ = false;
 };
-
-/// The next frame after `frame` in which a lane is known to be wrong.
-std::optional<RunProgress::Stop> nextKnownMismatch(const std::vector<LaneReport>& lanes,
-                                                   std::uint32_t frame);
 
 }  // namespace broadmark

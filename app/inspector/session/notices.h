@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "broadmark/error.h"
 
 namespace broadmark {
 
@@ -17,20 +20,30 @@ struct Message {
 };
 
 struct Notices {
-  void say(std::string text, Message::Kind kind = Message::Kind::note);
+  void say(std::string text, Message::Kind kind = Message::Kind::note) {
+    status = {kind, std::move(text)};
+  }
   /// An error that the user has to acknowledge.
-  void complain(std::string text);
+  void complain(std::string text) {
+    say(text, Message::Kind::error);
+    errors.push_back(std::move(text));
+  }
   /// Does something, turning what it throws into an error. Returns whether all went well.
-  bool attempt(const std::function<void()>& act);
+  template <class Act>
+  bool attempt(const Act& act) {
+    try {
+      act();
+      return true;
+    } catch (...) {
+      complain(currentErrorText());
+    }
+    return false;
+  }
   /// Brings a panel to the front in the next picture.
   void bringUp(std::string panel) { wanted_panels.push_back(std::move(panel)); }
 
-  /// Reports a file that has been opened or saved.
-  void noteFile(const std::filesystem::path& file) const {
-    if (on_file) on_file(file);
-  }
-
-  std::function<void(const std::filesystem::path&)> on_file;  ///< set by the owner
+  /// Called with each file that has been opened or saved.
+  std::function<void(const std::filesystem::path&)> on_file = [](const auto&) {};
   Message status;
   std::deque<std::string> errors;  ///< not yet acknowledged
   std::vector<std::string> wanted_panels;

@@ -1,6 +1,10 @@
 #include "inspector/session/opened_results.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <set>
 #include <utility>
 
 #include "broadmark/harness/runner.h"
@@ -38,6 +42,31 @@ FrameValues mismatchesOf(const CaseResult& result) {
   return values;
 }
 
+/// As recordingId(), without the size.
+std::string sceneOf(const Row& row) {
+  std::string id = row.recording;
+  const std::string size = fmt::format("/N{}/", row.result.recording.scene.objects);
+  if (const std::size_t at = id.find(size); at != id.npos) id.erase(at, size.size() - 1);
+  return id;
+}
+
+double exponentOf(const std::vector<ScalingCurve::Point>& points) {
+  const auto count = static_cast<double>(points.size());
+  double x_sum = 0;
+  double y_sum = 0;
+  double xx_sum = 0;
+  double xy_sum = 0;
+  for (const ScalingCurve::Point& point : points) {
+    const double x = std::log(static_cast<double>(point.objects));
+    const double y = std::log(point.seconds);
+    x_sum += x;
+    y_sum += y;
+    xx_sum += x * x;
+    xy_sum += x * y;
+  }
+  return (count * xy_sum - x_sum * y_sum) / (count * xx_sum - x_sum * x_sum);
+}
+
 }  // namespace
 
 OpenedResults::OpenedResults(std::filesystem::path file, Results results,
@@ -58,16 +87,6 @@ OpenedResults::OpenedResults(std::filesystem::path file, Results results,
   list();
 }
 
-std::size_t OpenedResults::wrong() const {
-  return static_cast<std::size_t>(
-      std::ranges::count_if(rows_, [](const Row& row) { return row.mismatches > 0; }));
-}
-
-void OpenedResults::mark(std::size_t row, bool on) {
-  rows_[row].marked = on;
-  curves_of_.reset();
-}
-
 const std::vector<OpenedResults::Curve>& OpenedResults::curves(Phase phase) {
   if (curves_of_ == phase) return curves_;
   curves_of_ = phase;
@@ -84,13 +103,50 @@ const std::vector<OpenedResults::Curve>& OpenedResults::curves(Phase phase) {
 const std::vector<ScalingCurve>& OpenedResults::scaling(Phase phase) {
   if (scaling_of_ == phase) return scaling_;
   scaling_of_ = phase;
-  std::vector<SizedCase> cases;
-  for (const std::size_t row : listed_) {
-    cases.push_back({.row = row, .result = &rows_[row].result, .algorithm = rows_[row].algorithm});
-  }
-  std::ranges::sort(cases, {}, &SizedCase::row);  // sorting the list changes no colour
-  scaling_ = scalingCurves(cases, phase);
+  scaling_ = scalingCurves(phase);
   return scaling_;
+}
+
+std::vector<ScalingCurve> OpenedResults::scalingCurves(Phase phase) const {
+  std::vector<ScalingCurve> curves;
+  std::vector<std::size_t> rows = listed_;
+  std::ranges::sort(rows);  // sorting the list changes no colour
+  for (const std::size_t i : rows) {
+    const CaseResult& result = rows_[i].result;
+    const double seconds = result.meanSeconds(phase).value_or(0);
+    if (result.status != Status::ok || !result.isComplete() || seconds <= 0) continue;
+    const std::string scene = sceneOf(rows_[i]);
+    const std::string case_name = caseNameOf(result);
+    auto curve = std::ranges::find_if(curves, [&](const ScalingCurve& other) {
+      return other.scene == scene && other.case_name == case_name;
+    });
+    if (curve == curves.end()) {
+      curve = curves.insert(
+          curve,
+          {.algorithm = rows_[i].algorithm, .scene = scene, .case_name = case_name, .points = {}});
+    }
+    curve->points.push_back({result.recording.scene.objects, seconds, i});
+  }
+  std::set<std::string> scenes;
+  std::set<std::string> case_names;
+  std::set<std::string> algorithms;
+  for (ScalingCurve& curve : curves) {
+    std::ranges::stable_sort(curve.points, {}, &ScalingCurve::Point::objects);
+  }
+  std::erase_if(curves, [](const ScalingCurve& curve) {
+    return curve.points.front().objects == curve.points.back().objects;
+  });
+  for (const ScalingCurve& curve : curves) {
+    scenes.insert(curve.scene);
+    case_names.insert(curve.case_name);
+    algorithms.insert(curve.algorithm);
+  }
+  for (ScalingCurve& curve : curves) {
+    if (case_names.size() != algorithms.size()) curve.algorithm = curve.case_name;
+    if (scenes.size() == 1) curve.scene.clear();
+    curve.exponent = exponentOf(curve.points);
+  }
+  return curves;
 }
 
 void OpenedResults::sort(std::string_view column, bool descending) {

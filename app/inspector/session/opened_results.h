@@ -2,6 +2,7 @@
 // marked to be plotted.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -13,9 +14,23 @@
 #include "broadmark/render/frame_values.h"
 #include "broadmark/results/case_columns.h"
 #include "broadmark/results/results.h"
-#include "inspector/session/scaling.h"
 
 namespace broadmark {
+
+/// How the time of a frame of one algorithm, with the same parameters and threads, grows with the
+/// number of bodies of one scene.
+struct ScalingCurve {
+  struct Point {
+    std::uint32_t objects = 0;
+    double seconds = 0;  ///< mean per frame, over all repetitions; above 0
+    std::size_t row = 0;
+  };
+  std::string algorithm;      ///< as short as tells it from all others
+  std::string scene;          ///< "Brownian/Cubes/F9"; "" where all curves are of the same
+  std::string case_name;      ///< as caseNameOf()
+  std::vector<Point> points;  ///< of at least two sizes, the smallest first
+  double exponent = 0;  ///< of seconds = factor · objects^exponent, by least squares of logarithms
+};
 
 class OpenedResults {
  public:
@@ -45,11 +60,18 @@ class OpenedResults {
   [[nodiscard]] std::vector<Row>& rows() { return rows_; }
   [[nodiscard]] const std::vector<Row>& rows() const { return rows_; }
   /// How many cases gave a wrong answer.
-  [[nodiscard]] std::size_t wrong() const;
-  void mark(std::size_t row, bool on);
+  [[nodiscard]] std::size_t wrong() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(rows_, [](const Row& row) { return row.mismatches > 0; }));
+  }
+  void mark(std::size_t row, bool on) {
+    rows_[row].marked = on;
+    curves_of_.reset();
+  }
   /// Of the marked rows that have times, in the order of the file. Made when first asked for.
   const std::vector<Curve>& curves(Phase phase);
-  /// Of the listed rows, in the order of the file; likewise.
+  /// Of the listed rows, in the order of the file; likewise. Only complete cases whose answers were
+  /// right have points, and none has one where the phase took no time.
   const std::vector<ScalingCurve>& scaling(Phase phase);
 
   /// The numbers of the rows to be shown, in order.
@@ -62,6 +84,7 @@ class OpenedResults {
 
  private:
   void list();
+  [[nodiscard]] std::vector<ScalingCurve> scalingCurves(Phase phase) const;
 
   std::filesystem::path file_;
   bool complete_ = false;

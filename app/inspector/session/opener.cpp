@@ -6,6 +6,7 @@
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "inspector/session/footage_requests.h"
+#include "inspector/session/session.h"
 #include "sources/make_source.h"
 #include "sources/results.h"
 
@@ -21,7 +22,7 @@ void Opener::open(const fs::path& path) {
     } else {
       openEntry(std::move(opened.entries.at(0)), Opened::at_rest);
     }
-    to_.notices.noteFile(path);
+    to_.notices.on_file(path);
   });
 }
 
@@ -47,7 +48,7 @@ void Opener::open(Plan plan) {
   for (const Case& run : plan.cases) to_.lanes.add(run);
   if (auto& unchosen = plan.unchosen_case) {
     listCases(unchosen->file, std::move(unchosen->results));
-    to_.notices.noteFile(unchosen->file);
+    to_.notices.on_file(unchosen->file);
   }
   if (!plan.entries.empty()) openEntry(std::move(plan.entries.front()), Opened::in_motion);
 }
@@ -63,7 +64,7 @@ void Opener::openEntry(PlanEntry entry, Opened document_is) {
 }
 
 void Opener::enter(PlanEntry& entry, Opened document_is) {
-  enterSource(entry.source, document_is, entry.known ? entry.known->id : "");
+  enterSource(entry, document_is);
   if (entry.cases.empty()) return;
   to_.lanes.clear();
   for (const Case& run : entry.cases) to_.lanes.add(run);
@@ -74,11 +75,12 @@ void Opener::enter(PlanEntry& entry, Opened document_is) {
   to_.notices.bringUp("Mismatches");
 }
 
-void Opener::enterSource(Source& source, Opened document_is, const std::string& case_id) {
+void Opener::enterSource(PlanEntry& entry, Opened document_is) {
+  Source& source = entry.source;
   const auto show = [&](FootageRequest footage) {
-    if (!case_id.empty()) {
+    if (entry.known) {
       footage.source = FootageSource::results;
-      footage.title = case_id;
+      footage.title = entry.known->id;
     }
     to_.playback.show(std::move(footage));
   };
@@ -95,10 +97,10 @@ void Opener::enterSource(Source& source, Opened document_is, const std::string& 
     show(simulationFootage(to_.draft.scene(), to_.playback.swept));
   } else if (source.imported) {
     show(importFootage(source.reference, to_.playback.swept));
-    to_.notices.noteFile(source.reference.path);
+    to_.notices.on_file(source.reference.path);
   } else if (!source.reference.path.empty()) {
     show(recordingFootage(source.reference.path, source.expected_hash, to_.playback.swept));
-    to_.notices.noteFile(source.reference.path);
+    to_.notices.on_file(source.reference.path);
   }
 }
 
@@ -114,7 +116,7 @@ void Opener::openExport(const ExportReport& report) {
     to_.lanes.clear();
     to_.lanes.add(report.run);
     to_.playback.seek(static_cast<std::int64_t>(report.frames));
-    to_.notices.noteFile(report.file);
+    to_.notices.on_file(report.file);
   });
 }
 

@@ -2,34 +2,20 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include "inspector/jobs/case_export.h"
-#include "inspector/session/document.h"
-#include "inspector/session/draft.h"
-#include "inspector/session/lanes.h"
-#include "inspector/session/mismatches.h"
-#include "inspector/session/notices.h"
 #include "inspector/session/opened_results.h"
-#include "inspector/session/playback.h"
 #include "run/plan.h"
 
 namespace broadmark {
 
+class Session;
+
 class Opener {
  public:
-  /// The parts that show what is opened; they outlive it.
-  struct Parts {
-    Notices& notices;
-    Playback& playback;
-    Lanes& lanes;
-    Mismatches& mismatches;
-    Document& document;
-    Draft& draft;
-    std::optional<OpenedResults>& results;
-  };
-  explicit Opener(const Parts& parts) : to_(parts) {}
+  /// `session` shows what is opened, and outlives it.
+  explicit Opener(Session& session) : to_(session) {}
 
   /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
   /// file all cases are listed; of a file that names a case, that becomes the only lane.
@@ -51,11 +37,10 @@ class Opener {
   enum class Opened { at_rest, in_motion };
   void openEntry(PlanEntry entry, Opened document_is);
   void enter(PlanEntry& entry, Opened document_is);
-  /// `case_id`: of results; "": it is no case of any.
-  void enterSource(Source& source, Opened document_is, const std::string& case_id);
+  void enterSource(PlanEntry& entry, Opened document_is);
   void listCases(const std::filesystem::path& file, Results listed);
 
-  Parts to_;
+  Session& to_;
 };
 
 }  // namespace broadmark

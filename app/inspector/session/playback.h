@@ -1,11 +1,14 @@
 // What is played: which footage, at which frame, and how it moves on.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
-#include <string>
+#include <utility>
 
 #include "broadmark/frame.h"
 #include "inspector/run/run_thread.h"
@@ -15,29 +18,91 @@ namespace broadmark {
 class Playback {
  public:
   /// Shows other footage, from frame 0 on.
-  void show(FootageRequest footage);
+  void show(FootageRequest footage) {
+    footage_ = std::make_shared<const FootageRequest>(std::move(footage));
+    frame_ = 0;
+    due_ = 0;
+    scene_ = {};
+    scene_known_ = false;
+    on_show();
+  }
+
   /// Returns to what has been shown before.
-  void showAgain(std::shared_ptr<const FootageRequest> footage, std::uint32_t frame);
+  void showAgain(std::shared_ptr<const FootageRequest> footage, std::uint32_t frame) {
+    footage_ = std::move(footage);
+    frame_ = frame;
+    scene_known_ = false;
+  }
 
   // Frames out of range are clamped.
   /// Plays or pauses. After the last frame it plays from the first.
-  void play(bool on);
+  void play(bool on) {
+    if (on && frame_ == scene_.frames && scene_.frames > 0) frame_ = 0;
+    if (on) on_move(true);
+    playing_ = on;
+    due_ = 0;
+  }
+
   void pause() { playing_ = false; }
-  void seek(std::int64_t frame);
+  void seek(std::int64_t frame) {
+    // What is only being opened may have any number of frames; follow() sets it right then.
+    const std::int64_t last =
+        scene_known_ ? scene_.frames : std::numeric_limits<std::int32_t>::max();
+    const auto wanted = static_cast<std::uint32_t>(std::clamp<std::int64_t>(frame, 0, last));
+    on_move(wanted > frame_);
+    frame_ = wanted;
+  }
+
   /// Pauses, and goes to a frame.
-  void goTo(std::int64_t frame);
+  void goTo(std::int64_t frame) {
+    pause();
+    seek(frame);
+  }
+
   /// Likewise, so many frames on; back if negative.
   void step(int frames) { goTo(std::int64_t{frame_} + frames); }
 
   /// Takes note of what is open. Returns whether that is the wished footage.
-  bool follow(const RunProgress& progress);
-  /// Whether the wished frame is computed and shown.
-  [[nodiscard]] bool hasReached(const RunProgress& progress) const;
-  /// While it plays: moves on by `seconds`. Call it only when the wished frame is reached.
-  void advance(double seconds);
+  bool follow(const RunProgress& progress) {
+    if (!footage_ || progress.footage != footage_) return false;
+    scene_ = progress.scene;
+    scene_known_ = true;
+    frame_ = std::min(frame_, scene_.frames);
+    return true;
+  }
 
-  /// Takes note that `seconds` have passed.
-  void passTime(double seconds);
+  /// Whether the wished frame is computed and shown.
+  [[nodiscard]] bool hasReached(const RunProgress& progress) const {
+    return progress.doing.empty() && progress.snapshot && progress.snapshot->footage == footage_ &&
+           progress.snapshot->frame == frame_;
+  }
+
+  /// While it plays: counts frames, and moves on by `seconds` once the wished frame is reached.
+  void advance(const RunProgress& progress, double seconds) {
+    if (!playing_) {
+      achieved_.reset();
+      counted_seconds_ = counted_frames_ = 0;
+      return;
+    }
+    counted_seconds_ += seconds;
+    if (counted_seconds_ >= kCountedSeconds) {
+      achieved_ = counted_frames_ / counted_seconds_;
+      counted_seconds_ = counted_frames_ = 0;
+    }
+    if (!hasReached(progress)) return;
+    due_ += seconds * frames_per_second;
+    if (due_ < 1) return;
+    const double frames = std::floor(due_);
+    due_ = std::min(due_ - frames, 1.0);
+    ++counted_frames_;
+    if (frame_ < scene_.frames) {
+      seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMostFramesAtOnce)));
+    } else if (loop) {
+      frame_ = 0;
+    } else {
+      pause();
+    }
+  }
   /// How many frames were shown per second of late; nothing while it does not play.
   [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
 
@@ -60,6 +125,11 @@ class Playback {
   std::function<void(bool forward)> on_move;
 
  private:
+  /// Over so many seconds the frames that are shown are counted.
+  static constexpr double kCountedSeconds = 1;
+  /// What cannot keep pace leaves out no more than this.
+  static constexpr double kMostFramesAtOnce = 4;
+
   std::shared_ptr<const FootageRequest> footage_;
   std::uint32_t frame_ = 0;
   SceneInfo scene_;

@@ -21,7 +21,7 @@ constexpr std::size_t kMostTracked = 2;
 Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
     : lanes(std::move(algorithms)), jobs(make_host), runs(std::move(make_host)) {
   playback.on_show = [this] {
-    selection.follow({});
+    selection.reset();
     mismatches.reset();
     if (second.wish) second.wish->frame.reset();
     noticed_failure_.clear();
@@ -29,15 +29,6 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   };
   playback.on_move = [this](bool forward) { mismatches.moved(forward); };
   lanes.on_change = [this] { mismatches.forgetStop(); };
-  selection.body_count = [this] {
-    return document.shown() ? document.desk.editor.scene().bodies.size() : playback.scene().objects;
-  };
-  selection.companions = [this](BodySelection::Bodies bodies) {
-    return document.shown() ? document.desk.editor.withGroups(std::move(bodies)) : bodies;
-  };
-  selection.on_select = [this](const BodySelection::Bodies& bodies) {
-    if (document.shown()) document.desk.editor.select(bodies);
-  };
 }
 
 void Session::advance(const RunProgress& progress, double seconds) {
@@ -47,8 +38,7 @@ void Session::advance(const RunProgress& progress, double seconds) {
   noticeFailure(progress);
   document.advance(progress);
   mismatches.advance(progress);
-  playback.passTime(seconds);
-  if (playback.hasReached(progress)) playback.advance(seconds);
+  playback.advance(progress, seconds);
 }
 
 bool Session::busy() { return playback.playing() || !runs.settled() || jobs.running(); }
@@ -111,7 +101,7 @@ void Session::saveRecording(const fs::path& path) {
     if (footage == nullptr) throw InputError("nothing is open");
     footage->save(path);
     notices.say(fmt::format("recorded: {}", path.string()));
-    notices.noteFile(path);
+    notices.on_file(path);
   });
 }
 

@@ -12,8 +12,7 @@
 #include "inspector/jobs/jobs.h"
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
-#include "inspector/session/document.h"
-#include "inspector/session/draft.h"
+#include "inspector/session/footage_requests.h"
 #include "inspector/session/lanes.h"
 #include "inspector/session/mismatches.h"
 #include "inspector/session/notices.h"
@@ -56,16 +55,16 @@ class Session {
   Notices notices;
   Playback playback;
   Timeline timeline;
-  BodySelection selection;
   Lanes lanes;
-  Mismatches mismatches{playback, lanes, selection, notices};
   Jobs jobs;
-  Document document{playback, selection, notices, jobs.get<BackgroundBake>()};
+  Document document{playback, notices, jobs.get<BackgroundBake>()};
+  BodySelection selection{playback, document};
+  Mismatches mismatches{playback, lanes, selection, notices};
   Draft draft{playback};
   ViewOptions view;
   SecondView second{notices, playback, lanes};
   std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
-  Opener opener{{notices, playback, lanes, mismatches, document, draft, results}};
+  Opener opener{*this};
   RunThread runs;
 
  private:

@@ -3,26 +3,41 @@
 #include <algorithm>
 
 #include "broadmark/names.h"
+#include "request/sweep.h"
 
 namespace broadmark {
+namespace {
 
-std::vector<std::string> wordsIn(std::string_view text) {
-  std::vector<std::string> words;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find_first_of(", ", start), text.size());
-    if (end > start) words.emplace_back(text.substr(start, end - start));
-    start = end + 1;
-  }
-  return words;
+std::uint32_t numberIn(std::string_view word, std::string_view what, std::uint32_t min,
+                       std::uint32_t max) {
+  return static_cast<std::uint32_t>(parseInteger(word, what, min, max));
 }
 
-std::vector<std::uint32_t> countsIn(std::string_view text, std::string_view what,
+}  // namespace
+
+std::vector<std::string> wordsIn(std::string text) {
+  std::ranges::replace(text, ' ', ',');
+  return splitList({text});
+}
+
+std::vector<std::uint32_t> countsIn(const std::string& text, std::string_view what,
                                     std::uint32_t most) {
   std::vector<std::uint32_t> counts;
-  for (const std::string& word : wordsIn(text)) {
-    counts.push_back(static_cast<std::uint32_t>(parseInteger(word, what, 1, most)));
-  }
+  for (const std::string& word : wordsIn(text)) counts.push_back(numberIn(word, what, 1, most));
   return counts;
+}
+
+std::vector<std::uint32_t> parseIds(const std::string& text, std::string_view what,
+                                    std::uint32_t last) {
+  std::vector<std::uint32_t> ids;
+  for (const std::string& word : wordsIn(text)) {
+    const std::size_t dash = word.find('-', 1);
+    const std::uint32_t from = numberIn(word.substr(0, dash), what, 0, last);
+    const std::uint32_t to =
+        dash == word.npos ? from : numberIn(word.substr(dash + 1), what, 0, last);
+    for (std::uint64_t id = from; id <= to; ++id) ids.push_back(static_cast<std::uint32_t>(id));
+  }
+  return ids;
 }
 
 }  // namespace broadmark

@@ -9,10 +9,14 @@
 namespace broadmark {
 
 /// "kd, sap*"
-std::vector<std::string> wordsIn(std::string_view text);
+std::vector<std::string> wordsIn(std::string text);
 
 /// "1000, 8000": `what`, each from 1 to `most`. Throws InputError.
-std::vector<std::uint32_t> countsIn(std::string_view text, std::string_view what,
+std::vector<std::uint32_t> countsIn(const std::string& text, std::string_view what,
                                     std::uint32_t most);
+
+/// Ids, "17, 40-50": `what`, each at most `last`. Throws InputError.
+std::vector<std::uint32_t> parseIds(const std::string& text, std::string_view what,
+                                    std::uint32_t last);
 
 }  // namespace broadmark

@@ -1,9 +1,12 @@
 // Which frames of a recording the timeline shows, and which span of them is selected.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "inspector/run/run_thread.h"
 
@@ -23,7 +26,18 @@ class Timeline {
   /// Takes note of what is played, and at which frame. A frame that was moved to is in sight from
   /// then on.
   void follow(const std::shared_ptr<const FootageRequest>& footage, std::uint32_t last_frame,
-              std::uint32_t frame);
+              std::uint32_t frame) {
+    if (std::exchange(footage_, footage) != footage || last_frame_ != last_frame) {
+      last_frame_ = last_frame;
+      frame_ = frame;
+      clearSpan();
+      showAll();
+    }
+    if (std::exchange(frame_, frame) == frame) return;
+    const double extent = last_ - first_;
+    if (frame > last_) show(frame - kMargin * extent, extent);
+    if (frame < first_) show(frame - (1 - kMargin) * extent, extent);
+  }
 
   /// The frames shown, perhaps only parts of the first and last one; `first` < `last`.
   [[nodiscard]] double first() const { return first_; }
@@ -31,27 +45,55 @@ class Timeline {
   [[nodiscard]] bool zoomed() const { return last_ - first_ < whole(); }
 
   /// Nearer by so many turns of a wheel (below 0: farther); what is at `at` stays where it is.
-  void zoom(double turns, double at);
+  void zoom(double turns, double at) {
+    const double extent = allowed((last_ - first_) * std::pow(kExtentPerTurn, turns));
+    const double share = (at - first_) / (last_ - first_);
+    show(at - share * extent, extent);
+  }
+
   /// Shows what lies so many frames later.
-  void move(double frames);
-  void showAll();
+  void move(double frames) { show(first_ + frames, last_ - first_); }
+  void showAll() { show(0, whole()); }
   /// Shows just the span. There must be one.
-  void showSpan();
+  void showSpan() {
+    const double extent = std::max<double>(span_->last - span_->first, kFewestFrames);
+    const double middle = (static_cast<double>(span_->first) + span_->last) / 2;
+    show(middle - extent / 2, extent);
+  }
 
   [[nodiscard]] const std::optional<FrameSpan>& span() const { return span_; }
   /// From one end to the other, in any order, as far as these frames exist. Frame 0 is not timed:
   /// it is never in a span.
-  void select(double from, double to);
+  void select(double from, double to) {
+    if (last_frame_ == 0) return;
+    const auto frame = [&](double at) {
+      return static_cast<std::uint32_t>(std::clamp<double>(std::round(at), 1, whole()));
+    };
+    span_ = {.first = frame(std::min(from, to)), .last = frame(std::max(from, to))};
+  }
+
   void clearSpan() { span_.reset(); }
 
   double budget_ms = 16.7;  ///< that a frame may take; 0: any
 
  private:
+  static constexpr double kFewestFrames = 4;  // shown at once
+  static constexpr double kExtentPerTurn = 0.8;
+  static constexpr double kMargin =
+      0.1;  // share of what is shown, beyond a frame that comes into sight
+
   /// How much there is to be shown.
-  [[nodiscard]] double whole() const;
+  [[nodiscard]] double whole() const { return std::max<double>(last_frame_, 1); }
   /// The nearest to `extent` frames that can be shown at once.
-  [[nodiscard]] double allowed(double extent) const;
-  void show(double first, double extent);
+  [[nodiscard]] double allowed(double extent) const {
+    return std::clamp(extent, std::min(kFewestFrames, whole()), whole());
+  }
+
+  void show(double first, double extent) {
+    extent = allowed(extent);
+    first_ = std::clamp(first, 0.0, whole() - extent);
+    last_ = first_ + extent;
+  }
 
   std::shared_ptr<const FootageRequest> footage_;
   std::uint32_t last_frame_ = 0;

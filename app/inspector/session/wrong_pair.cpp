@@ -8,13 +8,9 @@ std::string pairName(Pair pair) { return fmt::format("{}-{}", pair.a, pair.b); }
 
 std::vector<WrongPair> wrongPairs(const FrameDifference& difference) {
   std::vector<WrongPair> wrong;
-  const auto add = [&](WrongPair::Kind kind, const std::vector<Pair>& pairs) {
-    for (const Pair pair : pairs) wrong.push_back({kind, pair});
-  };
-  add(WrongPair::Kind::missed, difference.missed_pairs);
-  add(WrongPair::Kind::false_pair, difference.false_pairs);
-  add(WrongPair::Kind::invalid, difference.invalid_pairs);
-  add(WrongPair::Kind::allowed_extra, difference.allowed_extra_pairs);
+  for (const WrongKind& kind : kWrongKinds) {
+    for (const Pair pair : difference.*kind.pairs) wrong.push_back({&kind, pair});
+  }
   return wrong;
 }
 

@@ -8,25 +8,37 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/aabb.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/names.h"
+#include "broadmark/render/palette.h"
 #include "inspector/run/run_thread.h"
 
 namespace broadmark {
 
+/// How a pair of an answer can be wrong, as in FrameDifference.
+struct WrongKind {
+  std::string_view name;
+  std::vector<Pair> FrameDifference::*pairs;
+  std::uint64_t FrameDifference::*count;
+  Rgb Palette::*colour;
+};
+/// The last one is no mismatch.
+inline constexpr std::array<WrongKind, 4> kWrongKinds = {
+    {{"missed", &FrameDifference::missed_pairs, &FrameDifference::missed_count, &Palette::missed},
+     {"false", &FrameDifference::false_pairs, &FrameDifference::false_count, &Palette::false_pair},
+     {"invalid", &FrameDifference::invalid_pairs, &FrameDifference::invalid_count,
+      &Palette::invalid},
+     {"allowed extra", &FrameDifference::allowed_extra_pairs, &FrameDifference::allowed_extra_count,
+      &Palette::allowed_extra}}};
+
 struct WrongPair {
-  /// As in FrameDifference. An allowed extra pair is no mismatch.
-  enum class Kind { missed, false_pair, invalid, allowed_extra };
-  Kind kind = Kind::missed;
+  const WrongKind* kind;
   Pair pair;
 };
-inline constexpr NameTable kWrongPairs{{NamedValue{WrongPair::Kind::missed, "missed"},
-                                        {WrongPair::Kind::false_pair, "false"},
-                                        {WrongPair::Kind::invalid, "invalid"},
-                                        {WrongPair::Kind::allowed_extra, "allowed extra"}}};
 /// "3-17".
 std::string pairName(Pair pair);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "broadmark/render/ui_renderer.h"
+#include "inspector/session/wrong_pair.h"
 #include "inspector/views/view_overlay.h"
 
 namespace broadmark {
@@ -20,14 +21,6 @@ constexpr float kZoomPerTurn = 0.86F;
 constexpr float kFlySpeed = 1.2F;   // distances to the middle per second
 constexpr float kClickPixels = 3;   // a press that moves less is a click
 constexpr float kSurroundings = 3;  // what is looked at is shown with so many times its size around
-
-Aabb enlargedBy(const Aabb& box, float factor) {
-  float longest = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    longest = std::max(longest, box.max[axis] - box.min[axis]);
-  }
-  return enlarged(box, (factor - 1) * longest / 2);
-}
 
 /// Whole groups, unless Alt is down.
 BodySelection::Bodies withGroups(const Session& session, BodySelection::Bodies bodies) {
@@ -46,7 +39,7 @@ std::span<const FlyKey> flyKeys() {
   return kKeys;
 }
 
-double View::aspect() const { return static_cast<double>(width_) / height_; }
+double View::aspect() const { return static_cast<double>(size_.x) / static_cast<double>(size_.y); }
 
 void View::lookFrom(Direction direction) { fly(lookedFrom(camera_, direction)); }
 
@@ -78,7 +71,8 @@ void View::takeFlightRequest(Session& session) {
   }
   const Aabb bounds = content_.boundsOf(bodies);
   if (isEmpty(bounds)) return;  // all of them are absent
-  const Aabb surroundings = space_.toView(enlargedBy(bounds, kSurroundings));
+  const float margin = (kSurroundings - 1) * static_cast<float>(longestEdge(bounds)) / 2;
+  const Aabb surroundings = space_.toView(enlarged(bounds, margin));
   // What stands before them would hide them.
   fly(cutAway(focusedOn(camera_, surroundings, aspect()), space_.toView(bounds)));
 }
@@ -100,35 +94,35 @@ void View::follow(const View& leader) {
   flight_.reset();
 }
 
-void View::drawEmpty(Ui& ui, const std::string& hint, ImVec2 corner, ImVec2 size) {
-  ImGui::InvisibleButton("scene", size);
+void View::drawEmpty(Ui& ui, const std::string& hint) {
+  ImGui::InvisibleButton("scene", size_);
   ui.note("scene");
-  const std::string shown = fittingText(hint, size.x);
+  const std::string shown = fittingText(hint, size_.x);
   const ImVec2 text = ImGui::CalcTextSize(shown.c_str());
   ImGui::GetWindowDrawList()->AddText(
-      {corner.x + (size.x - text.x) / 2, corner.y + (size.y - text.y) / 2}, colour(ui.theme.faint),
-      shown.c_str());
+      {corner_.x + (size_.x - text.x) / 2, corner_.y + (size_.y - text.y) / 2},
+      colour(ui.theme.faint), shown.c_str());
 }
 
-void View::drawScene(const Ui& ui, ImVec2 corner, ImVec2 size) {
+void View::drawScene(const Ui& ui) {
   SceneViewContent picture = content_.picture();
   picture.space = space_;
   picture.scale = ui.scale;
-  scene_.resize(width_, height_);
+  scene_.resize(static_cast<int>(size_.x), static_cast<int>(size_.y));
   scene_.draw(picture, camera_);
-  ImGui::GetWindowDrawList()->AddImage(uiTexture(scene_.texture()), corner,
-                                       {corner.x + size.x, corner.y + size.y}, {0, 1}, {1, 0});
+  ImGui::GetWindowDrawList()->AddImage(uiTexture(scene_.texture()), corner_,
+                                       {corner_.x + size_.x, corner_.y + size_.y}, {0, 1}, {1, 0});
 }
 
 void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Shown& shown) {
   const auto scope = ui.scope(shown.name);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  const ImVec2 size{std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
-  width_ = static_cast<int>(size.x);
-  height_ = static_cast<int>(size.y);
+  corner_ = ImGui::GetCursorScreenPos();
+  size_ = {std::max(std::floor(room.x), 1.0F), std::max(std::floor(room.y), 1.0F)};
+  mouse_ = {io.MousePos.x - corner_.x, io.MousePos.y - corner_.y};
   moved_ = false;
-  if (!shown.snapshot) return drawEmpty(ui, shown.hint, corner, size);
+  if (!shown.snapshot) return drawEmpty(ui, shown.hint);
   if (content_.update(shown.snapshot, progress.comparison, session, ui.theme.dark)) {
     placeCamera(*shown.snapshot);
     answer_ = answerText(*shown.snapshot, progress.lanes, shown.lane, content_.selection());
@@ -139,14 +133,13 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
     takeFlightRequest(session);
   }
   const OrbitCamera before = camera_;
-  moveOn(ImGui::GetIO().DeltaTime);
-  drawScene(ui, corner, size);
-  ImGui::SetCursorScreenPos(corner);
-  ImGui::InvisibleButton("scene", size,
+  moveOn(io.DeltaTime);
+  drawScene(ui);
+  ImGui::SetCursorScreenPos(corner_);
+  ImGui::InvisibleButton("scene", size_,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   ui.note("scene");
-  const ImGuiIO& io = ImGui::GetIO();
   Hands::Seen seen{.session = session,
                    .snapshot = content_.snapshot(),
                    .visible = content_.picture().visible,
@@ -155,23 +148,25 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
                    .mouse = {},
                    .ctrl = io.KeyCtrl};
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
-    seen.mouse = Pixel{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
+    seen.mouse = Pixel{mouse_.x, mouse_.y};
   }
   if (shown.has_hands) hands_.look(seen);
-  handleMouse(ui, seen, corner, size);
-  if (shown.has_hands) hands_.draw(ui, seen, corner);
+  handleMouse(ui, seen);
+  if (shown.has_hands) hands_.draw(ui, seen, corner_);
   moved_ = camera_ != before;
-  answer_.where = session.second.wish ? whereText(*content_.snapshot()) : "";
-  const ImVec2 taken = drawAnswer(ui, answer_, corner, size);
+  const std::string source = sourceText(shown.snapshot->footage.get());
+  answer_.where =
+      session.second.wish ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
+  const ImVec2 taken = drawAnswer(ui, answer_, corner_, size_);
   const bool tools = shown.has_hands && session.document.shown();
-  const float free = tools ? drawTools(ui, session, corner, size) : size.y;
-  drawLegend(ui, content_, answer_.owner, corner, {size.x, free}, taken);
-  if (session.view.axes) drawAxisNames(corner, ui.scale);
+  const float free = tools ? drawTools(ui, session, corner_, size_) : size_.y;
+  drawLegend(ui, content_, answer_.owner, corner_, {size_.x, free}, taken);
+  if (session.view.axes) drawAxisNames(ui.scale);
 }
 
-void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
+void View::beginDrag(const Hands::Seen& seen) {
   const ImGuiIO& io = ImGui::GetIO();
-  drag_from_ = mouse;
+  drag_from_ = mouse_;
   dragged_ = false;
   drag_ = !io.MouseDown[0]     ? Drag::pan
           : io.KeyShift        ? Drag::rectangle
@@ -180,57 +175,52 @@ void View::beginDrag(const Hands::Seen& seen, ImVec2 mouse) {
   flight_.reset();
 }
 
-void View::handleRelease(const Hands::Seen& seen, ImVec2 mouse) {
+void View::handleRelease(const Hands::Seen& seen) {
   const Drag drag = std::exchange(drag_, Drag::none);
   if (drag == Drag::hands && !hands_.busy()) return;  // given up
   if (hands_.busy() && (dragged_ || hands_.painting())) {
     hands_.release(seen);
   } else if (drag == Drag::rectangle && dragged_) {
-    selectWithin(seen.session, drag_from_, mouse);
+    selectWithin(seen.session);
   } else if (!dragged_ && drag != Drag::pan) {
     hands_.cancel();
-    click(seen.session, mouse, ImGui::GetIO().MouseDoubleClicked[0]);
+    click(seen.session, ImGui::GetIO().MouseDoubleClicked[0]);
   }
 }
 
-void View::handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size) {
+void View::handleMouse(Ui& ui, const Hands::Seen& seen) {
   const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
-  if (ImGui::IsItemActivated()) beginDrag(seen, mouse);
-  if (ImGui::IsItemActive()) handleDrag(corner, size);
-  if (ImGui::IsItemDeactivated()) handleRelease(seen, mouse);
+  if (ImGui::IsItemActivated()) beginDrag(seen);
+  if (ImGui::IsItemActive()) handleDrag();
+  if (ImGui::IsItemDeactivated()) handleRelease(seen);
   // While a body is in hand, the camera stays where it is.
   if (!ImGui::IsItemHovered() || hands_.busy()) return;
-  if (ImGui::IsMouseDoubleClicked(0)) click(seen.session, mouse, true);
+  if (ImGui::IsMouseDoubleClicked(0)) click(seen.session, true);
   if (io.MouseWheel != 0) {
     flight_.reset();
-    const float x = 2 * mouse.x / size.x - 1;
-    const float y = 1 - 2 * mouse.y / size.y;
+    const float x = 2 * mouse_.x / size_.x - 1;
+    const float y = 1 - 2 * mouse_.y / size_.y;
     camera_ =
         zoomed(camera_, std::pow(kZoomPerTurn, io.MouseWheel), pointUnder(camera_, aspect(), x, y));
   }
   if (!io.WantTextInput && !io.KeyCtrl) handleKeys();
   if (drag_ == Drag::rectangle && dragged_) {
-    const ImVec2 from{corner.x + drag_from_.x, corner.y + drag_from_.y};
+    const ImVec2 from{corner_.x + drag_from_.x, corner_.y + drag_from_.y};
     ImGui::GetWindowDrawList()->AddRectFilled(from, io.MousePos, colour(ui.theme.accent, 0.15F));
     ImGui::GetWindowDrawList()->AddRect(from, io.MousePos, colour(ui.theme.accent));
   }
 }
 
-void View::handleDrag(ImVec2 corner, ImVec2 size) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const ImVec2 mouse{io.MousePos.x - corner.x, io.MousePos.y - corner.y};
-  if (!dragged_ && std::hypot(mouse.x - drag_from_.x, mouse.y - drag_from_.y) <= kClickPixels) {
-    return;
-  }
-  const ImVec2 moved =
-      dragged_ ? io.MouseDelta : ImVec2{mouse.x - drag_from_.x, mouse.y - drag_from_.y};
+void View::handleDrag() {
+  const ImVec2 all{mouse_.x - drag_from_.x, mouse_.y - drag_from_.y};
+  if (!dragged_ && std::hypot(all.x, all.y) <= kClickPixels) return;
+  const ImVec2 moved = dragged_ ? ImGui::GetIO().MouseDelta : all;
   dragged_ = true;
   if (drag_ == Drag::orbit) {
-    camera_ = orbited(camera_, -moved.x / size.y * kRadiansPerHeight,
-                      moved.y / size.y * kRadiansPerHeight);
+    camera_ = orbited(camera_, -moved.x / size_.y * kRadiansPerHeight,
+                      moved.y / size_.y * kRadiansPerHeight);
   } else if (drag_ == Drag::pan) {
-    camera_ = panned(camera_, moved.x / size.y, -moved.y / size.y);
+    camera_ = panned(camera_, moved.x / size_.y, -moved.y / size_.y);
   }
 }
 
@@ -248,9 +238,9 @@ void View::handleKeys() {
   camera_ = flown(camera_, way[0], way[1], way[2]);
 }
 
-void View::click(Session& session, ImVec2 at, bool fly_there) {
-  const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), at.x, at.y,
-                               content_.picture().visible);
+void View::click(Session& session, bool fly_there) {
+  const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), mouse_.x,
+                               mouse_.y, content_.picture().visible);
   if (!picked) {
     if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
@@ -264,21 +254,55 @@ void View::click(Session& session, ImVec2 at, bool fly_there) {
   if (fly_there) session.selection.fly_to = std::vector<std::uint32_t>{picked->body};
 }
 
-void View::selectWithin(Session& session, ImVec2 from, ImVec2 to) {
-  session.selection.select(withGroups(
-      session, bodiesWithin(*content_.snapshot()->boxes, space_, scene_.viewpoint(),
-                            {{from.x, from.y}, {to.x, to.y}}, content_.picture().visible)));
+void View::selectWithin(Session& session) {
+  session.selection.select(
+      withGroups(session, bodiesWithin(*content_.snapshot()->boxes, space_, scene_.viewpoint(),
+                                       {{drag_from_.x, drag_from_.y}, {mouse_.x, mouse_.y}},
+                                       content_.picture().visible)));
 }
 
-void View::drawAxisNames(ImVec2 corner, float scale) const {
+void View::drawAxisNames(float scale) const {
   const auto tips = axisTips(scene_.viewpoint(), scale);
-  constexpr const char* kNames[] = {"x", "y", "z"};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const ImVec2 text = ImGui::CalcTextSize(kNames[axis]);
+    const ImVec2 text = ImGui::CalcTextSize(kAxes[axis]);
     ImGui::GetWindowDrawList()->AddText(
-        {corner.x + tips[axis][0] - text.x / 2, corner.y + tips[axis][1] - text.y / 2},
-        ImGui::GetColorU32(ImGuiCol_Text), kNames[axis]);
+        {corner_.x + tips[axis][0] - text.x / 2, corner_.y + tips[axis][1] - text.y / 2},
+        ImGui::GetColorU32(ImGuiCol_Text), kAxes[axis]);
   }
+}
+
+void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position,
+                 ImVec2 size) {
+  std::vector<View::Shown> shown = {{.name = "View",
+                                     .snapshot = progress.snapshot,
+                                     .hint = "Simulate a scene, or drop a recording here",
+                                     .lane = session.lanes.shown(),
+                                     .has_hands = true}};
+  if (session.second.wish) {
+    const std::string& failure = progress.second_failure;
+    shown.push_back({.name = "Second view",
+                     .snapshot = progress.second,
+                     .hint = failure.empty() ? "Nothing is shown yet" : failure,
+                     .lane = session.second.wish->lane,
+                     .leader = session.second.linked ? &first() : nullptr});
+  }
+  const auto count = static_cast<float>(shown.size());
+  const float gap = kSplitterSize * ui.scale;
+  const float width = std::max((size.x - (count - 1) * gap) / count, 1.0F);
+  // Each view with a camera of its own flies there.
+  const std::optional<BodySelection::Bodies> fly_to = session.selection.fly_to;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    View& view = list_[i];
+    const View::Shown& what = shown[i];
+    if (what.leader == nullptr && !session.selection.fly_to) session.selection.fly_to = fly_to;
+    beginAt(what.name, {position.x + static_cast<float>(i) * (size.x - width), position.y},
+            {width, size.y}, ImGuiWindowFlags_NoScrollbar);
+    view.draw(ui, session, progress, what);
+    ImGui::End();
+    if (what.leader != nullptr && view.moved()) first().follow(view);
+  }
+  ImGui::PopStyleVar();
 }
 
 }  // namespace broadmark

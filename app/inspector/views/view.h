@@ -1,13 +1,12 @@
-// The view of the scene: its camera, and what the mouse does in it.
+// The views of the scene: their cameras, and what the mouse does in them.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "broadmark/render/gl.h"
 #include "broadmark/render/input_queue.h"
@@ -67,21 +66,21 @@ class View {
     float part = 0;
   };
 
-  void drawEmpty(Ui& ui, const std::string& hint, ImVec2 corner, ImVec2 size);
-  void drawScene(const Ui& ui, ImVec2 corner, ImVec2 size);
+  void drawEmpty(Ui& ui, const std::string& hint);
+  void drawScene(const Ui& ui);
   /// Of a scene that has not been looked at so far.
   void placeCamera(const Snapshot& snapshot);
   void takeFlightRequest(Session& session);
   void fly(const OrbitCamera& to);
   void moveOn(float seconds);
-  void handleMouse(Ui& ui, const Hands::Seen& seen, ImVec2 corner, ImVec2 size);
-  void handleRelease(const Hands::Seen& seen, ImVec2 mouse);
-  void handleDrag(ImVec2 corner, ImVec2 size);
+  void handleMouse(Ui& ui, const Hands::Seen& seen);
+  void handleRelease(const Hands::Seen& seen);
+  void handleDrag();
   void handleKeys();
-  void beginDrag(const Hands::Seen& seen, ImVec2 mouse);
-  void click(Session& session, ImVec2 at, bool fly_there);
-  void selectWithin(Session& session, ImVec2 from, ImVec2 to);
-  void drawAxisNames(ImVec2 corner, float scale) const;
+  void beginDrag(const Hands::Seen& seen);
+  void click(Session& session, bool fly_there);
+  void selectWithin(Session& session);
+  void drawAxisNames(float scale) const;
   [[nodiscard]] double aspect() const;
 
   SceneView scene_;
@@ -93,11 +92,30 @@ class View {
   std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
   AnswerText answer_;
   Hands hands_;
-  int width_ = 1;
-  int height_ = 1;
+  // In pixels, of the present picture.
+  ImVec2 corner_;
+  ImVec2 size_{1, 1};
+  ImVec2 mouse_;  ///< beside the corner
   enum class Drag { none, orbit, pan, rectangle, hands } drag_ = Drag::none;
   ImVec2 drag_from_;
   bool dragged_ = false;  ///< the mouse has moved since the button went down
+};
+
+/// The views, side by side.
+class Views {
+ public:
+  explicit Views(const Gl& gl) : list_{View(gl), View(gl)} {}
+
+  /// Draws those that are wanted into a rectangle.
+  void draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 position, ImVec2 size);
+  /// Whether one moves by itself.
+  [[nodiscard]] bool lively() const { return std::ranges::any_of(list_, &View::lively); }
+  /// Of what is played.
+  [[nodiscard]] View& first() { return list_.front(); }
+  [[nodiscard]] const std::array<View, 2>& list() const { return list_; }
+
+ private:
+  std::array<View, 2> list_;
 };
 
 }  // namespace broadmark

@@ -24,11 +24,9 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
   // What has just been added is selected already, but not to be seen yet.
   std::vector<std::uint32_t> selection = session.selection.bodies();
   std::erase_if(selection, [&](std::uint32_t b) { return b >= snapshot->boxes->size(); });
-  const bool same = snapshot == shown_.snapshot && comparison == shown_.comparison &&
-                    selection == shown_.selection && session.view == shown_.options &&
-                    dark == shown_.dark;
-  if (same) return false;
-  shown_ = {snapshot, comparison, std::move(selection), session.view, dark};
+  Shown shown{snapshot, comparison, std::move(selection), session.view, dark};
+  if (shown == shown_) return false;
+  shown_ = std::move(shown);
   picture_.world = snapshot->scene.world;
   picture_.shows_world = session.view.world_box;
   picture_.shows_grid = session.view.ground;
@@ -98,10 +96,6 @@ void ViewContent::updateVisible() {
               .world = snapshot.scene.world},
              visible_);
   for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
-}
-
-std::size_t ViewContent::hiddenBodies() const {
-  return static_cast<std::size_t>(std::ranges::count(visible_, 0));
 }
 
 void ViewContent::addXray() {

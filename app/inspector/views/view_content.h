@@ -1,6 +1,7 @@
 // What a view of the scene shows: bodies with their colours, lines and boxes over them, legends.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -39,7 +40,9 @@ class ViewContent {
   /// Lines and boxes that were too many.
   [[nodiscard]] std::size_t leftOut() const { return left_out_; }
   /// How many bodies are not drawn because the user does not want to see them.
-  [[nodiscard]] std::size_t hiddenBodies() const;
+  [[nodiscard]] std::size_t hiddenBodies() const {
+    return static_cast<std::size_t>(std::ranges::count(visible_, 0));
+  }
   /// Of those that are present; empty if there are none.
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
 
@@ -51,6 +54,8 @@ class ViewContent {
     std::vector<std::uint32_t> selection;
     ViewOptions options;
     bool dark = false;
+
+    friend bool operator==(const Shown&, const Shown&) = default;
   };
 
   void updateBodies();

@@ -14,19 +14,9 @@ namespace {
 
 constexpr float kBackdrop = 0.82F;  // opacity behind what is written
 
-Rgb verdictColour(const Palette& theme, AnswerText::Verdict verdict) {
-  switch (verdict) {
-    case AnswerText::Verdict::right:
-      return theme.good;
-    case AnswerText::Verdict::wrong:
-      return theme.bad;
-    case AnswerText::Verdict::unchecked:
-      return theme.warning;
-    case AnswerText::Verdict::oracle:
-      return theme.faint;
-  }
-  return theme.faint;
-}
+/// By verdict.
+constexpr Rgb Palette::*kVerdictColours[] = {&Palette::faint, &Palette::good, &Palette::bad,
+                                             &Palette::warning};
 
 /// A row of the legend; columns: what it means, the count by the shown answer, by the oracle's.
 struct LegendRow {
@@ -76,7 +66,8 @@ ImVec2 drawAnswer(const Ui& ui, const AnswerText& answer, ImVec2 corner, ImVec2 
   const ImU32 plain = ImGui::GetColorU32(ImGuiCol_Text);
   add(large, answer.where, plain);
   add(large, answer.answer, plain);
-  add(large, answer.beside, colour(verdictColour(ui.theme, answer.verdict)));
+  add(large, answer.beside,
+      colour(ui.theme.*kVerdictColours[static_cast<std::size_t>(answer.verdict)]));
   add(normal, answer.pair, plain);
 
   float width = 0;
