@@ -16,7 +16,5 @@ void requireSound(const AuthoredScene&);
 
 /// What is wrong with a number that is no layer, and what would be right.
 std::string faultOfLayer(std::string_view key);
-/// Likewise one that is no group.
-std::string faultOfGroup();
 
 }  // namespace broadmark::scenes

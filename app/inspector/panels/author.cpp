@@ -13,6 +13,7 @@
 namespace broadmark::panels::author {
 namespace {
 
+using scenes::AuthoredBody;
 using scenes::SceneEditor;
 using Numbers = std::array<double, 3>;
 
@@ -88,6 +89,11 @@ class AuthorPanel final : public Panel {
  private:
   /// Done once the panel is drawn.
   void edit(std::function<void(SceneEditor&)> change) { changes_.push_back(std::move(change)); }
+
+  template <class Value>
+  void set(const char* verb, Value AuthoredBody::*property, const Value& value) {
+    edit([=](SceneEditor& editor) { editor.set(verb, property, value); });
+  }
 
   /// Takes over what the document says, if that has changed.
   void reload(const Session& session) {
@@ -288,17 +294,17 @@ class AuthorPanel final : public Panel {
       edit([size = vec(inputs_.size)](SceneEditor& editor) { editor.setSize(size); });
     }
     if (ui.number("mass", inputs_.mass, 1e-6, 1e9)) {
-      edit([mass = inputs_.mass](SceneEditor& editor) { editor.setMass(mass); });
+      set("set the mass of", &AuthoredBody::mass, inputs_.mass);
     }
     if (ui.checkbox("frozen", inputs_.frozen, "An immovable obstacle")) {
-      edit([frozen = inputs_.frozen](SceneEditor& editor) { editor.setFrozen(frozen); });
+      set(inputs_.frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen, inputs_.frozen);
     }
     if (ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second")) {
-      edit([v = vec(inputs_.velocity)](SceneEditor& editor) { editor.setVelocity(v); });
+      set("set the velocity of", &AuthoredBody::linear_velocity, vec(inputs_.velocity));
     }
     if (ui.vector("spin", inputs_.spin, -kFast, kFast,
                   "Angular velocity about each axis, in radians per second")) {
-      edit([v = vec(inputs_.spin)](SceneEditor& editor) { editor.setAngularVelocity(v); });
+      set("set the spin of", &AuthoredBody::angular_velocity, vec(inputs_.spin));
     }
     drawPresence(ui);
   }
@@ -306,22 +312,17 @@ class AuthorPanel final : public Panel {
   void drawPresence(Ui& ui) {
     if (ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
                   "Which layers collide is in the scene's file")) {
-      edit([layer = static_cast<std::uint8_t>(inputs_.layer)](SceneEditor& editor) {
-        editor.setLayer(layer);
-      });
+      set("set the layer of", &AuthoredBody::layer, static_cast<std::uint8_t>(inputs_.layer));
     }
     if (ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in")) {
-      edit([frame = static_cast<std::uint32_t>(inputs_.appears)](SceneEditor& editor) {
-        editor.setAppears(frame);
-      });
+      set("set the first frame of", &AuthoredBody::appears,
+          static_cast<std::uint32_t>(inputs_.appears));
       known_ = false;  // a frame that is refused does not stay
     }
     if (ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
                   "The first frame after that which it is not in; 0: it stays")) {
       const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
-      edit([frame](SceneEditor& editor) {
-        editor.setVanishes(frame == 0 ? scenes::kNever : frame);
-      });
+      set("set the last frame of", &AuthoredBody::vanishes, frame == 0 ? scenes::kNever : frame);
       known_ = false;
     }
   }

@@ -36,6 +36,23 @@ struct AuthoredBody {
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
 
+/// Calls visit(key, value, default) for each property of a body but its shape, under the key that
+/// it has in files.
+template <class Body, class Visit>
+void visitProperties(Body& body, const Visit& visit) {
+  static constexpr AuthoredBody standard;
+  visit("position", body.pose.position, standard.pose.position);
+  visit("rotation", body.pose.rotation, standard.pose.rotation);
+  visit("velocity", body.linear_velocity, standard.linear_velocity);
+  visit("angular_velocity", body.angular_velocity, standard.angular_velocity);
+  visit("mass", body.mass, standard.mass);
+  visit("frozen", body.frozen, standard.frozen);
+  visit("layer", body.layer, standard.layer);
+  visit("appears", body.appears, standard.appears);
+  visit("vanishes", body.vanishes, standard.vanishes);
+  visit("group", body.group, standard.group);
+}
+
 /// A plain value. Lengths are in world units. Body id = position in the list. At most kMostBodies
 /// (simulation.h) bodies.
 struct AuthoredScene {
