@@ -112,14 +112,11 @@ TEST_F(CaseExportTest, CanBeCancelled) {
   CaseExport& work = session.jobs.get<CaseExport>();
   // It is cancelled in the first frame of its trials, or in a later one.
   for (const int last : {1, 2, 5}) {
-    std::unique_ptr<IndexedFrames> frames;
-    session.runs.withFootage(
-        [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
     int steps = 0;
     const std::function<void()> before_step = [&] {
       if (++steps == last) work.cancel();
     };
-    work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
+    work.start(seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame), seen.snapshot->difference,
                directory / "a.aabbs", [&](const Case& test_case, const CancelQuery&) {
                  return std::make_unique<WatchedHost>(test_case, before_step);
                });
@@ -134,10 +131,7 @@ TEST_F(CaseExportTest, CanBeCancelled) {
 TEST_F(CaseExportTest, EndsWithItsOwner) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport work;
-  std::unique_ptr<IndexedFrames> source;
-  session.runs.withFootage(
-      [&](Footage* footage) { source = footage->source(seen.snapshot->frame); });
-  work.start(seen.lanes[0].spec.run, std::move(source), seen.snapshot->difference,
+  work.start(seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame), seen.snapshot->difference,
              directory / "a.aabbs");
 }
 

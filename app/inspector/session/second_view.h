@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "inspector/run/second_run.h"
+#include "inspector/run/run_thread.h"
 #include "inspector/session/lanes.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/playback.h"
