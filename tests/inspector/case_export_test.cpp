@@ -116,10 +116,11 @@ TEST_F(CaseExportTest, CanBeCancelled) {
     const std::function<void()> before_step = [&] {
       if (++steps == last) work.cancel();
     };
-    work.start(seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame), seen.snapshot->difference,
-               directory / "a.aabbs", [&](const Case& test_case, const CancelQuery&) {
-                 return std::make_unique<WatchedHost>(test_case, before_step);
-               });
+    startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+                seen.snapshot->difference, directory / "a.aabbs",
+                [&](const Case& test_case, const CancelQuery&) {
+                  return std::make_unique<WatchedHost>(test_case, before_step);
+                });
     EXPECT_EQ(waitForEnd().state, State::cancelled);
     EXPECT_EQ(steps, last);
     EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
@@ -131,8 +132,8 @@ TEST_F(CaseExportTest, CanBeCancelled) {
 TEST_F(CaseExportTest, EndsWithItsOwner) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport work;
-  work.start(seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame), seen.snapshot->difference,
-             directory / "a.aabbs");
+  startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+              seen.snapshot->difference, directory / "a.aabbs");
 }
 
 TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {

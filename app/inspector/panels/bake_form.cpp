@@ -76,7 +76,7 @@ void BakeForm::draw(PanelContext& context) {
       if (!preview_.fault.empty()) {
         session.notices.complain(preview_.fault);
       } else {
-        begun_ = session.notices.attempt([&] { bake.start(options_); });
+        begun_ = session.notices.attempt([&] { startBake(bake, options_); });
       }
     }
   }

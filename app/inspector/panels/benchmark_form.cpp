@@ -49,8 +49,9 @@ void BenchmarkForm::draw(PanelContext& context) {
     if (drawProgress(ui, report, "Keeps the cases that are finished")) benchmark.cancel();
   } else if (ui.button("Start", "Runs in the background; best while nothing is played",
                        ImGui::GetContentRegionAvail().x)) {
-    session.notices.attempt(
-        [&] { benchmark.start(request(), session.lanes.algorithms(), session.jobs.make_host); });
+    session.notices.attempt([&] {
+      startBenchmark(benchmark, request(), session.lanes.algorithms(), session.jobs.make_host);
+    });
   }
   ImGui::BeginDisabled(running);
   drawOptions(context);

@@ -125,8 +125,8 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
     if (!frames_ || snapshot->footage != playback.footage()) {
       throw InputError("exporting a case: another scene has been opened");
     }
-    jobs.get<CaseExport>().start(run, frames_(snapshot->frame), snapshot->difference, file,
-                                 jobs.make_host);
+    startExport(jobs.get<CaseExport>(), run, frames_(snapshot->frame), snapshot->difference, file,
+                jobs.make_host);
   });
 }
 
@@ -135,7 +135,8 @@ void Session::startDuel(double most_seconds) {
     if (!frames_) throw InputError("duel: nothing is open");
     std::vector<Case> cases;
     for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
-    jobs.get<BackgroundDuel>().start(cases, frames_(known_frames_), most_seconds, jobs.make_host);
+    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), most_seconds,
+                         jobs.make_host);
   });
 }
 
