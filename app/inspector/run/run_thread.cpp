@@ -171,12 +171,8 @@ void RunThread::openFootage() {
 
 /// Brings the lanes in line with those wished for. Returns whether there was anything to do.
 bool RunThread::reconcileLanes() {
-  const auto stands = [&](std::size_t i) {
-    return i < lanes_.size() && lanes_[i]->spec() == current_.lanes[i];
-  };
-  bool same = lanes_.size() == current_.lanes.size();
-  for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
-  if (same) return false;
+  const auto spec_of = [](const auto& lane) -> const LaneSpec& { return lane->spec(); };
+  if (std::ranges::equal(lanes_, current_.lanes, {}, spec_of)) return false;
 
   std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
   lanes_.clear();
@@ -196,16 +192,8 @@ bool RunThread::reconcileLanes() {
   stop_.reset();
   const std::lock_guard lock(mutex_);
   progress_.stop.reset();
-  std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
-  for (const auto& lane : lanes_) {
-    const auto report = std::ranges::find_if(
-        reports, [&](const LaneReport& known) { return known.spec == lane->spec(); });
-    if (report != reports.end()) {
-      progress_.lanes.push_back(std::move(*report));
-    } else {
-      progress_.lanes.push_back(lane->report());
-    }
-  }
+  progress_.lanes.clear();
+  for (const auto& lane : lanes_) progress_.lanes.push_back(lane->report());
   return true;
 }
 
@@ -323,12 +311,13 @@ void RunThread::report(const Lane& lane) {
   }
 }
 
-Lane* RunThread::shownLane() const {
-  for (const auto& lane : lanes_) {
-    if (lane->spec().number == current_.shown_lane && target() > 0) return lane.get();
-  }
-  return nullptr;
+Lane* RunThread::laneOf(int number) const {
+  const auto found =
+      std::ranges::find(lanes_, number, [](const auto& lane) { return lane->spec().number; });
+  return found == lanes_.end() ? nullptr : found->get();
 }
+
+Lane* RunThread::shownLane() const { return target() > 0 ? laneOf(current_.shown_lane) : nullptr; }
 
 Footage* RunThread::footageBeside() const {
   return beside_.opened ? beside_.footage.get() : footage_.get();
@@ -339,15 +328,14 @@ std::uint32_t RunThread::targetBeside() const {
 }
 
 Lane* RunThread::laneBeside() {
-  const auto found = std::ranges::find_if(
-      lanes_, [&](const auto& lane) { return lane->spec().number == current_.second->lane; });
-  if (found == lanes_.end()) {
+  Lane* const of_first = laneOf(current_.second->lane);
+  if (of_first == nullptr) {
     beside_.lane.reset();
     return nullptr;
   }
   if (targetBeside() == 0) return nullptr;  // which has no answer
-  if (!beside_.opened && targetBeside() == target()) return found->get();
-  if (const LaneSpec& spec = (*found)->spec(); !beside_.lane || beside_.lane->spec() != spec) {
+  if (!beside_.opened && targetBeside() == target()) return of_first;
+  if (const LaneSpec& spec = of_first->spec(); !beside_.lane || beside_.lane->spec() != spec) {
     beside_.lane =
         std::make_unique<Lane>(spec, make_host_, [this, spec] { return isUnwantedBeside(spec); });
   }
@@ -373,6 +361,7 @@ bool RunThread::advanceSecond() {
   if (footage->known() < targetBeside()) {
     tell(fmt::format("simulating frame {} for the second view", footage->known() + 1), 1);
     footage->extend();
+    shown_ = false;
     return true;
   }
   Lane* const lane = laneBeside();

@@ -131,6 +131,8 @@ class RunThread {
   /// Likewise what the second view's instance of it is at.
   [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
+  /// The lane of this number, or null.
+  [[nodiscard]] Lane* laneOf(int number) const;
   [[nodiscard]] Lane* shownLane() const;
   /// Of the second view; null: it could not be opened.
   [[nodiscard]] Footage* footageBeside() const;
