@@ -22,8 +22,9 @@
 namespace broadmark::scenes {
 namespace {
 
-/// Far more than any object has: keys are looked for one by one.
-constexpr std::size_t kMostKeys = 1000;
+// More than any object or array has, but for that of the bodies: nothing worse is kept in memory.
+constexpr std::size_t kMaxElements = 2000;
+constexpr std::size_t kMaxDepth = 6;
 
 // Each takes a value over, or returns what would be right.
 
@@ -84,7 +85,7 @@ class SceneReader final : public JsonEvents {
     part_ = Part::other;
     std::string schema;
     require(root_, {"schema", "name", "world", "parameters", "collide", "triggers", "bodies"});
-    read(root_, "schema", schema);
+    if (!read(root_, "schema", schema)) expected("schema", kAuthoredSceneSchema);
     if (schema != kAuthoredSceneSchema) {
       fail(fmt::format("schema: '{}' is not {}", onOneLine(schema), kAuthoredSceneSchema));
     }
@@ -118,7 +119,6 @@ class SceneReader final : public JsonEvents {
     const Json& object = *open_.back();
     if (open_.size() == 1) part_ = Part::other;
     if (object.contains(key)) fail(fmt::format("'{}' is stated twice", onOneLine(key)));
-    if (object.size() == kMostKeys) fail(fmt::format("more than {} keys", kMostKeys));
     if (open_.size() == 1) {
       part_ = key == "bodies" ? Part::bodies : key == "world" ? Part::world : Part::other;
     }
@@ -186,6 +186,8 @@ class SceneReader final : public JsonEvents {
       expected("bodies", "an array of objects");
     }
     Json& around = *open_.back();
+    if (around.size() == kMaxElements) fail(fmt::format("{}: too many values", onOneLine(key_)));
+    if (open_.size() == kMaxDepth) fail(fmt::format("{}: nested too deeply", onOneLine(key_)));
     if (is_body && !around.empty()) {
       around[0].clear();  // the one before, whose memory serves again
       return around[0];

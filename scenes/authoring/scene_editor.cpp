@@ -11,6 +11,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "authoring/faults.h"
@@ -65,24 +66,17 @@ void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
 class FreeGroups {
  public:
   explicit FreeGroups(const std::vector<AuthoredBody>& bodies) {
-    for (const AuthoredBody& body : bodies) {
-      if (body.group != 0) taken_.push_back(body.group);
-    }
-    std::ranges::sort(taken_);
+    for (const AuthoredBody& body : bodies) taken_.insert(body.group);
   }
   /// The least one, each time another.
   std::uint32_t next() {
-    ++last_;
-    for (; at_ < taken_.size() && taken_[at_] <= last_; ++at_) {
-      if (taken_[at_] == last_) ++last_;
-    }
-    return last_;
+    while (taken_.contains(last_)) ++last_;
+    return last_++;
   }
 
  private:
-  std::vector<std::uint32_t> taken_;
-  std::size_t at_ = 0;
-  std::uint32_t last_ = 0;
+  std::unordered_set<std::uint32_t> taken_;
+  std::uint32_t last_ = 1;
 };
 
 std::string stepName(std::string_view verb, std::size_t bodies) {

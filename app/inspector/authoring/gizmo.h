@@ -102,8 +102,6 @@ class GizmoDrag {
   /// With the mouse there. `snaps`: by the steps of `tools`.
   [[nodiscard]] Outcome at(Pixel pixel, const Tools& tools, bool snaps) const;
 
-  [[nodiscard]] Handle handle() const { return handle_; }
-
  private:
   [[nodiscard]] Outcome moved(Pixel pixel, double step) const;
   [[nodiscard]] Outcome turned(Pixel pixel, double step) const;

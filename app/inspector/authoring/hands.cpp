@@ -25,18 +25,6 @@ constexpr float kBetweenDabs = 12;
 constexpr std::size_t kMostGhosts = 1000;
 constexpr int kMostDabsAtOnce = 8;  // in a picture, between two places of the mouse
 
-/// A box that stands for many bodies.
-scenes::AuthoredBody bodyAround(const Aabb& box) {
-  scenes::AuthoredBody body;
-  Vec3 half;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    body.pose.position[axis] = (box.min[axis] + box.max[axis]) / 2;
-    half[axis] = (box.max[axis] - box.min[axis]) / 2;
-  }
-  body.shape = scenes::BoxShape{half};
-  return body;
-}
-
 Rgb colourOf(Handle handle, const Palette& theme) {
   // A plane has the colour of the axis across it.
   return handle == Handle::all ? theme.accent : theme.axis[static_cast<std::size_t>(handle) % 3];
@@ -169,7 +157,7 @@ void Hands::takeBodies(const scenes::SceneEditor& editor) {
   for (const std::uint32_t id : editor.selection()) {
     all = merged(all, tightBox(bodies[id].shape, bodies[id].pose));
   }
-  taken_.push_back(bodyAround(all));
+  taken_.push_back(scenes::bodyIn(all));
 }
 
 void Hands::showGhosts(std::span<const scenes::AuthoredBody> bodies) {

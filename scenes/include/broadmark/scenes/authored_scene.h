@@ -90,6 +90,9 @@ std::string formatAuthoredScene(const AuthoredScene&);
 /// messages. Throws InputError that names the body and the key, and what would be right.
 AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
 
+/// A body that fills this box; a sphere if the object type says so.
+AuthoredBody bodyIn(const Aabb& box, const std::string& object_type = {});
+
 /// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);
 
