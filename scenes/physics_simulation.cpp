@@ -1,6 +1,6 @@
 #include "physics_simulation.h"
 
-#include "authoring/from_frame.h"
+#include "authoring/faults.h"
 #include "broadmark/scenes/authored_simulation.h"
 #include "engines/worlds_engine.h"
 

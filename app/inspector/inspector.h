@@ -41,7 +41,6 @@ inline constexpr const char* kSave =
 inline constexpr const char* kQuit = "quit";
 inline constexpr const char* kTakePicture = "save a picture of the window";
 inline constexpr const char* kShowKeys = "this page";
-inline constexpr const char* kNextPlace = "to the next place; then arrows move among its widgets";
 
 class Inspector {
  public:
@@ -69,8 +68,6 @@ class Inspector {
   }
   /// Whether pictures change without input.
   [[nodiscard]] bool lively();
-  /// Brings a panel to the front.
-  void showPanel(const std::string& name) { session_.notices.wanted_panels.push_back(name); }
   /// Where to write the screenshot that the user has asked for; once.
   std::optional<std::filesystem::path> takeScreenshotRequest();
   /// Where the numbered pictures of a movie go; "": none is being made.
@@ -114,7 +111,7 @@ class Inspector {
   void takeFocus(std::size_t place);
   void escape();
   void takeTool(Tool tool);
-  void editAuthored(void (scenes::SceneEditor::*change)());
+  void editAuthored(const std::function<void(scenes::SceneEditor&)>& change);
   void askOpen();
   void askSaveRecording();
   void askExportTimings(const std::string& table);

@@ -6,7 +6,6 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/names.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
@@ -44,19 +44,12 @@ std::vector<std::string> splitWords(std::string_view line) {
   return words;
 }
 
-std::optional<double> parseNumber(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
-}
-
 bool holds(const std::string& value, const std::string& relation, const std::string& wanted) {
   if (relation == "=") return value == wanted;
   if (relation == "!=") return value != wanted;
   if (relation == "~") return value.find(wanted) != std::string::npos;
-  const auto a = parseNumber(value);
-  const auto b = parseNumber(wanted);
+  const auto a = numberIn(value);
+  const auto b = numberIn(wanted);
   if (!a || !b) return false;
   if (relation == "<") return *a < *b;
   if (relation == ">") return *a > *b;
@@ -85,35 +78,77 @@ double secondsSince(std::chrono::steady_clock::time_point start) {
 
 const std::vector<ScriptVerb>& scriptVerbs() {
   using P = ScriptPlayer;
+  using Words = ScriptVerb::Words;
   static const std::vector<ScriptVerb> verbs = {
-      {"click", "WIDGET", 1, 1, &P::click, "presses a widget, by name: \"Playback/Play\""},
-      {"doubleclick", "WIDGET", 1, 1, &P::doubleClick, "presses it twice"},
-      {"rightclick", "WIDGET", 1, 1, &P::rightClick, "presses it with the right button"},
-      {"enter", "WIDGET TEXT", 2, 2, &P::enter, "replaces what an input holds, and confirms it"},
-      {"choose", "WIDGET OPTION", 2, 2, &P::choose, "opens a list, and chooses from it"},
-      {"type", "TEXT", 1, 1, &P::type, "types letters into whatever has the focus"},
-      {"key", "KEYS", 1, 1, &P::key, "presses keys together: Space, Ctrl+O"},
-      {"move", "WIDGET X Y", 3, 3, &P::move,
-       "moves the mouse to a place in a widget, each from 0 to 1"},
-      {"drag", "WIDGET X Y X Y [BUTTON [KEY]]", 5, 7, &P::drag,
+      {"click", "WIDGET", 1, 1, "presses a widget, by name: \"Playback/Play\"",
+       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 0, 1); }},
+      {"doubleclick", "WIDGET", 1, 1, "presses it twice",
+       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 0, 2); }},
+      {"rightclick", "WIDGET", 1, 1, "presses it with the right button",
+       [](P& player, const Words& words, Inspector&) { player.pressAt(words[0], 1, 1); }},
+      {"enter", "WIDGET TEXT", 2, 2, "replaces what an input holds, and confirms it", &P::enter},
+      {"choose", "WIDGET OPTION", 2, 2, "opens a list, and chooses from it",
+       [](P& player, const Words& words, Inspector&) {
+         player.pressAt(words[0], 0, 1);
+         player.pressAt(fmt::format("{}/{}", words[0], words[1]), 0, 1);
+       }},
+      {"type", "TEXT", 1, 1, "types letters into whatever has the focus", &P::type},
+      {"key", "KEYS", 1, 1, "presses keys together: Space, Ctrl+O", &P::key},
+      {"move", "WIDGET X Y", 3, 3, "moves the mouse to a place in a widget, each from 0 to 1",
+       [](P& player, const Words& words, Inspector&) {
+         player.reveal(words[0]);
+         player.moveInto(words[0], player.number(words[1]), player.number(words[2]));
+       }},
+      {"drag", "WIDGET X Y X Y [BUTTON [KEY]]", 5, 7,
        "drags from one place in a widget to another; with the left button (0) or the right one "
-       "(1), perhaps while Shift, Ctrl or Alt is down"},
-      {"wheel", "WIDGET TURNS", 2, 2, &P::wheel, "turns the wheel over a widget"},
-      {"panel", "NAME", 1, 1, &P::panel, "brings a panel to the front"},
-      {"open", "FILE", 1, 1, &P::open, "drops a file onto the window"},
-      {"wait", "PICTURES or settled", 1, 1, &P::wait,
-       "until everything is computed, or for some pictures"},
-      {"expect", "VALUE RELATION TEXT", 3, 3, &P::expect,
+       "(1), perhaps while Shift, Ctrl or Alt is down",
+       &P::drag},
+      {"wheel", "WIDGET TURNS", 2, 2, "turns the wheel over a widget",
+       [](P& player, const Words& words, Inspector&) {
+         player.reveal(words[0]);
+         player.moveInto(words[0], 0.5F, 0.5F);
+         player.push({.kind = InputEvent::Kind::wheel, .y = player.number(words[1])});
+       }},
+      {"panel", "NAME", 1, 1, "brings a panel to the front",
+       [](P& player, const Words& words, Inspector& inspector) {
+         if (!inspector.panel(words[0])) player.fail(fmt::format("unknown panel '{}'", words[0]));
+         inspector.session().notices.bringUp(words[0]);
+         player.pause();
+       }},
+      {"open", "FILE", 1, 1, "drops a file onto the window",
+       [](P& player, const Words& words, Inspector& inspector) {
+         inspector.session().opener.open(words[0]);
+         player.pause();
+       }},
+      {"wait", "PICTURES or settled", 1, 1, "until everything is computed, or for some pictures",
+       &P::wait},
+      {"expect", "VALUE RELATION TEXT", 3, 3,
        "waits until a value of the session is =, !=, <, >, <= or >= to the text, or contains it "
-       "(~), "
-       "and fails if that does not happen"},
-      {"patience", "SECONDS", 1, 1, &P::patience,
-       "how long from here on an expectation may take while nothing goes on (at first 2)"},
-      {"places", "FILE", 1, 1, &P::places,
-       "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name"},
-      {"write", "VALUE FILE", 2, 2, &P::write, "writes a value of the session to a file"},
-      {"resize", "WIDTHxHEIGHT", 1, 1, &P::resize, "changes the size of the picture"},
-      {"screenshot", "FILE", 1, 1, &P::screenshot, "saves what is seen"},
+       "(~), and fails if that does not happen",
+       &P::expect},
+      {"patience", "SECONDS", 1, 1,
+       "how long from here on an expectation may take while nothing goes on (at first 2)",
+       [](P& player, const Words& words, Inspector&) {
+         player.idle_patience_ = static_cast<double>(player.number(words[0]));
+       }},
+      {"places", "FILE", 1, 1,
+       "writes where the widgets are: a line each of left, top, right, bottom (pixels) and name",
+       &P::places},
+      {"write", "VALUE FILE", 2, 2, "writes a value of the session to a file",
+       [](P& player, const Words& words, Inspector&) {
+         player.steps_.push_back([&player, words](Inspector& inspector, InputQueue&) {
+           const std::optional<std::string> now = inspector.value(words[0]);
+           if (!now) player.fail(fmt::format("unknown value '{}'", words[0]));
+           writeTextFile(words[1], *now + "\n");
+           return true;
+         });
+       }},
+      {"resize", "WIDTHxHEIGHT", 1, 1, "changes the size of the picture", &P::resize},
+      {"screenshot", "FILE", 1, 1, "saves what is seen",
+       [](P& player, const Words& words, Inspector&) {
+         player.screenshot_ = words[0];
+         player.pause();
+       }},
   };
   return verbs;
 }
@@ -171,7 +206,7 @@ void ScriptPlayer::update(Inspector& inspector, InputQueue& input) {
     if (next_ == lines_.size()) return;
     const ScriptLine line = lines_[next_++];
     number_ = line.number;
-    (this->*line.verb->begin)(line.words, inspector);
+    line.verb->begin(*this, line.words, inspector);
   }
 }
 
@@ -199,7 +234,8 @@ void ScriptPlayer::reveal(const std::string& widget) {
     if (found == nullptr) {
       // Perhaps in a panel that is behind another.
       const std::string panel = widget.substr(0, widget.find('/'));
-      if (inspector.panel(panel) != nullptr && pictures < 3) inspector.showPanel(panel);
+      if (inspector.panel(panel) != nullptr && pictures < 3)
+        inspector.session().notices.bringUp(panel);
     } else {
       inspector.ui().reveal(widget);
     }
@@ -218,14 +254,16 @@ void ScriptPlayer::moveInto(const std::string& widget, float x, float y) {
   });
 }
 
-void ScriptPlayer::pause() {
-  steps_.emplace_back([](Inspector&, InputQueue&) { return true; });
+void ScriptPlayer::pause(int pictures) {
+  for (; pictures > 0; --pictures) {
+    steps_.emplace_back([](Inspector&, InputQueue&) { return true; });
+  }
 }
 
-double ScriptPlayer::number(const std::string& text) const {
-  const auto value = parseNumber(text);
+float ScriptPlayer::number(const std::string& text) const {
+  const auto value = numberIn(text);
   if (!value) fail(fmt::format("'{}' is not a number", text));
-  return *value;
+  return static_cast<float>(*value);
 }
 
 void ScriptPlayer::pressAt(const std::string& widget, int button, int times) {
@@ -237,21 +275,12 @@ void ScriptPlayer::pressAt(const std::string& widget, int button, int times) {
   }
 }
 
-void ScriptPlayer::click(const Words& words, Inspector&) { pressAt(words[0], 0, 1); }
-void ScriptPlayer::doubleClick(const Words& words, Inspector&) { pressAt(words[0], 0, 2); }
-void ScriptPlayer::rightClick(const Words& words, Inspector&) { pressAt(words[0], 1, 1); }
-
 void ScriptPlayer::enter(const Words& words, Inspector& inspector) {
   pressAt(words[0], 0, 1);
   key({"Ctrl+A"}, inspector);
   if (words[1].empty()) key({"Delete"}, inspector);
   type({words[1]}, inspector);
   key({"Enter"}, inspector);
-}
-
-void ScriptPlayer::choose(const Words& words, Inspector&) {
-  pressAt(words[0], 0, 1);
-  pressAt(fmt::format("{}/{}", words[0], words[1]), 0, 1);
 }
 
 void ScriptPlayer::type(const Words& words, Inspector&) {
@@ -280,15 +309,10 @@ void ScriptPlayer::key(const Words& words, Inspector&) {
   for (auto key = keys.rbegin(); key != keys.rend(); ++key) push(keyEvent(*key, false));
 }
 
-void ScriptPlayer::move(const Words& words, Inspector&) {
-  reveal(words[0]);
-  moveInto(words[0], static_cast<float>(number(words[1])), static_cast<float>(number(words[2])));
-}
-
 void ScriptPlayer::drag(const Words& words, Inspector&) {
   const std::string& widget = words[0];
   std::array<float, 4> at{};
-  for (std::size_t i = 0; i < at.size(); ++i) at[i] = static_cast<float>(number(words[i + 1]));
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = number(words[i + 1]);
   const int button = words.size() > 5 ? static_cast<int>(number(words[5])) : 0;
   const Key held = words.size() > 6 ? keyNamed(words[6]) : 0;
   reveal(widget);
@@ -314,29 +338,9 @@ void ScriptPlayer::drag(const Words& words, Inspector&) {
   if (held != 0) push(keyEvent(held, false));
 }
 
-void ScriptPlayer::wheel(const Words& words, Inspector&) {
-  reveal(words[0]);
-  moveInto(words[0], 0.5F, 0.5F);
-  push({.kind = InputEvent::Kind::wheel, .y = static_cast<float>(number(words[1]))});
-}
-
-void ScriptPlayer::panel(const Words& words, Inspector& inspector) {
-  if (inspector.panel(words[0]) == nullptr) {
-    fail(fmt::format("unknown panel '{}'", words[0]));
-  }
-  inspector.showPanel(words[0]);
-  pause();
-}
-
-void ScriptPlayer::open(const Words& words, Inspector& inspector) {
-  inspector.session().opener.open(words[0]);
-  pause();
-}
-
 void ScriptPlayer::wait(const Words& words, Inspector&) {
   if (words[0] != "settled") {
-    for (double left = number(words[0]); left > 0; --left) pause();
-    return;
+    return pause(static_cast<int>(number(words[0])));
   }
   const auto start = std::chrono::steady_clock::now();
   int pictures = 0;
@@ -365,8 +369,6 @@ void ScriptPlayer::expect(const Words& words, Inspector&) {
       });
 }
 
-void ScriptPlayer::patience(const Words& words, Inspector&) { idle_patience_ = number(words[0]); }
-
 void ScriptPlayer::places(const Words& words, Inspector& inspector) {
   std::string text;
   for (const auto& [name, place] : inspector.ui().places()) {
@@ -377,31 +379,16 @@ void ScriptPlayer::places(const Words& words, Inspector& inspector) {
   writeTextFile(words[0], text);
 }
 
-void ScriptPlayer::write(const Words& words, Inspector&) {
-  steps_.push_back([this, words](Inspector& inspector, InputQueue&) {
-    const std::optional<std::string> now = inspector.value(words[0]);
-    if (!now) fail(fmt::format("unknown value '{}'", words[0]));
-    writeTextFile(words[1], *now + "\n");
-    return true;
-  });
-}
-
 void ScriptPlayer::resize(const Words& words, Inspector&) {
   const std::size_t x = words[0].find('x');
   if (x == std::string::npos) {
     fail(fmt::format("'{}' is not of the form WIDTHxHEIGHT", words[0]));
   }
   const auto side = [&](const std::string& text) {
-    return static_cast<int>(std::clamp(number(text), 1.0, 16384.0));
+    return static_cast<int>(std::clamp(number(text), 1.0F, 16384.0F));
   };
   resize_ = {side(words[0].substr(0, x)), side(words[0].substr(x + 1))};
-  pause();
-  pause();
-}
-
-void ScriptPlayer::screenshot(const Words& words, Inspector&) {
-  screenshot_ = words[0];
-  pause();
+  pause(2);
 }
 
 }  // namespace broadmark

@@ -23,8 +23,8 @@ struct ScriptVerb {
   const char* arguments;  ///< for people: "WIDGET TEXT"
   std::size_t fewest;     ///< words that follow it
   std::size_t most;
-  void (ScriptPlayer::*begin)(const Words&, Inspector&);
   const char* doc;
+  std::function<void(ScriptPlayer&, const Words&, Inspector&)> begin;
 };
 const std::vector<ScriptVerb>& scriptVerbs();
 
@@ -59,34 +59,23 @@ class ScriptPlayer {
   /// Called once a picture until it returns true.
   using Step = std::function<bool(Inspector&, InputQueue&)>;
 
-  // The verbs: each adds its steps.
-  void click(const Words& words, Inspector& inspector);
-  void doubleClick(const Words& words, Inspector& inspector);
-  void rightClick(const Words& words, Inspector& inspector);
+  // Verbs: each adds its steps.
   void enter(const Words& words, Inspector& inspector);
-  void choose(const Words& words, Inspector& inspector);
   void type(const Words& words, Inspector& inspector);
   void key(const Words& words, Inspector& inspector);
-  void move(const Words& words, Inspector& inspector);
   void drag(const Words& words, Inspector& inspector);
-  void wheel(const Words& words, Inspector& inspector);
-  void panel(const Words& words, Inspector& inspector);
-  void open(const Words& words, Inspector& inspector);
   void wait(const Words& words, Inspector& inspector);
   void expect(const Words& words, Inspector& inspector);
-  void patience(const Words& words, Inspector& inspector);
   void places(const Words& words, Inspector& inspector);
-  void write(const Words& words, Inspector& inspector);
   void resize(const Words& words, Inspector& inspector);
-  void screenshot(const Words& words, Inspector& inspector);
 
   void pressAt(const std::string& widget, int button, int times);
   void moveInto(const std::string& widget, float x, float y);
   void reveal(const std::string& widget);
   void push(InputEvent event);
-  /// Lets one picture pass.
-  void pause();
-  [[nodiscard]] double number(const std::string& text) const;
+  /// Lets so many pictures pass.
+  void pause(int pictures = 1);
+  [[nodiscard]] float number(const std::string& text) const;
   [[nodiscard]] const WidgetPlace& place(Inspector& inspector, const std::string& widget) const;
   [[noreturn]] void fail(const std::string& what) const;
 

@@ -92,18 +92,15 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_A, true, false, "select all bodies of the authored scene",
        [this] { editAuthored(&scenes::SceneEditor::selectAll); }},
       {GLFW_KEY_D, true, false, "copy the selected bodies; the copies are in their places",
-       [this] {
-         if (session_.document.shown()) {
-           session_.document.edit([](scenes::SceneEditor& editor) { editor.duplicate({}); });
-         }
-       }},
+       [this] { editAuthored([](scenes::SceneEditor& editor) { editor.duplicate({}); }); }},
       {GLFW_KEY_G, true, false, "group the selected bodies: a click selects all of them",
        [this] { editAuthored(&scenes::SceneEditor::group); }},
       {GLFW_KEY_G, true, true, "ungroup them",
        [this] { editAuthored(&scenes::SceneEditor::ungroup); }},
       {GLFW_KEY_DELETE, false, false, "delete the selected bodies",
        [this] { editAuthored(&scenes::SceneEditor::erase); }},
-      {GLFW_KEY_F6, false, false, kNextPlace, [this] { focusPlace(1); }},
+      {GLFW_KEY_F6, false, false, "to the next place; then arrows move among its widgets",
+       [this] { focusPlace(1); }},
       {GLFW_KEY_F6, false, true, "likewise, the place before", [this] { focusPlace(-1); }},
       {GLFW_KEY_F1, false, false, kShowKeys, [this] { help_ = !help_; }},
       {GLFW_KEY_F12, false, false, kTakePicture, [this] { screenshot_asked_ = true; }},
@@ -191,7 +188,7 @@ void Inspector::takeTool(Tool tool) {
   if (session_.document.shown()) session_.document.desk.tools.toggle(tool);
 }
 
-void Inspector::editAuthored(void (scenes::SceneEditor::*change)()) {
+void Inspector::editAuthored(const std::function<void(scenes::SceneEditor&)>& change) {
   if (session_.document.shown()) session_.document.edit(change);
 }
 

@@ -1,8 +1,11 @@
 // The session's state as text, by name: what scripts and tests assert.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <concepts>
 #include <optional>
 #include <span>
 
@@ -15,6 +18,15 @@ namespace broadmark {
 namespace {
 
 const char* yes(bool is) { return is ? "yes" : "no"; }
+
+std::string textOf(bool is) { return yes(is); }
+std::string textOf(std::integral auto number) { return std::to_string(number); }
+std::string textOf(double number) { return fmt::format("{:.6g}", number); }
+template <std::size_t count>
+std::string textOf(const std::array<float, count>& numbers) {
+  constexpr std::string_view kFormat = count == 4 ? "{:.4g}" : "{:.6g}";
+  return fmt::format(kFormat, fmt::join(numbers, " "));
+}
 
 /// The wrong pairs of a frame or of several, each kind by its name after `prefix`.
 template <class Counts>
@@ -49,18 +61,19 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
   }
 }
 
-void addSnapshot(Values& values, const Snapshot* snapshot) {
-  values["shown_frame"] = snapshot ? std::to_string(snapshot->frame) : "";
-  values["bodies"] = snapshot ? std::to_string(snapshot->present) : "0";
-  values["pairs"] = snapshot ? std::to_string(snapshot->pairs.size()) : "0";
-  const FrameDifference difference = snapshot ? snapshot->difference : FrameDifference();
+void addSnapshot(Values& values, const Snapshot* shown) {
+  const Snapshot none;
+  const Snapshot& snapshot = shown ? *shown : none;
+  const FrameDifference& difference = snapshot.difference;
+  values["shown_frame"] = shown ? std::to_string(snapshot.frame) : "";
+  values["bodies"] = std::to_string(snapshot.present);
+  values["pairs"] = std::to_string(snapshot.pairs.size());
   addCounts(values, "", difference);
   values["mismatch_pairs"] =
       std::to_string(difference.missed_count + difference.false_count + difference.invalid_count);
-  values["structure"] = snapshot && snapshot->structure
-                            ? std::to_string(snapshot->structure->boxes().size() +
-                                             snapshot->structure->lines().size())
-                            : "0";
+  const RecordedDrawing* structure = snapshot.structure.get();
+  values["structure"] =
+      std::to_string(structure ? structure->boxes().size() + structure->lines().size() : 0);
 }
 
 void addSecond(Values& values, const Session& session, const RunProgress& progress) {
@@ -114,26 +127,14 @@ void addAuthored(Values& values, Session& session) {
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
   if (desk.editor.selection().empty()) return;
   const scenes::AuthoredBody& body = scene.bodies[desk.editor.selection().front()];
-  const auto vec = [](const Vec3& v) {
-    return fmt::format("{:.6g} {:.6g} {:.6g}", v[0], v[1], v[2]);
-  };
-  values["author.body.position"] = vec(body.pose.position);
-  const auto& [x, y, z, w] = body.pose.rotation;
-  values["author.body.rotation"] = fmt::format("{:.4g} {:.4g} {:.4g} {:.4g}", x, y, z, w);
-  values["author.body.velocity"] = vec(body.linear_velocity);
-  values["author.body.angular_velocity"] = vec(body.angular_velocity);
-  values["author.body.mass"] = fmt::format("{:.6g}", body.mass);
-  values["author.body.frozen"] = yes(body.frozen);
-  values["author.body.layer"] = std::to_string(body.layer);
-  values["author.body.appears"] = std::to_string(body.appears);
-  values["author.body.vanishes"] =
-      body.vanishes == scenes::kNever ? "never" : std::to_string(body.vanishes);
-  values["author.body.group"] = std::to_string(body.group);
-  const auto* box = std::get_if<scenes::BoxShape>(&body.shape);
-  values["author.body.shape"] = box ? "box" : "sphere";
+  visitProperties(body, [&](const std::string& key, const auto& value, const auto& /*default*/) {
+    values["author.body." + key] = textOf(value);
+  });
+  if (body.vanishes == scenes::kNever) values["author.body.vanishes"] = "never";
+  const auto* sphere = std::get_if<scenes::SphereShape>(&body.shape);
+  values["author.body.shape"] = sphere ? "sphere" : "box";
   values["author.body.size"] =
-      vec(box ? Vec3{2 * box->half_extents[0], 2 * box->half_extents[1], 2 * box->half_extents[2]}
-              : Vec3{2 * std::get<scenes::SphereShape>(body.shape).radius, 0, 0});
+      textOf(sphere ? Vec3{2 * sphere->radius, 0, 0} : scenes::edgesOf(body.shape));
 }
 
 void addCases(Values& values, std::optional<OpenedResults>& results) {

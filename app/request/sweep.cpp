@@ -3,18 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
+
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
-
-std::optional<double> numberIn(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return {};
-  return value;
-}
 
 /// By size, each once, however it is written.
 void sortNumbers(std::vector<std::string>& texts) {

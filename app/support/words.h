@@ -3,10 +3,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 namespace broadmark {
+
+/// The number that the text is, and nothing else.
+std::optional<double> numberIn(std::string_view text);
 
 /// "1.25 MB"
 std::string bytesText(std::uint64_t bytes);

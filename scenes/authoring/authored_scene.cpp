@@ -70,12 +70,10 @@ std::string faultOfBody(const AuthoredBody& body) {
     return fmt::format("vanishes: a frame from {} to {} is expected: it appears in frame {}",
                        body.appears + 1, kMostFrames, body.appears);
   }
-  if (body.group > kMostBodies) return faultOfGroup();
+  if (body.group > kMostBodies) {
+    return fmt::format("group: a whole number from 0 to {} is expected", kMostBodies);
+  }
   return {};
-}
-
-std::string faultOfGroup() {
-  return fmt::format("group: a whole number from 0 to {} is expected", kMostBodies);
 }
 
 std::string faultOfLayer(std::string_view key) {

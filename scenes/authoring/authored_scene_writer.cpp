@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "authoring/faults.h"
@@ -19,60 +20,42 @@
 namespace broadmark::scenes {
 namespace {
 
-/// The shortest text that reads back as the same float, with the sign of zero.
-void append(std::string& text, float value) {
-  if (value == 0 && std::signbit(value)) {
-    text += "-0.0";
-  } else {
-    text += fmt::format("{}", value);
-  }
+/// The shortest text that reads back as the same number, with the sign of zero.
+template <class Number>
+void append(std::string& text, Number value) {
+  text +=
+      value == 0 && std::signbit(static_cast<double>(value)) ? "-0.0" : fmt::format("{}", value);
 }
 
-void append(std::string& text, std::string_view key, std::span<const float> values) {
-  text += fmt::format("\"{}\": [", key);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text += ", ";
-    append(text, values[i]);
+template <std::size_t count>
+void append(std::string& text, const std::array<float, count>& values) {
+  std::string_view separator = "[";
+  for (const float value : values) {
+    text += std::exchange(separator, ", ");
+    append(text, value);
   }
   text += ']';
 }
 
-/// The same, but nothing when the values are the default bit for bit.
-template <std::size_t count>
-void appendUnless(const std::array<float, count>& standard, std::string& text, std::string_view key,
-                  const std::array<float, count>& values) {
-  using Bits = std::array<std::uint32_t, count>;
-  if (std::bit_cast<Bits>(values) == std::bit_cast<Bits>(standard)) return;
-  text += ", ";
-  append(text, key, values);
+/// Whether it is written anyhow: negative zero equals zero, but is not the same.
+bool hasSigns(std::span<const float> values) {
+  return std::ranges::any_of(values, [](float value) { return std::signbit(value); });
 }
+bool hasSigns(double /*not a float*/) { return false; }
 
 void append(std::string& text, const AuthoredBody& body) {
-  const AuthoredBody standard;
-  text += '{';
   if (const auto* sphere = std::get_if<SphereShape>(&body.shape)) {
-    text += "\"sphere\": ";
+    text += "{\"sphere\": ";
     append(text, sphere->radius);
   } else {
-    append(text, "box", edgesOf(body.shape));
+    text += "{\"box\": ";
+    append(text, edgesOf(body.shape));
   }
-  text += ", ";
-  append(text, "position", body.pose.position);
-  appendUnless(standard.pose.rotation, text, "rotation", body.pose.rotation);
-  appendUnless(standard.linear_velocity, text, "velocity", body.linear_velocity);
-  appendUnless(standard.angular_velocity, text, "angular_velocity", body.angular_velocity);
-  if (body.mass != standard.mass) {
-    text += fmt::format(", \"mass\": {}", body.mass);
-  }
-  if (body.frozen) text += ", \"frozen\": true";
-  const auto append_unless = [&](unsigned usual, std::string_view key, unsigned value) {
-    if (value == usual) return;
-    text += fmt::format(", \"{}\": {}", key, value);
-  };
-  append_unless(standard.layer, "layer", body.layer);
-  append_unless(standard.appears, "appears", body.appears);
-  append_unless(standard.vanishes, "vanishes", body.vanishes);
-  append_unless(standard.group, "group", body.group);
+  visitProperties(body, [&](std::string_view key, const auto& value, const auto& standard) {
+    if (value == standard && !hasSigns(value) && key != "position") return;
+    text += fmt::format(", \"{}\": ", key);
+    append(text, value);
+  });
   text += '}';
 }
 
@@ -111,11 +94,12 @@ std::string formatAuthoredScene(const AuthoredScene& scene) {
   constexpr std::size_t kUsualBody = 100;
   std::string text;
   text.reserve(kUsualBody * scene.bodies.size());
-  text += fmt::format("{{\n\"schema\": \"{}\",\n\"name\": {},\n\"world\": {{", kAuthoredSceneSchema,
-                      compactJson(scene.name));
-  append(text, "min", std::span(scene.world.min).first(3));
-  text += ", ";
-  append(text, "max", std::span(scene.world.max).first(3));
+  text += fmt::format("{{\n\"schema\": \"{}\",\n\"name\": {},\n\"world\": {{\"min\": ",
+                      kAuthoredSceneSchema, compactJson(scene.name));
+  const auto& [min, max] = scene.world;
+  append(text, Vec3{min[0], min[1], min[2]});
+  text += ", \"max\": ";
+  append(text, Vec3{max[0], max[1], max[2]});
   text += "},\n\"parameters\": {";
   appendParameters(text, scene.parameters);
   text += '}';

@@ -9,7 +9,6 @@
 #include <span>
 
 #include "authoring/faults.h"
-#include "authoring/from_frame.h"
 #include "broadmark/error.h"
 #include "broadmark/hasher.h"
 #include "broadmark/scenes/registry.h"

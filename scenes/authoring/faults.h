@@ -1,10 +1,11 @@
-// What the writer, the editor and the simulation of authored scenes share: refusing what is wrong.
+// What the sources of authored scenes share: refusing what is wrong.
 #pragma once
 
 #include <cstddef>
 #include <string>
 #include <string_view>
 
+#include "broadmark/collision_filter.h"
 #include "broadmark/scenes/authored_scene.h"
 
 namespace broadmark::scenes {
@@ -16,7 +17,9 @@ void requireSound(const AuthoredScene&);
 
 /// What is wrong with a number that is no layer, and what would be right.
 std::string faultOfLayer(std::string_view key);
-/// Likewise one that is no group.
-std::string faultOfGroup();
+
+/// The scene's layers collide as the filter says. Throws InputError when the filter knows worlds or
+/// tags, which an authored scene cannot state.
+void takeCollisions(AuthoredScene& scene, const CollisionFilter& filter);
 
 }  // namespace broadmark::scenes

@@ -1,4 +1,5 @@
-// Undo and redo are the same operation: every change is an exchange (scene_change.h).
+// Undo and redo are the same operation: a step exchanges what it holds with what the scene has. So
+// nothing is computed backwards, and the former values come back bit for bit.
 
 #include "broadmark/scenes/scene_editor.h"
 
@@ -10,10 +11,10 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "authoring/faults.h"
-#include "authoring/scene_change.h"
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
 
@@ -29,30 +30,53 @@ BodyIds idsFrom(std::size_t first, std::size_t end) {
   return ids;
 }
 
-SharedIds shared(BodyIds ids) { return std::make_shared<const BodyIds>(std::move(ids)); }
+std::shared_ptr<const BodyIds> shared(BodyIds ids) {
+  return std::make_shared<const BodyIds>(std::move(ids));
+}
+
+/// Removes bodies from all of them, and returns them in the order of their ids.
+std::vector<AuthoredBody> taken(std::vector<AuthoredBody>& all, const BodyIds& ids) {
+  std::vector<AuthoredBody> bodies;
+  bodies.reserve(ids.size());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (bodies.size() < ids.size() && ids[bodies.size()] == i) {
+      bodies.push_back(all[i]);
+    } else {
+      all[kept++] = all[i];
+    }
+  }
+  all.resize(kept);
+  return bodies;
+}
+
+/// Inserts bodies so that these become their ids.
+void insert(std::vector<AuthoredBody>& all, const BodyIds& ids,
+            const std::vector<AuthoredBody>& bodies) {
+  // From the last id down, so that each body moves once.
+  std::size_t left = all.size();
+  all.resize(all.size() + bodies.size());
+  for (std::size_t i = all.size(), coming = bodies.size(); coming > 0;) {
+    --i;
+    all[i] = ids[coming - 1] == i ? bodies[--coming] : all[--left];
+  }
+}
 
 /// Numbers of groups that no body has.
 class FreeGroups {
  public:
   explicit FreeGroups(const std::vector<AuthoredBody>& bodies) {
-    for (const AuthoredBody& body : bodies) {
-      if (body.group != 0) taken_.push_back(body.group);
-    }
-    std::ranges::sort(taken_);
+    for (const AuthoredBody& body : bodies) taken_.insert(body.group);
   }
   /// The least one, each time another.
   std::uint32_t next() {
-    ++last_;
-    for (; at_ < taken_.size() && taken_[at_] <= last_; ++at_) {
-      if (taken_[at_] == last_) ++last_;
-    }
-    return last_;
+    while (taken_.contains(last_)) ++last_;
+    return last_++;
   }
 
  private:
-  std::vector<std::uint32_t> taken_;
-  std::size_t at_ = 0;
-  std::uint32_t last_ = 0;
+  std::unordered_set<std::uint32_t> taken_;
+  std::uint32_t last_ = 1;
 };
 
 std::string stepName(std::string_view verb, std::size_t bodies) {
@@ -61,37 +85,11 @@ std::string stepName(std::string_view verb, std::size_t bodies) {
 
 }  // namespace
 
-/// Changes that are undone together, in the order in which they were made.
-struct SceneEditor::Step {
-  [[nodiscard]] std::size_t bytes() const {
-    std::size_t sum = sizeof(Step) + (before->size() + after->size()) * sizeof(std::uint32_t);
-    for (const auto& change : changes) sum += change->bytes();
-    return sum;
-  }
-  /// Whether undoing an earlier change of this step also undoes `change`, the latest one.
-  [[nodiscard]] bool covers(const SceneChange& change) const {
-    for (auto earlier = changes.rbegin(); earlier != changes.rend(); ++earlier) {
-      if ((*earlier)->covers(change)) return true;
-      if ((*earlier)->renumbers()) return false;
-    }
-    return false;
-  }
-
-  std::string name;
-  std::vector<std::unique_ptr<SceneChange>> changes;
-  SharedIds before;            ///< the selection before the step
-  SharedIds after;             ///< the selection after it
-  std::uint64_t revision = 0;  ///< of the scene after it
-};
-
 SceneEditor::SceneEditor(AuthoredScene scene, std::size_t history_bytes)
     : scene_(std::move(scene)), selection_(shared({})), history_bytes_(history_bytes) {}
-SceneEditor::~SceneEditor() = default;
-SceneEditor::SceneEditor(SceneEditor&&) noexcept = default;
-SceneEditor& SceneEditor::operator=(SceneEditor&&) noexcept = default;
 
 std::uint64_t SceneEditor::revision() const {
-  return done_ == 0 ? first_revision_ : history_[done_ - 1]->revision;
+  return done_ == 0 ? first_revision_ : history_[done_ - 1].revision;
 }
 
 void SceneEditor::select(BodyIds bodies) {
@@ -106,14 +104,6 @@ void SceneEditor::select(BodyIds bodies) {
 }
 
 void SceneEditor::selectAll() { select(idsFrom(0, scene_.bodies.size())); }
-
-void SceneEditor::toggle(const BodyIds& bodies) {
-  BodyIds sorted = bodies;
-  std::ranges::sort(sorted);
-  BodyIds toggled;
-  std::ranges::set_symmetric_difference(*selection_, sorted, std::back_inserter(toggled));
-  select(std::move(toggled));
-}
 
 BodyIds SceneEditor::withGroups(BodyIds bodies) const {
   std::set<std::uint32_t> groups;
@@ -148,9 +138,7 @@ Vec3 SceneEditor::selectionCentre() const {
 void SceneEditor::add(std::vector<AuthoredBody> bodies) { addCopies("add", std::move(bodies)); }
 
 void SceneEditor::erase() {
-  if (selection_->empty()) return;
-  perform(stepName("delete", selection_->size()),
-          std::make_unique<BodyPresence>(selection_, std::vector<AuthoredBody>()), shared({}));
+  if (!selection_->empty()) changePresence("delete", selection_, {}, shared({}));
 }
 
 void SceneEditor::duplicate(const Vec3& offset) {
@@ -169,29 +157,14 @@ void SceneEditor::duplicate(const Vec3& offset) {
   addCopies("duplicate", std::move(copies));
 }
 
-void SceneEditor::transform(std::string_view verb, const Transformation& change) {
-  // Two properties change: both must be valid before the first one changes.
-  for (const std::uint32_t id : *selection_) {
-    AuthoredBody body = scene_.bodies[id];
-    body.shape = transformedShape(body, change);
-    body.pose = transformedPose(body, change);
-    requireSound(body, id);
-  }
-  const bool alone = !in_gesture_;
-  if (alone) beginGesture(stepName(verb, selection_->size()));
-  // The shape first: it depends on the former rotation.
-  changeBodies(verb, &AuthoredBody::shape,
-               [&](const AuthoredBody& body) { return transformedShape(body, change); });
-  changeBodies(verb, &AuthoredBody::pose,
-               [&](const AuthoredBody& body) { return transformedPose(body, change); });
-  if (alone) endGesture();
+void SceneEditor::transform(std::string_view verb, const Transformation& by) {
+  change(verb, [&](AuthoredBody& body) {
+    body.shape = transformedShape(body, by);  // depends on the former rotation
+    body.pose = transformedPose(body, by);
+  });
 }
 
 void SceneEditor::move(const Vec3& by) { transform("move", {.move = by}); }
-
-void SceneEditor::turn(const Quaternion& by) {
-  transform("turn", {.centre = selectionCentre(), .turn = by});
-}
 
 void SceneEditor::scale(float factor) {
   transform("scale", {.centre = selectionCentre(), .scale = {factor, factor, factor}});
@@ -212,80 +185,41 @@ void SceneEditor::align(std::size_t axis, Alignment alignment) {
   const auto box_of = [](const AuthoredBody& body) { return tightBox(body.shape, body.pose); };
   Aabb all = kEmptyBox;
   for (const std::uint32_t id : *selection_) all = merged(all, box_of(scene_.bodies[id]));
-  changeBodies("align", &AuthoredBody::pose, [&](const AuthoredBody& body) {
-    Pose pose = body.pose;
-    pose.position[axis] += place(all) - place(box_of(body));
-    return pose;
-  });
+  change("align",
+         [&](AuthoredBody& body) { body.pose.position[axis] += place(all) - place(box_of(body)); });
 }
 
 void SceneEditor::setSize(const Vec3& edges) {
-  changeBodies("resize", &AuthoredBody::shape, [&](const AuthoredBody& body) -> Shape {
-    if (std::holds_alternative<SphereShape>(body.shape)) return SphereShape{edges[0] / 2};
-    return BoxShape{{edges[0] / 2, edges[1] / 2, edges[2] / 2}};
+  change("resize", [&](AuthoredBody& body) {
+    if (std::holds_alternative<SphereShape>(body.shape)) {
+      body.shape = SphereShape{edges[0] / 2};
+    } else {
+      body.shape = BoxShape{{edges[0] / 2, edges[1] / 2, edges[2] / 2}};
+    }
   });
 }
 
 void SceneEditor::makeBoxes() {
-  changeBodies("make boxes of", &AuthoredBody::shape, [](const AuthoredBody& body) -> Shape {
+  change("make boxes of", [](AuthoredBody& body) {
     const auto* sphere = std::get_if<SphereShape>(&body.shape);
-    if (sphere == nullptr) return body.shape;
-    return BoxShape{{sphere->radius, sphere->radius, sphere->radius}};
+    if (sphere) body.shape = BoxShape{{sphere->radius, sphere->radius, sphere->radius}};
   });
 }
 
 void SceneEditor::makeSpheres() {
-  changeBodies("make spheres of", &AuthoredBody::shape, [](const AuthoredBody& body) -> Shape {
+  change("make spheres of", [](AuthoredBody& body) {
     const auto* box = std::get_if<BoxShape>(&body.shape);
-    if (box == nullptr) return body.shape;
+    if (box == nullptr) return;
     const auto& [x, y, z] = box->half_extents;
-    return SphereShape{(x + y + z) / 3};
+    body.shape = SphereShape{(x + y + z) / 3};
   });
 }
 
-void SceneEditor::setMass(double mass) {
-  changeBodies("set the mass of", &AuthoredBody::mass, [&](const AuthoredBody&) { return mass; });
-}
-
-void SceneEditor::setFrozen(bool frozen) {
-  changeBodies(frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen,
-               [&](const AuthoredBody&) { return frozen; });
-}
-
-void SceneEditor::setVelocity(const Vec3& linear) {
-  changeBodies("set the velocity of", &AuthoredBody::linear_velocity,
-               [&](const AuthoredBody&) { return linear; });
-}
-
-void SceneEditor::setAngularVelocity(const Vec3& angular) {
-  changeBodies("set the spin of", &AuthoredBody::angular_velocity,
-               [&](const AuthoredBody&) { return angular; });
-}
-
-void SceneEditor::setLayer(std::uint8_t layer) {
-  changeBodies("set the layer of", &AuthoredBody::layer,
-               [&](const AuthoredBody&) { return layer; });
-}
-
-void SceneEditor::setAppears(std::uint32_t frame) {
-  changeBodies("set the first frame of", &AuthoredBody::appears,
-               [&](const AuthoredBody&) { return frame; });
-}
-
-void SceneEditor::setVanishes(std::uint32_t frame) {
-  changeBodies("set the last frame of", &AuthoredBody::vanishes,
-               [&](const AuthoredBody&) { return frame; });
-}
-
 void SceneEditor::group() {
-  if (selection_->size() < 2) return;
-  changeBodies("group", &AuthoredBody::group,
-               [number = FreeGroups(scene_.bodies).next()](const AuthoredBody&) { return number; });
+  if (selection_->size() > 1) set("group", &AuthoredBody::group, FreeGroups(scene_.bodies).next());
 }
 
-void SceneEditor::ungroup() {
-  changeBodies("ungroup", &AuthoredBody::group, [](const AuthoredBody&) { return 0U; });
-}
+void SceneEditor::ungroup() { set("ungroup", &AuthoredBody::group, 0U); }
 
 void SceneEditor::setName(std::string name) {
   const std::string fault = faultOfName(name);
@@ -312,56 +246,50 @@ void SceneEditor::setParameters(const ParameterValues& values) {
   changeScene("change parameters", &AuthoredScene::parameters, std::move(wanted), {});
 }
 
-void SceneEditor::beginGesture(std::string name) {
-  in_gesture_ = true;
-  gesture_has_step_ = false;
-  gesture_name_ = std::move(name);
-}
-
-void SceneEditor::endGesture() { in_gesture_ = gesture_has_step_ = false; }
-
-std::string SceneEditor::undoName() const { return canUndo() ? history_[done_ - 1]->name : ""; }
-std::string SceneEditor::redoName() const { return canRedo() ? history_[done_]->name : ""; }
+std::string SceneEditor::undoName() const { return canUndo() ? history_[done_ - 1].name : ""; }
+std::string SceneEditor::redoName() const { return canRedo() ? history_[done_].name : ""; }
 
 void SceneEditor::undo() {
-  endGesture();
   if (!canUndo()) return;
-  Step& step = *history_[--done_];
-  for (auto change = step.changes.rbegin(); change != step.changes.rend(); ++change) {
-    (*change)->exchange(scene_);
-  }
+  Step& step = history_[--done_];
+  step.exchange(scene_);
   selection_ = step.before;
 }
 
 void SceneEditor::redo() {
-  endGesture();
   if (!canRedo()) return;
-  Step& step = *history_[done_++];
-  for (const auto& change : step.changes) change->exchange(scene_);
+  Step& step = history_[done_++];
+  step.exchange(scene_);
   selection_ = step.after;
 }
 
 std::size_t SceneEditor::historyBytes() const {
   std::size_t sum = 0;
-  for (const auto& step : history_) sum += step->bytes();
+  for (const Step& step : history_) sum += step.bytes;
   return sum;
 }
 
-template <class Value, class Make>
-void SceneEditor::changeBodies(std::string_view verb, Value AuthoredBody::*property, Make&& make) {
-  const BodyIds& ids = *selection_;
-  auto values = std::make_unique<Value[]>(ids.size());
+void SceneEditor::change(std::string_view verb, const std::function<void(AuthoredBody&)>& edit) {
+  std::vector<AuthoredBody> bodies;
+  bodies.reserve(selection_->size());
   bool differs = false;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    AuthoredBody body = scene_.bodies[ids[i]];
-    values[i] = make(std::as_const(body));
-    differs |= !(values[i] == body.*property);
-    body.*property = values[i];
-    requireSound(body, ids[i]);
+  for (const std::uint32_t id : *selection_) {
+    AuthoredBody& body = bodies.emplace_back(scene_.bodies[id]);
+    edit(body);
+    requireSound(body, id);
+    differs |= body != scene_.bodies[id];
   }
   if (!differs) return;
-  perform(stepName(verb, ids.size()),
-          std::make_unique<BodyValues<Value>>(property, selection_, std::move(values)), selection_);
+  const std::size_t count = bodies.size();
+  perform({.name = stepName(verb, count),
+           .exchange =
+               [ids = selection_, bodies = std::move(bodies)](AuthoredScene& scene) mutable {
+                 for (std::size_t i = 0; i < bodies.size(); ++i) {
+                   std::swap(scene.bodies[(*ids)[i]], bodies[i]);
+                 }
+               },
+           .bytes = count * sizeof(AuthoredBody),
+           .after = selection_});
 }
 
 template <class Value>
@@ -369,8 +297,27 @@ void SceneEditor::changeScene(std::string name, Value AuthoredScene::*property, 
                               const std::string& fault) {
   if (!fault.empty()) throw InputError(fault);
   if (value == scene_.*property) return;
-  perform(std::move(name), std::make_unique<SceneValue<Value>>(property, std::move(value)),
-          selection_);
+  constexpr std::size_t kUsualText = 4096;  // names and parameters hold no bodies
+  perform({.name = std::move(name),
+           .exchange = [property,
+                        value](AuthoredScene& scene) mutable { std::swap(scene.*property, value); },
+           .bytes = kUsualText,
+           .after = selection_});
+}
+
+void SceneEditor::changePresence(std::string_view verb, SharedIds ids,
+                                 std::vector<AuthoredBody> absent, SharedIds selected_after) {
+  perform({.name = stepName(verb, ids->size()),
+           .exchange =
+               [ids, absent = std::move(absent)](AuthoredScene& scene) mutable {
+                 if (absent.empty()) {
+                   absent = taken(scene.bodies, *ids);
+                 } else {
+                   insert(scene.bodies, *ids, std::exchange(absent, {}));
+                 }
+               },
+           .bytes = ids->size() * (sizeof(AuthoredBody) + sizeof(std::uint32_t)),
+           .after = std::move(selected_after)});
 }
 
 void SceneEditor::addCopies(std::string_view verb, std::vector<AuthoredBody> bodies) {
@@ -382,35 +329,21 @@ void SceneEditor::addCopies(std::string_view verb, std::vector<AuthoredBody> bod
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) requireSound(bodies[i], first + i);
   const SharedIds ids = shared(idsFrom(first, first + bodies.size()));
-  std::string name = stepName(verb, bodies.size());
-  perform(std::move(name), std::make_unique<BodyPresence>(ids, std::move(bodies)), ids);
+  changePresence(verb, ids, std::move(bodies), ids);
 }
 
-void SceneEditor::perform(std::string name, std::unique_ptr<SceneChange> change,
-                          SharedIds selected_after) {
-  change->exchange(scene_);
-  if (!gesture_has_step_) {
-    history_.erase(history_.begin() + static_cast<std::ptrdiff_t>(done_), history_.end());
-    auto step = std::make_unique<Step>();
-    step->name = in_gesture_ ? gesture_name_ : std::move(name);
-    step->before = selection_;
-    step->after = selection_;
-    history_.push_back(std::move(step));
-    done_ = history_.size();
-    gesture_has_step_ = in_gesture_;
-  }
-  Step& step = *history_.back();
-  if (!step.covers(*change)) step.changes.push_back(std::move(change));
+void SceneEditor::perform(Step step) {
+  history_.erase(history_.begin() + static_cast<std::ptrdiff_t>(done_), history_.end());
+  step.before = selection_;
+  step.bytes += sizeof(Step) + (step.before->size() + step.after->size()) * sizeof(std::uint32_t);
   step.revision = ++last_revision_;
-  step.after = selection_ = std::move(selected_after);
-  forgetOldest();
-}
-
-void SceneEditor::forgetOldest() {
+  history_.push_back(std::move(step));
+  done_ = history_.size() - 1;
+  redo();
   std::size_t bytes = historyBytes();
   while (bytes > history_bytes_ && history_.size() > 1) {
-    bytes -= history_.front()->bytes();
-    first_revision_ = history_.front()->revision;
+    bytes -= history_.front().bytes;
+    first_revision_ = history_.front().revision;
     history_.pop_front();
     --done_;
   }

@@ -43,43 +43,37 @@ class BallBrush final : public CountedBrush<100> {
   double radius_ = 5;
 };
 
-/// A box around the point that is painted at.
-class BoxSpace {
- public:
-  void visitParameters(const ParameterVisitor& visit) {
-    visit({"size_x", "size of the box along x, in world units", &size_[0], 1e-3, 1e6});
-    visit({"size_y", "size of the box along y, in world units", &size_[1], 1e-3, 1e6});
-    visit({"size_z", "size of the box along z, in world units", &size_[2], 1e-3, 1e6});
+using Size = std::array<double, 3>;  ///< of a box around the point that is painted at
+constexpr Size kUsualSize = {10, 10, 10};
+
+void visitSize(Size& size, const ParameterVisitor& visit) {
+  visit({"size_x", "size of the box along x, in world units", &size[0], 1e-3, 1e6});
+  visit({"size_y", "size of the box along y, in world units", &size[1], 1e-3, 1e6});
+  visit({"size_z", "size of the box along z, in world units", &size[2], 1e-3, 1e6});
+}
+
+/// A uniformly random one.
+Vec3 pointInside(const Size& size, Random& random) {
+  Vec3 point;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    point[axis] = static_cast<float>(random.between(-size[axis] / 2, size[axis] / 2));
   }
-
-  [[nodiscard]] const std::array<double, 3>& size() const { return size_; }
-
-  /// A uniformly random point in it.
-  [[nodiscard]] Vec3 pointInside(Random& random) const {
-    Vec3 point;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      point[axis] = static_cast<float>(random.between(-size_[axis] / 2, size_[axis] / 2));
-    }
-    return point;
-  }
-
- private:
-  std::array<double, 3> size_ = {10, 10, 10};
-};
+  return point;
+}
 
 class BoxBrush final : public CountedBrush<100> {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
     CountedBrush::visitParameters(visit);
-    space_.visitParameters(visit);
+    visitSize(size_, visit);
   }
   [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
-    return space_.pointInside(random);
+    return pointInside(size_, random);
   }
   [[nodiscard]] bool scatters() const override { return true; }
 
  private:
-  BoxSpace space_;
+  Size size_ = kUsualSize;
 };
 
 /// As many bodies, at random in a box, as give it a density.
@@ -88,20 +82,19 @@ class RandomBrush final : public Brush {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"density", "share of the box that bodies of unit shape and this scale fill", &density_,
            1e-6, 1});
-    space_.visitParameters(visit);
+    visitSize(size_, visit);
   }
   [[nodiscard]] double count(double body_volume) const override {
-    const auto& size = space_.size();
-    return density_ * size[0] * size[1] * size[2] / body_volume;
+    return density_ * size_[0] * size_[1] * size_[2] / body_volume;
   }
   [[nodiscard]] Vec3 place(std::size_t, Random& random) const override {
-    return space_.pointInside(random);
+    return pointInside(size_, random);
   }
   [[nodiscard]] bool scatters() const override { return true; }
 
  private:
   double density_ = 0.1;
-  BoxSpace space_;
+  Size size_ = kUsualSize;
 };
 
 class LineBrush final : public CountedBrush<10> {

@@ -123,7 +123,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
   session.document.start(threeBodies());
   session.document.edit([](SceneEditor& editor) {
     editor.selectAll();
-    editor.turn({0, 0.6F, 0, 0.8F});
+    editor.transform("turn", {.centre = editor.selectionCentre(), .turn = {0, 0.6F, 0, 0.8F}});
   });
   const AuthoredScene scene = session.document.desk.editor.scene();
   EXPECT_TRUE(session.document.save(directory / "three"));  // gets its extension

@@ -43,7 +43,7 @@ class BackgroundBakeTest : public testing::Test {
 
 TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
   EXPECT_EQ(bake.report().state, TaskState::idle);
-  bake.start(options({20, 30}, 5));
+  startBake(bake, options({20, 30}, 5));
   BackgroundBake::Report report = wait();
   EXPECT_EQ(report.state, TaskState::done);
   ASSERT_EQ(report.items.size(), 2U);
@@ -51,7 +51,7 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
     EXPECT_EQ(item.outcome, Outcome::baked) << item.failure;
     EXPECT_EQ(openRecordingFile(item.path)->scene().frames, 5U);
   }
-  bake.start(options({20, 30, 40}, 5));
+  startBake(bake, options({20, 30, 40}, 5));
   report = wait();
   EXPECT_EQ(report.count(Outcome::kept), 2U);
   EXPECT_EQ(report.count(Outcome::baked), 1U);
@@ -61,26 +61,26 @@ TEST_F(BackgroundBakeTest, BakesAndThenKeepsWhatIsThere) {
 
 TEST_F(BackgroundBakeTest, CancelledItLeavesNothingHalfDone) {
   const FolderWatch watch(directory / "");
-  bake.start(options({3000}, 100'000));
+  startBake(bake, options({3000}, 100'000));
   watch.waitUntil([&] { return !bake.report().items.empty(); });  // before its file is begun
-  EXPECT_THROW(bake.start(options({20}, 5)), InputError);
+  EXPECT_THROW(startBake(bake, options({20}, 5)), InputError);
   bake.cancel();
   const BackgroundBake::Report report = wait();
   EXPECT_EQ(report.state, TaskState::cancelled);
   EXPECT_EQ(report.count(Outcome::waiting), 1U);
   EXPECT_FALSE(std::filesystem::exists(report.items.front().path));
-  bake.start(options({20}, 5));  // and it can begin anew
+  startBake(bake, options({20}, 5));  // and it can begin anew
   EXPECT_EQ(wait().state, TaskState::done);
 }
 
 TEST_F(BackgroundBakeTest, EndsWithItsOwner) {
   BackgroundBake another;
-  another.start(options({3000}, 100'000));
+  startBake(another, options({3000}, 100'000));
 }
 
 TEST_F(BackgroundBakeTest, WhatCannotBeWrittenIsAFailure) {
   writeTextFile(directory / "baked", "a file where the directory should be");
-  bake.start(options({20}, 5));
+  startBake(bake, options({20}, 5));
   const BackgroundBake::Report report = wait();
   EXPECT_EQ(report.state, TaskState::failed);
   EXPECT_THAT(report.failure, testing::HasSubstr("baked"));

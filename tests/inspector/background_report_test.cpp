@@ -59,8 +59,8 @@ TEST(PackageFolder, IsBesideTheSourceOrWhereItIsInstalled) {
 TEST(BackgroundReport, SaysWhatIsWrong) {
   const TemporaryDirectory directory;
   BackgroundReport report;
-  EXPECT_THROW(report.start("results.json", directory / "none/page.html"), InputError);
-  report.start(directory / "none.json", directory / "page.html");
+  EXPECT_THROW(startReport(report, "results.json", directory / "none/page.html"), InputError);
+  startReport(report, directory / "none.json", directory / "page.html");
   report.wait();
   EXPECT_TRUE(report.takeEnd());
   EXPECT_EQ(report.report().state, TaskState::failed);
@@ -76,7 +76,7 @@ TEST(BackgroundReport, RunsNothingFromTheCurrentFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(directory / "");
   BackgroundReport report;
-  report.start(directory / "none.json", directory / "page.html");
+  startReport(report, directory / "none.json", directory / "page.html");
   report.wait();
   fs::current_path(before);
   EXPECT_FALSE(fs::exists(directory / "ran"));

@@ -112,17 +112,15 @@ TEST_F(CaseExportTest, CanBeCancelled) {
   CaseExport& work = session.jobs.get<CaseExport>();
   // It is cancelled in the first frame of its trials, or in a later one.
   for (const int last : {1, 2, 5}) {
-    std::unique_ptr<IndexedFrames> frames;
-    session.runs.withFootage(
-        [&](Footage* footage) { frames = footage->source(seen.snapshot->frame); });
     int steps = 0;
     const std::function<void()> before_step = [&] {
       if (++steps == last) work.cancel();
     };
-    work.start(seen.lanes[0].spec.run, std::move(frames), seen.snapshot->difference,
-               directory / "a.aabbs", [&](const Case& test_case, const CancelQuery&) {
-                 return std::make_unique<WatchedHost>(test_case, before_step);
-               });
+    startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+                seen.snapshot->difference, directory / "a.aabbs",
+                [&](const Case& test_case, const CancelQuery&) {
+                  return std::make_unique<WatchedHost>(test_case, before_step);
+                });
     EXPECT_EQ(waitForEnd().state, State::cancelled);
     EXPECT_EQ(steps, last);
     EXPECT_FALSE(std::filesystem::exists(directory / "a.aabbs"));
@@ -134,11 +132,8 @@ TEST_F(CaseExportTest, CanBeCancelled) {
 TEST_F(CaseExportTest, EndsWithItsOwner) {
   const RunProgress seen = findMismatch("faulty");
   CaseExport work;
-  std::unique_ptr<IndexedFrames> source;
-  session.runs.withFootage(
-      [&](Footage* footage) { source = footage->source(seen.snapshot->frame); });
-  work.start(seen.lanes[0].spec.run, std::move(source), seen.snapshot->difference,
-             directory / "a.aabbs");
+  startExport(work, seen.lanes[0].spec.run, seen.frames(seen.snapshot->frame),
+              seen.snapshot->difference, directory / "a.aabbs");
 }
 
 TEST_F(CaseExportTest, ACaseThatDoesNotFailIsAnError) {

@@ -147,7 +147,7 @@ TEST_F(InspectorTest, AClickOnAMarkOfTheTimelineGoesToItsFrame) {
   settle();
   const std::string wrong = value("stop_frame");
   ASSERT_NE(wrong, "") << "the fault did not show";
-  inspector.showPanel("Timeline");
+  inspector.session().notices.bringUp("Timeline");
   draw(3);
   const WidgetPlace plot = *inspector.ui().find("Timeline/plot");
   int arrived = 0;
@@ -282,7 +282,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
   inspector.session().opener.open(vanishingBodies(directory, 40));
   settle();
-  inspector.showPanel("Bodies");
+  inspector.session().notices.bringUp("Bodies");
   inspector.session().selection.select({37});
   settle();
   EXPECT_EQ(value("selected_body"), "present");
@@ -319,7 +319,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   settle();
   std::set<std::string> pressed;
   for (const auto& panel : makePanels()) {
-    inspector.showPanel(panel->name());
+    inspector.session().notices.bringUp(panel->name());
     settle();
     for (int round = 0; round < 60; ++round) {
       std::string next;
@@ -336,7 +336,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       key(GLFW_KEY_ESCAPE);
       settle();
       inspector.session().notices.errors.clear();
-      inspector.showPanel(panel->name());
+      inspector.session().notices.bringUp(panel->name());
       settle();
     }
   }

@@ -132,7 +132,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
   Picture pictureOf(const Panel& panel) {
     const auto [width, height] = std::get<Size>(GetParam());
     const Framebuffer target(gl, width, height, 1);
-    inspector.showPanel(panel.name());
+    inspector.session().notices.bringUp(panel.name());
     // A tab comes to the front, and its tables learn how wide they are.
     for (int i = 0; i < 4; ++i) {
       inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "inspector/helpers.h"
-#include "inspector/run/second_run.h"
+#include "inspector/run/run_thread.h"
 #include "inspector/session/lane_statistics.h"
 
 namespace broadmark::tests {

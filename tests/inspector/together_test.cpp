@@ -56,7 +56,7 @@ std::unique_ptr<Simulation> bulletScene() {
 TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   const TemporaryDirectory directory;
   BackgroundBake alone;
-  alone.start(bulletScene(), directory / "alone.aabbs");
+  startBake(alone, bulletScene(), directory / "alone.aabbs");
   alone.wait();
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
@@ -76,7 +76,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   const RunProgress seen = settled(session);
   ASSERT_TRUE(seen.snapshot->difference.isMismatch());
 
-  session.jobs.get<BackgroundBake>().start(bulletScene(), directory / "together.aabbs");
+  startBake(session.jobs.get<BackgroundBake>(), bulletScene(), directory / "together.aabbs");
   session.exportCase(faulty, seen.snapshot, directory / "case.aabbs");
   RunProgress last;
   for (int round = 0; round < 50; ++round) {

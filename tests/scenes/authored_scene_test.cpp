@@ -33,6 +33,12 @@ std::string sceneText(const std::string& body, const std::string& more = "") {
          more + R"("bodies": [{"box": [1, 1, 1], "position": [0, 0, 0]}, {)" + body + "}]}";
 }
 
+std::string repeated(std::string_view text, int times) {
+  std::string all;
+  for (; times > 0; --times) all += text;
+  return all;
+}
+
 /// A float that is finite, of any size up to `most`, denormals and negative zero included.
 float anyFloat(std::mt19937& random, float most) {
   for (;;) {
@@ -206,6 +212,9 @@ TEST(AuthoredScene, RefusalsNameTheBodyTheKeyAndWhatIsRight) {
       {sceneText(R"("sphere": 1, "group": 1e300, )" + position), {"body 1", "group: a whole"}},
       {sceneText(R"("box": [[1, 1, 1]], )" + position),
        {"body 1", "box: an array of three numbers"}},
+      {sceneText(R"("box": [[[[[[1]]]]]], )" + position), {"body 1", "box: nested too deeply"}},
+      {sceneText(R"("box": [)" + repeated("1, ", 9999) + "1], " + position),
+       {"body 1", "box: too many values"}},
       {sceneText(R"("box": [1, null, 1])"), {"body 1", "box: an array of three numbers"}},
       {sceneText(R"("box": [0, 1, 1], )" + position), {"body 1", "size", "1e-06"}},
       {sceneText(R"("sphere": -1, )" + position), {"body 1", "size"}},

@@ -22,9 +22,7 @@ Surface faceOf(const Aabb& box, const Sight::Line& line) {
     face.axis = axis;
     face.sign = high ? 1 : -1;
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    face.point[axis] = line.from[axis] + latest * line.direction[axis];
-  }
+  face.point = line.from + latest * line.direction;
   face.point[face.axis] = face.sign > 0 ? box.max[face.axis] : box.min[face.axis];
   return face;
 }
@@ -32,10 +30,8 @@ Surface faceOf(const Aabb& box, const Sight::Line& line) {
 std::optional<Surface> floorUnder(const Aabb& world, const Sight::Line& line) {
   const double share = (world.min[1] - line.from[1]) / line.direction[1];
   if (!(share > 0) || !std::isfinite(share)) return {};
-  Surface floor;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    floor.point[axis] = line.from[axis] + share * line.direction[axis];
-    if (axis == 1) continue;
+  Surface floor{.point = line.from + share * line.direction};
+  for (const std::size_t axis : {0, 2}) {
     if (floor.point[axis] < world.min[axis] || floor.point[axis] > world.max[axis]) return {};
   }
   floor.point[1] = world.min[1];

@@ -13,9 +13,9 @@ namespace broadmark {
 
 /// A face of a body's box, or the world's floor.
 struct Surface {
-  Point point{};         ///< that is pointed at
-  std::size_t axis = 1;  ///< along which bodies stand on it…
-  int sign = 1;          ///< …in this direction
+  Point point = Point::Zero();  ///< that is pointed at
+  std::size_t axis = 1;         ///< along which bodies stand on it…
+  int sign = 1;                 ///< …in this direction
 };
 
 /// What is seen at a pixel; of the floor only where the world is. O(boxes).

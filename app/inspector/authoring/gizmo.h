@@ -3,7 +3,7 @@
 // of the bodies.
 #pragma once
 
-#include <array>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -17,16 +17,18 @@
 namespace broadmark {
 
 /// A point or a direction in the world.
-using Point = std::array<double, 3>;
+using Point = Eigen::Vector3d;
 /// Pixels from the upper left corner of the view.
-using Pixel = std::array<float, 2>;
+using Pixel = Eigen::Vector2f;
+
+inline Point pointOf(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 /// The way from the world to the picture, and back.
 class Sight {
  public:
   struct Line {
-    Point from{};       ///< the eye
-    Point direction{};  ///< of any length
+    Point from;       ///< the eye
+    Point direction;  ///< of any length
   };
 
   Sight(const ViewSpace& space, const Viewpoint& viewpoint)
@@ -58,8 +60,8 @@ inline constexpr NameTable kHandles{{NamedValue{Handle::x, "x"},
                                      {Handle::xy, "xy"},
                                      {Handle::all, "all"}}};
 
-/// Where an axis of the world (0, 1, 2) points once it is turned.
-Point turnedAxis(const Quaternion& turn, std::size_t axis);
+/// Its columns are where the world's axes point once they are turned.
+Eigen::Matrix3d turnOf(const Quaternion& turn);
 
 /// Where the gizmo is.
 struct GizmoPlace {
@@ -67,7 +69,9 @@ struct GizmoPlace {
   Quaternion turn{0, 0, 0, 1};  ///< from the world's axes to the gizmo's
   double length = 1;            ///< of an axis, in world units
 
-  [[nodiscard]] Point axis(std::size_t which) const { return turnedAxis(turn, which); }
+  [[nodiscard]] Point axis(std::size_t which) const {
+    return turnOf(turn).col(static_cast<Eigen::Index>(which));
+  }
 };
 
 /// A handle as it is to be drawn and hit: a line through these points, or the area within.
@@ -75,7 +79,7 @@ struct HandleShape {
   Handle handle = Handle::x;
   std::vector<Point> points;
   bool filled = false;
-  Point grip{};  ///< a point of it for the mouse to take
+  Point grip = Point::Zero();  ///< a point of it for the mouse to take
 };
 
 /// The handles of a tool. Those that could not be dragged are left out: an axis seen from its end,
@@ -97,8 +101,6 @@ class GizmoDrag {
   };
   /// With the mouse there. `snaps`: by the steps of `tools`.
   [[nodiscard]] Outcome at(Pixel pixel, const Tools& tools, bool snaps) const;
-
-  [[nodiscard]] Handle handle() const { return handle_; }
 
  private:
   [[nodiscard]] Outcome moved(Pixel pixel, double step) const;

@@ -25,18 +25,6 @@ constexpr float kBetweenDabs = 12;
 constexpr std::size_t kMostGhosts = 1000;
 constexpr int kMostDabsAtOnce = 8;  // in a picture, between two places of the mouse
 
-/// A box that stands for many bodies.
-scenes::AuthoredBody bodyAround(const Aabb& box) {
-  scenes::AuthoredBody body;
-  Vec3 half;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    body.pose.position[axis] = (box.min[axis] + box.max[axis]) / 2;
-    half[axis] = (box.max[axis] - box.min[axis]) / 2;
-  }
-  body.shape = scenes::BoxShape{half};
-  return body;
-}
-
 Rgb colourOf(Handle handle, const Palette& theme) {
   // A plane has the colour of the axis across it.
   return handle == Handle::all ? theme.accent : theme.axis[static_cast<std::size_t>(handle) % 3];
@@ -85,8 +73,8 @@ void Hands::lookAtGizmo(const Seen& seen) {
     for (std::size_t axis = 0; axis < 3; ++axis) place_.centre[axis] += change_.move[axis];
   }
   if (tools.local) place_.turn = editor.scene().bodies[editor.selection().front()].pose.rotation;
-  const Point centre{place_.centre[0], place_.centre[1], place_.centre[2]};
-  place_.length = static_cast<double>(kGizmoLength * seen.scale) * seen.sight.pixelAt(centre);
+  place_.length =
+      static_cast<double>(kGizmoLength * seen.scale) * seen.sight.pixelAt(pointOf(place_.centre));
   if (!(place_.length > 0)) return;  // behind the eye
   shapes_ = handleShapes(tools.tool, place_, seen.sight);
   if (drag_) return;
@@ -133,13 +121,12 @@ void Hands::previewDab(const Seen& seen) {
 }
 
 void Hands::paintTo(const Seen& seen, Pixel to) {
-  const float x = to[0] - painted_at_[0];
-  const float y = to[1] - painted_at_[1];
-  const float steps = std::ceil(std::hypot(x, y) / (kBetweenDabs * seen.scale));
+  const Pixel way = to - painted_at_;
+  const float steps = std::ceil(way.norm() / (kBetweenDabs * seen.scale));
   const int count = std::clamp(static_cast<int>(steps), 1, kMostDabsAtOnce);
   for (int i = 1; i <= count; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(count);
-    const auto surface = surfaceAt(seen, {painted_at_[0] + share * x, painted_at_[1] + share * y});
+    const auto surface = surfaceAt(seen, painted_at_ + share * way);
     if (surface) stroke_->paint(*surface);
   }
   painted_at_ = to;
@@ -170,7 +157,7 @@ void Hands::takeBodies(const scenes::SceneEditor& editor) {
   for (const std::uint32_t id : editor.selection()) {
     all = merged(all, tightBox(bodies[id].shape, bodies[id].pose));
   }
-  taken_.push_back(bodyAround(all));
+  taken_.push_back(scenes::bodyIn(all));
 }
 
 void Hands::showGhosts(std::span<const scenes::AuthoredBody> bodies) {
@@ -276,16 +263,13 @@ void Hands::drawGhosts(const Ui& ui, const Sight& sight, ImVec2 corner) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImU32 line = colour(ui.theme.selected);
   for (const scenes::AuthoredBody& body : ghosts_) {
-    const Vec3 edges = edgesOf(body.shape);
+    const Eigen::Matrix3d half_edges =
+        turnOf(body.pose.rotation) * (pointOf(edgesOf(body.shape)) / 2).asDiagonal();
     std::array<std::optional<Pixel>, 8> seen;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-      Point at{body.pose.position[0], body.pose.position[1], body.pose.position[2]};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Point along = turnedAxis(body.pose.rotation, axis);
-        const double half = ((i >> axis) & 1U) != 0 ? edges[axis] / 2.0 : -edges[axis] / 2.0;
-        for (std::size_t k = 0; k < 3; ++k) at[k] += half * along[k];
-      }
-      seen[i] = sight.pixelOf(at);
+      const auto side = [i](unsigned axis) { return (i >> axis & 1U) != 0 ? 1.0 : -1.0; };
+      seen[i] = sight.pixelOf(pointOf(body.pose.position) +
+                              half_edges * Point(side(0), side(1), side(2)));
     }
     for (std::size_t i = 0; i < seen.size(); ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -78,12 +78,12 @@ class Hands {
   // The brush.
   std::optional<BrushStroke> stroke_;
   bool painting_ = false;
-  Pixel painted_at_{};  ///< by the stroke, last
+  Pixel painted_at_ = Pixel::Zero();  ///< by the stroke, last
   /// What was pointed at, and from where.
   struct {
     std::shared_ptr<const Snapshot> snapshot;
     Viewpoint viewpoint;
-    Pixel pixel{};
+    Pixel pixel = Pixel::Zero();
     std::optional<Surface> surface;
   } pointed_;
 

@@ -15,6 +15,53 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kGlance{20};
 
+void take(const BakedJob& baked, BakeReport& report) {
+  for (BakeReport::Item& item : report.items) {
+    if (std::ranges::find(baked.paths, item.path) == baked.paths.end()) continue;
+    item.outcome = baked.failure.empty() ? BakeOutcome::baked : BakeOutcome::failed;
+    item.failure = baked.failure;
+  }
+}
+
+void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads) {
+  BakeBatch batch(std::move(jobs), threads);
+  while (!batch.ended()) {
+    if (job.cancelled()) batch.cancel();
+    const std::vector<BakedJob> ended = batch.await(kGlance);
+    const BatchState state = batch.state();
+    job.update([&](BakeReport& report) {
+      for (const BakedJob& baked : ended) take(baked, report);
+      report.doing = state.running;
+      report.seconds_left = state.seconds_left;
+      report.fraction =
+          static_cast<float>(static_cast<double>(state.done) /
+                             static_cast<double>(std::max<std::uint64_t>(state.total, 1)));
+    });
+  }
+}
+
+void planAndBake(BackgroundBake& job, const BakeOptions& options) {
+  auto plan =
+      planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
+        job.update([&](BakeReport& report) {
+          report.doing = fmt::format("checking {}", path.filename().string());
+          report.fraction = static_cast<float>(number) / static_cast<float>(total);
+        });
+        return !job.cancelled();
+      });
+  if (!plan) return;
+  prepare(*plan, options.record);
+  job.update([&](BakeReport& report) {
+    for (const fs::path& path : plan->kept) {
+      report.items.push_back({.path = path, .outcome = BakeOutcome::kept});
+    }
+    for (const BakeJob& pending : plan->pending) {
+      for (const fs::path& path : pending.paths) report.items.push_back({.path = path});
+    }
+  });
+  if (!plan->pending.empty()) bake(job, std::move(plan->pending), options.threads);
+}
+
 }  // namespace
 
 std::size_t BakeReport::count(BakeOutcome outcome) const {
@@ -31,87 +78,33 @@ std::string BakeReport::text() const {
   return text;
 }
 
-JobStatus BackgroundBake::statusOf(const Report& report) const {
-  return {.doing = "Baking: " + report.text() + ".",
-          .outcome = report.text(),
-          .faulty = report.failed() > 0,
-          .values = {{"recordings", std::to_string(report.items.size())},
-                     {"done", std::to_string(report.count(BakeOutcome::baked))},
-                     {"kept", std::to_string(report.count(BakeOutcome::kept))},
-                     {"failed", std::to_string(report.failed())}}};
+JobStatus BakeReport::status() const {
+  return {.doing = "Baking: " + text() + ".",
+          .outcome = text(),
+          .faulty = failed() > 0,
+          .values = {{"recordings", std::to_string(items.size())},
+                     {"done", std::to_string(count(BakeOutcome::baked))},
+                     {"kept", std::to_string(count(BakeOutcome::kept))},
+                     {"failed", std::to_string(failed())}}};
 }
 
-void BackgroundBake::start(BakeOptions options) {
-  begin({}, [this, options = std::move(options)] {
-    planAndBake(options);
-    return !cancelled();
+void startBake(BackgroundBake& job, BakeOptions options) {
+  job.begin({}, [&job, options = std::move(options)] {
+    planAndBake(job, options);
+    return !job.cancelled();
   });
 }
 
-void BackgroundBake::start(std::unique_ptr<Simulation> simulation, fs::path path) {
-  BakeJob job;
-  job.scene = simulation->scene();
-  job.simulation = std::move(simulation);
-  job.paths = {std::move(path)};
-  begin({}, [this, job = std::move(job)]() mutable {
-    bakeOne(std::move(job));
-    return !cancelled();
-  });
-}
-
-void BackgroundBake::bakeOne(BakeJob job) {
-  requireBakeable(*job.simulation, job.paths);
-  update([&](Report& report) { report.items = {{.path = job.paths.front()}}; });
-  std::vector<BakeJob> jobs;
-  jobs.push_back(std::move(job));
-  bake(std::move(jobs), 1);
-}
-
-void BackgroundBake::planAndBake(const BakeOptions& options) {
-  auto plan =
-      planBake(options, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
-        update([&](Report& report) {
-          report.doing = fmt::format("checking {}", path.filename().string());
-          report.fraction = static_cast<float>(number) / static_cast<float>(total);
-        });
-        return !cancelled();
-      });
-  if (!plan) return;
-  prepare(*plan, options.record);
-  update([&](Report& report) {
-    for (const fs::path& path : plan->kept) {
-      report.items.push_back({.path = path, .outcome = BakeOutcome::kept});
-    }
-    for (const BakeJob& job : plan->pending) {
-      for (const fs::path& path : job.paths) report.items.push_back({.path = path});
-    }
-  });
-  if (!plan->pending.empty()) bake(std::move(plan->pending), options.threads);
-}
-
-void BackgroundBake::bake(std::vector<BakeJob> jobs, int threads) {
-  BakeBatch batch(std::move(jobs), threads);
-  while (!batch.ended()) {
-    if (cancelled()) batch.cancel();
-    for (const BakedJob& job : batch.await(kGlance)) take(job);
-    const BatchState state = batch.state();
-    update([&](Report& report) {
-      report.doing = state.running;
-      report.seconds_left = state.seconds_left;
-      report.fraction =
-          static_cast<float>(static_cast<double>(state.done) /
-                             static_cast<double>(std::max<std::uint64_t>(state.total, 1)));
-    });
-  }
-}
-
-void BackgroundBake::take(const BakedJob& job) {
-  update([&](Report& report) {
-    for (BakeReport::Item& item : report.items) {
-      if (std::ranges::find(job.paths, item.path) == job.paths.end()) continue;
-      item.outcome = job.failure.empty() ? BakeOutcome::baked : BakeOutcome::failed;
-      item.failure = job.failure;
-    }
+void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation, fs::path path) {
+  std::vector<BakeJob> jobs(1);
+  jobs[0].scene = simulation->scene();
+  jobs[0].simulation = std::move(simulation);
+  jobs[0].paths = {std::move(path)};
+  job.begin({}, [&job, jobs = std::move(jobs)]() mutable {
+    requireBakeable(*jobs[0].simulation, jobs[0].paths);
+    job.update([&](BakeReport& report) { report.items = {{.path = jobs[0].paths[0]}}; });
+    bake(job, std::move(jobs), 1);
+    return !job.cancelled();
   });
 }
 

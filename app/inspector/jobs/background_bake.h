@@ -23,6 +23,9 @@ inline constexpr NameTable kBakeOutcomes{{NamedValue{BakeOutcome::waiting, ""},
 
 /// A failure of the task is what kept the batch as a whole from being baked.
 struct BakeReport : WorkReport {
+  static constexpr const char* kName = "baking";
+  static constexpr const char* kPrefix = "batch";
+
   struct Item {
     std::filesystem::path path;
     BakeOutcome outcome = BakeOutcome::waiting;
@@ -34,26 +37,16 @@ struct BakeReport : WorkReport {
   [[nodiscard]] std::size_t failed() const { return count(BakeOutcome::failed); }
   /// What it has come to, in words.
   [[nodiscard]] std::string text() const;
+  [[nodiscard]] JobStatus status() const;
 };
 
-/// Plans and bakes one batch at a time.
-class BackgroundBake final : public ReportingJob<BakeReport> {
- public:
-  BackgroundBake() : ReportingJob("baking", "batch") {}
-  ~BackgroundBake() override { finish(); }
+using BackgroundBake = Task<BakeReport>;
 
-  /// Begins what the options describe. Throws InputError while another batch is running.
-  void start(BakeOptions options);
-  /// Begins a single recording; one that is there is replaced. Throws InputError while another
-  /// batch is running.
-  void start(std::unique_ptr<Simulation> simulation, std::filesystem::path path);
-
- private:
-  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
-  void planAndBake(const BakeOptions& options);
-  void bakeOne(BakeJob job);
-  void bake(std::vector<BakeJob> jobs, int threads);
-  void take(const BakedJob& job);
-};
+/// Plans and bakes what the options describe. Throws InputError while another batch is running.
+void startBake(BackgroundBake& job, BakeOptions options);
+/// Bakes a single recording; one that is there is replaced. Throws InputError while another batch
+/// is running.
+void startBake(BackgroundBake& job, std::unique_ptr<Simulation> simulation,
+               std::filesystem::path path);
 
 }  // namespace broadmark

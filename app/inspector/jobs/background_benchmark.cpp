@@ -13,30 +13,10 @@
 #include "support/words.h"
 
 namespace broadmark {
-std::size_t BenchmarkReport::failed() const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      items, [](const BenchmarkReport::Item& item) { return item.status != Status::ok; }));
-}
-
-std::string BenchmarkReport::text() const {
-  std::string text = fmt::format("{} of {} run", items.size(), counted(cases, "case"));
-  if (failed() > 0) text += fmt::format(", {} failed", failed());
-  return text;
-}
-
-JobStatus BackgroundBenchmark::statusOf(const Report& report) const {
-  return {.doing = "Running algorithms: " + report.text() + ".",
-          .outcome = report.failure.empty()
-                         ? fmt::format("{}: {}", report.file.string(), report.text())
-                         : "",
-          .faulty = report.failed() > 0,
-          .values = {{"cases", std::to_string(report.cases)},
-                     {"run", std::to_string(report.items.size())},
-                     {"failed", std::to_string(report.failed())}}};
-}
+namespace {
 
 /// Keeps the report of a run up to date.
-class BackgroundBenchmark::Observer final : public RunObserver {
+class Observer final : public RunObserver {
  public:
   Observer(BackgroundBenchmark& job, std::uint64_t steps)
       : job_(job), steps_(static_cast<double>(std::max<std::uint64_t>(steps, 1))) {}
@@ -52,7 +32,7 @@ class BackgroundBenchmark::Observer final : public RunObserver {
   void onProgress(std::uint64_t done, const std::string& detail) override {
     const double share = std::min(1.0, static_cast<double>(begun_ + done) / steps_);
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    job_.update([&](Report& report) {
+    job_.update([&](BenchmarkReport& report) {
       report.doing = detail.empty() ? doing_ : fmt::format("{}: {}", doing_, detail);
       report.fraction = static_cast<float>(share);
       report.seconds_left = share > 0 ? seconds * (1 - share) / share : 0;
@@ -66,11 +46,11 @@ class BackgroundBenchmark::Observer final : public RunObserver {
         .status = result.status,
         .reason = result.reason};
     if (!result.repetitions.empty()) item.median_seconds = result.summary().median;
-    job_.update([&](Report& report) { report.items.push_back(std::move(item)); });
+    job_.update([&](BenchmarkReport& report) { report.items.push_back(std::move(item)); });
   }
 
   void onRecordingEnd(const PlanEntry& /*entry*/, IndexedFrames& /*recording*/, Oracle&) override {
-    job_.update([](Report& report) {
+    job_.update([](BenchmarkReport& report) {
       for (BenchmarkReport::Item& item : report.items) item.kept = true;
     });
   }
@@ -86,18 +66,40 @@ class BackgroundBenchmark::Observer final : public RunObserver {
   std::uint64_t next_ = 0;   ///< steps of the tasks up to the present one
 };
 
-void BackgroundBenchmark::start(RunRequest request, std::vector<Algorithm> algorithms,
-                                const HostMaker& make_host) {
+}  // namespace
+
+std::size_t BenchmarkReport::failed() const {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      items, [](const BenchmarkReport::Item& item) { return item.status != Status::ok; }));
+}
+
+std::string BenchmarkReport::text() const {
+  std::string text = fmt::format("{} of {} run", items.size(), counted(cases, "case"));
+  if (failed() > 0) text += fmt::format(", {} failed", failed());
+  return text;
+}
+
+JobStatus BenchmarkReport::status() const {
+  return {.doing = "Running algorithms: " + text() + ".",
+          .outcome = failure.empty() ? fmt::format("{}: {}", file.string(), text()) : "",
+          .faulty = failed() > 0,
+          .values = {{"cases", std::to_string(cases)},
+                     {"run", std::to_string(items.size())},
+                     {"failed", std::to_string(failed())}}};
+}
+
+void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
+                    const HostMaker& make_host) {
   const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
-  begin({.file = file},
-        [this, request = std::move(request), algorithms = std::move(algorithms), make_host] {
-          update([](Report& report) { report.doing = "opening recordings"; });
-          Plan plan = makePlan(request, PlanUse::run, algorithms);
-          update([&](Report& report) { report.cases = caseIds(plan).size(); });
-          Observer observer(*this, stepsOf(plan));
-          return runPlan(plan, make_host, observer).complete;
-        });
+  job.begin({.file = file},
+            [&job, request = std::move(request), algorithms = std::move(algorithms), make_host] {
+              job.update([](BenchmarkReport& report) { report.doing = "opening recordings"; });
+              Plan plan = makePlan(request, PlanUse::run, algorithms);
+              job.update([&](BenchmarkReport& report) { report.cases = caseIds(plan).size(); });
+              Observer observer(job, stepsOf(plan));
+              return runPlan(plan, make_host, observer).complete;
+            });
 }
 
 }  // namespace broadmark

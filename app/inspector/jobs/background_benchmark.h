@@ -16,6 +16,9 @@ namespace broadmark {
 
 /// A failure of the task is what kept the plan as a whole from being run.
 struct BenchmarkReport : WorkReport {
+  static constexpr const char* kName = "running algorithms";
+  static constexpr const char* kPrefix = "benchmark";
+
   /// A case that has been run.
   struct Item {
     std::string id;
@@ -32,23 +35,14 @@ struct BenchmarkReport : WorkReport {
   [[nodiscard]] std::size_t failed() const;
   /// What it has come to, in words.
   [[nodiscard]] std::string text() const;
+  [[nodiscard]] JobStatus status() const;
 };
 
-/// Runs one plan at a time.
-class BackgroundBenchmark final : public ReportingJob<BenchmarkReport> {
- public:
-  BackgroundBenchmark() : ReportingJob("running algorithms", "benchmark") {}
-  ~BackgroundBenchmark() override { finish(); }
+using BackgroundBenchmark = Task<BenchmarkReport>;
 
-  /// Begins a run with these algorithms to choose from, which run where `make_host` says; its
-  /// results are rewritten as JSON after each recording. Throws InputError while another one is
-  /// running.
-  void start(RunRequest request, std::vector<Algorithm> algorithms, const HostMaker& make_host);
-
- private:
-  class Observer;
-
-  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
-};
+/// Begins a run with these algorithms to choose from, which run where `make_host` says; its results
+/// are rewritten as JSON after each recording. Throws InputError while another one is running.
+void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
+                    const HostMaker& make_host);
 
 }  // namespace broadmark

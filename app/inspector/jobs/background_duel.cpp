@@ -13,18 +13,18 @@ constexpr double kBetweenReports = 0.2;
 
 }  // namespace
 
-JobStatus BackgroundDuel::statusOf(const Report& report) const {
-  const DuelResult& result = report.result;
+JobStatus DuelReport::status() const {
   return {.doing = "A duel goes on.",
           .values = {{"rounds", std::to_string(result.sides.empty() ? 0 : result.rounds())},
                      {"verdict", result.places.empty() ? "" : verdictOf(result)}}};
 }
 
-void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<IndexedFrames> frames,
-                           double most_seconds, const HostMaker& make_host) {
+void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
+               std::unique_ptr<IndexedFrames> frames, double most_seconds,
+               const HostMaker& make_host) {
   if (cases.size() < 2) throw InputError("duel: one algorithm alone: add another one");
   if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
-  Report first;
+  DuelReport first;
   first.most_seconds = most_seconds;
   first.bodies = frames->scene().objects;
   std::vector<DuelSide> sides;
@@ -32,27 +32,27 @@ void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<Index
     sides.push_back({caseName(run), run, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
-  begin(std::move(first),
-        [this, sides = std::move(sides), frames = std::move(frames), most_seconds] {
-          double reported = 0;
-          DuelResult result = runDuel(sides, *frames,
-                                      {.most_seconds = most_seconds,
-                                       .progress =
-                                           [&](const DuelResult& so_far, double seconds) {
-                                             if (seconds < reported + kBetweenReports) return;
-                                             reported = seconds;
-                                             update([&](Report& report) {
-                                               report.result = so_far;
-                                               report.seconds = seconds;
-                                             });
-                                           },
-                                       .cancelled = [this] { return cancelled(); }});
-          update([&](Report& report) {
-            report.seconds = result.seconds;
-            report.result = std::move(result);
-          });
-          return true;
-        });
+  job.begin(std::move(first),
+            [&job, sides = std::move(sides), frames = std::move(frames), most_seconds] {
+              double reported = 0;
+              DuelResult result = runDuel(sides, *frames,
+                                          {.most_seconds = most_seconds,
+                                           .progress =
+                                               [&](const DuelResult& so_far, double seconds) {
+                                                 if (seconds < reported + kBetweenReports) return;
+                                                 reported = seconds;
+                                                 job.update([&](DuelReport& report) {
+                                                   report.result = so_far;
+                                                   report.seconds = seconds;
+                                                 });
+                                               },
+                                           .cancelled = [&job] { return job.cancelled(); }});
+              job.update([&](DuelReport& report) {
+                report.seconds = result.seconds;
+                report.result = std::move(result);
+              });
+              return true;
+            });
 }
 
 }  // namespace broadmark

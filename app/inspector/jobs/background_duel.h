@@ -11,25 +11,23 @@
 namespace broadmark {
 
 struct DuelReport : TaskReport {
+  static constexpr const char* kName = "duel";
+  static constexpr const char* kPrefix = "duel";
+
   DuelResult result;  ///< so far: without places until it is done
   double seconds = 0;
   double most_seconds = 0;
   std::uint32_t bodies = 0;
+
+  [[nodiscard]] JobStatus status() const;
 };
 
-/// Runs one duel at a time.
-class BackgroundDuel final : public ReportingJob<DuelReport> {
- public:
-  BackgroundDuel() : ReportingJob("duel", "duel") {}
-  ~BackgroundDuel() override { finish(); }
+using BackgroundDuel = Task<DuelReport>;
 
-  /// Begins; the cases run where `make_host` says. Throws InputError for fewer than two cases, for
-  /// no frame, and while another one is running.
-  void start(const std::vector<Case>& cases, std::unique_ptr<IndexedFrames> frames,
-             double most_seconds, const HostMaker& make_host);
-
- private:
-  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
-};
+/// Begins; the cases run where `make_host` says. Throws InputError for fewer than two cases, for no
+/// frame, and while another one is running.
+void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
+               std::unique_ptr<IndexedFrames> frames, double most_seconds,
+               const HostMaker& make_host);
 
 }  // namespace broadmark

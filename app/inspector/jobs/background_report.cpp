@@ -63,22 +63,22 @@ fs::path packageFolder(const fs::path& program) {
   return {};
 }
 
-JobStatus BackgroundReport::statusOf(const Report& report) const {
-  const bool done = report.state == TaskState::done;
+JobStatus PageReport::status() const {
+  const bool done = state == TaskState::done;
   return {.doing = "A report page is being written.",
-          .outcome = done ? "report page: " + fs::absolute(report.page).string() : ""};
+          .outcome = done ? "report page: " + fs::absolute(page).string() : ""};
 }
 
-void BackgroundReport::start(const fs::path& results, const fs::path& page) {
+void startReport(BackgroundReport& job, const fs::path& results, const fs::path& page) {
   requireOutput(page);
-  Report first;
+  PageReport first;
   first.page = page;
-  begin(std::move(first), [this, results, page] {
+  job.begin(std::move(first), [&job, results, page] {
     const bool debian = fs::exists(kDebiansPython);
-    const ProgramEnd end =
-        runProgram({debian ? kDebiansPython : "python3", "-m", "broadmark", "report",
-                    fs::absolute(results).string(), "-o", fs::absolute(page).string()},
-                   variables(fs::read_symlink("/proc/self/exe")), [this] { return cancelled(); });
+    const ProgramEnd end = runProgram(
+        {debian ? kDebiansPython : "python3", "-m", "broadmark", "report",
+         fs::absolute(results).string(), "-o", fs::absolute(page).string()},
+        variables(fs::read_symlink("/proc/self/exe")), [&job] { return job.cancelled(); });
     if (end.status != 0) throw refusal(end);
     return true;
   });

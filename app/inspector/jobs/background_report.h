@@ -13,20 +13,18 @@ namespace broadmark {
 std::filesystem::path packageFolder(const std::filesystem::path& program);
 
 struct PageReport : TaskReport {
+  static constexpr const char* kName = "report page";
+  static constexpr const char* kPrefix = "report";
+
   std::filesystem::path page;
+
+  [[nodiscard]] JobStatus status() const;
 };
 
-/// Writes one page at a time.
-class BackgroundReport final : public ReportingJob<PageReport> {
- public:
-  BackgroundReport() : ReportingJob("report page", "report") {}
-  ~BackgroundReport() override { finish(); }
+using BackgroundReport = Task<PageReport>;
 
-  /// Begins. Throws InputError where nothing can be written, and while another one is written.
-  void start(const std::filesystem::path& results, const std::filesystem::path& page);
-
- private:
-  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
-};
+/// Begins. Throws InputError where nothing can be written, and while another one is written.
+void startReport(BackgroundReport& job, const std::filesystem::path& results,
+                 const std::filesystem::path& page);
 
 }  // namespace broadmark

@@ -5,35 +5,14 @@
 
 namespace broadmark {
 
-JobStatus CaseExport::statusOf(const Report& report) const {
-  const bool done = report.state == TaskState::done;
-  return {.doing = "A case is being exported.",
-          .outcome = done ? "exported: " + report.file.string() : "",
-          .values = {{"trials", std::to_string(report.trials)},
-                     {"bodies", std::to_string(report.bodies)},
-                     {"frames", std::to_string(report.frames)},
-                     {"file", report.file.string()},
-                     {"command", report.command}}};
-}
+namespace {
 
-void CaseExport::start(const Case& run, std::unique_ptr<IndexedFrames> source,
-                       FrameDifference known, std::filesystem::path file,
-                       const HostMaker& make_host) {
-  Report first;
-  first.run = run;
-  first.file = std::move(file);
-  first.whole_bodies = first.bodies = source->scene().objects;
-  first.whole_frames = first.frames = known.frame;
-  begin(std::move(first), [this, source = std::move(source), known = std::move(known), make_host] {
-    return shrinkAndWrite(*source, known, make_host);
-  });
-}
-
-bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& known,
-                                const HostMaker& make_host) {
-  const Report begun = report();
-  const auto note = [this](const ShrinkProgress& now) {
-    update([&](Report& report) {
+/// Returns whether it was written: not when cancelled.
+bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifference& known,
+                    const HostMaker& make_host) {
+  const ExportReport begun = job.report();
+  const auto note = [&job](const ShrinkProgress& now) {
+    job.update([&](ExportReport& report) {
       report.trials = now.trials;
       report.bodies = now.bodies;
       report.frames = now.frames;
@@ -41,14 +20,40 @@ bool CaseExport::shrinkAndWrite(IndexedFrames& source, const FrameDifference& kn
   };
   const ShrunkCase shrunk = shrinkCase(
       begun.run, source, known,
-      {.progress = note, .cancelled = [this] { return cancelled(); }, .make_host = make_host});
+      {.progress = note, .cancelled = [&job] { return job.cancelled(); }, .make_host = make_host});
   if (!shrunk.minimal) return false;
   writePart(begun.file, source, shrunk.part);
   note({.trials = shrunk.trials,
         .bodies = shrunk.part.bodies.size(),
         .frames = shrunk.part.frames.size() - 1});
-  update([&](Report& report) { report.command = reproducingCommand(begun.run, begun.file); });
+  job.update(
+      [&](ExportReport& report) { report.command = reproducingCommand(begun.run, begun.file); });
   return true;
+}
+
+}  // namespace
+
+JobStatus ExportReport::status() const {
+  return {.doing = "A case is being exported.",
+          .outcome = state == TaskState::done ? "exported: " + file.string() : "",
+          .values = {{"trials", std::to_string(trials)},
+                     {"bodies", std::to_string(bodies)},
+                     {"frames", std::to_string(frames)},
+                     {"file", file.string()},
+                     {"command", command}}};
+}
+
+void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
+                 FrameDifference known, std::filesystem::path file, const HostMaker& make_host) {
+  ExportReport first;
+  first.run = run;
+  first.file = std::move(file);
+  first.whole_bodies = first.bodies = source->scene().objects;
+  first.whole_frames = first.frames = known.frame;
+  job.begin(std::move(first),
+            [&job, source = std::move(source), known = std::move(known), make_host] {
+              return shrinkAndWrite(job, *source, known, make_host);
+            });
 }
 
 }  // namespace broadmark

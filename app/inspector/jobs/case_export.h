@@ -16,6 +16,9 @@ namespace broadmark {
 
 /// Sizes are those of the smallest part found so far.
 struct ExportReport : TaskReport {
+  static constexpr const char* kName = "exporting a case";
+  static constexpr const char* kPrefix = "export";
+
   Case run;
   std::filesystem::path file;
   std::size_t whole_bodies = 0;
@@ -24,23 +27,16 @@ struct ExportReport : TaskReport {
   std::size_t bodies = 0;
   std::size_t frames = 0;
   std::string command;  ///< once done: what shows the fault, for a shell
+
+  [[nodiscard]] JobStatus status() const;
 };
 
-class CaseExport final : public ReportingJob<ExportReport> {
- public:
-  CaseExport() : ReportingJob("exporting a case", "export") {}
-  ~CaseExport() override { finish(); }
+using CaseExport = Task<ExportReport>;
 
-  /// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
-  /// while another export is running.
-  void start(const Case& run, std::unique_ptr<IndexedFrames> source, FrameDifference known,
-             std::filesystem::path file, const HostMaker& make_host = makeLocalHost);
-
- private:
-  [[nodiscard]] JobStatus statusOf(const Report& report) const override;
-  /// Returns whether it was written: not when cancelled.
-  bool shrinkAndWrite(IndexedFrames& source, const FrameDifference& known,
-                      const HostMaker& make_host);
-};
+/// Begins. `run` is wrong on `source`, used by nobody else, as `known` says. Throws InputError
+/// while another export is running.
+void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
+                 FrameDifference known, std::filesystem::path file,
+                 const HostMaker& make_host = makeLocalHost);
 
 }  // namespace broadmark

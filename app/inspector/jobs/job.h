@@ -65,13 +65,23 @@ class Job {
   const std::string value_prefix;  ///< of its values' names: "batch"
 };
 
-/// A job that reports its progress. `Report` is derived from TaskReport.
+/// A job that reports its progress. `Report` is derived from TaskReport and states kName, which
+/// stands for the work in messages ("baking"), kPrefix and
+/// `JobStatus status() const`: all but the failure; of the values not the state.
 template <class R>
-class ReportingJob : public Job {
+class Task final : public Job {
  public:
   using Report = R;
 
+  Task() : Job(Report::kPrefix) {}
+  /// Cancels the work, and waits for its end.
+  ~Task() override {
+    cancel();
+    wait();
+  }
+
   void cancel() override { cancelled_ = true; }
+  [[nodiscard]] bool cancelled() const { return cancelled_; }
   [[nodiscard]] bool running() const override {
     const std::lock_guard lock(mutex_);
     return report_.state == TaskState::running;
@@ -82,7 +92,7 @@ class ReportingJob : public Job {
   }
   [[nodiscard]] JobStatus status() const override {
     const Report now = report();
-    JobStatus status = statusOf(now);
+    JobStatus status = now.status();
     status.failure = now.failure;
     status.values["state"] = kTaskStates.nameOf(now.state);
     return status;
@@ -93,22 +103,15 @@ class ReportingJob : public Job {
     if (thread_.joinable()) thread_.join();
   }
 
- protected:
-  /// `name` stands for the work in messages: "baking".
-  ReportingJob(std::string name, std::string prefix)
-      : Job(std::move(prefix)), name_(std::move(name)) {}
-
-  /// Cancels the work, and waits for its end. For the derived class's destructor: the work uses it.
-  void finish() {
-    cancel();
-    wait();
-  }
   /// Begins with the report `first`. `work()` asks cancelled() now and then, and returns whether it
   /// was completed; what it throws becomes the failure. Throws InputError while earlier work is
   /// running.
   template <class Work>
   void begin(Report first, Work work) {
-    if (running()) throw InputError(name_ + ": still running: wait for its end, or cancel it");
+    if (running()) {
+      throw InputError(std::string(Report::kName) +
+                       ": still running: wait for its end, or cancel it");
+    }
     wait();
     cancelled_ = false;
     ended_ = false;
@@ -116,15 +119,12 @@ class ReportingJob : public Job {
     update([&](Report& report) { report = std::move(first); });
     thread_ = std::thread([this, work = std::move(work)]() mutable { perform(work); });
   }
-  [[nodiscard]] bool cancelled() const { return cancelled_; }
   /// Changes the report under its lock.
   template <class Change>
   void update(Change&& change) {
     const std::lock_guard lock(mutex_);
     change(report_);
   }
-  /// All but the failure; of the values not the state.
-  [[nodiscard]] virtual JobStatus statusOf(const Report& report) const = 0;
 
  private:
   template <class Work>
@@ -136,7 +136,7 @@ class ReportingJob : public Job {
     } catch (const Cancelled&) {
       end = TaskState::cancelled;
     } catch (const std::bad_alloc&) {
-      failure = name_ + ": out of memory";
+      failure = std::string(Report::kName) + ": out of memory";
     } catch (const std::exception& error) {
       failure = error.what();
     }
@@ -147,7 +147,6 @@ class ReportingJob : public Job {
     });
   }
 
-  const std::string name_;
   std::atomic<bool> cancelled_ = false;
   std::atomic<bool> ended_ = false;
   mutable std::mutex mutex_;

@@ -12,6 +12,7 @@
 namespace broadmark::panels::author {
 namespace {
 
+using scenes::AuthoredBody;
 using scenes::SceneEditor;
 using Numbers = std::array<double, 3>;
 
@@ -64,6 +65,12 @@ class AuthorPanel final : public Panel {
     if (!pressed) return;
     document.edit(change);
     known_ = false;
+  }
+
+  template <class Value>
+  void set(Document& document, bool entered, const char* verb, Value AuthoredBody::*property,
+           const Value& value) {
+    edit(document, entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
   }
 
   /// Takes over what the document says, if that has changed.
@@ -254,32 +261,29 @@ class AuthorPanel final : public Panel {
          ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
                    "Edges, in world units; of a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
-    edit(document, ui.number("mass", inputs_.body.mass, 1e-6, 1e9),
-         [&](SceneEditor& editor) { editor.setMass(inputs_.body.mass); });
-    edit(document, ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
-         [&](SceneEditor& editor) { editor.setFrozen(inputs_.body.frozen); });
-    edit(document, ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
-         [&](SceneEditor& editor) { editor.setVelocity(vec(inputs_.velocity)); });
-    edit(document,
-         ui.vector("spin", inputs_.spin, -kFast, kFast,
-                   "Angular velocity about each axis, in radians per second"),
-         [&](SceneEditor& editor) { editor.setAngularVelocity(vec(inputs_.spin)); });
-    edit(document,
-         ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
-                   "Which layers collide is in the scene's file"),
-         [&](SceneEditor& editor) { editor.setLayer(static_cast<std::uint8_t>(inputs_.layer)); });
-    edit(document,
-         ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
-         [&](SceneEditor& editor) {
-           editor.setAppears(static_cast<std::uint32_t>(inputs_.appears));
-         });
-    edit(document,
-         ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
-                   "The first frame after that which it is not in; 0: it stays"),
-         [&](SceneEditor& editor) {
-           const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
-           editor.setVanishes(frame == 0 ? scenes::kNever : frame);
-         });
+    set(document, ui.number("mass", inputs_.body.mass, 1e-6, 1e9), "set the mass of",
+        &AuthoredBody::mass, inputs_.body.mass);
+    set(document, ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
+        inputs_.body.frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen, inputs_.body.frozen);
+    set(document, ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
+        "set the velocity of", &AuthoredBody::linear_velocity, vec(inputs_.velocity));
+    set(document,
+        ui.vector("spin", inputs_.spin, -kFast, kFast,
+                  "Angular velocity about each axis, in radians per second"),
+        "set the spin of", &AuthoredBody::angular_velocity, vec(inputs_.spin));
+    set(document,
+        ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
+                  "Which layers collide is in the scene's file"),
+        "set the layer of", &AuthoredBody::layer, static_cast<std::uint8_t>(inputs_.layer));
+    set(document,
+        ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
+        "set the first frame of", &AuthoredBody::appears,
+        static_cast<std::uint32_t>(inputs_.appears));
+    const bool vanishes = ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
+                                    "The first frame after that which it is not in; 0: it stays");
+    const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
+    set(document, vanishes, "set the last frame of", &AuthoredBody::vanishes,
+        frame == 0 ? scenes::kNever : frame);
   }
 
   static void drawSteps(Ui& ui, Tools& tools) {

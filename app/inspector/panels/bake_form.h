@@ -39,7 +39,7 @@ class BakeForm {
       update();
       begun_ = session.notices.attempt([&] {
         if (!preview_.fault.empty()) throw InputError(preview_.fault);
-        bake.start(options_);
+        startBake(bake, options_);
       });
     }
     ImGui::BeginDisabled(running);

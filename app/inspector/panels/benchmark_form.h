@@ -27,8 +27,9 @@ class BenchmarkForm {
     const bool running = benchmark.running();
     if (drawStart(ui, benchmark, "Runs in the background; best while nothing is played",
                   "Keeps the cases that are finished")) {
-      session.notices.attempt(
-          [&] { benchmark.start(request(), session.lanes.algorithms(), session.jobs.make_host); });
+      session.notices.attempt([&] {
+        startBenchmark(benchmark, request(), session.lanes.algorithms(), session.jobs.make_host);
+      });
     }
     ImGui::BeginDisabled(running);
     drawOptions(context);

@@ -105,8 +105,9 @@ class CasesPanel final : public Panel {
                        .suggestion = page.replace_extension(".html"),
                        .chosen = [&session = context.session,
                                   file = results.file()](const std::filesystem::path& chosen) {
-                         session.notices.attempt(
-                             [&] { session.jobs.get<BackgroundReport>().start(file, chosen); });
+                         session.notices.attempt([&] {
+                           startReport(session.jobs.get<BackgroundReport>(), file, chosen);
+                         });
                        }});
   }
 

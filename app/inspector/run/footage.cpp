@@ -42,10 +42,18 @@ void append(const FileDescriptor& file, std::span<const Aabb> boxes) {
   writeAll(file.get(), std::as_bytes(boxes), kKeptName);
 }
 
+/// The frames as they are shown, swept or not.
+std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames, bool swept) {
+  if (!swept) return frames;
+  return std::make_unique<SweptFrames>(std::move(frames));
+}
+
 }  // namespace
 
 Footage::Footage(std::unique_ptr<Recording> recording, bool swept)
-    : swept_(swept), known_(recording->scene().frames), frames_(shown(std::move(recording))) {}
+    : swept_(swept),
+      known_(recording->scene().frames),
+      frames_(shown(std::move(recording), swept)) {}
 
 Footage::Footage(std::unique_ptr<FrameSource> simulation, bool swept)
     : swept_(swept), simulation_(std::move(simulation)) {
@@ -57,13 +65,8 @@ Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, box
 
 void Footage::keep(const SceneInfo& scene, std::span<const Aabb> first) {
   kept_ = std::make_shared<const FileDescriptor>(unnamedFile());
-  frames_ = shown(std::make_unique<KeptFrames>(scene, kept_));
+  frames_ = shown(std::make_unique<KeptFrames>(scene, kept_), swept_);
   append(*kept_, first);
-}
-
-std::unique_ptr<IndexedFrames> Footage::shown(std::unique_ptr<IndexedFrames> frames) const {
-  if (!swept_) return frames;
-  return std::make_unique<SweptFrames>(std::move(frames));
 }
 
 void Footage::extend() {
@@ -82,19 +85,19 @@ scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
   return scenes::sceneFromFrame(*frames_, index);
 }
 
-std::unique_ptr<IndexedFrames> Footage::source(std::uint32_t last) const {
-  if (!kept_) return shown(openRecordingFile(frames_->name()));
-  SceneInfo scene = simulation_ ? simulation_->scene() : frames_->scene();
-  scene.frames = last;
-  return shown(std::make_unique<KeptFrames>(std::move(scene), kept_));
-}
-
-void Footage::save(const std::filesystem::path& path) {
-  SceneInfo saved = scene();
-  saved.frames = known_;
-  RecordingWriter writer(path, saved);
-  for (std::uint32_t index = 0; index <= known_; ++index) writer.write(at(index).boxes);
-  writer.finish();
+FrameOpener Footage::opener() const {
+  if (!kept_) {
+    return [name = frames_->name(), swept = swept_](std::uint32_t /*last*/) {
+      return shown(openRecordingFile(name), swept);
+    };
+  }
+  auto scene =
+      std::make_shared<const SceneInfo>(simulation_ ? simulation_->scene() : this->scene());
+  return [scene = std::move(scene), kept = kept_, swept = swept_](std::uint32_t last) {
+    SceneInfo known = *scene;
+    known.frames = last;
+    return shown(std::make_unique<KeptFrames>(std::move(known), kept), swept);
+  };
 }
 
 }  // namespace broadmark

@@ -15,6 +15,9 @@
 
 namespace broadmark {
 
+/// Opens the frames up to `last`, which exist already, and perhaps more. Throws InputError.
+using FrameOpener = std::function<std::unique_ptr<IndexedFrames>(std::uint32_t last)>;
+
 /// A recording, or a live simulation or import that goes only as far as it is watched: its frames
 /// are kept in an unnamed temporary file, so that any of them can be seen again. Either can be
 /// shown as swept boxes. To be used from one thread.
@@ -42,18 +45,11 @@ class Footage {
   /// simulation it has to be the latest. Throws InputError when it holds what no body can be.
   [[nodiscard]] scenes::AuthoredScene authoredScene(std::uint32_t index);
 
-  /// The frames up to `last`, which are known, and perhaps more, for use from any thread, also when
-  /// this is gone. Throws InputError.
-  [[nodiscard]] std::unique_ptr<IndexedFrames> source(std::uint32_t last) const;
-
-  /// Writes all known frames as a recording, initial pose included. Throws InputError.
-  void save(const std::filesystem::path& path);
+  /// Opens the frames, for use from any thread, also when this is gone.
+  [[nodiscard]] FrameOpener opener() const;
 
  private:
   void keep(const SceneInfo& scene, std::span<const Aabb> first);
-  /// The frames as they are shown, swept or not.
-  [[nodiscard]] std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames) const;
-
   bool swept_ = false;
   std::uint32_t known_ = 0;
   std::unique_ptr<IndexedFrames> frames_;

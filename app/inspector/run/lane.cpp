@@ -80,6 +80,7 @@ void Lane::advance(const Frame& frame, DrawGate& gate) {
   record.times = run_->times();
   record.pairs = run_->pairs();
   recordOf(frame.index) = record;
+  report_.curves.set(frame.index, record);
   report_.frame = frame.index;
   attempt([&] { report_.counters = run_->counters(); });
 }
@@ -95,6 +96,7 @@ std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
   record.allowed_extra_count = difference->allowed_extra_count;
   record.invalid_count = difference->invalid_count;
   record.mismatch = difference->isMismatch();
+  report_.curves.set(frame.index, record);
   return difference;
 }
 

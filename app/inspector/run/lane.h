@@ -68,7 +68,7 @@ struct LaneState {
 /// What is known of a lane; a copy of it can be looked at while the lane works on.
 struct LaneReport : LaneState {
   std::vector<FrameRecord> frames;  ///< frame k at [k - 1]
-  LaneCurves curves;                ///< of these; kept by the run thread
+  LaneCurves curves;                ///< of these
 
   /// The record of a frame, or null when nothing is known of it.
   [[nodiscard]] const FrameRecord* record(std::uint32_t index) const {

@@ -31,9 +31,7 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 }  // namespace
 
 RunThread::RunThread(HostMaker make_host)
-    : make_host_(std::move(make_host)),
-      second_(make_host_, [this](const LaneSpec& spec) { return isUnwantedBeside(spec); }),
-      thread_([this] { loop(); }) {}
+    : make_host_(std::move(make_host)), thread_([this] { loop(); }) {}
 
 RunThread::~RunThread() {
   {
@@ -68,40 +66,13 @@ bool RunThread::settle(std::chrono::milliseconds patience) {
   return changed_.wait_for(lock, patience, [this] { return idle_ && taken_ == wishes_; });
 }
 
-void RunThread::withFootage(const std::function<void(Footage*)>& act) {
-  std::exception_ptr failure;
-  const std::function<void(Footage*)> errand = [&](Footage* footage) {
-    try {
-      act(footage);
-    } catch (...) {
-      failure = std::current_exception();
-    }
-  };
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return errand_ == nullptr; });
-  errand_ = &errand;
-  changed_.notify_all();
-  changed_.wait(lock, [&] { return errand_ != &errand; });
-  if (failure) std::rethrow_exception(failure);
-}
-
 void RunThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {
-    const bool anew = taken_ != wishes_;
     if (stopping_) return;
-    if (errand_ != nullptr) {
-      const auto* errand = errand_;
-      lock.unlock();
-      (*errand)(footage_.get());
-      lock.lock();
-      errand_ = nullptr;
-      changed_.notify_all();
-      continue;
-    }
-    if (anew) takeWish();
+    if (taken_ != wishes_) takeWish();
     if (idle_) {
-      changed_.wait(lock, [this] { return stopping_ || errand_ != nullptr || taken_ != wishes_; });
+      changed_.wait(lock, [this] { return stopping_ || taken_ != wishes_; });
       continue;
     }
     lock.unlock();
@@ -176,7 +147,7 @@ void RunThread::tell(std::string doing, float fraction) {
 void RunThread::openFootage() {
   tell(current_.footage ? fmt::format("opening {}", current_.footage->title) : "", 0);
   lanes_.clear();
-  second_.clear();
+  beside_ = {};
   footage_.reset();
   oracle_ = Oracle(std::size_t{256} << 20, kMostPairs);
   seen_.clear();
@@ -195,16 +166,13 @@ void RunThread::openFootage() {
   progress_.scene = footage_->scene();
   progress_.known_frames = footage_->known();
   progress_.live = footage_->live();
+  progress_.frames = footage_->opener();
 }
 
 /// Brings the lanes in line with those wished for. Returns whether there was anything to do.
 bool RunThread::reconcileLanes() {
-  const auto stands = [&](std::size_t i) {
-    return i < lanes_.size() && lanes_[i]->spec() == current_.lanes[i];
-  };
-  bool same = lanes_.size() == current_.lanes.size();
-  for (std::size_t i = 0; same && i < lanes_.size(); ++i) same = stands(i);
-  if (same) return false;
+  const auto spec_of = [](const auto& lane) -> const LaneSpec& { return lane->spec(); };
+  if (std::ranges::equal(lanes_, current_.lanes, {}, spec_of)) return false;
 
   std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
   lanes_.clear();
@@ -224,16 +192,8 @@ bool RunThread::reconcileLanes() {
   stop_.reset();
   const std::lock_guard lock(mutex_);
   progress_.stop.reset();
-  std::vector<LaneReport> reports = std::exchange(progress_.lanes, {});
-  for (const auto& lane : lanes_) {
-    const auto report = std::ranges::find_if(
-        reports, [&](const LaneReport& known) { return known.spec == lane->spec(); });
-    if (report != reports.end()) {
-      progress_.lanes.push_back(std::move(*report));
-    } else {
-      progress_.lanes.push_back(lane->report());
-    }
-  }
+  progress_.lanes.clear();
+  for (const auto& lane : lanes_) progress_.lanes.push_back(lane->report());
   return true;
 }
 
@@ -264,9 +224,10 @@ bool RunThread::advance() {
     const std::lock_guard lock(mutex_);
     progress_.stop.reset();
   }
-  const std::uint32_t beside =
-      current_.second ? SecondRun::frameOfFirst(*current_.second, footage_->scene()) : 0;
-  if (const std::uint32_t wanted = std::max(target(), beside); footage_->known() < wanted) {
+  const bool shares = current_.second && !current_.second->footage;
+  const std::uint32_t beside = shares ? current_.second->frame.value_or(0) : 0;
+  const std::uint32_t wanted = std::max(target(), std::min(beside, footage_->scene().frames));
+  if (footage_->known() < wanted) {
     tell(fmt::format("simulating frame {}", footage_->known() + 1),
          fractionOf(footage_->known(), wanted));
     footage_->extend();
@@ -350,30 +311,83 @@ void RunThread::report(const Lane& lane) {
   }
 }
 
-Lane* RunThread::shownLane() const {
-  for (const auto& lane : lanes_) {
-    if (lane->spec().number == current_.shown_lane && target() > 0) return lane.get();
-  }
-  return nullptr;
+Lane* RunThread::laneOf(int number) const {
+  const auto found =
+      std::ranges::find(lanes_, number, [](const auto& lane) { return lane->spec().number; });
+  return found == lanes_.end() ? nullptr : found->get();
 }
 
-SecondRun::First RunThread::firstView() const {
-  return {.request = opened_,
-          .footage = *footage_,
-          .frame = target(),
-          .lanes = lanes_,
-          .check = current_.check,
-          .structure = current_.structure,
-          .tracked = current_.tracked};
+Lane* RunThread::shownLane() const { return target() > 0 ? laneOf(current_.shown_lane) : nullptr; }
+
+Footage* RunThread::footageBeside() const {
+  return beside_.opened ? beside_.footage.get() : footage_.get();
+}
+
+std::uint32_t RunThread::targetBeside() const {
+  return std::min(current_.second->frame.value_or(target()), footageBeside()->scene().frames);
+}
+
+Lane* RunThread::laneBeside() {
+  Lane* const of_first = laneOf(current_.second->lane);
+  if (of_first == nullptr) {
+    beside_.lane.reset();
+    return nullptr;
+  }
+  if (targetBeside() == 0) return nullptr;  // which has no answer
+  if (!beside_.opened && targetBeside() == target()) return of_first;
+  if (const LaneSpec& spec = of_first->spec(); !beside_.lane || beside_.lane->spec() != spec) {
+    beside_.lane =
+        std::make_unique<Lane>(spec, make_host_, [this, spec] { return isUnwantedBeside(spec); });
+  }
+  return beside_.lane.get();
 }
 
 /// Brings what the second view shows nearer to what it is to be. Returns whether it had to.
 bool RunThread::advanceSecond() {
   if (!current_.second) return false;
-  if (!second_.advance(*current_.second, firstView(), gate_)) return false;
-  tell(second_.doing(), 1);
+  if (const auto& wanted = current_.second->footage; wanted != beside_.opened) {
+    tell(fmt::format("opening {}", wanted ? wanted->title : ""), 1);
+    shown_ = false;
+    beside_ = {.opened = wanted};
+    try {
+      if (wanted) beside_.footage = wanted->open();
+    } catch (const std::exception& error) {
+      beside_.failure = error.what();
+    }
+    return true;
+  }
+  Footage* const footage = footageBeside();
+  if (footage == nullptr) return false;
+  if (footage->known() < targetBeside()) {
+    tell(fmt::format("simulating frame {} for the second view", footage->known() + 1), 1);
+    footage->extend();
+    shown_ = false;
+    return true;
+  }
+  Lane* const lane = laneBeside();
+  if (lane == nullptr || lane != beside_.lane.get()) return false;  // advance() sees to it
+  const std::uint32_t frame = lane->report().frame;
+  if (lane->report().ended || lane->standsAt(targetBeside())) return false;
+  tell(fmt::format("{} for the second view: frame {}", lane->spec().run.algorithm.id, frame + 1),
+       1);
   shown_ = false;
+  if (frame > targetBeside() || !lane->standsAt(frame)) {
+    lane->restart(footage->scene(), footage->at(0));
+  } else {
+    lane->advance(footage->at(frame + 1), gate_);
+  }
   return true;
+}
+
+std::shared_ptr<const Snapshot> RunThread::takeBeside() {
+  return takeSnapshot({.request = beside_.opened ? beside_.opened : opened_,
+                       .footage = *footageBeside(),
+                       .frame = targetBeside(),
+                       .lane = laneBeside(),
+                       .check = current_.check,
+                       .structure = current_.structure,
+                       .tracked = current_.tracked},
+                      oracle_beside_);
 }
 
 void RunThread::show() {
@@ -387,11 +401,10 @@ void RunThread::show() {
                                       .structure = current_.structure,
                                       .tracked = current_.tracked},
                                      oracle_);
-  std::shared_ptr<const Snapshot> second;
-  if (!current_.second) second_.clear();
-  if (snapshot && current_.second) second = second_.take(*current_.second, firstView());
-  const bool lost = current_.second && !second && second_.failure().empty();
-  if (!snapshot || lost) {  // a lane was, on the way: shown without it
+  if (!current_.second) beside_ = {};
+  const bool wants_second = current_.second && footageBeside() != nullptr;
+  const auto second = snapshot && wants_second ? takeBeside() : nullptr;
+  if (!snapshot || (wants_second && !second)) {  // a lane was lost on the way: shown without it
     for (const auto& one : lanes_) report(*one);
     return;
   }
@@ -406,9 +419,9 @@ void RunThread::show() {
   const std::lock_guard lock(mutex_);
   if (snapshot->lane == 0) progress_.pairs.set(index, static_cast<float>(snapshot->pairs.size()));
   progress_.snapshot = snapshot;
-  progress_.second = std::move(second);
+  progress_.second = second;
   progress_.comparison = std::move(comparison);
-  progress_.second_failure = current_.second ? second_.failure() : "";
+  progress_.second_failure = beside_.failure;
 }
 
 bool RunThread::hasSeen(std::uint32_t frame) const {

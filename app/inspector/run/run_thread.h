@@ -24,11 +24,21 @@
 #include "inspector/run/draw_gate.h"
 #include "inspector/run/footage.h"
 #include "inspector/run/lane.h"
-#include "inspector/run/second_run.h"
 #include "inspector/run/seen_answers.h"
 #include "inspector/run/snapshot.h"
 
 namespace broadmark {
+
+/// What the second view shows. Of the open footage in the same frame the lanes have the answer
+/// already. For another frame, or other footage, the algorithm has an instance of its own, whose
+/// times count for nothing.
+struct SecondWish {
+  std::shared_ptr<const FootageRequest> footage;  ///< null: that of the first view
+  std::optional<std::uint32_t> frame;             ///< nothing: that of the first view
+  int lane = 0;                                   ///< whose answer, by number; 0: the oracle's
+
+  friend bool operator==(const SecondWish&, const SecondWish&) = default;
+};
 
 /// What the interface wants.
 struct Wish {
@@ -55,6 +65,7 @@ struct RunProgress {
   std::string failure;                            ///< why it could not be opened, or not be read on
   SceneInfo scene;
   std::uint32_t known_frames = 0;  ///< that exist already
+  FrameOpener frames;              ///< opens them
   bool live = false;               ///< more can be simulated
   /// How many bodies are present in each frame that has been looked at. Empty where nobody is ever
   /// absent.
@@ -97,9 +108,6 @@ class RunThread {
   [[nodiscard]] bool settled();
   /// Waits for that. Returns whether it came in time.
   bool settle(std::chrono::milliseconds patience);
-  /// Calls `act` on the thread, between two frames, with the footage (null: nothing is open).
-  /// Returns when that has returned, and throws what it throws.
-  void withFootage(const std::function<void(Footage*)>& act);
 
   DrawGate& gate() { return gate_; }
 
@@ -123,8 +131,16 @@ class RunThread {
   /// Likewise what the second view's instance of it is at.
   [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
+  /// The lane of this number, or null.
+  [[nodiscard]] Lane* laneOf(int number) const;
   [[nodiscard]] Lane* shownLane() const;
-  [[nodiscard]] SecondRun::First firstView() const;
+  /// Of the second view; null: it could not be opened.
+  [[nodiscard]] Footage* footageBeside() const;
+  [[nodiscard]] std::uint32_t targetBeside() const;
+  /// The lane that has the second view's answer, or is to have it; null: the oracle.
+  Lane* laneBeside();
+  /// Null when the lane was lost on the way.
+  std::shared_ptr<const Snapshot> takeBeside();
   /// Whether the answer of the shown lane, or the oracle's, is kept for a frame.
   [[nodiscard]] bool hasSeen(std::uint32_t frame) const;
   /// Whether nothing is wanted of a lane at the target but what is kept.
@@ -142,7 +158,13 @@ class RunThread {
   Oracle oracle_{std::size_t{256} << 20};
   SeenAnswers seen_{kSeenBytes};
   std::optional<RunProgress::Stop> stop_;
-  SecondRun second_;
+  struct {
+    std::shared_ptr<const FootageRequest> opened = {};  ///< null: that of the first view
+    std::unique_ptr<Footage> footage = {};              ///< of `opened`
+    std::string failure = {};                           ///< why there is none
+    std::unique_ptr<Lane> lane = {};  ///< the instance of its own, if one is needed
+  } beside_;                          ///< what the second view has of its own
+  Oracle oracle_beside_{std::size_t{256} << 20};
   bool shown_ = false;        ///< whether the snapshots are what current_ wants
   bool looked_back_ = false;  ///< since that wish came: see lookBack()
 
@@ -154,7 +176,6 @@ class RunThread {
   std::uint64_t taken_ = 0;  ///< of the wishes
   bool idle_ = false;
   bool stopping_ = false;
-  const std::function<void(Footage*)>* errand_ = nullptr;
   RunProgress progress_;
 
   std::thread thread_;

@@ -1,9 +1,8 @@
 #include "inspector/run/snapshot.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
-
-#include "broadmark/pair.h"
 
 namespace broadmark {
 namespace {
@@ -57,7 +56,25 @@ void takeAnswer(SeenAnswer answer, bool check, Snapshot& snapshot) {
   snapshot.counters = std::move(answer.counters);
 }
 
+std::vector<Pair> sorted(std::span<const Pair> pairs) {
+  std::vector<Pair> copy(pairs.begin(), pairs.end());
+  std::ranges::sort(copy);
+  const auto twice = std::ranges::unique(copy);
+  copy.erase(twice.begin(), twice.end());
+  return copy;
+}
+
 }  // namespace
+
+PairComparison comparePairs(std::span<const Pair> first, std::span<const Pair> second) {
+  const std::vector<Pair> a = sorted(first);
+  const std::vector<Pair> b = sorted(second);
+  PairComparison comparison;
+  std::ranges::set_difference(a, b, std::back_inserter(comparison.first_only));
+  std::ranges::set_difference(b, a, std::back_inserter(comparison.second_only));
+  comparison.both = a.size() - comparison.first_only.size();
+  return comparison;
+}
 
 std::uint32_t presentIn(std::span<const Aabb> boxes) {
   return static_cast<std::uint32_t>(boxes.size()) -

@@ -11,6 +11,7 @@
 
 #include "broadmark/harness/oracle.h"
 #include "broadmark/names.h"
+#include "broadmark/pair.h"
 #include "broadmark/recorded_drawing.h"
 #include "inspector/run/footage.h"
 #include "inspector/run/lane.h"
@@ -85,6 +86,15 @@ std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& o
 SeenAnswer answerOf(Lane& lane, const Frame& frame, bool judged,
                     std::optional<FrameDifference> difference, const CollisionFilter& filter,
                     Oracle& oracle);
+
+struct PairComparison {
+  std::vector<Pair> first_only;   ///< ascending
+  std::vector<Pair> second_only;  ///< likewise
+  std::uint64_t both = 0;
+};
+
+/// Of pairs in any order; what an answer holds twice counts once. O(n log n).
+PairComparison comparePairs(std::span<const Pair> first, std::span<const Pair> second);
 
 /// How many bodies are there.
 std::uint32_t presentIn(std::span<const Aabb> boxes);

@@ -133,7 +133,7 @@ bool Document::save(fs::path path) {
 
 void Document::bake(fs::path path) {
   if (!path.has_extension()) path += recordingExtension(desk.simulation()->scene());
-  notices_.attempt([&] { bake_.start(desk.simulation(), std::move(path)); });
+  notices_.attempt([&] { startBake(bake_, desk.simulation(), std::move(path)); });
 }
 
 void Document::leave(std::function<void()> then) {

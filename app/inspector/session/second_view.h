@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "inspector/run/second_run.h"
+#include "inspector/run/run_thread.h"
 #include "inspector/session/footage_requests.h"
 #include "inspector/session/lanes.h"
 #include "inspector/session/notices.h"

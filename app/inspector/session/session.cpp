@@ -33,6 +33,8 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
 
 void Session::advance(const RunProgress& progress, double seconds) {
   noticeJobs();
+  known_frames_ = progress.known_frames;
+  frames_ = progress.footage == playback.footage() ? progress.frames : nullptr;
   if (!playback.follow(progress)) return;
   timeline.follow(playback.footage(), playback.lastFrame(), playback.frame());
   noticeFailure(progress);
@@ -64,9 +66,6 @@ void Session::commit() {
     runs.wish(now);
     committed_ = std::move(now);
   }
-  for (const auto& act : std::exchange(waiting_, {})) {
-    notices.attempt([&] { runs.withFootage(act); });
-  }
 }
 
 void Session::noticeFailure(const RunProgress& progress) {
@@ -97,9 +96,12 @@ void Session::play(bool on) {
 }
 
 void Session::saveRecording(const fs::path& path) {
-  waiting_.emplace_back([this, path](Footage* footage) {
-    if (footage == nullptr) throw InputError("nothing is open");
-    footage->save(path);
+  notices.attempt([&] {
+    if (!frames_) throw InputError("nothing is open");
+    const auto frames = frames_(known_frames_);
+    RecordingWriter writer(path, frames->scene());
+    recordAll(*frames, writer);
+    writer.finish();
     notices.say(fmt::format("recorded: {}", path.string()));
     notices.on_file(path);
   });
@@ -108,23 +110,23 @@ void Session::saveRecording(const fs::path& path) {
 void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot, fs::path file) {
   const SceneInfo scene = playback.scene();
   if (!file.has_extension()) file += recordingExtension(scene);
-  waiting_.emplace_back([this, run, snapshot, file, scene](Footage* footage) {
+  notices.attempt([&] {
     requireExportable(file, snapshot->footage->recording, scene);
-    if (footage == nullptr || snapshot->footage != playback.footage()) {
+    if (!frames_ || snapshot->footage != playback.footage()) {
       throw InputError("exporting a case: another scene has been opened");
     }
-    jobs.get<CaseExport>().start(run, footage->source(snapshot->frame), snapshot->difference, file,
-                                 jobs.make_host);
+    startExport(jobs.get<CaseExport>(), run, frames_(snapshot->frame), snapshot->difference, file,
+                jobs.make_host);
   });
 }
 
 void Session::startDuel(double most_seconds) {
-  waiting_.emplace_back([this, most_seconds](Footage* footage) {
-    if (footage == nullptr) throw InputError("duel: nothing is open");
+  notices.attempt([&] {
+    if (!frames_) throw InputError("duel: nothing is open");
     std::vector<Case> cases;
     for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
-    jobs.get<BackgroundDuel>().start(cases, footage->source(footage->known()), most_seconds,
-                                     jobs.make_host);
+    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), most_seconds,
+                         jobs.make_host);
   });
 }
 

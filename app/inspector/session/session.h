@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,8 +34,7 @@ class Session {
 
   /// Once per picture: takes note of the progress, and moves the playback on.
   void advance(const RunProgress& progress, double seconds);
-  /// Hands the wish to the run thread if it has changed, then does what waits for the footage. Not
-  /// inside RunThread::look().
+  /// Hands the wish to the run thread if it has changed. Not inside RunThread::look().
   void commit();
   /// Whether anything goes on by itself.
   [[nodiscard]] bool busy();
@@ -73,8 +71,8 @@ class Session {
   void noticeJobs();
 
   std::string noticed_failure_;
-  /// Called in the next commit(), by the run thread, with the footage; null: nothing is open.
-  std::vector<std::function<void(Footage*)>> waiting_;
+  std::uint32_t known_frames_ = 0;
+  FrameOpener frames_;  ///< opens those of what is played; null: nothing is open
   Wish committed_;
 };
 

@@ -36,6 +36,23 @@ struct AuthoredBody {
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
 
+/// Calls visit(key, value, default) for each property of a body but its shape, under the key that
+/// it has in files.
+template <class Body, class Visit>
+void visitProperties(Body& body, const Visit& visit) {
+  static constexpr AuthoredBody standard;
+  visit("position", body.pose.position, standard.pose.position);
+  visit("rotation", body.pose.rotation, standard.pose.rotation);
+  visit("velocity", body.linear_velocity, standard.linear_velocity);
+  visit("angular_velocity", body.angular_velocity, standard.angular_velocity);
+  visit("mass", body.mass, standard.mass);
+  visit("frozen", body.frozen, standard.frozen);
+  visit("layer", body.layer, standard.layer);
+  visit("appears", body.appears, standard.appears);
+  visit("vanishes", body.vanishes, standard.vanishes);
+  visit("group", body.group, standard.group);
+}
+
 /// A plain value. Lengths are in world units. Body id = position in the list. At most kMostBodies
 /// (simulation.h) bodies.
 struct AuthoredScene {
@@ -72,6 +89,9 @@ std::string formatAuthoredScene(const AuthoredScene&);
 /// Reads such a text, in time and memory proportional to its length; `name` stands for it in
 /// messages. Throws InputError that names the body and the key, and what would be right.
 AuthoredScene parseAuthoredScene(std::string_view json, std::string_view name);
+
+/// A body that fills this box; a sphere if the object type says so.
+AuthoredBody bodyIn(const Aabb& box, const std::string& object_type = {});
 
 /// The object type in its recordings: "Cubes" or "Spheres" if all bodies are, otherwise "Assorted".
 std::string objectTypeName(const AuthoredScene&);

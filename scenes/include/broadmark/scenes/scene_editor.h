@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "broadmark/scenes/authored_scene.h"
@@ -17,10 +19,8 @@ namespace broadmark::scenes {
 /// Ids of bodies, ascending, each once.
 using BodyIds = std::vector<std::uint32_t>;
 
-class SceneChange;  // private to the sources
-
-/// Changes a scene in steps that can be undone. A step keeps only what it changed: the former
-/// values of one property of some bodies, or the bodies that were added or deleted.
+/// Changes a scene in steps that can be undone. A step keeps only the bodies that it changed, added
+/// or deleted, or the value of the scene.
 ///
 /// Every edit acts on the selected bodies. An edit that changes nothing is not a step. An edit that
 /// would make a body invalid throws InputError and changes nothing. Undo and redo also restore the
@@ -32,9 +32,6 @@ class SceneEditor {
   static constexpr std::size_t kHistoryBytes = std::size_t{256} << 20;
 
   explicit SceneEditor(AuthoredScene scene = {}, std::size_t history_bytes = kHistoryBytes);
-  ~SceneEditor();
-  SceneEditor(SceneEditor&&) noexcept;
-  SceneEditor& operator=(SceneEditor&&) noexcept;
 
   [[nodiscard]] const AuthoredScene& scene() const { return scene_; }
   /// A number for this state of the scene: undo brings back the number, too.
@@ -50,8 +47,6 @@ class SceneEditor {
   void select(BodyIds bodies);
   void selectAll();
   void selectNone() { select({}); }
-  /// Selects those that are not selected, and deselects the others.
-  void toggle(const BodyIds& bodies);
   /// These bodies and all others of their groups, ascending.
   [[nodiscard]] BodyIds withGroups(BodyIds bodies) const;
   /// The centre of the selected bodies' positions.
@@ -65,11 +60,16 @@ class SceneEditor {
   /// Appends copies of the selected bodies, moved by `offset`, and selects them. Copies of a group
   /// are a group of their own.
   void duplicate(const Vec3& offset);
-  /// `verb` names the step: "move".
-  void transform(std::string_view verb, const Transformation& change);
+  /// Edits each selected body; `verb` names the step: "freeze".
+  void change(std::string_view verb, const std::function<void(AuthoredBody&)>& edit);
+  /// Gives a property of the selected bodies this value.
+  template <class Value>
+  void set(std::string_view verb, Value AuthoredBody::*property,
+           const std::type_identity_t<Value>& value) {
+    change(verb, [&](AuthoredBody& body) { body.*property = value; });
+  }
+  void transform(std::string_view verb, const Transformation& by);
   void move(const Vec3& by);
-  /// Turns the selected bodies about their common centre by a quaternion of unit length.
-  void turn(const Quaternion& by);
   /// Scales places and sizes about the common centre.
   void scale(float factor);
   /// Moves each selected body along an axis (0, 1, 2) until its tight box begins, ends or has its
@@ -82,14 +82,6 @@ class SceneEditor {
   /// mean edge.
   void makeBoxes();
   void makeSpheres();
-  void setMass(double mass);
-  void setFrozen(bool frozen);
-  void setVelocity(const Vec3& linear);
-  void setAngularVelocity(const Vec3& angular);
-  void setLayer(std::uint8_t layer);
-  /// The frames in which the bodies appear and vanish (kNever: they stay).
-  void setAppears(std::uint32_t frame);
-  void setVanishes(std::uint32_t frame);
   /// Makes a group of the selected bodies, if they are several; they leave those that they were in.
   void group();
   void ungroup();
@@ -102,18 +94,12 @@ class SceneEditor {
 
   // ---- History
 
-  /// All edits until endGesture() are one step with this name: a drag of the mouse or of a slider.
-  /// Repeated edits of the same property take no more memory. Gestures do not nest.
-  void beginGesture(std::string name);
-  void endGesture();
-  [[nodiscard]] bool inGesture() const { return in_gesture_; }
-
   [[nodiscard]] bool canUndo() const { return done_ > 0; }
   [[nodiscard]] bool canRedo() const { return done_ < history_.size(); }
   /// The name of the step that undo() would undo: "move 12 bodies"; "": none.
   [[nodiscard]] std::string undoName() const;
   [[nodiscard]] std::string redoName() const;
-  /// Both end the gesture. Without a step to undo or redo they do nothing else.
+  // Without a step to undo or redo they do nothing.
   void undo();
   void redo();
   /// Memory of all steps at present.
@@ -121,26 +107,30 @@ class SceneEditor {
 
  private:
   using SharedIds = std::shared_ptr<const BodyIds>;
-  struct Step;
+  struct Step {
+    std::string name;
+    /// Swaps what the scene has with what this holds.
+    std::function<void(AuthoredScene&)> exchange;
+    std::size_t bytes = 0;
+    SharedIds before = {};       ///< the selection before the step
+    SharedIds after;             ///< the selection after it
+    std::uint64_t revision = 0;  ///< of the scene after it
+  };
 
-  /// Makes a new value of one property for each selected body, and checks the bodies with it.
-  template <class Value, class Make>
-  void changeBodies(std::string_view verb, Value AuthoredBody::*property, Make&& make);
   template <class Value>
   void changeScene(std::string name, Value AuthoredScene::*property, Value value,
                    const std::string& fault);
   void addCopies(std::string_view verb, std::vector<AuthoredBody> bodies);
-  void perform(std::string name, std::unique_ptr<SceneChange> change, SharedIds selected_after);
-  void forgetOldest();
+  /// Adds the bodies that are `absent`, or removes these if there are none.
+  void changePresence(std::string_view verb, SharedIds ids, std::vector<AuthoredBody> absent,
+                      SharedIds selected_after);
+  void perform(Step step);
 
   AuthoredScene scene_;
   SharedIds selection_;
   std::size_t history_bytes_;
-  std::deque<std::unique_ptr<Step>> history_;  ///< the first done_ are done, the others undone
+  std::deque<Step> history_;  ///< the first done_ are done, the others undone
   std::size_t done_ = 0;
-  bool in_gesture_ = false;
-  bool gesture_has_step_ = false;
-  std::string gesture_name_;
   std::uint64_t last_revision_ = 0;
   std::uint64_t first_revision_ = 0;  ///< before the oldest step that is kept
   std::uint64_t saved_revision_ = 0;
