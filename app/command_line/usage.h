@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/names.h"
-
 namespace CLI {
 class App;
 class Option;
@@ -34,15 +32,5 @@ bool isShown(const CLI::Option&);
 
 /// The main command, then the others. Only what help shows.
 std::vector<CommandUsage> usageOf(const CLI::App& main);
-
-enum class Shell { bash, zsh, fish };
-inline constexpr NameTable kShells{
-    {NamedValue{Shell::bash, "bash"}, {Shell::zsh, "zsh"}, {Shell::fish, "fish"}}};
-
-/// A script that makes a shell complete commands and options; files it completes anyway.
-std::string completionScript(Shell, const std::vector<CommandUsage>&);
-
-/// The manual page (roff), of this version of the program.
-std::string manualPage(const std::vector<CommandUsage>&, const std::string& version);
 
 }  // namespace broadmark

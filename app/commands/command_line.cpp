@@ -18,9 +18,14 @@
 #include "command_line/run_requests.h"
 #include "command_line/usage.h"
 #include "commands/command.h"
-#include "commands/session.h"
+#include "inspector/run_inspector.h"
 #include "parts.h"
+#include "request/plugins.h"
+#include "run/export_case.h"
+#include "run/headless.h"
+#include "run/plan.h"
 #include "sources/source.h"
+#include "support/build_parts.h"
 #include "support/exit_status.h"
 #include "support/output.h"
 
@@ -181,6 +186,37 @@ SessionOptions sessionOf(const CommandLine& line, const std::vector<std::string>
   SessionOptions options = (whole ? with_request : line).session();
   options.command_line = whole.value_or(arguments);
   return options;
+}
+
+int listCases(const Plan& plan) {
+  for (const std::string& id : caseIds(plan)) fmt::print("{}\n", id);
+  return exit_status::fine;
+}
+
+/// Throws InputError if the options need what has been left out of this build.
+void requireParts(const SessionOptions& options) {
+  if (!options.screenshot.empty()) requirePart(parts::kRenderer, "--screenshot");
+  if (!options.cases.device.empty()) requirePart(parts::kOpenCl, "--device");
+}
+
+/// Makes the plan, then lists it, runs it, exports its case or opens it in the inspector. Returns
+/// the exit status. Throws InputError.
+int runSession(const SessionOptions& options) {
+  addEnginesOf(options.plugins);
+  Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
+  if (!options.written_request.empty()) {
+    writeOutput(options.written_request, formatRunRequest(options));
+    return exit_status::fine;
+  }
+  if (options.list_only) return listCases(plan);
+  requireParts(options);
+  if (options.inspector()) {
+    return runInspector(std::move(plan), !options.headless, options.script);
+  }
+  if (!options.export_case.empty()) {
+    return runExportCase(std::move(plan), options.export_case, options.quiet);
+  }
+  return runHeadless(std::move(plan), options.quiet);
 }
 
 }  // namespace

@@ -25,8 +25,6 @@ float floatAbove(double value) {
   return near < value ? std::nextafter(near, kLargest) : near;
 }
 
-}  // namespace
-
 Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius) {
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -37,6 +35,38 @@ Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, doub
     box.max[axis] = floatAbove(centre[axis] + radius);
   }
   return box;
+}
+
+double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
+                const ParticleColumns& columns, double stated) {
+  if (stated > 0) return stated;
+  if (!columns.radius) lines.fail(columns.no_radius);
+  const double size = lines.realNumber(words[*columns.radius], "the radius");
+  if (size < 0) lines.fail(fmt::format("the radius {:g} is negative", size));
+  return columns.is_diameter ? size / 2 : size;
+}
+
+}  // namespace
+
+void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
+                   const ParticleColumns& columns, double radius) {
+  std::vector<std::string_view> words;
+  for (std::int64_t i = 0; i < count; ++i) {
+    lines.require(fmt::format("{} {} of {}", columns.what, i + 1, count));
+    splitWords(lines.line(), words);
+    if (words.size() < columns.count) {
+      lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
+    }
+    std::array<double, 3> centre{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = lines.realNumber(words[columns.position[axis]], "a coordinate");
+      centre[axis] = columns.low[axis] + value * columns.extent[axis];
+    }
+    const double size = radiusOf(lines, words, columns, radius);
+    frame.rows.push_back({.id = columns.id ? lines.integer(words[*columns.id], "the id") : i,
+                          .box = ballBox(lines, centre, size),
+                          .line = lines.number()});
+  }
 }
 
 TextFrames::TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,

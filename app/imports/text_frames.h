@@ -71,7 +71,23 @@ class TextFrames final : public IndexedFrames {
   std::vector<Aabb> boxes_;
 };
 
-/// The smallest box around a ball. Throws InputError when 32-bit floats cannot hold it.
-Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius);
+/// Which columns of a line are what of a particle, a ball.
+struct ParticleColumns {
+  std::string_view what;       ///< "particle", in messages
+  std::string_view no_radius;  ///< the complaint where neither the file nor the user states one
+  std::array<std::size_t, 3> position{};
+  std::optional<std::size_t> id = {};  ///< nothing: particles are numbered as they stand
+  std::optional<std::size_t> radius = {};
+  bool is_diameter = false;  ///< that column holds diameters
+  std::size_t count = 0;
+  // Positions are shares of this box; by default they are coordinates.
+  std::array<double, 3> low{};
+  std::array<double, 3> extent = {1, 1, 1};
+};
+
+/// Reads the next `count` lines, a particle each; a `radius` above 0 is that of all. Throws
+/// InputError, also when 32-bit floats cannot hold the box of a particle.
+void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
+                   const ParticleColumns& columns, double radius);
 
 }  // namespace broadmark::imports
