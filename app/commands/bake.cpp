@@ -94,29 +94,30 @@ std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& 
   tally.unfinished = plan.recordings();
   if (plan.pending.empty()) return whole;
 
-  BakeBatch batch(std::move(plan.pending), options.bake.threads);
-  Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")),
-                    batch.state().total, options.quiet);
-  while (!batch.ended()) {
-    constexpr std::chrono::milliseconds kGlance{50};
-    for (const BakedJob& job : batch.await(kGlance)) {
-      tally.unfinished -= job.paths.size();
-      if (!job.failure.empty()) {
-        tally.failed += job.paths.size();
-        progress.complain("broadmark: " + job.failure);
-        continue;
-      }
-      for (const fs::path& path : job.paths) {
-        ++tally.baked;
-        tally.bytes += fs::file_size(path);
-        progress.print("baked  " + path.string());
-        whole.push_back(path);
-      }
+  std::uint64_t work = 0;
+  for (const BakeJob& job : plan.pending) work += job.work();
+  Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")), work,
+                    options.quiet);
+  const auto on_end = [&](const BakedJob& job) {
+    tally.unfinished -= job.paths.size();
+    if (!job.failure.empty()) {
+      tally.failed += job.paths.size();
+      progress.complain("broadmark: " + job.failure);
+      return;
     }
-    const BatchState state = batch.state();
+    for (const fs::path& path : job.paths) {
+      ++tally.baked;
+      tally.bytes += fs::file_size(path);
+      progress.print("baked  " + path.string());
+      whole.push_back(path);
+    }
+  };
+  const auto on_progress = [&](const BatchState& state) {
     progress.detail(fmt::format("({} left), now {}", tally.unfinished, state.running));
     progress.update(state.done, state.seconds_left);
-  }
+    return true;
+  };
+  bakeAll(std::move(plan.pending), options.bake.threads, on_end, on_progress);
   return whole;
 }
 

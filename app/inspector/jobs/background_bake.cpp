@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "broadmark/scenes/simulation.h"
@@ -12,8 +11,6 @@ namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::chrono::milliseconds kGlance{20};
 
 }  // namespace
 
@@ -90,11 +87,7 @@ void BackgroundBake::planAndBake(const BakeOptions& options) {
 }
 
 void BackgroundBake::bake(std::vector<BakeJob> jobs, int threads) {
-  BakeBatch batch(std::move(jobs), threads);
-  while (!batch.ended()) {
-    if (cancelled()) batch.cancel();
-    for (const BakedJob& job : batch.await(kGlance)) take(job);
-    const BatchState state = batch.state();
+  const auto on_progress = [&](const BatchState& state) {
     update([&](Report& report) {
       report.doing = state.running;
       report.seconds_left = state.seconds_left;
@@ -102,7 +95,10 @@ void BackgroundBake::bake(std::vector<BakeJob> jobs, int threads) {
           static_cast<float>(static_cast<double>(state.done) /
                              static_cast<double>(std::max<std::uint64_t>(state.total, 1)));
     });
-  }
+    return !cancelled();
+  };
+  bakeAll(
+      std::move(jobs), threads, [&](const BakedJob& job) { take(job); }, on_progress);
 }
 
 void BackgroundBake::take(const BakedJob& job) {
