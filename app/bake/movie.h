@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "broadmark/frame.h"
-#include "request/picture_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 

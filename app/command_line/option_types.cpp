@@ -287,7 +287,7 @@ std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
           memory_limit->excludes(in_process)};
 }
 
-std::string readingOption(std::string parameter) {
+std::string parameterOption(std::string parameter) {
   std::ranges::replace(parameter, '_', '-');
   return fmt::format("--{}", parameter);
 }
@@ -295,7 +295,7 @@ std::string readingOption(std::string parameter) {
 std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& options) {
   std::vector<CLI::Option*> added;
   options.visitParameters([&](const Parameter& parameter) {
-    const std::string name = readingOption(std::string(parameter.name));
+    const std::string name = parameterOption(std::string(parameter.name));
     const std::string doc(parameter.doc);
     if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
       added.push_back(addFlag(app, name, **flag, doc));

@@ -16,10 +16,8 @@
 #include "broadmark/harness/case.h"
 #include "broadmark/names.h"
 #include "request/hosts.h"
-#include "request/picture_options.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
-#include "request/scene_options.h"
 #include "support/build_parts.h"
 
 namespace CLI {

@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "commands/torture_log.h"
@@ -91,12 +92,12 @@ class Torture {
         log_.seconds = before + seconds(now - start);
         showProgress(progress, seconds(now - start));
         if (now - written < std::chrono::seconds(10)) continue;
-        writeTortureLog(log_file_, log_);
+        writeTextFile(log_file_, tortureLogText(log_));
         written = now;
       }
       job.get();
     }
-    writeTortureLog(log_file_, log_);
+    writeTextFile(log_file_, tortureLogText(log_));
     progress.print(formatTortureLog(log_));
     if (InterruptGuard::requested()) {
       throw Interrupted(fmt::format("the same command goes on from {}", log_file_.string()));
@@ -149,7 +150,7 @@ class Torture {
   void readLog() {
     log_.seed = options_.seed.value_or(log_.seed);
     if (!fs::exists(log_file_)) return;
-    TortureLog log = readTortureLog(log_file_);
+    TortureLog log = parseTortureLog(readTextFile(log_file_), log_file_.string());
     const bool is_same =
         log.subjects == log_.subjects && log.seed == options_.seed.value_or(log.seed);
     if (!is_same) {

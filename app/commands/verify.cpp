@@ -158,20 +158,9 @@ std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool descr
   return SceneDescription{};
 }
 
-/// The file, to be read as the options say. Throws InputError.
-Source sourceOf(const fs::path& file, const Options& options) {
-  const auto import = importOf(file);
-  std::vector<PlanEntry> entries(1);
-  Source& source = entries.front().source;
-  source = import ? importedSource({file}, *import, options.reading) : recordingSource(file);
-  if (options.reading.swept) sweepBoxes(source);
-  requireReadingUsed(options.reading, entries);
-  return std::move(source);
-}
-
 /// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
-  Source source = sourceOf(file, options);
+  Source source = fileSource({file.string()}, options.reading);
   const auto opened = openForCommand(source, options.quiet);
   IndexedFrames& recording = *opened;
   const std::string& hash = source.reference.hash;

@@ -19,10 +19,23 @@
 #include "broadmark/scenes/engine_plugin.h"
 #include "broadmark/scenes/simulation.h"
 #include "request/cases.h"
-#include "request/sdk_plugins.h"
 
 namespace broadmark {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a plug-in of ours lies: beside the program in a build, in the folder of libraries when
+/// installed.
+fs::path fileOf(const std::string& name) {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  const fs::path folder = program.parent_path();
+  const fs::path built = folder / "plugins" / (name + ".so");
+  return fs::exists(built, failed)
+             ? built
+             : (folder / BROADMARK_PLUGIN_FOLDER / (name + ".so")).lexically_normal();
+}
 
 /// Why the last call of the dynamic loader failed, without the path in front.
 std::string reason(const std::string& path) {
@@ -37,7 +50,7 @@ void* load(const std::string& named) {
   const std::string file = pluginFile(named);
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
-  const std::string path = std::filesystem::absolute(file).string();
+  const std::string path = fs::absolute(file).string();
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, reason(path)));
@@ -148,6 +161,28 @@ void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add)
 }
 
 }  // namespace
+
+std::vector<SdkPlugin> sdkPlugins() {
+  std::vector<SdkPlugin> all;
+#define SDK_PLUGIN(name, package, releases, built) \
+  all.push_back({name, package, releases, built, (built) ? fileOf(name) : fs::path()});
+#include "sdk_plugins.inc"
+#undef SDK_PLUGIN
+  return all;
+}
+
+std::string pluginFile(const std::string& named) {
+  const std::vector<SdkPlugin> all = sdkPlugins();
+  const auto meant = std::ranges::find(all, named, &SdkPlugin::name);
+  if (meant == all.end()) return named;
+  if (!meant->built) {
+    throw InputError(
+        fmt::format("--plugin: {}: not built: {} was not found when this program was configured "
+                    "(find_package({}), see 'Physics SDKs' in the README)",
+                    named, meant->releases, meant->package));
+  }
+  return meant->file.string();
+}
 
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
   std::vector<Algorithm> algorithms = builtinAlgorithms();

@@ -6,7 +6,7 @@
 
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recordings/recording.h"
-#include "request/picture_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 

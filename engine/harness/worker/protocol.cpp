@@ -117,8 +117,7 @@ Json toJson(const Case& run) {
           {"answer", kAnswerKinds.nameOf(run.answer)}};
 }
 
-Case caseFrom(const Json& json,
-              const std::function<Algorithm(const std::string&, const std::string&)>& find) {
+Case caseFrom(const Json& json, const AlgorithmFinder& find) {
   const auto isa = json.at("isa").get<std::string>();
   Case run{.algorithm =
                find(json.at("algorithm").get<std::string>(), json.at("plugin").get<std::string>()),

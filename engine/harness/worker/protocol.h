@@ -39,7 +39,7 @@
 #include <vector>
 
 #include "broadmark/files.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/worker_process.h"
 #include "broadmark/json_fields.h"
 
 namespace broadmark::worker {
@@ -114,11 +114,14 @@ class SharedMemory {
   FileDescriptor file_;
 };
 
+/// The worker's side of the protocol, without what it does to its process: answers the calls of the
+/// other side until that hangs up. Throws HostError for what is no message.
+void answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
+                 const AlgorithmFinder& find);
+
 Json toJson(const Case&);
 /// Throws InputError (no such algorithm) and Json::exception.
-Case caseFrom(
-    const Json&,
-    const std::function<Algorithm(const std::string& id, const std::string& plugin)>& find);
+Case caseFrom(const Json&, const AlgorithmFinder& find);
 /// All but the filter, which is too large for a message.
 Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);

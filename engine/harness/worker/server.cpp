@@ -13,11 +13,9 @@
 
 #include "broadmark/error.h"
 #include "broadmark/harness/memory_limit.h"
-#include "broadmark/harness/worker_process.h"
 #include "broadmark/headers_hash.h"
 #include "broadmark/large_array.h"
 #include "worker/protocol.h"
-#include "worker/server.h"
 
 namespace broadmark {
 namespace {
