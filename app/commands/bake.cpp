@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "bake/bake_plan.h"
 #include "bake/batch.h"
@@ -121,32 +120,6 @@ std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& 
   return whole;
 }
 
-/// Draws the movies: one for all recordings that differ only in their kind. False when interrupted.
-bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet) {
-  std::ranges::sort(recordings);
-  std::set<fs::path> names;
-  std::erase_if(recordings,
-                [&](const fs::path& path) { return !names.insert(path.stem()).second; });
-  const auto pictures = [&](const fs::path& path) {
-    return maker.pictures(openRecordingFile(path)->scene());
-  };
-  std::uint64_t total = 0;
-  for (const fs::path& path : recordings) total += pictures(path);
-  Progress progress(fmt::format("drawing {}", counted(recordings.size(), "movie")), total, quiet);
-  std::uint64_t done = 0;
-  for (const fs::path& path : recordings) {
-    progress.detail(path.stem().string());
-    const fs::path folder = maker.make(path, [&](std::uint32_t picture) {
-      progress.update(done + picture);
-      return !InterruptGuard::requested();
-    });
-    if (folder.empty()) return false;
-    progress.print("movie  " + folder.string());
-    progress.update(done += pictures(path));
-  }
-  return true;
-}
-
 int run(const Options& options) {
   if (!options.movie.directory.empty()) requirePart(parts::kRenderer, "--movie");
   addEnginesOf(options.bake.plugins);
@@ -155,13 +128,13 @@ int run(const Options& options) {
   BakePlan plan = makeBakePlan(options);
   if (options.list_only) return listPlan(plan);
   prepare(plan, options.bake.record);
-  std::optional<MovieMaker> movie_maker;
-  if (!options.movie.directory.empty()) movie_maker.emplace(options.movie);
+  std::unique_ptr<OffscreenContext> drawing;
+  if (!options.movie.directory.empty()) drawing = prepareMovies(options.movie);
   Tally tally;
   const std::vector<fs::path> whole = performPlan(std::move(plan), options, tally);
   tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (InterruptGuard::requested()) throw interruption();
-  if (movie_maker && !makeMovies(*movie_maker, whole, options.quiet)) throw interruption();
+  if (drawing && !makeMovies(*drawing, options.movie, whole, options.quiet)) throw interruption();
   return tally.failed == 0 ? exit_status::fine : exit_status::bad_input;
 }
 

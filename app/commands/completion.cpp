@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "broadmark/names.h"
@@ -11,6 +13,7 @@
 #include "command_line/usage.h"
 #include "commands/command.h"
 #include "support/exit_status.h"
+#include "support/words.h"
 
 namespace broadmark::commands::completion {
 namespace {
@@ -32,8 +35,8 @@ std::string escaped(const std::string& text, std::string_view characters,
 /// What begins with dashes.
 std::vector<std::string> optionNames(const CommandUsage& command) {
   std::vector<std::string> names;
-  for (const OptionUsage& option : command.options) {
-    if (!option.positional) names.insert(names.end(), option.names.begin(), option.names.end());
+  for (const CLI::Option* option : command.options) {
+    if (!option->get_positional()) std::ranges::move(namesOf(*option), std::back_inserter(names));
   }
   return names;
 }
@@ -78,24 +81,17 @@ complete -o default -F _broadmark broadmark
                      options, fmt::join(commandNames(commands), " "));
 }
 
-/// In single quotes, for zsh.
-std::string zshQuoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted += '\'';
-}
-
 std::string zshArguments(const CommandUsage& command) {
   std::string text = "      _arguments";
-  for (const OptionUsage& option : command.options) {
-    if (option.positional) continue;
+  for (const CLI::Option* option : command.options) {
+    if (option->get_positional()) continue;
+    const bool has_value = takesValue(*option);
     const std::string value =
-        option.takes_value ? fmt::format(":{}:_files", escaped(option.type, ":\\")) : "";
-    const char* repeatable = option.takes_value ? "*" : "";
-    for (const std::string& name : option.names) {
-      const std::string spec =
-          fmt::format("{}{}[{}]{}", repeatable, name, escaped(option.doc, "[]:\\"), value);
-      text += fmt::format(" \\\n        {}", zshQuoted(spec));
+        has_value ? fmt::format(":{}:_files", escaped(option->get_type_name(), ":\\")) : "";
+    for (const std::string& name : namesOf(*option)) {
+      const std::string spec = fmt::format("{}{}[{}]{}", has_value ? "*" : "", name,
+                                           escaped(option->get_description(), "[]:\\"), value);
+      text += fmt::format(" \\\n        {}", shellQuoted(spec));
     }
   }
   return text + " \\\n        '*:file:_files'";
@@ -106,7 +102,7 @@ std::string zshScript(const Usages& commands) {
   for (const CommandUsage& command : commands) {
     if (command.name.empty()) continue;
     const std::string spec = fmt::format("{}:{}", command.name, escaped(command.summary, ":\\"));
-    names += fmt::format("    {}\n", zshQuoted(spec));
+    names += fmt::format("    {}\n", shellQuoted(spec));
   }
   return fmt::format(R"(#compdef broadmark
 _broadmark() {{
@@ -144,14 +140,14 @@ std::string fishScript(const Usages& commands) {
         is_main ? fmt::format("not __fish_seen_subcommand_from {}", fmt::join(names, " "))
                 : fmt::format("__fish_seen_subcommand_from {}", command.name);
     if (!is_main) add("__fish_use_subcommand", fmt::format("-a {}", command.name), command.summary);
-    for (const OptionUsage& option : command.options) {
-      if (option.positional) continue;
-      for (const std::string& name : option.names) {
+    for (const CLI::Option* option : command.options) {
+      if (option->get_positional()) continue;
+      for (const std::string& name : namesOf(*option)) {
         const bool is_long = name.starts_with("--");
         add(inside,
             fmt::format("-{} {}{}", is_long ? "l" : "s", name.substr(is_long ? 2 : 1),
-                        option.takes_value ? " -r" : ""),
-            option.doc);
+                        takesValue(*option) ? " -r" : ""),
+            option->get_description());
       }
     }
   }

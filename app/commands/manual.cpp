@@ -28,21 +28,22 @@ std::string plain(const std::string& text) {
   return result;
 }
 
-std::string optionEntry(const OptionUsage& option) {
-  const std::string names = plain(fmt::format("{}", fmt::join(option.names, ", ")));
-  std::string head =
-      option.positional ? fmt::format("\\fI{}\\fR", names) : fmt::format("\\fB{}\\fR", names);
-  if (!option.positional && !option.type.empty()) {
-    head += fmt::format(" \\fI{}\\fR", plain(option.type));
+std::string optionEntry(const CLI::Option& option) {
+  const std::string names = plain(fmt::format("{}", fmt::join(namesOf(option), ", ")));
+  const bool has_name = !option.get_positional();
+  std::string head = fmt::format("\\f{}{}\\fR", has_name ? 'B' : 'I', names);
+  std::string value;
+  if (takesValue(option)) {
+    if (has_name) head += fmt::format(" \\fI{}\\fR", plain(option.get_type_name()));
+    value = option.get_default_str();
   }
-  const std::string value =
-      option.value.empty() ? "" : fmt::format(" (default: {})", plain(option.value));
-  return fmt::format(".TP\n{}\n{}{}\n", head, plain(option.doc), value);
+  if (!value.empty()) value = fmt::format(" (default: {})", plain(value));
+  return fmt::format(".TP\n{}\n{}{}\n", head, plain(option.get_description()), value);
 }
 
 std::string optionEntries(const CommandUsage& command) {
   std::string text;
-  for (const OptionUsage& option : command.options) text += optionEntry(option);
+  for (const CLI::Option* option : command.options) text += optionEntry(*option);
   return text;
 }
 

@@ -261,11 +261,7 @@ class Torture {
                              ? static_cast<double>(begun_) / static_cast<double>(*options_.rounds)
                              : passed / (60 * options_.minutes);
     const auto ticks = static_cast<std::uint64_t>(kTicks * std::min(share, 1.0));
-    if (options_.rounds) {
-      progress.update(ticks);
-    } else {
-      progress.update(ticks, std::max(60 * options_.minutes - passed, 0.0));
-    }
+    progress.update(ticks);
   }
 
   Options options_;

@@ -116,7 +116,7 @@ class Server {
     started_ = false;
     const std::int64_t initialize_ns = host().start(scene, first);
     started_ = true;
-    return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
+    return {{"initialize_ns", initialize_ns}, {"pinned", host().report().pinned}};
   }
 
   /// The frame in shared memory, in this process's own.
@@ -183,7 +183,7 @@ class Server {
     std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
             {"heap_bytes", heapBytes()},
-            {"processor", worker::toJson(host().processorCounts())}};
+            {"processor", worker::toJson(host().report().processor)}};
   }
 
   /// Only the first pass tells: later ones use memory again that the first has freed.

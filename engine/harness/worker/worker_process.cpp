@@ -141,7 +141,7 @@ void WorkerProcess::open() {
 }
 
 std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
-  processor_counts_ = {};
+  report_.processor = {};
   open();
   return talk([&](Link& link) {
     const std::uint64_t end = link.frames.write(first.boxes);
@@ -149,7 +149,7 @@ std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
         link.call({{"call", "start"},
                    {"scene", worker::toJson(scene)},
                    {"filter", worker::writeFilter(scene.filter, link.frames, end)}});
-    pinned_ = started.value("pinned", false);
+    report_.pinned = started.value("pinned", false);
     return started.at("initialize_ns").get<std::int64_t>();
   });
 }
@@ -175,12 +175,14 @@ void WorkerProcess::stop() {
   ended_ = {};
   if (!link_) return;
   const Json stopped = talk(calling("stop"));
-  if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
-    peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
+  if (!report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
+    report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
   }
-  heap_bytes_.reset();
-  if (stopped.contains("heap_bytes")) heap_bytes_ = stopped.at("heap_bytes").get<std::uint64_t>();
-  processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
+  report_.heap_bytes.reset();
+  if (stopped.contains("heap_bytes")) {
+    report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
+  }
+  report_.processor = worker::processorCountsFrom(stopped.value("processor", Json::object()));
   link_->frames.clear();
   link_->answers.clear();
 }

@@ -55,10 +55,6 @@ class WorkerProcess final : public CaseHost {
   Counts setup() override;
   RecordedDrawing structure() override;
   std::string validate() override;
-  [[nodiscard]] std::optional<std::uint64_t> heapBytes() const override { return heap_bytes_; }
-  [[nodiscard]] std::optional<std::uint64_t> peakBytes() const override { return peak_bytes_; }
-  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
-  [[nodiscard]] bool pinned() const override { return pinned_; }
 
  private:
   class Link;  ///< to a process
@@ -73,10 +69,6 @@ class WorkerProcess final : public CaseHost {
   Case case_;
   WorkerOptions options_;
   std::unique_ptr<Link> link_;  ///< null: no process runs
-  std::optional<std::uint64_t> peak_bytes_;
-  std::optional<std::uint64_t> heap_bytes_;
-  ProcessorCounts processor_counts_;
-  bool pinned_ = false;
   std::vector<Aabb> changed_boxes_;
   std::vector<Pair> answer_;  ///< of events: those that began
   std::vector<Pair> ended_;
