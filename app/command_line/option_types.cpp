@@ -215,9 +215,16 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
 std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
   std::vector<CLI::Option*> options;
   for (const ResultWriter& writer : resultWriters()) {
+    const auto set = [&outputs, name = std::string(writer.name)](const std::string& path) {
+      outputs[name] = path;
+    };
+    const auto get = [&outputs, name = std::string(writer.name)] {
+      const auto given = outputs.find(name);
+      return given == outputs.end() ? std::string() : given->second.string();
+    };
     options.push_back(
-        addPath(app, fmt::format("--{}", writer.name), "FILE", outputs[std::string(writer.name)],
-                fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
+        addValue(app, fmt::format("--{}", writer.name), "FILE", set, get,
+                 fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
   }
   return options;
 }

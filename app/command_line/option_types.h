@@ -108,7 +108,7 @@ CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
                         const std::string& more = "algorithms or physics engines");
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
-/// Where results go: --json, --csv, … Paths that are not given stay "".
+/// Where results go: --json, --csv, …
 std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
 /// --quiet
 CLI::Option* addQuiet(CLI::App&, bool& quiet);

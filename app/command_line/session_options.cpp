@@ -266,17 +266,6 @@ void SessionParser::requireNoConflict() const {
   }
 }
 
-void SessionParser::set(const RunRequest& request) {
-  // Options are bound to the paths in this map.
-  ResultPaths outputs = std::move(options_.outputs);
-  static_cast<RunRequest&>(options_) = request;
-  for (auto& [name, path] : outputs) {
-    const auto given = request.outputs.find(name);
-    path = given == request.outputs.end() ? std::filesystem::path() : given->second;
-  }
-  options_.outputs = std::move(outputs);
-}
-
 bool SessionParser::isOfRequest(const CLI::Option& option) const {
   return std::ranges::any_of(tagged_, [&](const auto& tagged) {
     return tagged.first == &option && (tagged.second & kRequest) == 0;
@@ -286,7 +275,6 @@ bool SessionParser::isOfRequest(const CLI::Option& option) const {
 SessionOptions SessionParser::options() const {
   requireNoConflict();
   SessionOptions options = options_;
-  std::erase_if(options.outputs, [](const auto& output) { return output.second.empty(); });
   if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
     throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: name one .png",
                                  options.screenshot.string()));

@@ -40,7 +40,7 @@ class SessionParser {
   /// What `app` has parsed, not yet checked.
   [[nodiscard]] const SessionOptions& parsed() const { return options_; }
   /// Gives the options the values of a request, as if they had been parsed.
-  void set(const RunRequest& request);
+  void set(const RunRequest& request) { static_cast<RunRequest&>(options_) = request; }
   /// Whether a run request has this option.
   [[nodiscard]] bool isOfRequest(const CLI::Option& option) const;
   /// The options, after `app` has parsed a command line. Throws InputError for options that cannot

@@ -108,21 +108,20 @@ class CommandLine {
     }
   }
 
-  /// Whether there is anything to run; if not, `printed` is what was asked for.
-  bool parse(std::vector<std::string> arguments, std::string& printed) {
+  /// The help that is asked for; nothing if there is anything to run.
+  std::optional<std::string> parse(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);  // as CLI11 takes them
     try {
       app_.parse(std::move(arguments));
     } catch (const CLI::Success& success) {
       std::ostringstream out;
       app_.exit(success, out, out);
-      printed = out.str();
-      return false;
+      return out.str();
     } catch (const CLI::ParseError& error) {
       throw usageError(app_, error);
     }
     requireNothingBeforeCommand();
-    return true;
+    return {};
   }
 
   /// What runs the command that was parsed; nothing for the main command.
@@ -181,8 +180,7 @@ class CommandLine {
 SessionOptions sessionOf(const CommandLine& line, const std::vector<std::string>& arguments) {
   const auto whole = line.withRequest(arguments);
   CommandLine with_request;
-  std::string printed;
-  if (whole) with_request.parse(*whole, printed);
+  if (whole) with_request.parse(*whole);
   SessionOptions options = (whole ? with_request : line).session();
   options.command_line = whole.value_or(arguments);
   return options;
@@ -223,10 +221,9 @@ int runSession(const SessionOptions& options) {
 
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
   const auto line = std::make_shared<CommandLine>();
-  std::string printed;
-  if (!line->parse(arguments, printed)) {
-    return [printed] {
-      std::fputs(printed.c_str(), stdout);
+  if (const auto help = line->parse(arguments)) {
+    return [help] {
+      std::fputs(help->c_str(), stdout);
       return 0;
     };
   }
@@ -236,8 +233,7 @@ std::function<int()> parseCommandLine(const std::vector<std::string>& arguments)
 
 SessionOptions parseSession(const std::vector<std::string>& arguments) {
   CommandLine line;
-  std::string printed;
-  if (!line.parse(arguments, printed) || line.command()) {
+  if (line.parse(arguments) || line.command()) {
     throw InputError("not a command line of the main command");
   }
   return sessionOf(line, arguments);

@@ -2,12 +2,14 @@
 // many frames and bodies there are; then frame by frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -32,44 +34,10 @@ struct TextFrame {
 /// the file. Throws InputError.
 using TextFormat = std::function<bool(LineReader&, TextFrame&)>;
 
-/// Bodies are numbered in the order of their ids, over all files. One without a row in a frame is
-/// absent in it.
-class TextFrames final : public IndexedFrames {
- public:
-  /// Frames of all files, one after the other. Throws InputError.
-  TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
-             std::string object_type);
-
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-
- private:
-  /// Where a frame is.
-  struct FramePlace {
-    std::size_t file = 0;
-    LineReader::Place place;
-    bool empty = false;  ///< it stands nowhere: nobody is there
-  };
-
-  std::span<const Aabb> readBoxes(std::uint32_t index) override;
-  void scan(std::size_t file);
-  /// Into frame_; false at the end of the file.
-  bool readNext(LineReader& reader);
-  void add(const LineReader& reader, FramePlace place);
-  /// Takes note of who is there.
-  void count(const LineReader& reader);
-  [[nodiscard]] LineReader& reader(std::size_t file);
-
-  std::vector<std::filesystem::path> files_;
-  TextFormat format_;
-  SceneInfo scene_;
-  std::vector<FramePlace> places_;
-  std::vector<std::int64_t> ids_;  ///< ascending, by body
-  std::optional<LineReader> reader_;
-  std::size_t reader_file_ = 0;
-  TextFrame frame_;
-  std::optional<std::int64_t> last_number_;  ///< of the frame before
-  std::vector<Aabb> boxes_;
-};
+/// Frames of all files, one after the other. Bodies are numbered in the order of their ids, over
+/// all files; one without a row in a frame is absent in it. Throws InputError.
+std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
+                                              TextFormat format, std::string object_type);
 
 /// Which columns of a line are what of a particle, a ball.
 struct ParticleColumns {

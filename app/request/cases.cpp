@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <strings.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <map>
 #include <thread>
@@ -20,18 +20,14 @@
 namespace broadmark {
 namespace {
 
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 /// Whether `selector` names `algorithm`, one of `known`.
 bool selects(const std::string& selector, const Algorithm& algorithm,
              const std::vector<Algorithm>& known) {
   if (selector == "all") return algorithm.traits.finds_pairs;
   if (globMatches(selector, algorithm.id)) return true;
   // An id is that algorithm alone, even where a whole family is called the same ("sap").
-  return findAlgorithm(selector, known) == nullptr && lower(selector) == lower(algorithm.family);
+  return findAlgorithm(selector, known) == nullptr &&
+         ::strcasecmp(selector.c_str(), algorithm.family.c_str()) == 0;
 }
 
 /// A key of --param: the parameter, and whose.

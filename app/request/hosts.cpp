@@ -34,7 +34,7 @@ HostMaker hostMaker(const HostOptions& options) {
   return [worker](const Case& run, CancelQuery cancelled) {
     WorkerOptions own = worker;
     own.cancelled = std::move(cancelled);
-    return std::make_unique<WorkerProcess>(run, std::move(own));
+    return makeWorkerProcess(run, std::move(own));
   };
 }
 

@@ -23,10 +23,6 @@ struct SdkPlugin {
 /// All of them, whether built or not.
 std::vector<SdkPlugin> sdkPlugins();
 
-/// The file that is meant by what was given to --plugin: the name of one of these, or a path.
-/// Throws InputError for one that was not built.
-std::string pluginFile(const std::string& named);
-
 /// The built-in algorithms, then those of the libraries in these files (see broadmark/plugin.h),
 /// which stay loaded until the program ends. Throws InputError for a file that is not such a
 /// library, was built with other headers, or has an algorithm whose id is unfit or already taken.

@@ -68,7 +68,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
                                     const ReadingOptions&) {
-  return std::make_unique<imports::TextFrames>(files, readFrame, "Boxes");
+  return imports::openTextFrames(files, readFrame, "Boxes");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
   const auto format = [radius = options.radius](LineReader& lines, TextFrame& frame) {
     return readFrame(lines, frame, radius);
   };
-  return std::make_unique<imports::TextFrames>(files, format, "Particles");
+  return imports::openTextFrames(files, format, "Particles");
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
     particles = frame.rows.size();
     return true;
   };
-  return std::make_unique<imports::TextFrames>(files, format, "Particles");
+  return imports::openTextFrames(files, format, "Particles");
 }
 
 }  // namespace

@@ -96,35 +96,22 @@ double squaredGap(const Aabb& a, const Aabb& b) {
   return sum;
 }
 
-/// Squared distance of two boxes' centres; infinite if one is empty.
-double squaredDistance(const Aabb& a, const Aabb& b) {
-  if (isEmpty(a) || isEmpty(b)) return std::numeric_limits<double>::infinity();
-  double sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double twice = (static_cast<double>(a.min[axis]) + a.max[axis]) -
-                         (static_cast<double>(b.min[axis]) + b.max[axis]);
-    sum += twice * twice / 4;
-  }
-  return sum;
-}
-
 /// The `count` bodies nearest to the suspects, these first.
 std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
                                    std::span<const Aabb> boxes, std::size_t count) {
-  using Key = std::tuple<bool, double, double, std::uint32_t>;
+  using Key = std::tuple<bool, double, std::uint32_t>;
   std::vector<Key> keys;
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-    Key key = {true, std::numeric_limits<double>::infinity(), 0, body};
+    Key key = {true, std::numeric_limits<double>::infinity(), body};
     for (const std::uint32_t suspect : suspects) {
-      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]),
-                              squaredDistance(boxes[body], boxes[suspect]), body});
+      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]), body});
     }
     keys.push_back(key);
   }
   count = std::min(count, keys.size());
   std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<std::uint32_t> bodies;
-  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<3>(keys[i]));
+  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<2>(keys[i]));
   return bodies;
 }
 

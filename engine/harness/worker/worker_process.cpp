@@ -19,9 +19,8 @@ using worker::SharedMemory;
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
 
-}  // namespace
-
-class WorkerProcess::Link {
+/// To a process.
+class Link {
  public:
   explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
   ~Link() {
@@ -108,128 +107,121 @@ class WorkerProcess::Link {
   std::optional<worker::Channel> channel_;
 };
 
-WorkerProcess::WorkerProcess(Case run, WorkerOptions options)
-    : case_(std::move(run)), options_(std::move(options)) {}
+class WorkerProcess final : public CaseHost {
+ public:
+  WorkerProcess(Case run, WorkerOptions options)
+      : case_(std::move(run)), options_(std::move(options)) {}
 
-WorkerProcess::~WorkerProcess() = default;
-
-/// A call that says nothing more.
-static auto calling(const char* name) {
-  return [name](auto& link) { return link.call({{"call", name}}); };
-}
-
-template <class Talk>
-auto WorkerProcess::talk(Talk&& talk) {
-  try {
-    return talk(*link_);
-  } catch (...) {
-    if (!link_->alive()) link_.reset();
-    throw;
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
+    report_.processor = {};
+    open();
+    const std::uint64_t end = link_->frames.write(first.boxes);
+    const Json started =
+        link_->call({{"call", "start"},
+                     {"scene", worker::toJson(scene)},
+                     {"filter", worker::writeFilter(scene.filter, link_->frames, end)}});
+    report_.pinned = started.value("pinned", false);
+    return started.at("initialize_ns").get<std::int64_t>();
   }
-}
 
-void WorkerProcess::open() {
-  if (link_) return;
-  link_ = std::make_unique<Link>(options_);
-  talk([&](Link& link) {
+  FrameRun step(const Frame& frame) override {
+    changed_boxes_.clear();
+    for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
+    link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
+    const Json run =
+        link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
+    return {.times = worker::timesFrom(run.at("times_ns")),
+            .pairs = run.at("pairs").get<std::uint64_t>()};
+  }
+
+  void stop() override {
+    answer_ = {};
+    ended_ = {};
+    if (!isOpen()) return;
+    const Json stopped = call("stop");
+    if (!report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
+      report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
+    }
+    report_.heap_bytes.reset();
+    if (stopped.contains("heap_bytes")) {
+      report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
+    }
+    report_.processor = worker::processorCountsFrom(stopped.value("processor", Json::object()));
+    link_->frames.clear();
+    link_->answers.clear();
+  }
+
+  PairDigest digest() override {
+    const Json digest = call("digest");
+    return {.count = digest.at("count").get<std::uint64_t>(),
+            .hash = digest.at("hash").get<std::uint64_t>()};
+  }
+
+  PairRuns answer() override {
+    link_->answers.read(answer_, call("answer").at("pairs").get<std::size_t>());
+    answer_run_ = answer_;
+    return {&answer_run_, 1};
+  }
+
+  PairEvents events() override {
+    const Json counts = call("events");
+    link_->answers.read(answer_, counts.at("began").get<std::size_t>());
+    link_->answers.read(ended_, counts.at("ended").get<std::size_t>(),
+                        answer_.size() * sizeof(Pair));
+    answer_run_ = answer_;
+    ended_run_ = ended_;
+    return {{&answer_run_, 1}, {&ended_run_, 1}};
+  }
+
+  Counts counters() override { return call("counters").at("counts").get<Counts>(); }
+  Counts setup() override { return call("setup").at("counts").get<Counts>(); }
+  std::string validate() override { return call("validate").at("broken").get<std::string>(); }
+
+  RecordedDrawing structure() override {
+    const Json drawn = call("structure");
+    std::vector<RecordedDrawing::Box> boxes;
+    std::vector<RecordedDrawing::Line> lines;
+    std::vector<std::uint32_t> tests;
+    link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
+    std::uint64_t end = boxes.size() * sizeof(RecordedDrawing::Box);
+    link_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
+    end += lines.size() * sizeof(RecordedDrawing::Line);
+    link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
+    return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
+            std::move(tests)};
+  }
+
+ private:
+  [[nodiscard]] bool isOpen() const { return link_ && link_->alive(); }
+
+  /// Starts the process, if none runs.
+  void open() {
+    if (isOpen()) return;
+    link_ = std::make_unique<Link>(options_);
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
     message["pin"] = options_.pin;
-    link.begin(message);
-  });
-}
-
-std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
-  report_.processor = {};
-  open();
-  return talk([&](Link& link) {
-    const std::uint64_t end = link.frames.write(first.boxes);
-    const Json started =
-        link.call({{"call", "start"},
-                   {"scene", worker::toJson(scene)},
-                   {"filter", worker::writeFilter(scene.filter, link.frames, end)}});
-    report_.pinned = started.value("pinned", false);
-    return started.at("initialize_ns").get<std::int64_t>();
-  });
-}
-
-FrameRun WorkerProcess::step(const Frame& frame) {
-  return talk([&](Link& link) {
-    shareChanged(link.frames, frame);
-    const Json run =
-        link.call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
-    return FrameRun{.times = worker::timesFrom(run.at("times_ns")),
-                    .pairs = run.at("pairs").get<std::uint64_t>()};
-  });
-}
-
-void WorkerProcess::shareChanged(const SharedMemory& memory, const Frame& frame) {
-  changed_boxes_.clear();
-  for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
-  memory.write(std::span<const Aabb>(changed_boxes_), memory.write(*frame.changed));
-}
-
-void WorkerProcess::stop() {
-  answer_ = {};
-  ended_ = {};
-  if (!link_) return;
-  const Json stopped = talk(calling("stop"));
-  if (!report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
-    report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
+    link_->begin(message);
   }
-  report_.heap_bytes.reset();
-  if (stopped.contains("heap_bytes")) {
-    report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
-  }
-  report_.processor = worker::processorCountsFrom(stopped.value("processor", Json::object()));
-  link_->frames.clear();
-  link_->answers.clear();
-}
 
-PairDigest WorkerProcess::digest() {
-  const Json digest = talk(calling("digest"));
-  return {.count = digest.at("count").get<std::uint64_t>(),
-          .hash = digest.at("hash").get<std::uint64_t>()};
-}
+  /// A call that says nothing more.
+  Json call(const char* name) { return link_->call({{"call", name}}); }
 
-PairRuns WorkerProcess::answer() {
-  const auto count = talk(calling("answer")).at("pairs").get<std::size_t>();
-  link_->answers.read(answer_, count);
-  answer_run_ = answer_;
-  return {&answer_run_, 1};
-}
+  Case case_;
+  WorkerOptions options_;
+  std::unique_ptr<Link> link_;
+  std::vector<Aabb> changed_boxes_;
+  std::vector<Pair> answer_;  ///< of events: those that began
+  std::vector<Pair> ended_;
+  PairRun answer_run_;
+  PairRun ended_run_;
+};
 
-PairEvents WorkerProcess::events() {
-  const Json counts = talk(calling("events"));
-  link_->answers.read(answer_, counts.at("began").get<std::size_t>());
-  link_->answers.read(ended_, counts.at("ended").get<std::size_t>(), answer_.size() * sizeof(Pair));
-  answer_run_ = answer_;
-  ended_run_ = ended_;
-  return {{&answer_run_, 1}, {&ended_run_, 1}};
-}
+}  // namespace
 
-Counts WorkerProcess::counters() { return talk(calling("counters")).at("counts").get<Counts>(); }
-
-Counts WorkerProcess::setup() { return talk(calling("setup")).at("counts").get<Counts>(); }
-
-std::string WorkerProcess::validate() {
-  return talk(calling("validate")).at("broken").get<std::string>();
-}
-
-RecordedDrawing WorkerProcess::structure() {
-  const Json drawn = talk(calling("structure"));
-  std::vector<RecordedDrawing::Box> boxes;
-  std::vector<RecordedDrawing::Line> lines;
-  std::vector<std::uint32_t> tests;
-  link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
-  link_->answers.read(lines, drawn.at("lines").get<std::size_t>(),
-                      boxes.size() * sizeof(RecordedDrawing::Box));
-  const std::uint64_t end =
-      boxes.size() * sizeof(RecordedDrawing::Box) + lines.size() * sizeof(RecordedDrawing::Line);
-  link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
-  return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
-          std::move(tests)};
+std::unique_ptr<CaseHost> makeWorkerProcess(Case run, WorkerOptions options) {
+  return std::make_unique<WorkerProcess>(std::move(run), std::move(options));
 }
 
 }  // namespace broadmark
