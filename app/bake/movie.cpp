@@ -13,7 +13,6 @@
 #include "broadmark/harness/oracle.h"
 #include "broadmark/names.h"
 #include "run/recordings.h"
-#include "support/interrupt.h"
 #include "support/progress.h"
 #include "support/words.h"
 
@@ -104,10 +103,7 @@ bool makeMovies(OffscreenContext& context, const MovieOptions& options,
     progress.detail(path.stem().string());
     const auto recording = openRecordingFile(path);
     const fs::path folder = options.directory / path.stem();
-    const auto go_on = [&](std::uint32_t picture) {
-      progress.update(done + picture);
-      return !InterruptGuard::requested();
-    };
+    const auto go_on = [&](std::uint32_t picture) { return progress.goOn(done + picture); };
     if (!makeMovie(context, options, *recording, folder, go_on)) return false;
     progress.print("movie  " + folder.string());
     progress.update(done += picturesOf(*recording, options));

@@ -45,8 +45,7 @@ BakePlan makeBakePlan(const Options& options) {
       planBake(options.bake, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
         if (!shown) shown.emplace("checking existing recordings", total, options.quiet);
         shown->detail(path.string());
-        shown->update(number);
-        return !InterruptGuard::requested();
+        return shown->goOn(number);
       });
   if (!plan) throw interruption();
   return std::move(*plan);

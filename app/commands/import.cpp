@@ -49,10 +49,8 @@ int run(const Options& options) {
   const fs::path path = outputFor(scene, options.output);
   RecordingWriter writer(path, scene, {.source = source.reference.path});
   Progress progress("importing " + scene.name, scene.frames, options.quiet);
-  const bool whole = recordAll(*frames, writer, [&](std::uint32_t frame) {
-    progress.update(frame);
-    return !InterruptGuard::requested();
-  });
+  const bool whole =
+      recordAll(*frames, writer, [&](std::uint32_t frame) { return progress.goOn(frame); });
   if (!whole) throw Interrupted();
   const std::string hash = writer.finish();
   progress.print(fmt::format("{}: {} {}, {}, hash {}", path.string(), scene.name, scene.object_type,

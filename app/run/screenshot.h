@@ -15,9 +15,4 @@ namespace broadmark {
 void takeScreenshot(IndexedFrames&, std::uint32_t index, Oracle&, const PictureOptions&,
                     const std::filesystem::path& path);
 
-/// A path for each recording of a run: the file asked for, or, when there are several recordings,
-/// that name followed by the recording's.
-std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& asked,
-                                                   const std::vector<std::string>& recordings);
-
 }  // namespace broadmark

@@ -41,6 +41,11 @@ class Progress {
   void update(std::uint64_t done);
   /// The same with a better estimate of the time left.
   void update(std::uint64_t done, double seconds_left);
+  /// update(), for work that can be interrupted: false once it has been.
+  bool goOn(std::uint64_t done) {
+    update(done);
+    return !InterruptGuard::requested();
+  }
 
   /// Prints a line on standard output or error without disturbing the progress line.
   void print(std::string_view line) { print(stdout, line); }

@@ -192,35 +192,4 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
   return {groups, matrix};
 }
 
-Json toJson(const FrameTimes& times) {
-  Json json = Json::object();
-  for (const auto& [phase, name] : kPhases.entries) json[std::string(name)] = times[phase];
-  return json;
-}
-
-FrameTimes timesFrom(const Json& json) {
-  FrameTimes times;
-  for (const auto& [phase, name] : kPhases.entries) {
-    times[phase] = json.at(std::string(name)).get<std::int64_t>();
-  }
-  return times;
-}
-
-Json toJson(const ProcessorCounts& counts) {
-  Json json = Json::object();
-  for (const auto& [which, name] : kProcessorCounters.entries) {
-    if (counts[which]) json[std::string(name)] = *counts[which];
-  }
-  return json;
-}
-
-ProcessorCounts processorCountsFrom(const Json& json) {
-  ProcessorCounts counts;
-  for (const auto& [which, name] : kProcessorCounters.entries) {
-    const auto found = json.find(std::string(name));
-    if (found != json.end()) counts[which] = found->get<std::uint64_t>();
-  }
-  return counts;
-}
-
 }  // namespace broadmark::worker

@@ -129,10 +129,23 @@ SceneInfo sceneFrom(const Json&);
 Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offset);
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
                            std::size_t bodies);
-Json toJson(const FrameTimes&);
-FrameTimes timesFrom(const Json&);
-Json toJson(const ProcessorCounts&);
-/// What an earlier worker does not tell is not known.
-ProcessorCounts processorCountsFrom(const Json&);
+
+/// The values of the names in a table, as far as they are known.
+template <class Table, class Values>
+Json namedToJson(const Table& table, const Values& values) {
+  Json json = Json::object();
+  for (const auto& [key, name] : table.entries) {
+    if (const std::optional value = values[key]) json[std::string(name)] = *value;
+  }
+  return json;
+}
+/// And back. What the other side does not tell stays as it is.
+template <class Table, class Values>
+void readNamed(const Json& json, const Table& table, Values& values) {
+  for (const auto& [key, name] : table.entries) {
+    using Value = typename decltype(std::optional(values[key]))::value_type;
+    if (json.contains(name)) values[key] = json.at(std::string(name)).template get<Value>();
+  }
+}
 
 }  // namespace broadmark::worker

@@ -131,7 +131,7 @@ class Server {
 
   Json step(const Json& message) {
     const FrameRun run = startedHost().step(takeFrame(message));
-    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
+    return {{"times_ns", worker::namedToJson(kPhases, run.times)}, {"pairs", run.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
@@ -183,7 +183,7 @@ class Server {
     std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
             {"heap_bytes", heapBytes()},
-            {"processor", worker::toJson(host().report().processor)}};
+            {"processor", worker::namedToJson(kProcessorCounters, host().report().processor)}};
   }
 
   /// Only the first pass tells: later ones use memory again that the first has freed.

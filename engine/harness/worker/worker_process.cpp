@@ -2,12 +2,19 @@
 
 #include "broadmark/harness/worker_process.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstring>
+#include <initializer_list>
+#include <thread>
 
 #include "broadmark/error.h"
-#include "worker/child_process.h"
 #include "worker/protocol.h"
 
 namespace broadmark {
@@ -16,17 +23,63 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
+/// How long it may take to end by itself.
+constexpr std::chrono::seconds kTimeToEnd{5};
+
+std::string endText(int wait_status) {
+  if (WIFEXITED(wait_status)) {
+    return fmt::format("ended its process by itself, with status {}", WEXITSTATUS(wait_status));
+  }
+  const int signal = WTERMSIG(wait_status);
+  const char* name = ::sigabbrev_np(signal);
+  const std::string what =
+      fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
+  if (signal == SIGKILL) return "killed with " + what + ", perhaps as memory ran out";
+  return "crashed with " + what;
+}
+
+/// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, what
+/// it prints goes to our standard error. Throws InputError when it cannot be started.
+pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed) {
+  posix_spawn_file_actions_t actions{};
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  // What a plug-in prints is not to stand among our results.
+  ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  std::vector<FileDescriptor> copies;
+  int next = STDERR_FILENO + 1;
+  for (const int descriptor : handed) {
+    // By way of a number beyond all of these, so that none is overwritten before its turn.
+    constexpr int kBeyond = 16;
+    copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kBeyond));
+    ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), next++);
+  }
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, next);
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t pid = 0;
+  const int error =
+      ::posix_spawn(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    throw InputError(fmt::format("{}: cannot be started as a worker process: {}", command.front(),
+                                 std::strerror(error)));
+  }
+  return pid;
+}
+
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
 
-/// To a process.
+/// To a process, which does not outlive it.
 class Link {
  public:
   explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
   ~Link() {
     // Without a channel it ends, unless it hangs.
     channel_.reset();
-    if (!process_.ended()) process_.wait();
+    if (alive()) wait();
   }
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
@@ -34,7 +87,8 @@ class Link {
   SharedMemory frames;
   SharedMemory answers;
 
-  [[nodiscard]] bool alive() const { return !process_.ended(); }
+  /// Whether kill() or wait() has not seen its end.
+  [[nodiscard]] bool alive() const { return pid_ != 0; }
 
   /// Introduces both sides, and names the case.
   void begin(const Json& case_message) {
@@ -54,8 +108,7 @@ class Link {
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
     if (!hello) {
-      throw InputError(
-          fmt::format("{}: not fit as a worker process: {}", program, process_.wait()));
+      throw InputError(fmt::format("{}: not fit as a worker process: {}", program, wait()));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -75,7 +128,7 @@ class Link {
 
   Link(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
-        process_(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()}),
+        pid_(spawn(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()})),
         channel_(std::in_place, std::move(ends.here)) {}
 
   /// The next message; nothing once the process has hung up.
@@ -83,27 +136,45 @@ class Link {
     const auto end = Clock::now() + limit;
     while (!channel_->wait(kPollMilliseconds)) {
       if (options_.cancelled && options_.cancelled()) {
-        process_.kill();
+        kill();
         throw Cancelled();
       }
       if (Clock::now() < end) continue;
-      process_.kill();
+      kill();
       throw HardLimitError(
           fmt::format("no answer within the hard limit of {:.3g} s", limit.count()));
     }
     try {
       return channel_->receive();
     } catch (const HostError&) {
-      process_.kill();
+      kill();
       throw;
     }
   }
 
+  void kill() {
+    ::kill(pid_, SIGKILL);
+    wait();
+  }
+
+  /// Waits for its end, and brings that about after a while. Says how it ended: "crashed with
+  /// SIGSEGV (Segmentation fault)".
+  std::string wait() {
+    const auto end = Clock::now() + kTimeToEnd;
+    int status = 0;
+    while (::waitpid(pid_, &status, WNOHANG) == 0) {
+      if (Clock::now() > end) ::kill(pid_, SIGKILL);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    pid_ = 0;
+    return endText(status);
+  }
+
   /// The process has hung up.
-  [[noreturn]] void fail() { throw HostError(process_.wait()); }
+  [[noreturn]] void fail() { throw HostError(wait()); }
 
   const WorkerOptions& options_;
-  worker::ChildProcess process_;
+  pid_t pid_;
   std::optional<worker::Channel> channel_;
 };
 
@@ -130,8 +201,9 @@ class WorkerProcess final : public CaseHost {
     link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
     const Json run =
         link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
-    return {.times = worker::timesFrom(run.at("times_ns")),
-            .pairs = run.at("pairs").get<std::uint64_t>()};
+    FrameRun result{.pairs = run.at("pairs").get<std::uint64_t>()};
+    worker::readNamed(run.at("times_ns"), kPhases, result.times);
+    return result;
   }
 
   void stop() override {
@@ -146,7 +218,9 @@ class WorkerProcess final : public CaseHost {
     if (stopped.contains("heap_bytes")) {
       report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
     }
-    report_.processor = worker::processorCountsFrom(stopped.value("processor", Json::object()));
+    report_.processor = {};
+    worker::readNamed(stopped.value("processor", Json::object()), kProcessorCounters,
+                      report_.processor);
     link_->frames.clear();
     link_->answers.clear();
   }

@@ -4,7 +4,7 @@
 // The worker process is a program with a command that calls serveCase(): this one, or another
 // build of it. Both sides talk by messages, one JSON object each; frames and answers lie in memory
 // that both share. From there the worker copies a frame into memory of its own before the clock
-// starts. What is said is told in engine/worker/protocol.h; it has a version.
+// starts. What is said is told in worker/protocol.h; it has a version.
 #pragma once
 
 #include <chrono>
