@@ -9,13 +9,13 @@
 namespace broadmark::sources::described_scene {
 
 SourceKind kind() {
-  return {.what = fmt::format("authored scenes (.json, \"{}\"), scene parameters (.json, \"{}\", or "
-                              "the .json beside a baked recording)",
-                              scenes::kAuthoredSceneSchema, kSceneParametersSchema),
-          .recognises = [](NamedSource& source) {
-            return source.isJson() && describesScene(source.schema());
-          },
-          .open = openScene};
+  return {
+      .what = fmt::format("authored scenes (.json, \"{}\"), scene parameters (.json, \"{}\", or "
+                          "the .json beside a baked recording)",
+                          scenes::kAuthoredSceneSchema, kSceneParametersSchema),
+      .recognises =
+          [](NamedSource& source) { return source.isJson() && describesScene(source.schema()); },
+      .open = openScene};
 }
 
 }  // namespace broadmark::sources::described_scene

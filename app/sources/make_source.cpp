@@ -89,22 +89,6 @@ void noteSwept(std::vector<SweptSimulation>& simulations, const ParameterValues&
   }
 }
 
-RecordingReference referenceTo(Simulation& simulation) {
-  RecordingReference reference;
-  reference.scene = simulation.scene();
-  reference.scene_parameters = parameterValues(simulation);
-  if (simulation.listing().id == kAuthoredSceneId) {
-    reference.scene_parameters[kSceneFile] = simulation.input().string();
-  }
-  // A replay has no seed.
-  if (const auto seed = reference.scene_parameters.find("seed");
-      seed != reference.scene_parameters.end()) {
-    reference.seed = static_cast<std::uint64_t>(
-        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
-  }
-  return reference;
-}
-
 }  // namespace
 
 std::string recordingKindsText() {
@@ -118,7 +102,18 @@ bool isSceneId(const std::string& name) {
 
 Source simulationSource(std::unique_ptr<Simulation> simulation) {
   Source source;
-  source.reference = referenceTo(*simulation);
+  RecordingReference& reference = source.reference;
+  reference.scene = simulation->scene();
+  reference.scene_parameters = parameterValues(*simulation);
+  if (simulation->listing().id == kAuthoredSceneId) {
+    reference.scene_parameters[kSceneFile] = simulation->input().string();
+  }
+  // A replay has no seed.
+  if (const auto seed = reference.scene_parameters.find("seed");
+      seed != reference.scene_parameters.end()) {
+    reference.seed = static_cast<std::uint64_t>(
+        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
+  }
   source.simulation = std::move(simulation);
   return source;
 }

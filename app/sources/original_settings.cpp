@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <string>
-#include <string_view>
 
 #include "broadmark/error.h"
 #include "broadmark/names.h"
@@ -17,34 +16,18 @@
 namespace broadmark::sources::original_settings {
 namespace {
 
-/// A setting that is a parameter of one family here.
-struct OriginalParameter {
-  std::string_view family;
-  std::string_view name;
-  std::string (*value)(const OriginalSettings&);
-};
-
-std::string gridObjectsPerCell(const OriginalSettings& settings) {
-  return std::to_string(settings.grid_objects_per_cell);
-}
-
-constexpr OriginalParameter kOriginalParameters[] = {
-    {"Grid BF", "objects_per_cell", gridObjectsPerCell},
-    {"Grid SAP", "objects_per_cell", gridObjectsPerCell},
-    {"KD", "objects_per_leaf",
-     [](const OriginalSettings& s) { return std::to_string(s.kd_objects_per_leaf); }},
-    {"KD", "margin",  // one for all axes here
-     [](const OriginalSettings& s) { return fmt::format("{}", std::ranges::max(s.margin)); }},
-    // The original never reads Tracy's own key.
-    {"Tracy", "objects_per_cell", gridObjectsPerCell}};
-
+/// The settings that are parameters here.
 ParameterValues originalParameters(const OriginalSettings& settings, const Algorithm& algorithm) {
-  ParameterValues values;
-  for (const OriginalParameter& parameter : kOriginalParameters) {
-    if (parameter.family != algorithm.family) continue;
-    values.emplace(parameter.name, parameter.value(settings));
+  const std::string& family = algorithm.family;
+  if (family == "KD") {  // one margin for all axes here
+    return {{"objects_per_leaf", std::to_string(settings.kd_objects_per_leaf)},
+            {"margin", fmt::format("{}", std::ranges::max(settings.margin))}};
   }
-  return values;
+  // The original never reads Tracy's own key.
+  if (family == "Grid BF" || family == "Grid SAP" || family == "Tracy") {
+    return {{"objects_per_cell", std::to_string(settings.grid_objects_per_cell)}};
+  }
+  return {};
 }
 
 /// The original's ids of algorithms that are known.
