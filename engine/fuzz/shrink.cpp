@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -138,14 +137,6 @@ class Shrinker {
   }
 
  private:
-  /// A part of the recording that is held in memory, as it is there.
-  struct Held {
-    Part origin;
-    FrameList frames;
-
-    Held(Part part, FrameSource& source) : origin(std::move(part)), frames(source) {}
-  };
-
   /// Holds a part in memory, if it fits. Whether it is held now.
   bool hold(const Part& part) {
     if (isHeld(part)) return true;
@@ -153,20 +144,18 @@ class Shrinker {
       return false;
     }
     held_.reset();
-    Part origin = partOf(whole_.scene(), part.bodies, part.frames);
-    SubRecording frames(whole_, origin, partName(whole_.scene()));
-    held_ = std::make_unique<Held>(std::move(origin), frames);
+    origin_ = partOf(whole_.scene(), part.bodies, part.frames);
+    SubRecording frames(whole_, origin_, partName(whole_.scene()));
+    held_.emplace(frames);
     return true;
   }
 
-  [[nodiscard]] bool isHeld(const Part& part) const {
-    return held_ && isWithin(part, held_->origin);
-  }
+  [[nodiscard]] bool isHeld(const Part& part) const { return held_ && isWithin(part, origin_); }
 
   SubRecording framesOf(const Part& part) {
     const std::string name = partName(whole_.scene());
     if (!isHeld(part)) return {whole_, part, name};
-    return {held_->frames, renumbered(part, held_->origin), name};
+    return {*held_, renumbered(part, origin_), name};
   }
 
   /// Tries a part, which becomes the best when it fails.
@@ -329,7 +318,8 @@ class Shrinker {
   IndexedFrames& whole_;
   std::uint32_t last_;  ///< frame
   ShrunkPart best_;
-  std::unique_ptr<Held> held_;
+  Part origin_;                    ///< a part of the recording, as it is there
+  std::optional<FrameList> held_;  ///< that part in memory
 };
 
 /// How a case's answer for the last frame differs from the right one; nothing when it does not get
