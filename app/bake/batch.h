@@ -43,7 +43,7 @@ struct BatchState {
 /// fit into memory. Meanwhile the calling thread calls `ended` for each job that has ended, and
 /// `progress` now and then and at the end. A job that fails does not stop the others. After an
 /// interruption (InterruptGuard), and once `progress` has returned false, unfinished ones leave
-/// nothing behind; those are not told of.
+/// nothing behind, and `ended` is not called for them.
 void bakeAll(std::vector<BakeJob> jobs, int threads,
              const std::function<void(const BakedJob&)>& ended,
              const std::function<bool(const BatchState&)>& progress);

@@ -75,28 +75,8 @@ class Torture {
   }
 
   int run() {
-    const Clock::time_point start = Clock::now();
-    const double before = log_.seconds;
     Progress progress("torture", kTicks, options_.quiet);
-    std::vector<std::future<void>> jobs;
-    for (int i = 0; i < options_.jobs; ++i) {
-      jobs.push_back(std::async(std::launch::async, [&] { runRounds(start, progress); }));
-    }
-    Clock::time_point written = start;
-    for (std::future<void>& job : jobs) {
-      constexpr std::chrono::milliseconds kMoment{200};
-      for (bool ended = false; !ended;) {
-        ended = job.wait_for(kMoment) == std::future_status::ready;
-        const std::lock_guard lock(mutex_);
-        const Clock::time_point now = Clock::now();
-        log_.seconds = before + seconds(now - start);
-        showProgress(progress, seconds(now - start));
-        if (now - written < std::chrono::seconds(10)) continue;
-        writeTextFile(log_file_, tortureLogText(log_));
-        written = now;
-      }
-      job.get();
-    }
+    runJobs(progress);
     writeTextFile(log_file_, tortureLogText(log_));
     progress.print(formatTortureLog(log_));
     if (InterruptGuard::requested()) {
@@ -185,6 +165,40 @@ class Torture {
     return held;
   }
 
+  void runJobs(Progress& progress) {
+    const Clock::time_point start = Clock::now();
+    const double before = log_.seconds;
+    Clock::time_point written = start;
+    std::vector<std::future<void>> jobs;
+    try {
+      for (int i = 0; i < options_.jobs; ++i) {
+        jobs.push_back(std::async(std::launch::async, [&] { runRounds(start, progress); }));
+      }
+      for (std::future<void>& job : jobs) {
+        constexpr std::chrono::milliseconds kMoment{200};
+        for (bool ended = false; !ended;) {
+          ended = job.wait_for(kMoment) == std::future_status::ready;
+          const std::lock_guard lock(mutex_);
+          const Clock::time_point now = Clock::now();
+          log_.seconds = before + seconds(now - start);
+          showProgress(progress, seconds(now - start));
+          if (now - written < std::chrono::seconds(10)) continue;
+          writeTextFile(log_file_, tortureLogText(log_));
+          written = now;
+        }
+        job.get();
+      }
+    } catch (...) {
+      beginNoMore();  // the jobs are waited for
+      throw;
+    }
+  }
+
+  void beginNoMore() {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+
   /// One round after the other; what one throws ends the rounds of the other threads, too.
   void runRounds(Clock::time_point start, Progress& progress) {
     try {
@@ -193,8 +207,7 @@ class Torture {
       }
     } catch (const Cancelled&) {
     } catch (...) {
-      const std::lock_guard lock(mutex_);
-      is_over_ = true;
+      beginNoMore();
       throw;
     }
   }

@@ -28,7 +28,7 @@ struct FrameRun {
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included; of events all that there are
 };
 
-/// What a host knows of its passes. Where others share the memory of its process, nothing of that.
+/// Measurements of a host's passes; those of memory are missing where its process has other work.
 struct PassReport {
   std::optional<std::uint64_t> heap_bytes;  ///< allocated and not freed after the last stop()
   std::optional<std::uint64_t> peak_bytes;  ///< growth of the peak of memory by the first pass
