@@ -20,15 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Throws InputError for a --param that no scene has.
-void requireUsedParameters(const BakeOptions& options, const std::vector<BakeJob>& jobs) {
-  std::vector<std::string> known;
-  for (const BakeJob& job : jobs) {
-    std::ranges::move(parameterNames(*job.simulation), std::back_inserter(known));
-  }
-  requireKnownParameters(options.parameters, std::move(known));
-}
-
 /// The scenes that are named, or all built-in ones.
 std::vector<std::string> scenesOf(const BakeOptions& options) {
   std::vector<std::string> scenes = options.sources;
@@ -41,6 +32,7 @@ std::vector<std::string> scenesOf(const BakeOptions& options) {
 std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<BakeJob> jobs;
   std::set<std::vector<fs::path>> taken;
+  std::vector<std::string> parameters;
   for (const std::string& name : scenesOf(options)) {
     NamedSource scene(name);
     for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
@@ -48,10 +40,11 @@ std::vector<BakeJob> makeJobs(const BakeOptions& options) {
       job.simulation = std::move(simulation);
       job.paths = recordingPaths(options.record, job.scene, swept, options.scene.recorders);
       requireBakeable(*job.simulation, job.paths);
+      std::ranges::move(parameterNames(*job.simulation), std::back_inserter(parameters));
       if (taken.insert(job.paths).second) jobs.push_back(std::move(job));
     }
   }
-  requireUsedParameters(options, jobs);
+  requireKnownParameters(options.parameters, std::move(parameters));
   return jobs;
 }
 

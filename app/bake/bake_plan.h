@@ -1,5 +1,5 @@
 // Which recordings a batch is to bake, found out before anything is simulated. Prints nothing:
-// command line and inspector alike plan with planBake(), then hand the jobs to a BakeBatch.
+// command line and inspector alike plan with planBake(), then hand the jobs to bakeAll().
 #pragma once
 
 #include <cstdint>

@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <functional>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <future>
+#include <mutex>
 #include <new>
 #include <utility>
 
@@ -21,18 +24,15 @@ namespace {
 /// FreeFall, 29 kB in Gravity at density 0.5.
 constexpr std::uint64_t kBytesPerBody = 32'000;
 
-}  // namespace
+using Clock = std::chrono::steady_clock;
 
 /// A job with its progress.
-struct BakeBatch::Run {
+struct Run {
   enum class Phase { waiting, running, ended, stopped };
 
   explicit Run(BakeJob what) : job(std::move(what)) {}
 
-  [[nodiscard]] std::uint64_t bodies() const { return std::max(job.scene.objects, 1U); }
-  [[nodiscard]] std::uint64_t work() const { return bodies() * job.scene.frames; }
-  [[nodiscard]] std::uint64_t done() const { return bodies() * frame; }
-  [[nodiscard]] std::uint64_t memory() const { return bodies() * kBytesPerBody; }
+  [[nodiscard]] std::uint64_t memory() const { return job.bodies() * kBytesPerBody; }
 
   BakeJob job;
   std::atomic<std::uint32_t> frame = 0;
@@ -42,137 +42,147 @@ struct BakeBatch::Run {
   Clock::time_point end;
 };
 
-BakeBatch::BakeBatch(std::vector<BakeJob> jobs, int threads)
-    : memory_bytes_(thisEnvironment().memory_bytes / 4 * 3),
-      active_threads_(std::min(static_cast<std::size_t>(threads), jobs.size())) {
-  for (BakeJob& job : jobs) runs_.push_back(std::make_unique<Run>(std::move(job)));
-  std::ranges::stable_sort(runs_, std::ranges::greater{},
-                           [](const auto& run) { return run->work(); });
-  threads_.reserve(active_threads_);
-  try {
-    for (std::size_t i = active_threads_; i > 0; --i) threads_.emplace_back([this] { work(); });
-  } catch (...) {  // no more threads available
-    stopping_ = true;
-    for (std::thread& thread : threads_) thread.join();
-    throw;
+class Batch {
+ public:
+  explicit Batch(std::vector<BakeJob> jobs)
+      : memory_bytes_(thisEnvironment().memory_bytes / 4 * 3) {
+    for (BakeJob& job : jobs) runs_.push_back(std::make_unique<Run>(std::move(job)));
+    std::ranges::stable_sort(runs_, std::ranges::greater{},
+                             [](const auto& run) { return run->job.work(); });
   }
-}
+  ~Batch() { stopping_ = true; }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
 
-BakeBatch::~BakeBatch() {
-  cancel();
-  for (std::thread& thread : threads_) thread.join();
-}
-
-std::vector<BakedJob> BakeBatch::await(std::chrono::milliseconds patience) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, patience, [this] { return !ended_.empty() || active_threads_ == 0; });
-  if (broken_) std::rethrow_exception(broken_);
-  return std::exchange(ended_, {});
-}
-
-void BakeBatch::cancel() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  changed_.notify_all();
-}
-
-bool BakeBatch::ended() {
-  const std::lock_guard lock(mutex_);
-  return active_threads_ == 0 && ended_.empty();
-}
-
-BatchState BakeBatch::state() {
-  const std::lock_guard lock(mutex_);
-  BatchState state;
-  const auto now = Clock::now();
-  std::chrono::duration<double> busy{};
-  std::uint64_t longest = 0;
-  for (const auto& each : runs_) {
-    const Run& run = *each;
-    const std::uint64_t done = run.phase == Run::Phase::ended ? run.work() : run.done();
-    state.total += run.work();
-    state.done += done;
-    longest = std::max(longest, run.work() - done);
-    if (run.phase == Run::Phase::ended) busy += run.end - run.begin;
-    if (run.phase != Run::Phase::running) continue;
-    busy += now - run.begin;
-    const SceneInfo& scene = run.job.scene;
-    state.running +=
-        fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
-                    scene.object_type, scene.objects, run.frame.load(), scene.frames);
-  }
-  // At the pace so far: all threads share what is left, but a recording has one thread.
-  const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy.count();
-  const double shared = static_cast<double>(state.total - state.done) /
-                        static_cast<double>(std::max<std::size_t>(active_threads_, 1));
-  state.seconds_left = std::max(shared, static_cast<double>(longest)) / pace;
-  return state;
-}
-
-void BakeBatch::work() {
-  try {
-    while (Run* run = take()) perform(*run);
-  } catch (...) {
-    stopping_ = true;
-    const std::lock_guard lock(mutex_);
-    if (!broken_) broken_ = std::current_exception();
-  }
-  const std::lock_guard lock(mutex_);
-  --active_threads_;
-  changed_.notify_all();
-}
-
-BakeBatch::Run* BakeBatch::take() {
-  std::unique_lock lock(mutex_);
-  while (!stopped()) {
-    bool waiting = false;
-    for (const auto& run : runs_) {
-      if (run->phase != Run::Phase::waiting) continue;
-      waiting = true;
-      if (!fits(*run)) continue;
-      run->phase = Run::Phase::running;
-      run->begin = Clock::now();
-      return run.get();
+  void run(int threads, const std::function<void(const BakedJob&)>& ended,
+           const std::function<bool(const BatchState&)>& progress) {
+    constexpr std::chrono::milliseconds kGlance{20};
+    while (std::cmp_less(threads_.size(), threads) && threads_.size() < runs_.size()) {
+      threads_.push_back(std::async(std::launch::async, [this] { work(); }));
     }
-    if (!waiting) return nullptr;
-    changed_.wait(lock);  // for memory
+    for (std::future<void>& thread : threads_) {
+      for (bool is_over = false; !is_over;) {
+        is_over = thread.wait_for(kGlance) == std::future_status::ready;
+        for (const BakedJob& job : takeEnded()) ended(job);
+        if (!progress(state())) stopping_ = true;
+      }
+      thread.get();
+    }
   }
-  return nullptr;
-}
 
-void BakeBatch::perform(Run& run) {
-  std::string failure;
-  bool whole = false;
-  try {
-    whole = bake(*run.job.simulation, run.job.paths, [&](std::uint32_t frame) {
-      run.frame = frame;
-      return !stopped();
-    });
-  } catch (const InputError& error) {
-    failure = error.what();
-  } catch (const std::bad_alloc&) {
-    failure = run.job.paths.front().string() + ": out of memory";
+ private:
+  std::vector<BakedJob> takeEnded() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(ended_, {});
   }
-  run.job.simulation.reset();
-  const std::lock_guard lock(mutex_);
-  const bool ended = whole || !failure.empty();
-  run.phase = ended ? Run::Phase::ended : Run::Phase::stopped;
-  run.end = Clock::now();
-  if (ended) ended_.push_back({run.job.paths, std::move(failure)});
-  changed_.notify_all();
-}
 
-/// Whether there is memory for one more simulation. A single one may always run.
-bool BakeBatch::fits(const Run& candidate) const {
-  std::uint64_t taken = 0;
-  for (const auto& run : runs_) {
-    if (run->phase == Run::Phase::running) taken += run->memory();
+  BatchState state() {
+    const std::lock_guard lock(mutex_);
+    BatchState state;
+    const auto now = Clock::now();
+    std::chrono::duration<double> busy{};
+    std::uint64_t longest = 0;
+    int running = 0;
+    for (const auto& each : runs_) {
+      const Run& run = *each;
+      const std::uint64_t work = run.job.work();
+      const std::uint64_t done =
+          run.phase == Run::Phase::ended ? work : run.job.bodies() * run.frame;
+      state.total += work;
+      state.done += done;
+      longest = std::max(longest, work - done);
+      if (run.phase == Run::Phase::ended) busy += run.end - run.begin;
+      if (run.phase != Run::Phase::running) continue;
+      ++running;
+      busy += now - run.begin;
+      const SceneInfo& scene = run.job.scene;
+      state.running +=
+          fmt::format("{}{} {} N{} frame {}/{}", state.running.empty() ? "" : ", ", scene.name,
+                      scene.object_type, scene.objects, run.frame.load(), scene.frames);
+    }
+    // At the pace so far: all that run share what is left, but a recording has one thread.
+    const double pace = static_cast<double>(std::max<std::uint64_t>(state.done, 1)) / busy.count();
+    const double shared = static_cast<double>(state.total - state.done) / std::max(running, 1);
+    state.seconds_left = std::max(shared, static_cast<double>(longest)) / pace;
+    return state;
   }
-  return taken == 0 || taken + candidate.memory() <= memory_bytes_;
-}
 
-bool BakeBatch::stopped() const { return stopping_ || InterruptGuard::requested(); }
+  void work() {
+    try {
+      while (Run* run = take()) perform(*run);
+    } catch (...) {  // an error that concerns the whole batch
+      stopping_ = true;
+      changed_.notify_all();
+      throw;
+    }
+  }
+
+  Run* take() {
+    std::unique_lock lock(mutex_);
+    while (!stopped()) {
+      bool waiting = false;
+      for (const auto& run : runs_) {
+        if (run->phase != Run::Phase::waiting) continue;
+        waiting = true;
+        if (!fits(*run)) continue;
+        run->phase = Run::Phase::running;
+        run->begin = Clock::now();
+        return run.get();
+      }
+      if (!waiting) return nullptr;
+      changed_.wait(lock);  // for memory
+    }
+    return nullptr;
+  }
+
+  void perform(Run& run) {
+    std::string failure;
+    bool whole = false;
+    try {
+      whole = bake(*run.job.simulation, run.job.paths, [&](std::uint32_t frame) {
+        run.frame = frame;
+        return !stopped();
+      });
+    } catch (const InputError& error) {
+      failure = error.what();
+    } catch (const std::bad_alloc&) {
+      failure = run.job.paths.front().string() + ": out of memory";
+    }
+    run.job.simulation.reset();
+    const std::lock_guard lock(mutex_);
+    const bool ended = whole || !failure.empty();
+    run.phase = ended ? Run::Phase::ended : Run::Phase::stopped;
+    run.end = Clock::now();
+    if (ended) ended_.push_back({run.job.paths, std::move(failure)});
+    changed_.notify_all();
+  }
+
+  /// Whether there is memory for one more simulation. A single one may always run.
+  [[nodiscard]] bool fits(const Run& candidate) const {
+    std::uint64_t taken = 0;
+    for (const auto& run : runs_) {
+      if (run->phase == Run::Phase::running) taken += run->memory();
+    }
+    return taken == 0 || taken + candidate.memory() <= memory_bytes_;
+  }
+
+  [[nodiscard]] bool stopped() const { return stopping_ || InterruptGuard::requested(); }
+
+  std::vector<std::unique_ptr<Run>> runs_;  ///< largest first
+  std::uint64_t memory_bytes_;
+  std::atomic<bool> stopping_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<BakedJob> ended_;  ///< guarded by mutex_
+  std::vector<std::future<void>> threads_;
+};
+
+}  // namespace
+
+void bakeAll(std::vector<BakeJob> jobs, int threads,
+             const std::function<void(const BakedJob&)>& ended,
+             const std::function<bool(const BatchState&)>& progress) {
+  Batch(std::move(jobs)).run(threads, ended, progress);
+}
 
 }  // namespace broadmark

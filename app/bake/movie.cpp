@@ -4,23 +4,25 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <functional>
+#include <set>
+
 #include "broadmark/error.h"
 #include "broadmark/files.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/names.h"
 #include "run/recordings.h"
+#include "support/progress.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::unique_ptr<OffscreenContext> contextFor(const MovieOptions& options) {
-  try {
-    return makeOffscreenContext(options.picture.gl);
-  } catch (const RenderError& error) {
-    throw InputError(fmt::format("--movie: {}", error.what()));
-  }
+std::uint32_t picturesOf(const Recording& recording, const MovieOptions& options) {
+  return recording.scene().frames / options.every + 1;
 }
 
 /// Numbered from 0 without gaps, as video tools expect.
@@ -53,40 +55,60 @@ void removeOlder(const fs::path& folder) {
   }
 }
 
-}  // namespace
-
-MovieMaker::MovieMaker(MovieOptions options)
-    : options_(std::move(options)), context_(contextFor(options_)) {
-  makeDirectory(options_.directory);
-}
-
-MovieMaker::~MovieMaker() = default;
-
-std::uint32_t MovieMaker::pictures(const SceneInfo& scene) const {
-  return scene.frames / options_.every + 1;
-}
-
-fs::path MovieMaker::make(const fs::path& path, const PictureProgress& progress) {
-  const auto opened = openRecordingFile(path);
-  Recording& recording = *opened;
+/// Draws a recording, unless its movie is already there. False when `go_on(picture)` stopped it.
+bool makeMovie(OffscreenContext& context, const MovieOptions& options, Recording& recording,
+               const fs::path& folder, const std::function<bool(std::uint32_t)>& go_on) {
   const SceneInfo& scene = recording.scene();
-  fs::path folder = options_.directory / path.stem();
   const fs::path label_path = folder / "movie.json";
-  const std::string text = label(recording, options_);
+  const std::string text = label(recording, options);
+  const std::uint32_t pictures = picturesOf(recording, options);
   makeDirectory(folder);
-  if (isMade(folder, label_path, text, pictures(scene))) return folder;
+  if (isMade(folder, label_path, text, pictures)) return true;
   removeOlder(folder);
-  for (std::uint32_t number = 0; number < pictures(scene); ++number) {
-    const Frame frame = recording.at(number * options_.every);
+  for (std::uint32_t number = 0; number < pictures; ++number) {
+    const Frame frame = recording.at(number * options.every);
     const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
     const PairRun run = pairs;
-    writePng(picturePath(folder, number),
-             drawFrame(*context_, scene, frame, {&run, 1}, options_.picture.width,
-                       options_.picture.height));
-    if (!progress(number)) return {};
+    writePng(picturePath(folder, number), drawFrame(context, scene, frame, {&run, 1},
+                                                    options.picture.width, options.picture.height));
+    if (!go_on(number)) return false;
   }
   writeTextFile(label_path, text);
-  return folder;
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<OffscreenContext> prepareMovies(const MovieOptions& options) {
+  try {
+    auto context = makeOffscreenContext(options.picture.gl);
+    makeDirectory(options.directory);
+    return context;
+  } catch (const RenderError& error) {
+    throw InputError(fmt::format("--movie: {}", error.what()));
+  }
+}
+
+bool makeMovies(OffscreenContext& context, const MovieOptions& options,
+                std::vector<fs::path> recordings, bool quiet) {
+  std::ranges::sort(recordings);
+  std::set<fs::path> names;
+  std::erase_if(recordings,
+                [&](const fs::path& path) { return !names.insert(path.stem()).second; });
+  std::uint64_t total = 0;
+  for (const fs::path& path : recordings) total += picturesOf(*openRecordingFile(path), options);
+  Progress progress(fmt::format("drawing {}", counted(recordings.size(), "movie")), total, quiet);
+  std::uint64_t done = 0;
+  for (const fs::path& path : recordings) {
+    progress.detail(path.stem().string());
+    const auto recording = openRecordingFile(path);
+    const fs::path folder = options.directory / path.stem();
+    const auto go_on = [&](std::uint32_t picture) { return progress.goOn(done + picture); };
+    if (!makeMovie(context, options, *recording, folder, go_on)) return false;
+    progress.print("movie  " + folder.string());
+    progress.update(done += picturesOf(*recording, options));
+  }
+  return true;
 }
 
 }  // namespace broadmark

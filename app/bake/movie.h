@@ -3,11 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <memory>
+#include <vector>
 
-#include "broadmark/frame.h"
-#include "request/picture_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
@@ -17,30 +16,15 @@ struct MovieOptions {
   PictureOptions picture;
 };
 
+/// Makes the directory. Returns what draws. Throws InputError, also when there is no OpenGL.
+std::unique_ptr<OffscreenContext> prepareMovies(const MovieOptions&);
+
 /// Draws movies off-screen with the camera of the paper's figures and overlapping boxes in another
-/// colour. For one thread. A movie is a folder of its recording's name with frame_00000.png (the
-/// initial pose), frame_00001.png (`every` frames later), …
-class MovieMaker {
- public:
-  /// Throws InputError when there is no OpenGL or the directory cannot be made.
-  explicit MovieMaker(MovieOptions options);
-  ~MovieMaker();
-
-  /// Told after each picture; returning false stops.
-  using PictureProgress = std::function<bool(std::uint32_t picture)>;
-
-  /// How many pictures a movie has.
-  [[nodiscard]] std::uint32_t pictures(const SceneInfo&) const;
-
-  /// Draws a recording, unless its movie is already there: a movie.json in the folder states the
-  /// recording's hash and how it was drawn. Returns the folder, or "" when stopped. Throws
-  /// InputError.
-  std::filesystem::path make(const std::filesystem::path& recording,
-                             const PictureProgress& progress);
-
- private:
-  MovieOptions options_;
-  std::unique_ptr<OffscreenContext> context_;
-};
+/// colour: one for all recordings that differ only in their kind. A movie is a folder of its
+/// recording's name with frame_00000.png (the initial pose), frame_00001.png (`every` frames
+/// later), … One that is there is kept: a movie.json in the folder states the recording's hash and
+/// how it was drawn. Shows progress unless `quiet`. False when interrupted. Throws InputError.
+bool makeMovies(OffscreenContext&, const MovieOptions&,
+                std::vector<std::filesystem::path> recordings, bool quiet);
 
 }  // namespace broadmark

@@ -215,9 +215,16 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
 std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
   std::vector<CLI::Option*> options;
   for (const ResultWriter& writer : resultWriters()) {
+    const auto set = [&outputs, name = std::string(writer.name)](const std::string& path) {
+      outputs[name] = path;
+    };
+    const auto get = [&outputs, name = std::string(writer.name)] {
+      const auto given = outputs.find(name);
+      return given == outputs.end() ? std::string() : given->second.string();
+    };
     options.push_back(
-        addPath(app, fmt::format("--{}", writer.name), "FILE", outputs[std::string(writer.name)],
-                fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
+        addValue(app, fmt::format("--{}", writer.name), "FILE", set, get,
+                 fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
   }
   return options;
 }
@@ -287,7 +294,7 @@ std::vector<CLI::Option*> addHosts(CLI::App& app, HostOptions& hosts) {
           memory_limit->excludes(in_process)};
 }
 
-std::string readingOption(std::string parameter) {
+std::string parameterOption(std::string parameter) {
   std::ranges::replace(parameter, '_', '-');
   return fmt::format("--{}", parameter);
 }
@@ -295,7 +302,7 @@ std::string readingOption(std::string parameter) {
 std::vector<CLI::Option*> addReadingOptions(CLI::App& app, ReadingOptions& options) {
   std::vector<CLI::Option*> added;
   options.visitParameters([&](const Parameter& parameter) {
-    const std::string name = readingOption(std::string(parameter.name));
+    const std::string name = parameterOption(std::string(parameter.name));
     const std::string doc(parameter.doc);
     if (bool* const* flag = std::get_if<bool*>(&parameter.value)) {
       added.push_back(addFlag(app, name, **flag, doc));

@@ -16,10 +16,8 @@
 #include "broadmark/harness/case.h"
 #include "broadmark/names.h"
 #include "request/hosts.h"
-#include "request/picture_options.h"
 #include "request/reading_options.h"
 #include "request/run_request.h"
-#include "request/scene_options.h"
 #include "support/build_parts.h"
 
 namespace CLI {
@@ -110,7 +108,7 @@ CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
                         const std::string& more = "algorithms or physics engines");
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
-/// Where results go: --json, --csv, … Paths that are not given stay "".
+/// Where results go: --json, --csv, …
 std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
 /// --quiet
 CLI::Option* addQuiet(CLI::App&, bool& quiet);

@@ -66,99 +66,85 @@ std::string isaNames(const std::vector<Isa>& isas) {
 
 }  // namespace
 
-struct SessionParser::Parts {
-  explicit Parts(CLI::App& app_) : app(app_) {
-    addCall();
-    addCases();
-    addRun();
-    addOutput();
-    addPictures();
-    addScene();
-    addCaseOfResults();
-  }
+SessionParser::SessionParser(CLI::App& app) : app_(app) {
+  addCall();
+  addCases();
+  addRun();
+  addOutput();
+  addPictures();
+  addScene();
+  addCaseOfResults();
+}
 
-  void tag(const CLI::Option* option, unsigned conflicts) {
-    tagged.emplace_back(option, conflicts);
-  }
+void SessionParser::tag(const CLI::Option* option, unsigned conflicts) {
+  tagged_.emplace_back(option, conflicts);
+}
 
-  void addCall();
-  void addCases();
-  void addRun();
-  void addOutput();
-  void addPictures();
-  void addScene();
-  void addCaseOfResults();
-  void requireNoConflict() const;
-
-  CLI::App& app;
-  SessionOptions options;
-  std::vector<std::pair<const CLI::Option*, unsigned>> tagged;
-  std::vector<const CLI::Option*> only_with_auto;
-};
-
-void SessionParser::Parts::addCall() {
-  tag(app.add_option("source", options.sources, fmt::format("what to open: {}", sourceKindsText()))
+void SessionParser::addCall() {
+  tag(app_.add_option("source", options_.sources,
+                      fmt::format("what to open: {}", sourceKindsText()))
           ->type_name("SOURCE")
           ->default_function(
-              [this] { return fmt::format("{}", fmt::join(options.sources, "\n")); }),
+              [this] { return fmt::format("{}", fmt::join(options_.sources, "\n")); }),
       kNone);
-  tag(app.add_flag("--headless", options.headless, "run without a window"), kRequest);
-  CLI::Option* ui = app.add_flag("--ui", options.ui,
-                                 "with --headless: the inspector drawn off-screen (--screenshot)");
+  tag(app_.add_flag("--headless", options_.headless, "run without a window"), kRequest);
+  CLI::Option* ui = app_.add_flag("--ui", options_.ui,
+                                  "with --headless: the inspector drawn off-screen (--screenshot)");
   CLI::Option* script =
-      addPath(app, "--script", "FILE", options.script,
+      addPath(app_, "--script", "FILE", options_.script,
               "what a user does in the inspector, line by line (see docs/inspector.md)");
   tag(ui, kRequest);
   tag(script, kRequest);
   showWith(parts::kInspector, {ui, script});
-  tag(addPath(app, "--request", "FILE", options.request_file,
+  tag(addPath(app_, "--request", "FILE", options_.request_file,
               "take the options of this run request, too (JSON, see docs/run-requests.md; '-': "
               "standard input); those given beside it win"),
       kRequest);
-  tag(addPath(app, "--write-request", "FILE", options.written_request,
+  tag(addPath(app_, "--write-request", "FILE", options_.written_request,
               "write the run request ('-': to standard output), run nothing"),
       kRequest | kExport | kInspector);
 }
 
-void SessionParser::Parts::addCases() {
-  CaseOptions& cases = options.cases;
+void SessionParser::addCases() {
+  CaseOptions& cases = options_.cases;
   using Texts = std::vector<std::string>;
   tag(addList(
-          app, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
+          app_, "--algorithm", "ID[,ID...]", [&](const Texts& ids) { cases.algorithms = ids; },
           [&] { return fmt::format("{}", fmt::join(cases.algorithms, ",")); },
           "algorithms: ids, families, patterns such as 'sap*', or all (default; the self-checks "
           "only by name)"),
       kCase);
-  tag(addPlugins(app, options.plugins), kNone);
+  tag(addPlugins(app_, options_.plugins), kNone);
   tag(addList(
-          app, "--threads", "T[,T...]",
+          app_, "--threads", "T[,T...]",
           [&](const Texts& texts) { cases.threads = parseThreads(texts); },
           [&] { return fmt::format("{}", fmt::join(cases.threads, ",")); },
           "threads of parallel variants (default: all cores)"),
       kCase);
   tag(addList(
-          app, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
+          app_, "--isa", "ISA[,ISA...]", [&](const Texts& names) { cases.isas = parseIsas(names); },
           [&] { return isaNames(cases.isas); },
           fmt::format("instruction sets of vectorised variants: auto (default), {}",
                       fmt::join(kIsas.names(), ", "))),
       kCase);
-  tag(addAnswer(app, cases.answer), kCase);
-  tag(addDevice(app, cases.device), kCase);
-  tag(addText(app, "--filter", "REGEX", options.filter, "run only cases whose id matches"),
+  tag(addAnswer(app_, cases.answer), kCase);
+  tag(addDevice(app_, cases.device), kCase);
+  tag(addText(app_, "--filter", "REGEX", options_.filter, "run only cases whose id matches"),
       kCase | kInspector);
   tag(addValue(
-          app, "--shard", "I/N", [&](const std::string& text) { options.shard = parseShard(text); },
-          [&] { return fmt::format("{}/{}", options.shard.index, options.shard.count); },
+          app_, "--shard", "I/N",
+          [&](const std::string& text) { options_.shard = parseShard(text); },
+          [&] { return fmt::format("{}/{}", options_.shard.index, options_.shard.count); },
           "run only every N-th case, from the I-th (from 0)"),
       kCase | kInspector);
-  tag(app.add_flag("--list", options.list_only, "print the cases, run nothing"),
+  tag(app_.add_flag("--list", options_.list_only, "print the cases, run nothing"),
       kExport | kInspector | kRequest);
 }
 
-void SessionParser::Parts::addRun() {
+void SessionParser::addRun() {
   constexpr long long kMostPasses = 1'000'000;
-  RunPolicy& policy = options.policy;
-  RepetitionOptions& repetitions = options.repetitions;
+  RunPolicy& policy = options_.policy;
+  RepetitionOptions& repetitions = options_.repetitions;
   const auto set_repetitions = [&](const std::string& text) {
     repetitions.until_precise = text == "auto";
     repetitions.most = repetitions.until_precise
@@ -166,7 +152,7 @@ void SessionParser::Parts::addRun() {
                            : static_cast<int>(parseInteger(text, "--repetitions", 1, kMostPasses));
   };
   tag(addValue(
-          app, "--repetitions", "R|auto", set_repetitions,
+          app_, "--repetitions", "R|auto", set_repetitions,
           [&] { return repetitions.until_precise ? "auto" : fmt::format("{}", repetitions.most); },
           fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
                       "is known precisely",
@@ -175,138 +161,120 @@ void SessionParser::Parts::addRun() {
       kInspector);
   const auto tag_auto = [&](CLI::Option* option) {
     tag(option, kInspector);
-    only_with_auto.push_back(option);
+    only_with_auto_.push_back(option);
   };
-  tag_auto(addShare(app, "--precision", repetitions.precision, true,
+  tag_auto(addShare(app_, "--precision", repetitions.precision, true,
                     "of --repetitions auto: width of the mean's 95 % interval over the "
                     "repetitions"));
   tag_auto(addPositive(
-      app, "--most-seconds", "S", repetitions.most_seconds,
+      app_, "--most-seconds", "S", repetitions.most_seconds,
       fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
                   "more than {} times",
                   RepetitionOptions::kFewestUntilPrecise)));
-  tag(addInteger(app, "--order-seed", "S", repetitions.order_seed, 0,
+  tag(addInteger(app_, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
                  "seed of the order in which cases take turns, another for each repetition"),
       kInspector);
-  tag(addInteger(app, "--warmup", "W", repetitions.warmup, 0, kMostPasses,
+  tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMostPasses,
                  "unmeasured repetitions before them"),
       kInspector);
-  tag(addPositive(app, "--time-limit", "SECONDS", policy.frame_limit_seconds,
+  tag(addPositive(app_, "--time-limit", "SECONDS", policy.frame_limit_seconds,
                   "limit on the mean seconds per frame (the paper's cap)"),
       kInspector);
-  tag(addFlag(app, "--allow-timeout", options.allow_timeout,
+  tag(addFlag(app_, "--allow-timeout", options_.allow_timeout,
               "cases that cross a time limit do not make the run fail"),
       kInspector);
-  tag(addNamed(app, "--check", "MODE", policy.check, kCheckModes,
+  tag(addNamed(app_, "--check", "MODE", policy.check, kCheckModes,
                "full: compare exact pair sets on every frame; hash: counts and hashes; off"),
       kInspector);
-  for (const CLI::Option* option : addHosts(app, options.hosts)) tag(option, kNone);
-  tag(addQuiet(app, options.quiet), kRequest);
+  for (const CLI::Option* option : addHosts(app_, options_.hosts)) tag(option, kNone);
+  tag(addQuiet(app_, options_.quiet), kRequest);
 }
 
-void SessionParser::Parts::addOutput() {
-  for (const CLI::Option* option : addResultOutputs(app, options.outputs)) {
+void SessionParser::addOutput() {
+  for (const CLI::Option* option : addResultOutputs(app_, options_.outputs)) {
     tag(option, kExport | kInspector);
   }
-  tag(addPath(app, "--record", "DIR", options.record,
+  tag(addPath(app_, "--record", "DIR", options_.record,
               "keep the simulated recordings in this directory"),
       kExport | kInspector);
-  tag(addRecorders(app, options.scene.recorders), kInspector);
+  tag(addRecorders(app_, options_.scene.recorders), kInspector);
 }
 
-void SessionParser::Parts::addPictures() {
+void SessionParser::addPictures() {
   constexpr long long kMostFrame = std::numeric_limits<std::int32_t>::max();
   CLI::Option* screenshot =
-      addPath(app, "--screenshot", "FILE", options.screenshot,
+      addPath(app_, "--screenshot", "FILE", options_.screenshot,
               "draw a frame of each recording off-screen; with several recordings their names "
               "are added to the file's");
   tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
-    options.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
+    options_.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
   };
   std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
   if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";
   const auto get_frame = [this] {
-    return options.frame ? fmt::format("{}", *options.frame) : std::string();
+    return options_.frame ? fmt::format("{}", *options_.frame) : std::string();
   };
-  CLI::Option* frame = addValue(app, "--frame", "K", set_frame, get_frame, frame_help);
+  CLI::Option* frame = addValue(app_, "--frame", "K", set_frame, get_frame, frame_help);
   tag(frame, kNone);
   showWith(parts::kRenderer, {screenshot, frame});
-  for (const CLI::Option* option : addPictureOptions(app, options.picture)) {
+  for (const CLI::Option* option : addPictureOptions(app_, options_.picture)) {
     tag(option, kWindow);
   }
 }
 
-void SessionParser::Parts::addScene() {
-  for (CLI::Option* option : addSceneOptions(app, options.scene)) tag(option, kCase);
-  tag(addParameters(app, options.parameters), kCase);
-  for (CLI::Option* option : addReadingOptions(app, options.reading)) tag(option, kCase);
+void SessionParser::addScene() {
+  for (CLI::Option* option : addSceneOptions(app_, options_.scene)) tag(option, kCase);
+  tag(addParameters(app_, options_.parameters), kCase);
+  for (CLI::Option* option : addReadingOptions(app_, options_.reading)) tag(option, kCase);
 }
 
-void SessionParser::Parts::addCaseOfResults() {
-  CLI::Option* id = addText(app, "--case", "ID", options.case_id,
+void SessionParser::addCaseOfResults() {
+  CLI::Option* id = addText(app_, "--case", "ID", options_.case_id,
                             "run only this case of the results file that is the source");
-  tag(addPath(app, "--export-case", "FILE", options.export_case,
+  tag(addPath(app_, "--export-case", "FILE", options_.export_case,
               "instead of running it, find the smallest recording on which that case still gives "
               "a wrong answer, write it, and print the command that shows it")
           ->needs(id),
       kInspector | kRequest);
 }
 
-void SessionParser::Parts::requireNoConflict() const {
+void SessionParser::requireNoConflict() const {
   struct Rule {
     bool applies;
     Conflict conflict;
     const char* why;
   };
   const Rule rules[] = {
-      {!options.case_id.empty(), kCase, "cannot be combined with --case, which states it"},
-      {!options.export_case.empty(), kExport, "cannot be combined with --export-case"},
-      {options.ui, kInspector, "only for runs without the inspector: leave out --ui"},
-      {!options.headless, kInspector, "only for runs without the inspector: add --headless"},
-      {!options.headless, kWindow, "only for pictures drawn off-screen: add --headless"}};
+      {!options_.case_id.empty(), kCase, "cannot be combined with --case, which states it"},
+      {!options_.export_case.empty(), kExport, "cannot be combined with --export-case"},
+      {options_.ui, kInspector, "only for runs without the inspector: leave out --ui"},
+      {!options_.headless, kInspector, "only for runs without the inspector: add --headless"},
+      {!options_.headless, kWindow, "only for pictures drawn off-screen: add --headless"}};
   for (const Rule& rule : rules) {
     if (!rule.applies) continue;
-    for (const auto& [option, conflicts] : tagged) {
+    for (const auto& [option, conflicts] : tagged_) {
       if (option->count() == 0 || (conflicts & rule.conflict) == 0) continue;
       throw InputError(fmt::format("{}: {}", option->get_name(), rule.why));
     }
   }
-  if (options.repetitions.until_precise) return;
-  for (const CLI::Option* option : only_with_auto) {
+  if (options_.repetitions.until_precise) return;
+  for (const CLI::Option* option : only_with_auto_) {
     if (option->count() == 0) continue;
     throw InputError(fmt::format("{}: only with --repetitions auto", option->get_name()));
   }
 }
 
-SessionParser::SessionParser(CLI::App& app) : parts_(std::make_unique<Parts>(app)) {}
-SessionParser::~SessionParser() = default;
-
-const SessionOptions& SessionParser::parsed() const { return parts_->options; }
-
-void SessionParser::set(const RunRequest& request) {
-  SessionOptions& options = parts_->options;
-  // Options are bound to the paths in this map.
-  ResultPaths outputs = std::move(options.outputs);
-  static_cast<RunRequest&>(options) = request;
-  for (auto& [name, path] : outputs) {
-    const auto given = request.outputs.find(name);
-    path = given == request.outputs.end() ? std::filesystem::path() : given->second;
-  }
-  options.outputs = std::move(outputs);
-}
-
 bool SessionParser::isOfRequest(const CLI::Option& option) const {
-  return std::ranges::any_of(parts_->tagged, [&](const auto& tagged) {
+  return std::ranges::any_of(tagged_, [&](const auto& tagged) {
     return tagged.first == &option && (tagged.second & kRequest) == 0;
   });
 }
 
 SessionOptions SessionParser::options() const {
-  parts_->requireNoConflict();
-  SessionOptions options = parts_->options;
-  std::erase_if(options.outputs, [](const auto& output) { return output.second.empty(); });
+  requireNoConflict();
+  SessionOptions options = options_;
   if (!options.screenshot.empty() && options.screenshot.extension() != ".png") {
     throw InputError(fmt::format("--screenshot: '{}': pictures are PNG files: name one .png",
                                  options.screenshot.string()));

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "request/run_request.h"
@@ -34,14 +34,13 @@ class SessionParser {
  public:
   /// Adds them to `app`, which is destroyed first.
   explicit SessionParser(CLI::App& app);
-  ~SessionParser();
   SessionParser(const SessionParser&) = delete;
   SessionParser& operator=(const SessionParser&) = delete;
 
   /// What `app` has parsed, not yet checked.
-  [[nodiscard]] const SessionOptions& parsed() const;
+  [[nodiscard]] const SessionOptions& parsed() const { return options_; }
   /// Gives the options the values of a request, as if they had been parsed.
-  void set(const RunRequest& request);
+  void set(const RunRequest& request) { static_cast<RunRequest&>(options_) = request; }
   /// Whether a run request has this option.
   [[nodiscard]] bool isOfRequest(const CLI::Option& option) const;
   /// The options, after `app` has parsed a command line. Throws InputError for options that cannot
@@ -49,8 +48,21 @@ class SessionParser {
   [[nodiscard]] SessionOptions options() const;
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  void addCall();
+  void addCases();
+  void addRun();
+  void addOutput();
+  void addPictures();
+  void addScene();
+  void addCaseOfResults();
+  /// States what an option cannot be combined with.
+  void tag(const CLI::Option* option, unsigned conflicts);
+  void requireNoConflict() const;
+
+  CLI::App& app_;
+  SessionOptions options_;
+  std::vector<std::pair<const CLI::Option*, unsigned>> tagged_;
+  std::vector<const CLI::Option*> only_with_auto_;
 };
 
 }  // namespace broadmark

@@ -7,7 +7,8 @@
 #include <CLI/CLI.hpp>
 
 namespace broadmark {
-namespace {
+
+bool isShown(const CLI::Option& option) { return !option.get_description().empty(); }
 
 std::vector<std::string> namesOf(const CLI::Option& option) {
   if (option.get_positional()) return {option.get_type_name()};
@@ -17,33 +18,13 @@ std::vector<std::string> namesOf(const CLI::Option& option) {
   return names;
 }
 
-OptionUsage usageOf(const CLI::Option& option) {
-  const bool takes_value = option.get_items_expected_max() > 0;
-  return {.names = namesOf(option),
-          .positional = option.get_positional(),
-          .takes_value = takes_value,
-          .type = takes_value ? option.get_type_name() : "",
-          .value = takes_value ? option.get_default_str() : "",
-          .doc = option.get_description()};
-}
-
-CommandUsage commandUsage(const CLI::App& app, std::string name) {
-  CommandUsage usage{.name = std::move(name), .summary = app.get_description(), .options = {}};
-  for (const CLI::Option* option :
-       app.get_options([](const CLI::Option* any) { return isShown(*any); })) {
-    usage.options.push_back(usageOf(*option));
-  }
-  return usage;
-}
-
-}  // namespace
-
-bool isShown(const CLI::Option& option) { return !option.get_description().empty(); }
+bool takesValue(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
 std::vector<CommandUsage> usageOf(const CLI::App& main) {
-  std::vector<CommandUsage> all = {commandUsage(main, "")};
+  const auto shown = [](const CLI::Option* option) { return isShown(*option); };
+  std::vector<CommandUsage> all = {{"", main.get_description(), main.get_options(shown)}};
   for (const CLI::App* command : main.get_subcommands([](const CLI::App*) { return true; })) {
-    all.push_back(commandUsage(*command, command->get_name()));
+    all.push_back({command->get_name(), command->get_description(), command->get_options(shown)});
   }
   return all;
 }

@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/names.h"
-
 namespace CLI {
 class App;
 class Option;
@@ -13,36 +11,21 @@ class Option;
 
 namespace broadmark {
 
-struct OptionUsage {
-  std::vector<std::string> names;  ///< with dashes; of an argument without a name: what it is
-  bool positional = false;
-  bool takes_value = false;
-  std::string type;   ///< "FILE"; "": none
-  std::string value;  ///< the default that help shows; "": none
-  std::string doc;
-};
-
 struct CommandUsage {
   std::string name;  ///< "": the main command
   std::string summary;
-  std::vector<OptionUsage> options;
+  std::vector<const CLI::Option*> options;
 };
 
 /// Whether help shows an option: CLI11's own way to hide one takes its name away, which complaints
 /// need.
 bool isShown(const CLI::Option&);
 
+/// With dashes; of an argument without a name: what it is.
+std::vector<std::string> namesOf(const CLI::Option&);
+bool takesValue(const CLI::Option&);
+
 /// The main command, then the others. Only what help shows.
 std::vector<CommandUsage> usageOf(const CLI::App& main);
-
-enum class Shell { bash, zsh, fish };
-inline constexpr NameTable kShells{
-    {NamedValue{Shell::bash, "bash"}, {Shell::zsh, "zsh"}, {Shell::fish, "fish"}}};
-
-/// A script that makes a shell complete commands and options; files it completes anyway.
-std::string completionScript(Shell, const std::vector<CommandUsage>&);
-
-/// The manual page (roff), of this version of the program.
-std::string manualPage(const std::vector<CommandUsage>&, const std::string& version);
 
 }  // namespace broadmark

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
-#include <set>
 
 #include "bake/bake_plan.h"
 #include "bake/batch.h"
@@ -46,8 +45,7 @@ BakePlan makeBakePlan(const Options& options) {
       planBake(options.bake, [&](const fs::path& path, std::uint64_t number, std::uint64_t total) {
         if (!shown) shown.emplace("checking existing recordings", total, options.quiet);
         shown->detail(path.string());
-        shown->update(number);
-        return !InterruptGuard::requested();
+        return shown->goOn(number);
       });
   if (!plan) throw interruption();
   return std::move(*plan);
@@ -94,56 +92,31 @@ std::vector<fs::path> performPlan(BakePlan plan, const Options& options, Tally& 
   tally.unfinished = plan.recordings();
   if (plan.pending.empty()) return whole;
 
-  BakeBatch batch(std::move(plan.pending), options.bake.threads);
-  Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")),
-                    batch.state().total, options.quiet);
-  while (!batch.ended()) {
-    constexpr std::chrono::milliseconds kGlance{50};
-    for (const BakedJob& job : batch.await(kGlance)) {
-      tally.unfinished -= job.paths.size();
-      if (!job.failure.empty()) {
-        tally.failed += job.paths.size();
-        progress.complain("broadmark: " + job.failure);
-        continue;
-      }
-      for (const fs::path& path : job.paths) {
-        ++tally.baked;
-        tally.bytes += fs::file_size(path);
-        progress.print("baked  " + path.string());
-        whole.push_back(path);
-      }
+  std::uint64_t work = 0;
+  for (const BakeJob& job : plan.pending) work += job.work();
+  Progress progress(fmt::format("baking {}", counted(tally.unfinished, "recording")), work,
+                    options.quiet);
+  const auto on_end = [&](const BakedJob& job) {
+    tally.unfinished -= job.paths.size();
+    if (!job.failure.empty()) {
+      tally.failed += job.paths.size();
+      progress.complain("broadmark: " + job.failure);
+      return;
     }
-    const BatchState state = batch.state();
+    for (const fs::path& path : job.paths) {
+      ++tally.baked;
+      tally.bytes += fs::file_size(path);
+      progress.print("baked  " + path.string());
+      whole.push_back(path);
+    }
+  };
+  const auto on_progress = [&](const BatchState& state) {
     progress.detail(fmt::format("({} left), now {}", tally.unfinished, state.running));
     progress.update(state.done, state.seconds_left);
-  }
-  return whole;
-}
-
-/// Draws the movies: one for all recordings that differ only in their kind. False when interrupted.
-bool makeMovies(MovieMaker& maker, std::vector<fs::path> recordings, bool quiet) {
-  std::ranges::sort(recordings);
-  std::set<fs::path> names;
-  std::erase_if(recordings,
-                [&](const fs::path& path) { return !names.insert(path.stem()).second; });
-  const auto pictures = [&](const fs::path& path) {
-    return maker.pictures(openRecordingFile(path)->scene());
+    return true;
   };
-  std::uint64_t total = 0;
-  for (const fs::path& path : recordings) total += pictures(path);
-  Progress progress(fmt::format("drawing {}", counted(recordings.size(), "movie")), total, quiet);
-  std::uint64_t done = 0;
-  for (const fs::path& path : recordings) {
-    progress.detail(path.stem().string());
-    const fs::path folder = maker.make(path, [&](std::uint32_t picture) {
-      progress.update(done + picture);
-      return !InterruptGuard::requested();
-    });
-    if (folder.empty()) return false;
-    progress.print("movie  " + folder.string());
-    progress.update(done += pictures(path));
-  }
-  return true;
+  bakeAll(std::move(plan.pending), options.bake.threads, on_end, on_progress);
+  return whole;
 }
 
 int run(const Options& options) {
@@ -154,13 +127,13 @@ int run(const Options& options) {
   BakePlan plan = makeBakePlan(options);
   if (options.list_only) return listPlan(plan);
   prepare(plan, options.bake.record);
-  std::optional<MovieMaker> movie_maker;
-  if (!options.movie.directory.empty()) movie_maker.emplace(options.movie);
+  std::unique_ptr<OffscreenContext> drawing;
+  if (!options.movie.directory.empty()) drawing = prepareMovies(options.movie);
   Tally tally;
   const std::vector<fs::path> whole = performPlan(std::move(plan), options, tally);
   tally.print(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (InterruptGuard::requested()) throw interruption();
-  if (movie_maker && !makeMovies(*movie_maker, whole, options.quiet)) throw interruption();
+  if (drawing && !makeMovies(*drawing, options.movie, whole, options.quiet)) throw interruption();
   return tally.failed == 0 ? exit_status::fine : exit_status::bad_input;
 }
 

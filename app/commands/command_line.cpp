@@ -18,9 +18,14 @@
 #include "command_line/run_requests.h"
 #include "command_line/usage.h"
 #include "commands/command.h"
-#include "commands/session.h"
+#include "inspector/run_inspector.h"
 #include "parts.h"
+#include "request/plugins.h"
+#include "run/export_case.h"
+#include "run/headless.h"
+#include "run/plan.h"
 #include "sources/source.h"
+#include "support/build_parts.h"
 #include "support/exit_status.h"
 #include "support/output.h"
 
@@ -103,21 +108,20 @@ class CommandLine {
     }
   }
 
-  /// Whether there is anything to run; if not, `printed` is what was asked for.
-  bool parse(std::vector<std::string> arguments, std::string& printed) {
+  /// The help that is asked for; nothing if there is anything to run.
+  std::optional<std::string> parse(std::vector<std::string> arguments) {
     std::ranges::reverse(arguments);  // as CLI11 takes them
     try {
       app_.parse(std::move(arguments));
     } catch (const CLI::Success& success) {
       std::ostringstream out;
       app_.exit(success, out, out);
-      printed = out.str();
-      return false;
+      return out.str();
     } catch (const CLI::ParseError& error) {
       throw usageError(app_, error);
     }
     requireNothingBeforeCommand();
-    return true;
+    return {};
   }
 
   /// What runs the command that was parsed; nothing for the main command.
@@ -176,21 +180,50 @@ class CommandLine {
 SessionOptions sessionOf(const CommandLine& line, const std::vector<std::string>& arguments) {
   const auto whole = line.withRequest(arguments);
   CommandLine with_request;
-  std::string printed;
-  if (whole) with_request.parse(*whole, printed);
+  if (whole) with_request.parse(*whole);
   SessionOptions options = (whole ? with_request : line).session();
   options.command_line = whole.value_or(arguments);
   return options;
+}
+
+int listCases(const Plan& plan) {
+  for (const std::string& id : caseIds(plan)) fmt::print("{}\n", id);
+  return exit_status::fine;
+}
+
+/// Throws InputError if the options need what has been left out of this build.
+void requireParts(const SessionOptions& options) {
+  if (!options.screenshot.empty()) requirePart(parts::kRenderer, "--screenshot");
+  if (!options.cases.device.empty()) requirePart(parts::kOpenCl, "--device");
+}
+
+/// Makes the plan, then lists it, runs it, exports its case or opens it in the inspector. Returns
+/// the exit status. Throws InputError.
+int runSession(const SessionOptions& options) {
+  addEnginesOf(options.plugins);
+  Plan plan = makePlan(options, options.inspector() ? PlanUse::open : PlanUse::run);
+  if (!options.written_request.empty()) {
+    writeOutput(options.written_request, formatRunRequest(options));
+    return exit_status::fine;
+  }
+  if (options.list_only) return listCases(plan);
+  requireParts(options);
+  if (options.inspector()) {
+    return runInspector(std::move(plan), !options.headless, options.script);
+  }
+  if (!options.export_case.empty()) {
+    return runExportCase(std::move(plan), options.export_case, options.quiet);
+  }
+  return runHeadless(std::move(plan), options.quiet);
 }
 
 }  // namespace
 
 std::function<int()> parseCommandLine(const std::vector<std::string>& arguments) {
   const auto line = std::make_shared<CommandLine>();
-  std::string printed;
-  if (!line->parse(arguments, printed)) {
-    return [printed] {
-      std::fputs(printed.c_str(), stdout);
+  if (const auto help = line->parse(arguments)) {
+    return [help] {
+      std::fputs(help->c_str(), stdout);
       return 0;
     };
   }
@@ -200,8 +233,7 @@ std::function<int()> parseCommandLine(const std::vector<std::string>& arguments)
 
 SessionOptions parseSession(const std::vector<std::string>& arguments) {
   CommandLine line;
-  std::string printed;
-  if (!line.parse(arguments, printed) || line.command()) {
+  if (line.parse(arguments) || line.command()) {
     throw InputError("not a command line of the main command");
   }
   return sessionOf(line, arguments);

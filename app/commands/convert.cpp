@@ -71,10 +71,7 @@ int run(const Options& options) {
         if (scene.all_present) requirePresent(frame, options.output);
         writer.write(frame);
       },
-      [&](std::uint32_t frame) {
-        progress.update(frame);
-        return !InterruptGuard::requested();
-      });
+      [&](std::uint32_t frame) { return progress.goOn(frame); });
   if (!whole) throw Interrupted();
   const std::string hash = writer.finish();
   progress.print(fmt::format("{}: {}, {} (of {}), hash {}", options.output.string(),

@@ -29,21 +29,6 @@ struct Options {
   bool quiet = false;
 };
 
-/// All inputs as one source.
-Source sourceOf(const Options& options) {
-  const auto import = importOf(options.inputs.front());
-  if (!import) {
-    throw InputError(fmt::format("{}: cannot be imported; expected: {}", options.inputs.front(),
-                                 importKindsText()));
-  }
-  std::vector<PlanEntry> entries(1);
-  Source& source = entries.front().source;
-  source = importedSource(options.inputs, *import, options.reading);
-  if (options.reading.swept) sweepBoxes(source);
-  requireReadingUsed(options.reading, entries);
-  return std::move(source);
-}
-
 /// Without an extension it gets that of the recording that can hold the scene.
 fs::path outputFor(const SceneInfo& scene, fs::path path) {
   if (!path.has_extension()) path += recordingExtension(scene);
@@ -53,17 +38,19 @@ fs::path outputFor(const SceneInfo& scene, fs::path path) {
 
 int run(const Options& options) {
   const InterruptGuard guard;
-  Source source = sourceOf(options);
+  if (!importOf(options.inputs.front())) {
+    throw InputError(fmt::format("{}: cannot be imported; expected: {}", options.inputs.front(),
+                                 importKindsText()));
+  }
+  Source source = fileSource(options.inputs, options.reading);
   std::unique_ptr<IndexedFrames> frames = std::move(source.imported);
   if (options.reading.swept) frames = std::make_unique<SweptFrames>(std::move(frames));
   const SceneInfo& scene = frames->scene();
   const fs::path path = outputFor(scene, options.output);
   RecordingWriter writer(path, scene, {.source = source.reference.path});
   Progress progress("importing " + scene.name, scene.frames, options.quiet);
-  const bool whole = recordAll(*frames, writer, [&](std::uint32_t frame) {
-    progress.update(frame);
-    return !InterruptGuard::requested();
-  });
+  const bool whole =
+      recordAll(*frames, writer, [&](std::uint32_t frame) { return progress.goOn(frame); });
   if (!whole) throw Interrupted();
   const std::string hash = writer.finish();
   progress.print(fmt::format("{}: {} {}, {}, hash {}", path.string(), scene.name, scene.object_type,

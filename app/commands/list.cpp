@@ -15,7 +15,6 @@
 #include "original/ids.h"
 #include "request/cases.h"
 #include "request/plugins.h"
-#include "request/sdk_plugins.h"
 #include "support/table.h"
 
 namespace broadmark::commands::list {
@@ -108,7 +107,9 @@ std::string detailsOf(const Algorithm& algorithm) {
   return text;
 }
 
-void listAlgorithms(const std::vector<Algorithm>& algorithms) {
+void listAlgorithms(const Options& options) {
+  std::vector<Algorithm> algorithms = availableAlgorithms(options.plugins);
+  if (!options.names.empty()) algorithms = selectAlgorithms(options.names, algorithms, "list");
   fmt::print("Algorithms (id, family, principle, pairs kept over frames, answer)\n");
   std::vector<std::vector<std::string>> rows;
   for (const Algorithm& a : algorithms) {
@@ -123,7 +124,7 @@ void listAlgorithms(const std::vector<Algorithm>& algorithms) {
   }
 }
 
-void listScenes() {
+void listScenes(const Options& /*options*/) {
   fmt::print("Scenes, with their parameters (default, range)\n");
   for (const SceneListing& scene : builtinScenes()) {
     printParagraph(fmt::format("{} ({}): {}", scene.id, scene.name, scene.summary));
@@ -131,7 +132,7 @@ void listScenes() {
   }
 }
 
-void listEngines() {
+void listEngines(const Options& /*options*/) {
   fmt::print("Engines, with the parameters that come with them (default, range)\n");
   for (const EngineListing& engine : availableEngines()) {
     std::string text = fmt::format("{}: {}", engine.id, engine.summary);
@@ -141,14 +142,14 @@ void listEngines() {
   }
 }
 
-void listRecorders() {
+void listRecorders(const Options& /*options*/) {
   fmt::print("Recorders\n");
   for (const RecorderListing& recorder : builtinRecorders()) {
     printParagraph(fmt::format("{}: {}", recorder.id, recorder.summary));
   }
 }
 
-void listPlugins() {
+void listPlugins(const Options& /*options*/) {
   fmt::print("Plug-ins that come with the program: --plugin NAME\n");
   for (const SdkPlugin& plugin : sdkPlugins()) {
     printParagraph(plugin.built ? fmt::format("{}: {}", plugin.name, plugin.releases)
@@ -157,7 +158,7 @@ void listPlugins() {
   }
 }
 
-void listDevices() {
+void listDevices(const Options& /*options*/) {
   fmt::print("Compute devices (OpenCL); the first is used unless --device names another\n");
   const std::vector<ComputeDevice> devices = computeDevices();
   for (std::size_t i = 0; i < devices.size(); ++i) {
@@ -166,32 +167,21 @@ void listDevices() {
   if (devices.empty()) fmt::print("  none\n");
 }
 
-/// What can be listed.
-struct Section {
-  const char* name;
-  std::function<void(const Options&)> print;
-};
+using Section = std::pair<std::string, std::function<void(const Options&)>>;
+
 std::vector<Section> sections() {
-  std::vector<Section> all = {
-      {"algorithms",
-       [](const Options& options) {
-         const std::vector<Algorithm> known = availableAlgorithms(options.plugins);
-         listAlgorithms(options.names.empty() ? known
-                                              : selectAlgorithms(options.names, known, "list"));
-       }},
-      {"scenes", [](const Options&) { listScenes(); }},
-      {"engines", [](const Options&) { listEngines(); }},
-      {"recorders", [](const Options&) { listRecorders(); }},
-      {"plugins", [](const Options&) { listPlugins(); }}};
-  if (parts::kOpenCl.included) {
-    all.push_back({"devices", [](const Options&) { listDevices(); }});
-  }
+  std::vector<Section> all = {{"algorithms", listAlgorithms},
+                              {"scenes", listScenes},
+                              {"engines", listEngines},
+                              {"recorders", listRecorders},
+                              {"plugins", listPlugins}};
+  if (parts::kOpenCl.included) all.emplace_back("devices", listDevices);
   return all;
 }
 
 std::vector<std::string> sectionNames() {
   std::vector<std::string> names;
-  for (const Section& section : sections()) names.emplace_back(section.name);
+  for (const auto& [name, print] : sections()) names.push_back(name);
   return names;
 }
 
@@ -212,10 +202,10 @@ int run(const Options& options) {
   }
   addEnginesOf(options.plugins);
   bool first = true;
-  for (const Section& section : sections()) {
-    if (options.what != section.name && options.what != "all") continue;
+  for (const auto& [name, print] : sections()) {
+    if (options.what != name && options.what != "all") continue;
     if (!std::exchange(first, false)) fmt::print("\n");
-    section.print(options);
+    print(options);
   }
   return 0;
 }

@@ -1,6 +1,7 @@
 // broadmark manual: the manual page, made from the options.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 
@@ -11,6 +12,69 @@
 
 namespace broadmark::commands::manual {
 namespace {
+
+/// A text that roff takes for nothing else: no escapes, no requests, no hyphens for dashes.
+std::string plain(const std::string& text) {
+  std::string result = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
+  for (const char c : text) {
+    if (c == '\\') {
+      result += "\\e";
+    } else if (c == '-') {
+      result += "\\-";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string optionEntry(const CLI::Option& option) {
+  const std::string names = plain(fmt::format("{}", fmt::join(namesOf(option), ", ")));
+  const bool has_name = !option.get_positional();
+  std::string head = fmt::format("\\f{}{}\\fR", has_name ? 'B' : 'I', names);
+  std::string value;
+  if (takesValue(option)) {
+    if (has_name) head += fmt::format(" \\fI{}\\fR", plain(option.get_type_name()));
+    value = option.get_default_str();
+  }
+  if (!value.empty()) value = fmt::format(" (default: {})", plain(value));
+  return fmt::format(".TP\n{}\n{}{}\n", head, plain(option.get_description()), value);
+}
+
+std::string optionEntries(const CommandUsage& command) {
+  std::string text;
+  for (const CLI::Option* option : command.options) text += optionEntry(*option);
+  return text;
+}
+
+std::string exitStatusEntries() {
+  std::string text;
+  for (const auto& [status, meaning] : kExitStatuses.entries) {
+    text += fmt::format(".TP\n{}\n{}\n", static_cast<int>(status), plain(std::string(meaning)));
+  }
+  return text;
+}
+
+/// In the macros of man(7).
+std::string manualPage(const std::vector<CommandUsage>& commands, const std::string& version) {
+  const CommandUsage& main = commands.front();
+  std::string text = fmt::format(
+      ".TH BROADMARK 1 \"\" \"Broadmark {}\" \"User Commands\"\n"
+      ".SH NAME\nbroadmark \\- {}\n"
+      ".SH SYNOPSIS\n"
+      ".B broadmark\n[\\fIOPTION\\fR]... [\\fISOURCE\\fR]...\n.br\n"
+      ".B broadmark\n\\fICOMMAND\\fR [\\fIOPTION\\fR]...\n"
+      ".SH DESCRIPTION\n{}\nIts README is the guide; this page lists every option.\n"
+      ".SH OPTIONS\n{}.SH COMMANDS\n",
+      plain(version), "tests, compares and validates broad\\-phase collision detection",
+      plain(main.summary), optionEntries(main));
+  for (const CommandUsage& command : commands) {
+    if (command.name.empty()) continue;
+    text += fmt::format(".SS broadmark {}\n{}\n{}", plain(command.name), plain(command.summary),
+                        optionEntries(command));
+  }
+  return text + ".SH EXIT STATUS\n" + exitStatusEntries();
+}
 
 std::function<int()> add(CLI::App& app) {
   return [&app] {

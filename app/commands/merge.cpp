@@ -51,10 +51,7 @@ std::function<int()> add(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   addResultOutputs(app, options->outputs);
-  return [options] {
-    std::erase_if(options->outputs, [](const auto& output) { return output.second.empty(); });
-    return run(*options);
-  };
+  return [options] { return run(*options); };
 }
 
 }  // namespace

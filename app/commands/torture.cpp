@@ -6,17 +6,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdlib>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "command_line/option_types.h"
 #include "commands/command.h"
 #include "commands/torture_log.h"
@@ -56,87 +55,6 @@ struct Options : RunRequest {
   bool quiet = false;
 };
 
-/// Rounds on several threads at a time.
-class Rounds {
- public:
-  using Ended = std::pair<std::uint64_t, std::optional<TortureRound>>;  ///< nothing: cancelled
-
-  /// `next` gives the number of the next round, until it gives nothing; one thread asks at a time.
-  Rounds(const TortureOptions& options, int jobs,
-         std::function<std::optional<std::uint64_t>()> next)
-      : options_(options), next_(std::move(next)), working_(jobs) {
-    for (int i = 0; i < jobs; ++i) threads_.emplace_back([this] { work(); });
-  }
-  ~Rounds() {
-    const std::lock_guard lock(mutex_);
-    is_over_ = true;
-  }
-  Rounds(const Rounds&) = delete;
-  Rounds& operator=(const Rounds&) = delete;
-
-  /// The next round that ends; nothing if none does within a moment. Throws what a round throws.
-  std::optional<Ended> wait() {
-    constexpr std::chrono::milliseconds kMoment{200};
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kMoment, [this] { return !ended_.empty() || working_ == 0; });
-    if (ended_.empty()) {
-      if (error_) std::rethrow_exception(error_);
-      return std::nullopt;
-    }
-    Ended first = std::move(ended_.front());
-    ended_.pop_front();
-    return first;
-  }
-
-  [[nodiscard]] bool allEnded() {
-    const std::lock_guard lock(mutex_);
-    return working_ == 0 && ended_.empty() && !error_;
-  }
-
- private:
-  void work() {
-    try {
-      while (const std::optional<std::uint64_t> number = nextNumber()) end(*number, run(*number));
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      error_ = std::current_exception();
-      is_over_ = true;
-    }
-    const std::lock_guard lock(mutex_);
-    --working_;
-    changed_.notify_all();
-  }
-
-  std::optional<std::uint64_t> nextNumber() {
-    const std::lock_guard lock(mutex_);
-    return is_over_ ? std::nullopt : next_();
-  }
-
-  std::optional<TortureRound> run(std::uint64_t number) const {
-    try {
-      return runTortureRound(options_, number);
-    } catch (const Cancelled&) {
-      return std::nullopt;
-    }
-  }
-
-  void end(std::uint64_t number, std::optional<TortureRound> round) {
-    const std::lock_guard lock(mutex_);
-    ended_.emplace_back(number, std::move(round));
-    changed_.notify_all();
-  }
-
-  const TortureOptions& options_;
-  std::function<std::optional<std::uint64_t>()> next_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<Ended> ended_;
-  std::exception_ptr error_;
-  bool is_over_ = false;
-  int working_;
-  std::vector<std::jthread> threads_;
-};
-
 class Torture {
  public:
   explicit Torture(Options options)
@@ -157,23 +75,9 @@ class Torture {
   }
 
   int run() {
-    const Clock::time_point start = Clock::now();
-    Clock::time_point written = start;
-    const double before = log_.seconds;
     Progress progress("torture", kTicks, options_.quiet);
-    {
-      Rounds rounds(torture_, options_.jobs, [&] { return nextRound(start); });
-      while (!rounds.allEnded()) {
-        if (auto ended = rounds.wait()) take(std::move(*ended), progress);
-        const Clock::time_point now = Clock::now();
-        log_.seconds = before + seconds(now - start);
-        showProgress(progress, seconds(now - start));
-        if (now - written < std::chrono::seconds(10)) continue;
-        writeLog();
-        written = now;
-      }
-    }
-    writeLog();
+    runJobs(progress);
+    writeTextFile(log_file_, tortureLogText(log_));
     progress.print(formatTortureLog(log_));
     if (InterruptGuard::requested()) {
       throw Interrupted(fmt::format("the same command goes on from {}", log_file_.string()));
@@ -226,7 +130,7 @@ class Torture {
   void readLog() {
     log_.seed = options_.seed.value_or(log_.seed);
     if (!fs::exists(log_file_)) return;
-    TortureLog log = readTortureLog(log_file_);
+    TortureLog log = parseTortureLog(readTextFile(log_file_), log_file_.string());
     const bool is_same =
         log.subjects == log_.subjects && log.seed == options_.seed.value_or(log.seed);
     if (!is_same) {
@@ -241,11 +145,6 @@ class Torture {
     }
     log_ = std::move(log);
     waiting_.assign(log_.left.begin(), log_.left.end());
-  }
-
-  void writeLog() {
-    const std::lock_guard lock(mutex_);
-    writeTortureLog(log_file_, log_);
   }
 
   void readSources() {
@@ -266,12 +165,59 @@ class Torture {
     return held;
   }
 
-  std::optional<std::uint64_t> nextRound(Clock::time_point start) {
-    const bool is_over = options_.rounds ? begun_ >= *options_.rounds
-                                         : seconds(Clock::now() - start) >= 60 * options_.minutes;
-    if (is_over || InterruptGuard::requested()) return std::nullopt;
-    ++begun_;
+  void runJobs(Progress& progress) {
+    const Clock::time_point start = Clock::now();
+    const double before = log_.seconds;
+    Clock::time_point written = start;
+    std::vector<std::future<void>> jobs;
+    try {
+      for (int i = 0; i < options_.jobs; ++i) {
+        jobs.push_back(std::async(std::launch::async, [&] { runRounds(start, progress); }));
+      }
+      for (std::future<void>& job : jobs) {
+        constexpr std::chrono::milliseconds kMoment{200};
+        for (bool ended = false; !ended;) {
+          ended = job.wait_for(kMoment) == std::future_status::ready;
+          const std::lock_guard lock(mutex_);
+          const Clock::time_point now = Clock::now();
+          log_.seconds = before + seconds(now - start);
+          showProgress(progress, seconds(now - start));
+          if (now - written < std::chrono::seconds(10)) continue;
+          writeTextFile(log_file_, tortureLogText(log_));
+          written = now;
+        }
+        job.get();
+      }
+    } catch (...) {
+      beginNoMore();  // the jobs are waited for
+      throw;
+    }
+  }
+
+  void beginNoMore() {
     const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+
+  /// One round after the other; what one throws ends the rounds of the other threads, too.
+  void runRounds(Clock::time_point start, Progress& progress) {
+    try {
+      while (const std::optional<std::uint64_t> number = nextRound(start)) {
+        add(runTortureRound(torture_, *number), *number, progress);
+      }
+    } catch (const Cancelled&) {
+    } catch (...) {
+      beginNoMore();
+      throw;
+    }
+  }
+
+  std::optional<std::uint64_t> nextRound(Clock::time_point start) {
+    const std::lock_guard lock(mutex_);
+    is_over_ |= options_.rounds ? begun_ >= *options_.rounds
+                                : seconds(Clock::now() - start) >= 60 * options_.minutes;
+    if (is_over_ || InterruptGuard::requested()) return std::nullopt;
+    ++begun_;
     if (waiting_.empty()) {
       log_.left.push_back(log_.next);
       return log_.next++;
@@ -281,14 +227,12 @@ class Torture {
     return number;
   }
 
-  void take(Rounds::Ended ended, Progress& progress) {
-    auto& [number, round] = ended;
-    if (!round) return;
+  void add(const TortureRound& round, std::uint64_t number, Progress& progress) {
     const std::lock_guard lock(mutex_);
     std::erase(log_.left, number);
-    for (const auto& [key, count] : round->coverage) log_.coverage[key] += count;
-    if (!round->finding) return;
-    const TortureFinding& finding = *round->finding;
+    for (const auto& [key, count] : round.coverage) log_.coverage[key] += count;
+    if (!round.finding) return;
+    const TortureFinding& finding = *round.finding;
     const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
     if (log_.times[{finding.run.algorithm.id, kind}]++ >= kMostAlike) return;
     log_.found.push_back(write(finding, kind, number));
@@ -330,19 +274,16 @@ class Torture {
                              ? static_cast<double>(begun_) / static_cast<double>(*options_.rounds)
                              : passed / (60 * options_.minutes);
     const auto ticks = static_cast<std::uint64_t>(kTicks * std::min(share, 1.0));
-    if (options_.rounds) {
-      progress.update(ticks);
-    } else {
-      progress.update(ticks, std::max(60 * options_.minutes - passed, 0.0));
-    }
+    progress.update(ticks);
   }
 
   Options options_;
   fs::path log_file_;
   TortureLog log_;
   TortureOptions torture_;
-  std::atomic<std::uint64_t> begun_ = 0;
-  std::mutex mutex_;                   ///< of log_.next, log_.left, log_.times and of what follows
+  std::mutex mutex_;  ///< of log_, the progress and what follows
+  std::uint64_t begun_ = 0;
+  bool is_over_ = false;               ///< no more rounds begin
   std::deque<std::uint64_t> waiting_;  ///< of log_.left those that have not been begun again
 };
 

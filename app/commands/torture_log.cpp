@@ -6,7 +6,6 @@
 #include <set>
 
 #include "broadmark/error.h"
-#include "broadmark/files.h"
 #include "broadmark/json_fields.h"
 #include "support/table.h"
 #include "support/words.h"
@@ -141,14 +140,6 @@ std::string tortureLogText(const TortureLog& log) {
   }
   for (const auto& [key, count] : log.coverage) json["coverage"].push_back(toJson(key, count));
   return formatJson(json);
-}
-
-TortureLog readTortureLog(const std::filesystem::path& file) {
-  return parseTortureLog(readTextFile(file), file.string());
-}
-
-void writeTortureLog(const std::filesystem::path& file, const TortureLog& log) {
-  writeTextFile(file, tortureLogText(log));
 }
 
 std::string formatFoundFault(const FoundFault& fault) {

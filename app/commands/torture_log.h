@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -47,11 +46,6 @@ struct TortureLog {
 /// From the text of such a file, and back. Throws InputError, which calls it `name`.
 TortureLog parseTortureLog(std::string_view text, const std::string& name);
 std::string tortureLogText(const TortureLog&);
-
-/// Reads one. Throws InputError.
-TortureLog readTortureLog(const std::filesystem::path&);
-/// Writes it, atomically. Throws InputError.
-void writeTortureLog(const std::filesystem::path&, const TortureLog&);
 
 /// A finding in one line: what went wrong, and on how much.
 std::string formatFoundFault(const FoundFault&);

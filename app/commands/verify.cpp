@@ -4,8 +4,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <functional>
+#include <iterator>
 #include <memory>
+#include <span>
 
 #include "broadmark/analysis/scene_statistics.h"
 #include "broadmark/error.h"
@@ -42,60 +43,40 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100 * *share) : kNothing;
 }
 
-/// One figure of a range: its heading, and how it reads.
-struct Column {
-  const char* heading;
-  std::function<std::string(const RangeStatistics&)> cell;
-};
-
-std::string number(double value) { return fmt::format("{:.4g}", value); }
-
-template <class Figure>
-Column plain(const char* heading, Figure RangeStatistics::*figure) {
-  return {heading,
-          [=](const RangeStatistics& range) { return number(static_cast<double>(range.*figure)); }};
+std::string number(const std::optional<double>& value) {
+  return value ? fmt::format("{:.4g}", *value) : kNothing;
 }
 
-Column change(const char* heading, double Changes::*which) {
-  return {heading, [=](const RangeStatistics& range) {
-            return range.changes ? number((*range.changes).*which) : kNothing;
-          }};
-}
+using Cells = std::vector<std::string>;
 
-std::vector<Column> boxColumns() {
-  return {
-      plain("density", &RangeStatistics::density),
-      plain("pairs/body", &RangeStatistics::pairs_per_body),
-      {"moving", [](const RangeStatistics& range) { return percent(range.moving_share); }},
-      plain("smallest", &RangeStatistics::min_extent),
-      plain("median", &RangeStatistics::median_extent),
-      plain("largest", &RangeStatistics::max_extent),
-      {"ratio",
-       [](const RangeStatistics& range) {
-         const std::optional<double> ratio = range.sizeRatio();
-         return ratio ? number(*ratio) : kNothing;
-       }},
-      {"outside",
-       [](const RangeStatistics& range) { return fmt::format("{}", range.max_outside); }},
-  };
+constexpr const char* kBoxHeadings[] = {"density", "pairs/body", "moving", "smallest",
+                                        "median",  "largest",    "ratio",  "outside"};
+Cells boxCells(const RangeStatistics& range) {
+  return {number(range.density),       number(range.pairs_per_body),
+          percent(range.moving_share), number(range.min_extent),
+          number(range.median_extent), number(range.max_extent),
+          number(range.sizeRatio()),   fmt::format("{}", range.max_outside)};
 }
 
 /// Of worlds in which bodies come and go.
-std::vector<Column> populationColumns() {
-  return {
-      plain("fewest", &RangeStatistics::min_bodies), plain("bodies", &RangeStatistics::mean_bodies),
-      plain("most", &RangeStatistics::max_bodies),   change("appear", &Changes::appeared),
-      change("vanish", &Changes::vanished),          change("change", &Changes::changed)};
+constexpr const char* kPopulationHeadings[] = {"fewest", "bodies", "most",
+                                               "appear", "vanish", "change"};
+Cells populationCells(const RangeStatistics& range) {
+  const auto change = [&](double Changes::*which) {
+    return range.changes ? number((*range.changes).*which) : kNothing;
+  };
+  return {number(range.min_bodies),   number(range.mean_bodies),  number(range.max_bodies),
+          change(&Changes::appeared), change(&Changes::vanished), change(&Changes::changed)};
 }
 
 /// Rows of cells, each after a margin.
-std::string rightAligned(const std::vector<std::vector<std::string>>& rows) {
+std::string rightAligned(const std::vector<Cells>& rows) {
   return alignColumns(rows, std::vector<bool>(rows.front().size(), true));
 }
 
 /// Which layers collide, how many bodies are in each and how many pairs there are between two.
 std::string layerTable(const FilterStatistics& filter) {
-  std::vector<std::vector<std::string>> rows = {{"", "layer", "bodies"}};
+  std::vector<Cells> rows = {{"", "layer", "bodies"}};
   for (const auto& [layer, bodies] : filter.layers) {
     rows.front().push_back(fmt::format("with {}", layer));
     rows.push_back({"", fmt::format("{}", layer), number(bodies)});
@@ -123,12 +104,14 @@ std::string formatFilter(const FilterStatistics& filter) {
 }
 
 /// A row for each part of the scene.
-std::string rangeTable(const std::vector<Column>& columns, const SceneDescription& description) {
-  std::vector<std::vector<std::string>> rows = {{"", "frames"}};
-  for (const Column& column : columns) rows.front().emplace_back(column.heading);
+std::string rangeTable(std::span<const char* const> headings,
+                       Cells (*cells)(const RangeStatistics&),
+                       const SceneDescription& description) {
+  std::vector<Cells> rows = {{"", "frames"}};
+  std::ranges::copy(headings, std::back_inserter(rows.front()));
   const auto add = [&](std::string frames, const RangeStatistics& range) {
     rows.push_back({"", std::move(frames)});
-    for (const Column& column : columns) rows.back().push_back(column.cell(range));
+    std::ranges::copy(cells(range), std::back_inserter(rows.back()));
   };
   add("initial", description.initial);
   for (const RangeStatistics& part : description.parts) {
@@ -141,8 +124,9 @@ std::string rangeTable(const std::vector<Column>& columns, const SceneDescriptio
 }
 
 std::string formatDescription(const SceneInfo& scene, const SceneDescription& description) {
-  std::string text = rangeTable(boxColumns(), description);
-  if (!scene.all_present) text += "\n" + rangeTable(populationColumns(), description);
+  std::string text = rangeTable(kBoxHeadings, boxCells, description);
+  if (!scene.all_present)
+    text += "\n" + rangeTable(kPopulationHeadings, populationCells, description);
   if (description.filter) text += "\n" + formatFilter(*description.filter);
   return text;
 }
@@ -158,30 +142,17 @@ std::optional<SceneDescription> readThrough(IndexedFrames& recording, bool descr
   return SceneDescription{};
 }
 
-/// The file, to be read as the options say. Throws InputError.
-Source sourceOf(const fs::path& file, const Options& options) {
-  const auto import = importOf(file);
-  std::vector<PlanEntry> entries(1);
-  Source& source = entries.front().source;
-  source = import ? importedSource({file}, *import, options.reading) : recordingSource(file);
-  if (options.reading.swept) sweepBoxes(source);
-  requireReadingUsed(options.reading, entries);
-  return std::move(source);
-}
-
 /// Checks one recording and prints what it is. Nothing when interrupted. Throws InputError.
 std::optional<DescribedRecording> verifyOne(const fs::path& file, const Options& options) {
-  Source source = sourceOf(file, options);
+  Source source = fileSource({file.string()}, options.reading);
   const auto opened = openForCommand(source, options.quiet);
   IndexedFrames& recording = *opened;
   const std::string& hash = source.reference.hash;
   const SceneInfo& scene = recording.scene();
   const bool slow = options.describe || recordingBytes(scene) > (1U << 28);
   Progress progress("verifying " + file.string(), scene.frames, !slow || options.quiet);
-  const auto description = readThrough(recording, options.describe, [&](std::uint32_t frame) {
-    progress.update(frame);
-    return !InterruptGuard::requested();
-  });
+  const auto description = readThrough(recording, options.describe,
+                                       [&](std::uint32_t frame) { return progress.goOn(frame); });
   if (!description) return std::nullopt;
   std::optional<std::string> stated = bakedHash(file);
   if (stated && options.reading.swept) stated = sweptHash(*stated);

@@ -10,7 +10,6 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -283,29 +282,6 @@ void complain(int out, std::string_view text) {
 
 // ---- In the parent.
 
-/// What the child has written.
-class ChildOutput {
- public:
-  explicit ChildOutput(FileDescriptor file) : file_(std::move(file)) {
-    struct stat status {};
-    if (::fstat(file_.get(), &status) == 0) size_ = static_cast<std::uint64_t>(status.st_size);
-  }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
-
-  /// The next bytes. Throws InputError.
-  void read(std::span<std::byte> bytes) {
-    if (readAll(file_.get(), bytes, read_) < bytes.size()) {
-      throw InputError("what assimp has read cannot be read back");
-    }
-    read_ += bytes.size();
-  }
-
- private:
-  FileDescriptor file_;
-  std::uint64_t size_ = 0;
-  std::uint64_t read_ = 0;
-};
-
 /// Waits for the child. Nothing if all went well, else what is wrong.
 std::optional<std::string> complaintOf(pid_t child, int out) {
   int status = 0;
@@ -329,23 +305,30 @@ std::optional<std::string> complaintOf(pid_t child, int out) {
 
 MeshTopology readWithAssimp(const fs::path& file, double frame_rate, const PointSink& sink) {
   openForReading(file);  // a file that is not there is an error of ours
-  FileDescriptor out = unnamedFile();
+  const FileDescriptor out = unnamedFile();
   const pid_t child = ::fork();
   if (child < 0) throw InputError(fmt::format("{}: {}", file.string(), std::strerror(errno)));
   if (child == 0) runChild(file, frame_rate, out.get());
   if (const auto complaint = complaintOf(child, out.get())) {
     throw InputError(fmt::format("{}: {}", file.string(), *complaint));
   }
-  ChildOutput written(std::move(out));
+  std::uint64_t done = 0;
+  const auto read = [&](auto items) {
+    const std::span<std::byte> bytes = std::as_writable_bytes(items);
+    if (readAll(out.get(), bytes, done) < bytes.size()) {
+      throw InputError("what assimp has read cannot be read back");
+    }
+    done += bytes.size();
+  };
   Head head;
-  written.read(std::as_writable_bytes(std::span(&head, 1)));
+  read(std::span(&head, 1));
   if (head.vertices == 0) throw InputError(fmt::format("{}: no vertices", file.string()));
   MeshTopology topology{.vertices = static_cast<std::uint32_t>(head.vertices)};
   topology.triangles.resize(head.triangles);
-  written.read(std::as_writable_bytes(std::span(topology.triangles)));
+  read(std::span(topology.triangles));
   std::vector<Point> points(head.vertices);
   for (std::uint64_t frame = 0; frame < head.frames; ++frame) {
-    written.read(std::as_writable_bytes(std::span(points)));
+    read(std::span(points));
     sink(points);
   }
   return topology;

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <numeric>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/scenes/simulation.h"
 #include "imports/files.h"
+#include "imports/mesh.h"
 
 namespace broadmark::imports {
 namespace {
@@ -54,109 +57,134 @@ std::string typeName(std::string elements) {
   return elements;
 }
 
+class ElementFrames final : public IndexedFrames {
+ public:
+  ElementFrames(const std::vector<fs::path>& files, const ReadingOptions& options) {
+    scene_.name = sequenceName(files);
+    scene_.object_type = typeName(options.elements.value);
+    scene_.world = kEmptyBox;
+    readFiles(files, options.frame_rate);
+    vertices_.resize(mesh_.vertices);
+    std::iota(vertices_.begin(), vertices_.end(), 0U);
+    if (hasExtension(files.front(), {".stl"})) joinVertices();
+    chooseElements(options.elements.value);
+    if (elements_.empty()) {
+      throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
+                                   files.front().string(), options.elements.value));
+    }
+    if (elements_.size() > std::numeric_limits<std::int32_t>::max()) {
+      throw InputError(fmt::format("{}: more than 2^31 - 1 elements", files.front().string()));
+    }
+    // Of vertices alone no two share one.
+    const bool neighbours = options.elements.value != "vertices";
+    if (neighbours && options.keep.value == "none") leaveOutNeighbours();
+    scene_.objects = static_cast<std::uint32_t>(elements_.size());
+    scene_.frames = static_cast<std::uint32_t>(frames_ - 1);
+    boxes_.resize(elements_.size());
+  }
+
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
+
+ private:
+  /// The numbers of its vertices, of which some may be the same one.
+  using Element = std::array<std::uint32_t, 3>;
+
+  void readFiles(const std::vector<fs::path>& files, double frame_rate) {
+    kept_ = unnamedFile();
+    for (const fs::path& file : files) {
+      MeshTopology mesh = readMesh(file, frame_rate, [&](auto points) { keep(points); });
+      if (&file == &files.front()) {
+        mesh_ = std::move(mesh);
+      } else {
+        requireSame(mesh, file, mesh_, files.front());
+      }
+    }
+  }
+
+  void keep(std::span<const Point> points) {
+    if (frames_ > kMostFrames) throw InputError(fmt::format("more than {} frames", kMostFrames));
+    ++frames_;
+    writeAll(kept_.get(), std::as_bytes(points), "the vertices of a mesh");
+    for (const Point& p : points) {
+      const Aabb box = {{p[0], p[1], p[2], 0}, {p[0], p[1], p[2], 0}};
+      scene_.world = merged(scene_.world, box);
+    }
+  }
+
+  /// For files in which each triangle has vertices of its own: those at one place are one.
+  void joinVertices() {
+    readPoints(0);
+    std::map<Point, std::uint32_t> first_at;
+    std::vector<std::uint32_t> joined(mesh_.vertices);
+    for (const std::uint32_t vertex : vertices_) {
+      joined[vertex] = first_at.try_emplace(points_[vertex], vertex).first->second;
+    }
+    std::erase_if(vertices_, [&](std::uint32_t vertex) { return joined[vertex] != vertex; });
+    for (Triangle& triangle : mesh_.triangles) {
+      for (std::uint32_t& vertex : triangle) vertex = joined[vertex];
+    }
+  }
+
+  void chooseElements(const std::string& which) {
+    const bool all = which == "all";
+    if (all || which == "vertices") {
+      for (const std::uint32_t vertex : vertices_) elements_.push_back({vertex, vertex, vertex});
+    }
+    if (all || which == "edges") {
+      for (const auto& [a, b] : edgesOf(mesh_.triangles)) elements_.push_back({a, b, b});
+    }
+    if (all || which == "triangles") {
+      elements_.insert(elements_.end(), mesh_.triangles.begin(), mesh_.triangles.end());
+    }
+  }
+
+  void leaveOutNeighbours() {
+    std::vector<BodyGroups> groups;
+    groups.reserve(elements_.size());
+    for (const Element& element : elements_) {
+      BodyGroups& body = groups.emplace_back();
+      std::ranges::copy(element, body.tags.begin());
+    }
+    scene_.filter = CollisionFilter(groups, LayerMatrix::all());
+  }
+
+  void readPoints(std::uint32_t index) {
+    points_.resize(mesh_.vertices);
+    const auto bytes = std::as_writable_bytes(std::span(points_));
+    if (readAll(kept_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
+      throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
+    }
+  }
+
+  std::span<const Aabb> readBoxes(std::uint32_t index) override {
+    readPoints(index);
+    for (std::size_t body = 0; body < boxes_.size(); ++body) {
+      const auto& [a, b, c] = elements_[body];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto [low, high] =
+            std::minmax({points_[a][axis], points_[b][axis], points_[c][axis]});
+        boxes_[body].min[axis] = low;
+        boxes_[body].max[axis] = high;
+      }
+    }
+    return boxes_;
+  }
+
+  SceneInfo scene_;
+  MeshTopology mesh_;
+  std::vector<std::uint32_t> vertices_;  ///< those that count, ascending
+  std::vector<Element> elements_;        ///< by body
+  FileDescriptor kept_;                  ///< the vertices of all frames, one after the other
+  std::uint64_t frames_ = 0;
+  std::vector<Point> points_;
+  std::vector<Aabb> boxes_;
+};
+
 }  // namespace
 
-ElementFrames::ElementFrames(const std::vector<fs::path>& files, const ReadingOptions& options) {
-  scene_.name = sequenceName(files);
-  scene_.object_type = typeName(options.elements.value);
-  scene_.world = kEmptyBox;
-  readFiles(files, options.frame_rate);
-  vertices_.resize(mesh_.vertices);
-  std::iota(vertices_.begin(), vertices_.end(), 0U);
-  if (hasExtension(files.front(), {".stl"})) joinVertices();
-  chooseElements(options.elements.value);
-  if (elements_.empty()) {
-    throw InputError(fmt::format("{}: the mesh has no {}: choose other --elements",
-                                 files.front().string(), options.elements.value));
-  }
-  if (elements_.size() > std::numeric_limits<std::int32_t>::max()) {
-    throw InputError(fmt::format("{}: more than 2^31 - 1 elements", files.front().string()));
-  }
-  // Of vertices alone no two share one.
-  const bool neighbours = options.elements.value != "vertices";
-  if (neighbours && options.keep.value == "none") leaveOutNeighbours();
-  scene_.objects = static_cast<std::uint32_t>(elements_.size());
-  scene_.frames = static_cast<std::uint32_t>(frames_ - 1);
-  boxes_.resize(elements_.size());
-}
-
-void ElementFrames::readFiles(const std::vector<fs::path>& files, double frame_rate) {
-  kept_ = unnamedFile();
-  for (const fs::path& file : files) {
-    MeshTopology mesh = readMesh(file, frame_rate, [&](auto points) { keep(points); });
-    if (&file == &files.front()) {
-      mesh_ = std::move(mesh);
-    } else {
-      requireSame(mesh, file, mesh_, files.front());
-    }
-  }
-}
-
-void ElementFrames::keep(std::span<const Point> points) {
-  if (frames_ > kMostFrames) throw InputError(fmt::format("more than {} frames", kMostFrames));
-  ++frames_;
-  writeAll(kept_.get(), std::as_bytes(points), "the vertices of a mesh");
-  for (const Point& p : points) {
-    const Aabb box = {{p[0], p[1], p[2], 0}, {p[0], p[1], p[2], 0}};
-    scene_.world = merged(scene_.world, box);
-  }
-}
-
-void ElementFrames::joinVertices() {
-  readPoints(0);
-  std::map<Point, std::uint32_t> first_at;
-  std::vector<std::uint32_t> joined(mesh_.vertices);
-  for (const std::uint32_t vertex : vertices_) {
-    joined[vertex] = first_at.try_emplace(points_[vertex], vertex).first->second;
-  }
-  std::erase_if(vertices_, [&](std::uint32_t vertex) { return joined[vertex] != vertex; });
-  for (Triangle& triangle : mesh_.triangles) {
-    for (std::uint32_t& vertex : triangle) vertex = joined[vertex];
-  }
-}
-
-void ElementFrames::chooseElements(const std::string& which) {
-  const bool all = which == "all";
-  if (all || which == "vertices") {
-    for (const std::uint32_t vertex : vertices_) elements_.push_back({vertex, vertex, vertex});
-  }
-  if (all || which == "edges") {
-    for (const auto& [a, b] : edgesOf(mesh_.triangles)) elements_.push_back({a, b, b});
-  }
-  if (all || which == "triangles") {
-    elements_.insert(elements_.end(), mesh_.triangles.begin(), mesh_.triangles.end());
-  }
-}
-
-void ElementFrames::leaveOutNeighbours() {
-  std::vector<BodyGroups> groups;
-  groups.reserve(elements_.size());
-  for (const Element& element : elements_) {
-    BodyGroups& body = groups.emplace_back();
-    std::ranges::copy(element, body.tags.begin());
-  }
-  scene_.filter = CollisionFilter(groups, LayerMatrix::all());
-}
-
-std::span<const Aabb> ElementFrames::readBoxes(std::uint32_t index) {
-  readPoints(index);
-  for (std::size_t body = 0; body < boxes_.size(); ++body) {
-    const auto& [a, b, c] = elements_[body];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto [low, high] = std::minmax({points_[a][axis], points_[b][axis], points_[c][axis]});
-      boxes_[body].min[axis] = low;
-      boxes_[body].max[axis] = high;
-    }
-  }
-  return boxes_;
-}
-
-void ElementFrames::readPoints(std::uint32_t index) {
-  points_.resize(mesh_.vertices);
-  const auto bytes = std::as_writable_bytes(std::span(points_));
-  if (readAll(kept_.get(), bytes, std::uint64_t{index} * bytes.size()) < bytes.size()) {
-    throw InputError(fmt::format("{}: cannot read frame {}", scene_.name, index));
-  }
+std::unique_ptr<IndexedFrames> openElements(const std::vector<fs::path>& files,
+                                            const ReadingOptions& options) {
+  return std::make_unique<ElementFrames>(files, options);
 }
 
 }  // namespace broadmark::imports

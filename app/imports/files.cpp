@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glob.h>
+#include <strings.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstring>
 
 #include "broadmark/error.h"
@@ -40,10 +40,10 @@ std::vector<fs::path> filesIn(const std::string& folder,
 }  // namespace
 
 bool hasExtension(const fs::path& path, const std::vector<std::string>& extensions) {
-  std::string extension = path.extension().string();
-  std::ranges::transform(extension, extension.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::ranges::find(extensions, extension) != extensions.end();
+  const std::string own = path.extension().string();
+  return std::ranges::any_of(extensions, [&](const std::string& extension) {
+    return ::strcasecmp(extension.c_str(), own.c_str()) == 0;
+  });
 }
 
 std::vector<fs::path> filesNamed(const std::string& name,

@@ -1,14 +1,15 @@
 #include "imports/line_reader.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "broadmark/error.h"
+#include "broadmark/files.h"
 #include "broadmark/json_fields.h"
 
 namespace broadmark::imports {
@@ -43,47 +44,25 @@ bool parse(std::string_view text, Number& number) {
 }  // namespace
 
 LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path.string()), file_(openForReading(path)) {}
-
-bool LineReader::fill() {
-  buffer_offset_ += buffer_.size();
-  used_ = 0;
-  buffer_.resize(1 << 16);
-  ssize_t got = -1;
-  do {
-    got = ::pread(file_.get(), buffer_.data(), buffer_.size(), static_cast<off_t>(buffer_offset_));
-  } while (got < 0 && errno == EINTR);
-  buffer_.resize(static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-  if (got < 0) throw InputError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
-  return got > 0;
+    : path_(path.string()), buffer_(kLongestLine + 2, '\0') {
+  openForReading(path);  // throws unless it is a regular file
+  file_.open(path);
 }
 
 bool LineReader::next() {
-  if (again_) {
-    again_ = false;
-    return true;
+  if (std::exchange(again_, false)) return true;
+  file_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+  const auto length = static_cast<std::size_t>(file_.gcount());
+  if (file_.bad()) {
+    throw InputError(fmt::format("{}: cannot read: {}", path_, std::strerror(errno)));
   }
-  const Place here = place();
-  line_.clear();
-  bool any = false;
-  while (used_ < buffer_.size() || fill()) {
-    any = true;
-    const std::string_view rest = std::string_view(buffer_).substr(used_);
-    const std::size_t end = rest.find('\n');
-    line_ += rest.substr(0, end);
-    used_ += std::min(end, rest.size());
-    if (line_.size() > kLongestLine) {
-      number_ = here.lines_before + 1;
-      fail("is longer than a million characters: not a text file?");
-    }
-    if (end == std::string_view::npos) continue;
-    ++used_;
-    break;
-  }
-  if (!any) return false;
-  while (line_.ends_with('\r')) line_.pop_back();
-  begin_ = here.offset;
-  number_ = here.lines_before + 1;
+  if (length == 0) return false;
+  begin_ += length_;
+  length_ = length;
+  ++number_;
+  if (file_.fail()) fail("is longer than a million characters: not a text file?");
+  line_ = std::string_view(buffer_).substr(0, file_.eof() ? length : length - 1);
+  while (line_.ends_with('\r')) line_.remove_suffix(1);
   return true;
 }
 
@@ -94,13 +73,14 @@ void LineReader::require(std::string_view expected) {
 
 LineReader::Place LineReader::place() const {
   if (again_) return {begin_, number_ - 1};
-  return {buffer_offset_ + used_, number_};
+  return {begin_ + length_, number_};
 }
 
 void LineReader::seek(Place place) {
-  buffer_.clear();
-  used_ = 0;
-  buffer_offset_ = place.offset;
+  file_.clear();
+  file_.seekg(static_cast<std::streamoff>(place.offset));
+  begin_ = place.offset;
+  length_ = 0;
   number_ = place.lines_before;
   again_ = false;
 }
@@ -136,10 +116,10 @@ void splitWords(std::string_view line, std::vector<std::string_view>& words) {
   }
 }
 
-void splitCommas(std::string_view line, std::vector<std::string_view>& cells) {
+void splitAt(char separator, std::string_view line, std::vector<std::string_view>& cells) {
   cells.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
     cells.push_back(trimmed(line.substr(begin, end - begin)));
     begin = end + 1;
   }

@@ -4,11 +4,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "broadmark/files.h"
 
 namespace broadmark::imports {
 
@@ -46,15 +45,12 @@ class LineReader {
   [[nodiscard]] std::int64_t integer(std::string_view text, std::string_view what) const;
 
  private:
-  bool fill();
-
   std::string path_;
-  FileDescriptor file_;
+  std::ifstream file_;
   std::string buffer_;
-  std::size_t used_ = 0;             ///< of the buffer
-  std::uint64_t buffer_offset_ = 0;  ///< in the file
-  std::uint64_t begin_ = 0;          ///< of the present line, in the file
-  std::string line_;
+  std::string_view line_;
+  std::uint64_t begin_ = 0;   ///< of the present line, in the file
+  std::uint64_t length_ = 0;  ///< of the present line, with its end
   std::uint64_t number_ = 0;
   bool again_ = false;
 };
@@ -63,7 +59,7 @@ class LineReader {
 bool isBlank(std::string_view line);
 /// What stands between white space in a line.
 void splitWords(std::string_view line, std::vector<std::string_view>& words);
-/// What stands between commas, without white space around it.
-void splitCommas(std::string_view line, std::vector<std::string_view>& cells);
+/// What stands between separators, without white space around it.
+void splitAt(char separator, std::string_view line, std::vector<std::string_view>& cells);
 
 }  // namespace broadmark::imports

@@ -25,8 +25,6 @@ float floatAbove(double value) {
   return near < value ? std::nextafter(near, kLargest) : near;
 }
 
-}  // namespace
-
 Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius) {
   Aabb box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -39,102 +37,165 @@ Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, doub
   return box;
 }
 
-TextFrames::TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
-                       std::string object_type)
-    : files_(files), format_(std::move(format)) {
-  scene_.name = sequenceName(files);
-  scene_.object_type = std::move(object_type);
-  scene_.world = kEmptyBox;
-  for (std::size_t file = 0; file < files.size(); ++file) scan(file);
-  if (isEmpty(scene_.world)) scene_.world = {};
-  scene_.objects = static_cast<std::uint32_t>(ids_.size());
-  scene_.frames = static_cast<std::uint32_t>(places_.size() - 1);
-  boxes_.resize(ids_.size());
+double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
+                const ParticleColumns& columns, double stated) {
+  if (stated > 0) return stated;
+  if (!columns.radius) lines.fail(columns.no_radius);
+  const double size = lines.realNumber(words[*columns.radius], "the radius");
+  if (size < 0) lines.fail(fmt::format("the radius {:g} is negative", size));
+  return columns.is_diameter ? size / 2 : size;
 }
 
-void TextFrames::scan(std::size_t file) {
-  LineReader lines(files_[file]);
-  const std::size_t before = places_.size();
-  while (true) {
-    const FramePlace place{.file = file, .place = lines.place()};
-    if (!readNext(lines)) break;
-    add(lines, place);
-    count(lines);
+class TextFrames final : public IndexedFrames {
+ public:
+  TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
+             std::string object_type)
+      : files_(files), format_(std::move(format)) {
+    scene_.name = sequenceName(files);
+    scene_.object_type = std::move(object_type);
+    scene_.world = kEmptyBox;
+    for (std::size_t file = 0; file < files.size(); ++file) scan(file);
+    if (isEmpty(scene_.world)) scene_.world = {};
+    scene_.objects = static_cast<std::uint32_t>(ids_.size());
+    scene_.frames = static_cast<std::uint32_t>(places_.size() - 1);
+    boxes_.resize(ids_.size());
   }
-  if (places_.size() == before) {
-    throw InputError(fmt::format("{}: holds no frame", files_[file].string()));
-  }
-}
 
-bool TextFrames::readNext(LineReader& lines) {
-  frame_.number.reset();
-  frame_.rows.clear();
-  return format_(lines, frame_);
-}
+  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
 
-void TextFrames::add(const LineReader& lines, FramePlace place) {
-  std::uint64_t left_out = 0;
-  if (frame_.number && last_number_) {
-    if (*frame_.number <= *last_number_) {
-      lines.fail(frame_.rows.front().line,
-                 fmt::format("frame {} after frame {}: frames must stand in their order",
-                             *frame_.number, *last_number_));
+ private:
+  /// Where a frame is.
+  struct FramePlace {
+    std::size_t file = 0;
+    LineReader::Place place;
+    bool empty = false;  ///< it stands nowhere: nobody is there
+  };
+
+  void scan(std::size_t file) {
+    LineReader lines(files_[file]);
+    const std::size_t before = places_.size();
+    while (true) {
+      const FramePlace place{.file = file, .place = lines.place()};
+      if (!readNext(lines)) break;
+      add(lines, place);
+      count(lines);
     }
-    left_out =
-        static_cast<std::uint64_t>(*frame_.number) - static_cast<std::uint64_t>(*last_number_) - 1;
+    if (places_.size() == before) {
+      throw InputError(fmt::format("{}: holds no frame", files_[file].string()));
+    }
   }
-  last_number_ = frame_.number;
-  if (left_out >= kMostFrames || places_.size() + left_out > kMostFrames) {
-    lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
-               fmt::format("more than {} frames", kMostFrames));
+
+  /// Into frame_; false at the end of the file.
+  bool readNext(LineReader& lines) {
+    frame_.number.reset();
+    frame_.rows.clear();
+    return format_(lines, frame_);
   }
-  if (left_out > 0) scene_.all_present = false;
-  places_.resize(places_.size() + left_out, FramePlace{.empty = true});
-  places_.push_back(place);
+
+  void add(const LineReader& lines, FramePlace place) {
+    std::uint64_t left_out = 0;
+    if (frame_.number && last_number_) {
+      if (*frame_.number <= *last_number_) {
+        lines.fail(frame_.rows.front().line,
+                   fmt::format("frame {} after frame {}: frames must stand in their order",
+                               *frame_.number, *last_number_));
+      }
+      left_out = static_cast<std::uint64_t>(*frame_.number) -
+                 static_cast<std::uint64_t>(*last_number_) - 1;
+    }
+    last_number_ = frame_.number;
+    if (left_out >= kMostFrames || places_.size() + left_out > kMostFrames) {
+      lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
+                 fmt::format("more than {} frames", kMostFrames));
+    }
+    if (left_out > 0) scene_.all_present = false;
+    places_.resize(places_.size() + left_out, FramePlace{.empty = true});
+    places_.push_back(place);
+  }
+
+  /// Takes note of who is there.
+  void count(const LineReader& lines) {
+    std::vector<TextRow>& rows = frame_.rows;
+    if (!std::ranges::is_sorted(rows, {}, &TextRow::id)) {
+      std::ranges::stable_sort(rows, {}, &TextRow::id);
+    }
+    const auto twin = std::ranges::adjacent_find(rows, {}, &TextRow::id);
+    if (twin != rows.end()) {
+      lines.fail(std::next(twin)->line,
+                 fmt::format("{} is already in this frame, in line {}", twin->id, twin->line));
+    }
+    for (const TextRow& row : rows) scene_.world = merged(scene_.world, row.box);
+    const auto same_id = [](const TextRow& row, std::int64_t id) { return row.id == id; };
+    if (std::ranges::equal(rows, ids_, same_id)) return;
+    if (places_.size() > 1) scene_.all_present = false;
+    std::vector<std::int64_t> all;
+    std::vector<std::int64_t> here;
+    for (const TextRow& row : rows) here.push_back(row.id);
+    std::ranges::set_union(ids_, here, std::back_inserter(all));
+    if (all.size() > std::numeric_limits<std::int32_t>::max())
+      lines.fail("more bodies than 2^31 - 1");
+    ids_ = std::move(all);
+  }
+
+  LineReader& reader(std::size_t file) {
+    if (!reader_ || reader_file_ != file) reader_.emplace(files_[file]);
+    reader_file_ = file;
+    return *reader_;
+  }
+
+  std::span<const Aabb> readBoxes(std::uint32_t index) override {
+    const FramePlace& at = places_[index];
+    std::ranges::fill(boxes_, kEmptyBox);
+    if (at.empty) return boxes_;
+    LineReader& lines = reader(at.file);
+    lines.seek(at.place);
+    if (!readNext(lines)) lines.fail("the file has changed: its frames are no longer there");
+    for (const TextRow& row : frame_.rows) {
+      const auto body = std::ranges::lower_bound(ids_, row.id);
+      if (body == ids_.end() || *body != row.id) lines.fail("the file has changed: a new id");
+      boxes_[static_cast<std::size_t>(body - ids_.begin())] = row.box;
+    }
+    return boxes_;
+  }
+
+  std::vector<std::filesystem::path> files_;
+  TextFormat format_;
+  SceneInfo scene_;
+  std::vector<FramePlace> places_;
+  std::vector<std::int64_t> ids_;  ///< ascending, by body
+  std::optional<LineReader> reader_;
+  std::size_t reader_file_ = 0;
+  TextFrame frame_;
+  std::optional<std::int64_t> last_number_;  ///< of the frame before
+  std::vector<Aabb> boxes_;
+};
+
+}  // namespace
+
+std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
+                                              TextFormat format, std::string object_type) {
+  return std::make_unique<TextFrames>(files, std::move(format), std::move(object_type));
 }
 
-void TextFrames::count(const LineReader& lines) {
-  std::vector<TextRow>& rows = frame_.rows;
-  if (!std::ranges::is_sorted(rows, {}, &TextRow::id)) {
-    std::ranges::stable_sort(rows, {}, &TextRow::id);
+void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
+                   const ParticleColumns& columns, double radius) {
+  std::vector<std::string_view> words;
+  for (std::int64_t i = 0; i < count; ++i) {
+    lines.require(fmt::format("{} {} of {}", columns.what, i + 1, count));
+    splitWords(lines.line(), words);
+    if (words.size() < columns.count) {
+      lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
+    }
+    std::array<double, 3> centre{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double value = lines.realNumber(words[columns.position[axis]], "a coordinate");
+      centre[axis] = columns.low[axis] + value * columns.extent[axis];
+    }
+    const double size = radiusOf(lines, words, columns, radius);
+    frame.rows.push_back({.id = columns.id ? lines.integer(words[*columns.id], "the id") : i,
+                          .box = ballBox(lines, centre, size),
+                          .line = lines.number()});
   }
-  const auto twin = std::ranges::adjacent_find(rows, {}, &TextRow::id);
-  if (twin != rows.end()) {
-    lines.fail(std::next(twin)->line,
-               fmt::format("{} is already in this frame, in line {}", twin->id, twin->line));
-  }
-  for (const TextRow& row : rows) scene_.world = merged(scene_.world, row.box);
-  const auto same_id = [](const TextRow& row, std::int64_t id) { return row.id == id; };
-  if (std::ranges::equal(rows, ids_, same_id)) return;
-  if (places_.size() > 1) scene_.all_present = false;
-  std::vector<std::int64_t> all;
-  std::vector<std::int64_t> here;
-  for (const TextRow& row : rows) here.push_back(row.id);
-  std::ranges::set_union(ids_, here, std::back_inserter(all));
-  if (all.size() > std::numeric_limits<std::int32_t>::max())
-    lines.fail("more bodies than 2^31 - 1");
-  ids_ = std::move(all);
-}
-
-LineReader& TextFrames::reader(std::size_t file) {
-  if (!reader_ || reader_file_ != file) reader_.emplace(files_[file]);
-  reader_file_ = file;
-  return *reader_;
-}
-
-std::span<const Aabb> TextFrames::readBoxes(std::uint32_t index) {
-  const FramePlace& at = places_[index];
-  std::ranges::fill(boxes_, kEmptyBox);
-  if (at.empty) return boxes_;
-  LineReader& lines = reader(at.file);
-  lines.seek(at.place);
-  if (!readNext(lines)) lines.fail("the file has changed: its frames are no longer there");
-  for (const TextRow& row : frame_.rows) {
-    const auto body = std::ranges::lower_bound(ids_, row.id);
-    if (body == ids_.end() || *body != row.id) lines.fail("the file has changed: a new id");
-    boxes_[static_cast<std::size_t>(body - ids_.begin())] = row.box;
-  }
-  return boxes_;
 }
 
 }  // namespace broadmark::imports

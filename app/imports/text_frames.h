@@ -2,12 +2,14 @@
 // many frames and bodies there are; then frame by frame.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/frame.h"
@@ -32,46 +34,28 @@ struct TextFrame {
 /// the file. Throws InputError.
 using TextFormat = std::function<bool(LineReader&, TextFrame&)>;
 
-/// Bodies are numbered in the order of their ids, over all files. One without a row in a frame is
-/// absent in it.
-class TextFrames final : public IndexedFrames {
- public:
-  /// Frames of all files, one after the other. Throws InputError.
-  TextFrames(const std::vector<std::filesystem::path>& files, TextFormat format,
-             std::string object_type);
+/// Frames of all files, one after the other. Bodies are numbered in the order of their ids, over
+/// all files; one without a row in a frame is absent in it. Throws InputError.
+std::unique_ptr<IndexedFrames> openTextFrames(const std::vector<std::filesystem::path>& files,
+                                              TextFormat format, std::string object_type);
 
-  [[nodiscard]] const SceneInfo& scene() const override { return scene_; }
-
- private:
-  /// Where a frame is.
-  struct FramePlace {
-    std::size_t file = 0;
-    LineReader::Place place;
-    bool empty = false;  ///< it stands nowhere: nobody is there
-  };
-
-  std::span<const Aabb> readBoxes(std::uint32_t index) override;
-  void scan(std::size_t file);
-  /// Into frame_; false at the end of the file.
-  bool readNext(LineReader& reader);
-  void add(const LineReader& reader, FramePlace place);
-  /// Takes note of who is there.
-  void count(const LineReader& reader);
-  [[nodiscard]] LineReader& reader(std::size_t file);
-
-  std::vector<std::filesystem::path> files_;
-  TextFormat format_;
-  SceneInfo scene_;
-  std::vector<FramePlace> places_;
-  std::vector<std::int64_t> ids_;  ///< ascending, by body
-  std::optional<LineReader> reader_;
-  std::size_t reader_file_ = 0;
-  TextFrame frame_;
-  std::optional<std::int64_t> last_number_;  ///< of the frame before
-  std::vector<Aabb> boxes_;
+/// Which columns of a line are what of a particle, a ball.
+struct ParticleColumns {
+  std::string_view what;       ///< "particle", in messages
+  std::string_view no_radius;  ///< the complaint where neither the file nor the user states one
+  std::array<std::size_t, 3> position{};
+  std::optional<std::size_t> id = {};  ///< nothing: particles are numbered as they stand
+  std::optional<std::size_t> radius = {};
+  bool is_diameter = false;  ///< that column holds diameters
+  std::size_t count = 0;
+  // Positions are shares of this box; by default they are coordinates.
+  std::array<double, 3> low{};
+  std::array<double, 3> extent = {1, 1, 1};
 };
 
-/// The smallest box around a ball. Throws InputError when 32-bit floats cannot hold it.
-Aabb ballBox(const LineReader& reader, const std::array<double, 3>& centre, double radius);
+/// Reads the next `count` lines, a particle each; a `radius` above 0 is that of all. Throws
+/// InputError, also when 32-bit floats cannot hold the box of a particle.
+void readParticles(LineReader& lines, TextFrame& frame, std::int64_t count,
+                   const ParticleColumns& columns, double radius);
 
 }  // namespace broadmark::imports

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <strings.h>
 
 #include <algorithm>
-#include <cctype>
 #include <iterator>
 #include <map>
 #include <thread>
@@ -15,16 +15,10 @@
 #include "broadmark/names.h"
 #include "original/ids.h"
 #include "request/plugins.h"
-#include "request/sdk_plugins.h"
 #include "request/sweep.h"
 
 namespace broadmark {
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// Whether `selector` names `algorithm`, one of `known`.
 bool selects(const std::string& selector, const Algorithm& algorithm,
@@ -32,7 +26,8 @@ bool selects(const std::string& selector, const Algorithm& algorithm,
   if (selector == "all") return algorithm.traits.finds_pairs;
   if (globMatches(selector, algorithm.id)) return true;
   // An id is that algorithm alone, even where a whole family is called the same ("sap").
-  return findAlgorithm(selector, known) == nullptr && lower(selector) == lower(algorithm.family);
+  return findAlgorithm(selector, known) == nullptr &&
+         ::strcasecmp(selector.c_str(), algorithm.family.c_str()) == 0;
 }
 
 /// A key of --param: the parameter, and whose.
@@ -95,21 +90,6 @@ void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
   }
   requireKnownParameters({{parameter, ""}}, std::move(parameters));
 }
-
-/// The cases, each once.
-class CaseList {
- public:
-  void add(Case made) {
-    const auto same = [name = caseName(made)](const Case& other) {
-      return caseName(other) == name;
-    };
-    if (std::ranges::none_of(cases_, same)) cases_.push_back(std::move(made));
-  }
-  std::vector<Case> take() { return std::move(cases_); }
-
- private:
-  std::vector<Case> cases_;
-};
 
 /// Takes over a part of a case's name: "avx2", "t4", "margin=0.1". Throws InputError.
 void takeCasePart(Case& made, const std::string& part, const std::string& name) {
@@ -189,11 +169,15 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
   const std::vector<int> threads =
       options.threads.empty() ? std::vector{allCores()} : options.threads;
   const std::vector<Isa> isas = options.isas.empty() ? std::vector{bestIsa()} : options.isas;
-  CaseList cases;
+  std::vector<Case> cases;
   const auto add = [&](const Algorithm& algorithm, Isa isa, int count) {
     const ParameterValues own = parametersOf(algorithm, parameters, known);
     for (ParameterValues& values : combinations(*algorithm.create(), own)) {
-      cases.add(makeCase(algorithm, isa, count, options.device, std::move(values), options.answer));
+      Case made =
+          makeCase(algorithm, isa, count, options.device, std::move(values), options.answer);
+      if (std::ranges::find(cases, caseName(made), caseName) == cases.end()) {
+        cases.push_back(std::move(made));
+      }
     }
   };
 
@@ -215,7 +199,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
       for (const Isa isa : isas) add(algorithm, isa, count);
     }
   }
-  return cases.take();
+  return cases;
 }
 
 /// How much of a case's name is that of a plug-in: "FILE.so:", or "NAME:" of one of ours.

@@ -19,10 +19,23 @@
 #include "broadmark/scenes/engine_plugin.h"
 #include "broadmark/scenes/simulation.h"
 #include "request/cases.h"
-#include "request/sdk_plugins.h"
 
 namespace broadmark {
 namespace {
+
+namespace fs = std::filesystem;
+
+/// Where a plug-in of ours lies: beside the program in a build, in the folder of libraries when
+/// installed.
+fs::path fileOf(const std::string& name) {
+  std::error_code failed;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  const fs::path folder = program.parent_path();
+  const fs::path built = folder / "plugins" / (name + ".so");
+  return fs::exists(built, failed)
+             ? built
+             : (folder / BROADMARK_PLUGIN_FOLDER / (name + ".so")).lexically_normal();
+}
 
 /// Why the last call of the dynamic loader failed, without the path in front.
 std::string reason(const std::string& path) {
@@ -32,12 +45,27 @@ std::string reason(const std::string& path) {
   return std::string(message);
 }
 
+/// The file that is meant by the name of a plug-in of ours, or by a path. Throws InputError for one
+/// that was not built.
+std::string pluginFile(const std::string& named) {
+  const std::vector<SdkPlugin> all = sdkPlugins();
+  const auto meant = std::ranges::find(all, named, &SdkPlugin::name);
+  if (meant == all.end()) return named;
+  if (!meant->built) {
+    throw InputError(
+        fmt::format("--plugin: {}: not built: {} was not found when this program was configured "
+                    "(find_package({}), see 'Physics SDKs' in the README)",
+                    named, meant->releases, meant->package));
+  }
+  return meant->file.string();
+}
+
 /// The library that `named` means, which stays loaded.
 void* load(const std::string& named) {
   const std::string file = pluginFile(named);
   openForReading(file);  // throws unless it is a regular file
   // A path with a slash is not searched for in the loader's directories.
-  const std::string path = std::filesystem::absolute(file).string();
+  const std::string path = fs::absolute(file).string();
   void* library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     throw InputError(fmt::format("--plugin: {}: cannot be loaded: {}", file, reason(path)));
@@ -75,31 +103,19 @@ bool isId(std::string_view id) {
   throw InputError(fmt::format("--plugin: {}: {} '{}': {}", file, kind, id, what));
 }
 
-void requireId(const std::string& file, std::string_view kind, std::string_view id) {
-  if (isId(id)) return;
-  refuse(file, kind, id,
-         "its id must be made of lower-case letters, digits and -_., and must not be 'all'");
-}
-
-/// `plugin`: of the one that has the id already.
-[[noreturn]] void refuseTaken(const std::string& file, std::string_view kind, std::string_view id,
-                              const std::string& plugin) {
+/// Throws InputError for an entry that cannot be chosen or made. `other`: the plug-in of the one
+/// that has the id already, if there is one.
+void requireSound(const std::string& file, std::string_view kind, std::string_view id, bool creates,
+                  const std::string* other) {
+  if (!isId(id)) {
+    refuse(file, kind, id,
+           "its id must be made of lower-case letters, digits and -_., and must not be 'all'");
+  }
+  if (!creates) refuse(file, kind, id, "creates no instance");
+  if (other == nullptr) return;
   refuse(file, kind, id,
          fmt::format("its id is already taken by one {}",
-                     plugin.empty() ? "built in" : "of " + plugin));
-}
-
-/// Throws InputError for an algorithm that cannot be chosen or made.
-void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& known,
-                  const std::string& file) {
-  constexpr std::string_view kKind = "algorithm";
-  requireId(file, kKind, algorithm.id);
-  if (!algorithm.create || !algorithm.create()) {
-    refuse(file, kKind, algorithm.id, "creates no instance");
-  }
-  if (const Algorithm* other = findAlgorithm(algorithm.id, known)) {
-    refuseTaken(file, kKind, algorithm.id, other->plugin);
-  }
+                     other->empty() ? "built in" : "of " + *other));
 }
 
 /// Throws InputError for an engine that cannot be chosen or made, or whose parameters would hide
@@ -107,12 +123,11 @@ void requireSound(const Algorithm& algorithm, const std::vector<Algorithm>& know
 void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
   constexpr std::string_view kKind = "engine";
   const std::string& id = engine.listing.id;
-  requireId(file, kKind, id);
-  for (const EngineListing& other : availableEngines()) {
-    if (other.id == id) refuseTaken(file, kKind, id, other.plugin);
-  }
+  const std::vector<EngineListing> known = availableEngines();
+  const auto other = std::ranges::find(known, id, &EngineListing::id);
   const auto instance = engine.create == nullptr ? nullptr : engine.create({});
-  if (!instance) refuse(file, kKind, id, "creates no instance");
+  requireSound(file, kKind, id, instance != nullptr,
+               other == known.end() ? nullptr : &other->plugin);
   const std::vector<std::string> own = parameterNames(*instance);
   for (const SceneListing& scene : builtinScenes()) {
     const std::vector<std::string> taken = parameterNames(*makeSimulation(scene.id));
@@ -149,6 +164,15 @@ void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add)
 
 }  // namespace
 
+std::vector<SdkPlugin> sdkPlugins() {
+  std::vector<SdkPlugin> all;
+#define SDK_PLUGIN(name, package, releases, built) \
+  all.push_back({name, package, releases, built, (built) ? fileOf(name) : fs::path()});
+#include "sdk_plugins.inc"
+#undef SDK_PLUGIN
+  return all;
+}
+
 std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugins) {
   std::vector<Algorithm> algorithms = builtinAlgorithms();
   for (const std::string& file : plugins) {
@@ -156,7 +180,9 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
     if (plugin == nullptr) continue;
     const PluginBuild build = buildOf(*plugin, file);
     forEachEntry(*plugin, file, [&](Algorithm& algorithm) {
-      requireSound(algorithm, algorithms, file);
+      const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
+      requireSound(file, "algorithm", algorithm.id, algorithm.create && algorithm.create(),
+                   other == nullptr ? nullptr : &other->plugin);
       algorithm.plugin = file;
       algorithm.plugin_build = build;
       algorithms.push_back(std::move(algorithm));

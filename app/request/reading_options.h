@@ -38,6 +38,6 @@ struct ReadingOptions : Parametrised {
 };
 
 /// "--frame-rate"
-std::string readingOption(std::string parameter);
+std::string parameterOption(std::string parameter);
 
 }  // namespace broadmark

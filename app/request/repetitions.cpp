@@ -5,21 +5,15 @@
 
 namespace broadmark {
 
-bool RepetitionRule::isPrecise(const CaseResult& result) const {
-  const Summary summary = result.summary();
-  if (!summary.ci95) return false;
-  return summary.ci95->high - summary.ci95->low <= options_.precision * summary.seconds_per_frame;
-}
-
-bool RepetitionRule::isTimeUp() const {
-  return std::chrono::duration<double>(Clock::now() - begin_).count() >= options_.most_seconds;
-}
-
 bool RepetitionRule::isEnough(const CaseResult& result) const {
   const int done = static_cast<int>(result.repetitions.size());
   if (done >= options_.most) return true;
   if (!options_.until_precise || done < RepetitionOptions::kFewestUntilPrecise) return false;
-  return isTimeUp() || isPrecise(result);
+  const std::chrono::duration<double> passed = Clock::now() - begin_;
+  if (passed.count() >= options_.most_seconds) return true;
+  const Summary summary = result.summary();
+  return summary.ci95 &&
+         summary.ci95->high - summary.ci95->low <= options_.precision * summary.seconds_per_frame;
 }
 
 int RepetitionRule::wanted(const CaseResult& result) const {

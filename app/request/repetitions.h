@@ -38,8 +38,6 @@ class RepetitionRule {
 
  private:
   using Clock = std::chrono::steady_clock;
-  [[nodiscard]] bool isPrecise(const CaseResult& result) const;
-  [[nodiscard]] bool isTimeUp() const;
 
   const RepetitionOptions& options_;
   Clock::time_point begin_ = Clock::now();

@@ -12,14 +12,32 @@
 #include <vector>
 
 #include "broadmark/harness/case_run.h"
+#include "broadmark/parameters.h"
+#include "broadmark/render/picture.h"
 #include "request/cases.h"
 #include "request/hosts.h"
-#include "request/picture_options.h"
 #include "request/reading_options.h"
 #include "request/repetitions.h"
-#include "request/scene_options.h"
 
 namespace broadmark {
+
+/// What is simulated when a source is a scene or a batch is baked.
+struct SceneOptions {
+  std::vector<std::uint32_t> objects;  ///< numbers of bodies, ascending; empty: the scene's default
+  std::vector<std::string> object_types;  ///< empty: the scene's default
+  /// Scene parameters given by options of their own (--frames, --seed, …), by parameter name. A
+  /// text may hold several values (sweep.h).
+  ParameterValues parameters;
+  /// Kinds of recordings to keep; the first is run on. Empty: recordingExtension() of the scene.
+  std::vector<std::string> recorders;
+};
+
+/// How pictures are drawn off-screen.
+struct PictureOptions {
+  int width = 1280;
+  int height = 720;
+  GlSource gl = GlSource::automatic;
+};
 
 /// One part of a run that is divided among machines: every `count`-th case from the `index`-th.
 struct Shard {

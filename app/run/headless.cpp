@@ -26,19 +26,12 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Reports a plan on the terminal while it is run.
-class HeadlessRun final : public RunObserver {
+class HeadlessRun final : public TerminalTasks<RunObserver> {
  public:
-  HeadlessRun(const RunRequest& request, bool quiet) : request_(request), tasks_(quiet) {}
+  HeadlessRun(const RunRequest& request, bool quiet) : TerminalTasks(quiet), request_(request) {}
 
-  bool cancelled() override { return tasks_.cancelled(); }
-  void onTaskStart(const std::string& task, std::uint64_t steps) override {
-    tasks_.onTaskStart(task, steps);
-  }
-  void onProgress(std::uint64_t done, const std::string& detail) override {
-    tasks_.onProgress(done, detail);
-  }
   void onRecordingResults(const PlanEntry& entry, std::span<const CaseResult> results) override {
-    tasks_.end();
+    end();
     if (!prints_results_) std::cout << formatTable(results) << std::endl;
     if (!entry.original) return;
     const fs::path log = entry.original->output_log;
@@ -52,7 +45,7 @@ class HeadlessRun final : public RunObserver {
   /// Prints the results that go to standard output, and says what has been written. Returns the
   /// exit status. Throws Interrupted.
   int finish(const Results& results) {
-    tasks_.end();
+    end();
     if (!request_.record.empty()) written_.push_back(request_.record);
     if (!results.cases.empty()) {
       for (const auto& [name, path] : request_.outputs) {
@@ -90,7 +83,6 @@ class HeadlessRun final : public RunObserver {
   }
 
   const RunRequest& request_;
-  TerminalTasks tasks_;
   /// Results go to standard output: then nothing else does.
   const bool prints_results_ = std::ranges::any_of(
       request_.outputs, [](const auto& output) { return isStandardOutput(output.second); });

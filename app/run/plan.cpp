@@ -6,12 +6,12 @@
 
 #include <iterator>
 #include <regex>
+#include <set>
 
 #include "broadmark/error.h"
 #include "broadmark/harness/runner.h"
 #include "request/plugins.h"
 #include "request/sweep.h"
-#include "run/screenshot.h"
 #include "sources/results.h"
 
 namespace broadmark {
@@ -117,16 +117,26 @@ void requireFrame(const Plan& plan, PlanUse use) {
   }
 }
 
+/// The file asked for, or, when there are several recordings, that name followed by the
+/// recording's.
 void nameScreenshots(Plan& plan) {
-  if (plan.request.screenshot.empty()) return;
-  std::vector<std::string> names;
-  for (const PlanEntry& entry : plan.entries) {
-    const RecordingReference& reference = entry.source.reference;
-    names.push_back(fmt::format("{} {} N{}{}", reference.scene.name, reference.scene.object_type,
-                                reference.scene.objects, sweptText(reference.swept)));
+  const std::filesystem::path& asked = plan.request.screenshot;
+  if (asked.empty()) return;
+  std::set<std::filesystem::path> taken;
+  for (PlanEntry& entry : plan.entries) {
+    const SceneInfo& scene = entry.source.reference.scene;
+    const std::string name =
+        fmt::format("{} {} {} N{}{}", asked.stem().string(), scene.name, scene.object_type,
+                    scene.objects, sweptText(entry.source.reference.swept));
+    entry.screenshot = asked;
+    if (plan.entries.size() == 1) return;
+    entry.screenshot.replace_filename(name + asked.extension().string());
+    // Two recordings may differ in nothing but their boxes.
+    for (int k = 2; !taken.insert(entry.screenshot).second; ++k) {
+      entry.screenshot.replace_filename(
+          fmt::format("{} ({}){}", name, k, asked.extension().string()));
+    }
   }
-  const auto paths = screenshotPaths(plan.request.screenshot, names);
-  for (std::size_t i = 0; i < paths.size(); ++i) plan.entries[i].screenshot = paths[i];
 }
 
 }  // namespace

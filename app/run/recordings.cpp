@@ -90,7 +90,7 @@ std::unique_ptr<IndexedFrames> openRecording(Source& source, TaskObserver& tasks
 }
 
 std::unique_ptr<IndexedFrames> openForCommand(Source& source, bool quiet) {
-  TerminalTasks tasks(quiet);
+  TerminalTasks<> tasks(quiet);
   auto recording = openRecording(source, tasks);
   if (!recording) throw Interrupted();
   return recording;

@@ -6,7 +6,7 @@
 
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recordings/recording.h"
-#include "request/picture_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 
@@ -14,10 +14,5 @@ namespace broadmark {
 /// RenderError (no OpenGL) or InputError (frame, path).
 void takeScreenshot(IndexedFrames&, std::uint32_t index, Oracle&, const PictureOptions&,
                     const std::filesystem::path& path);
-
-/// A path for each recording of a run: the file asked for, or, when there are several recordings,
-/// that name followed by the recording's.
-std::vector<std::filesystem::path> screenshotPaths(const std::filesystem::path& asked,
-                                                   const std::vector<std::string>& recordings);
 
 }  // namespace broadmark

@@ -50,7 +50,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
     const std::string_view line = lines.line();
     if (imports::isBlank(line)) continue;
     if (lines.number() == 1 && isHeading(line)) continue;
-    imports::splitCommas(line, cells);
+    imports::splitAt(',', line, cells);
     if (cells.size() != kCells) {
       lines.fail(fmt::format("{} values: 8 are expected: frame, id, min x, y, z, max x, y, z",
                              cells.size()));
@@ -68,7 +68,7 @@ bool readFrame(LineReader& lines, TextFrame& frame) {
 
 std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
                                     const ReadingOptions&) {
-  return std::make_unique<imports::TextFrames>(files, readFrame, "Boxes");
+  return imports::openTextFrames(files, readFrame, "Boxes");
 }
 
 }  // namespace

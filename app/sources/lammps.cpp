@@ -13,6 +13,7 @@ namespace broadmark::sources::lammps {
 namespace {
 
 using imports::LineReader;
+using imports::ParticleColumns;
 using imports::TextFrame;
 
 constexpr std::string_view kItem = "ITEM: ";
@@ -26,26 +27,21 @@ struct Head {
   bool slanted = false;  ///< the box is no cuboid
 };
 
-/// Which column is what.
-struct Columns {
-  std::array<std::size_t, 3> position{};
-  bool scaled = false;  ///< positions are shares of the box
-  std::optional<std::size_t> id;
-  std::optional<std::size_t> radius;
-  bool diameter = false;  ///< that column holds diameters
-  std::size_t count = 0;
-};
-
-Columns columnsOf(const LineReader& lines, const std::vector<std::string_view>& names) {
+ParticleColumns columnsOf(const LineReader& lines, const std::vector<std::string_view>& names,
+                          const Head& head) {
   const auto find = [&](std::string_view name) -> std::optional<std::size_t> {
     const auto found = std::ranges::find(names, name);
     if (found == names.end()) return {};
     return static_cast<std::size_t>(found - names.begin());
   };
-  Columns columns{.id = find("id"), .radius = find("radius"), .count = names.size()};
+  ParticleColumns columns{.what = "atom",
+                          .no_radius = "no column 'radius' or 'diameter': say it with --radius",
+                          .id = find("id"),
+                          .radius = find("radius"),
+                          .count = names.size()};
   if (!columns.radius) {
     columns.radius = find("diameter");
-    columns.diameter = columns.radius.has_value();
+    columns.is_diameter = columns.radius.has_value();
   }
   struct Kind {
     std::array<std::string_view, 3> names;
@@ -61,7 +57,14 @@ Columns columnsOf(const LineReader& lines, const std::vector<std::string_view>& 
     const auto z = find(kind.names[2]);
     if (!x || !y || !z) continue;
     columns.position = {*x, *y, *z};
-    columns.scaled = kind.scaled;
+    if (!kind.scaled) return columns;
+    if (!head.bounds || head.slanted) {
+      lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
+    }
+    columns.low = head.low;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      columns.extent[axis] = head.high[axis] - head.low[axis];
+    }
     return columns;
   }
   lines.fail("no columns of positions: 'x y z' is expected, or 'xu yu zu', 'xs ys zs'");
@@ -112,27 +115,6 @@ bool readHead(LineReader& lines, Head& head) {
   return false;
 }
 
-std::array<double, 3> centreOf(const LineReader& lines, const std::vector<std::string_view>& words,
-                               const Columns& columns, const Head& head) {
-  std::array<double, 3> centre{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    centre[axis] = lines.realNumber(words[columns.position[axis]], "a coordinate");
-    if (columns.scaled) {
-      centre[axis] = head.low[axis] + centre[axis] * (head.high[axis] - head.low[axis]);
-    }
-  }
-  return centre;
-}
-
-double radiusOf(const LineReader& lines, const std::vector<std::string_view>& words,
-                const Columns& columns, double stated) {
-  if (stated > 0) return stated;
-  if (!columns.radius) lines.fail("no column 'radius' or 'diameter': say it with --radius");
-  const double size = lines.realNumber(words[*columns.radius], "the radius");
-  if (size < 0) lines.fail(fmt::format("the radius {:g} is negative", size));
-  return columns.diameter ? size / 2 : size;
-}
-
 bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
   Head head;
   if (!readHead(lines, head)) return false;
@@ -140,22 +122,8 @@ bool readFrame(LineReader& lines, TextFrame& frame, double radius) {
   const std::string names(lines.line().substr(kItem.size()));
   imports::splitWords(names, words);
   words.erase(words.begin());
-  const Columns columns = columnsOf(lines, words);
-  if (columns.scaled && (!head.bounds || head.slanted)) {
-    lines.fail("scaled positions need a cuboid box ('ITEM: BOX BOUNDS'): dump x y z");
-  }
-  for (std::int64_t i = 0; i < head.atoms; ++i) {
-    lines.require(fmt::format("atom {} of {}", i + 1, head.atoms));
-    imports::splitWords(lines.line(), words);
-    if (words.size() < columns.count) {
-      lines.fail(fmt::format("{} columns: {} are expected", words.size(), columns.count));
-    }
-    const double size = radiusOf(lines, words, columns, radius);
-    const std::int64_t id = columns.id ? lines.integer(words[*columns.id], "the id") : i;
-    frame.rows.push_back({.id = id,
-                          .box = ballBox(lines, centreOf(lines, words, columns, head), size),
-                          .line = lines.number()});
-  }
+  const ParticleColumns columns = columnsOf(lines, words, head);
+  imports::readParticles(lines, frame, head.atoms, columns, radius);
   return true;
 }
 
@@ -164,7 +132,7 @@ std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& fi
   const auto format = [radius = options.radius](LineReader& lines, TextFrame& frame) {
     return readFrame(lines, frame, radius);
   };
-  return std::make_unique<imports::TextFrames>(files, format, "Particles");
+  return imports::openTextFrames(files, format, "Particles");
 }
 
 }  // namespace

@@ -33,16 +33,11 @@ ParameterValues statedValues(const SceneOptions& options) {
   return values;
 }
 
-std::string optionOf(std::string parameter) {
-  std::ranges::replace(parameter, '_', '-');
-  return fmt::format("--{}", parameter);
-}
-
 void requireStatedOnce(const ParameterValues& stated, const ParameterValues& parameters) {
   for (const auto& [name, text] : stated) {
     if (!parameters.contains(name)) continue;
-    throw InputError(
-        fmt::format("--param: '{}' is given twice: {} states it, too", name, optionOf(name)));
+    throw InputError(fmt::format("--param: '{}' is given twice: {} states it, too", name,
+                                 parameterOption(name)));
   }
 }
 
@@ -70,7 +65,7 @@ void requireApplicable(Simulation& simulation, const std::string& scene,
     if (std::ranges::find(known, name) != known.end()) continue;
     throw InputError(
         fmt::format("{}: {}: an authored scene states its bodies itself: leave the option out",
-                    scene, optionOf(name)));
+                    scene, parameterOption(name)));
   }
 }
 
@@ -94,22 +89,6 @@ void noteSwept(std::vector<SweptSimulation>& simulations, const ParameterValues&
   }
 }
 
-RecordingReference referenceTo(Simulation& simulation) {
-  RecordingReference reference;
-  reference.scene = simulation.scene();
-  reference.scene_parameters = parameterValues(simulation);
-  if (simulation.listing().id == kAuthoredSceneId) {
-    reference.scene_parameters[kSceneFile] = simulation.input().string();
-  }
-  // A replay has no seed.
-  if (const auto seed = reference.scene_parameters.find("seed");
-      seed != reference.scene_parameters.end()) {
-    reference.seed = static_cast<std::uint64_t>(
-        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
-  }
-  return reference;
-}
-
 }  // namespace
 
 std::string recordingKindsText() {
@@ -123,7 +102,18 @@ bool isSceneId(const std::string& name) {
 
 Source simulationSource(std::unique_ptr<Simulation> simulation) {
   Source source;
-  source.reference = referenceTo(*simulation);
+  RecordingReference& reference = source.reference;
+  reference.scene = simulation->scene();
+  reference.scene_parameters = parameterValues(*simulation);
+  if (simulation->listing().id == kAuthoredSceneId) {
+    reference.scene_parameters[kSceneFile] = simulation->input().string();
+  }
+  // A replay has no seed.
+  if (const auto seed = reference.scene_parameters.find("seed");
+      seed != reference.scene_parameters.end()) {
+    reference.seed = static_cast<std::uint64_t>(
+        parseInteger(seed->second, "seed", 0, std::numeric_limits<long long>::max()));
+  }
   source.simulation = std::move(simulation);
   return source;
 }
@@ -146,6 +136,16 @@ Source importedSource(const std::vector<std::string>& names, const FileImport& i
     return std::ranges::find(import.options, option.first) == import.options.end();
   });
   return source;
+}
+
+Source fileSource(const std::vector<std::string>& names, const ReadingOptions& reading) {
+  const auto import = importOf(names.front());
+  std::vector<PlanEntry> entries(1);
+  Source& source = entries.front().source;
+  source = import ? importedSource(names, *import, reading) : recordingSource(names.front());
+  if (reading.swept) sweepBoxes(source);
+  requireReadingUsed(reading, entries);
+  return std::move(source);
 }
 
 void sweepBoxes(Source& source) {

@@ -25,6 +25,9 @@ Source simulationSource(std::unique_ptr<Simulation>);
 Source recordingSource(const std::filesystem::path&);
 /// Files that are imported. Throws InputError.
 Source importedSource(const std::vector<std::string>& names, const FileImport&, ReadingOptions);
+/// Files that are imported, or a recording, read as the options say. Throws InputError, also for an
+/// option that is of no use to them.
+Source fileSource(const std::vector<std::string>& names, const ReadingOptions&);
 
 /// Makes its boxes swept ones.
 void sweepBoxes(Source&);

@@ -4,18 +4,11 @@
 #include <fmt/ranges.h>
 
 #include "imports/element_frames.h"
+#include "imports/mesh.h"
 #include "parts.h"
 #include "sources/source.h"
 
 namespace broadmark::sources::meshes {
-namespace {
-
-std::unique_ptr<IndexedFrames> open(const std::vector<std::filesystem::path>& files,
-                                    const ReadingOptions& options) {
-  return std::make_unique<imports::ElementFrames>(files, options);
-}
-
-}  // namespace
 
 SourceKind kind() {
   // Where assimp is left out, a file that it would read is known, to say so.
@@ -25,7 +18,7 @@ SourceKind kind() {
   return {.what = fmt::format("meshes and animations ({})", shown),
           .import = FileImport{.extensions = imports::meshExtensions(),
                                .options = {"elements", "keep", "frame_rate"},
-                               .open = open}};
+                               .open = imports::openElements}};
 }
 
 }  // namespace broadmark::sources::meshes

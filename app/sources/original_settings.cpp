@@ -1,9 +1,59 @@
 // Settings files of the original Broadmark: a recording and the case to run on it.
 
+#include "sources/original_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "broadmark/error.h"
+#include "broadmark/names.h"
+#include "original/ids.h"
+#include "request/cases.h"
 #include "sources/make_source.h"
-#include "sources/original_case.h"
 
 namespace broadmark::sources::original_settings {
+namespace {
+
+/// The settings that are parameters here.
+ParameterValues originalParameters(const OriginalSettings& settings, const Algorithm& algorithm) {
+  const std::string& family = algorithm.family;
+  if (family == "KD") {  // one margin for all axes here
+    return {{"objects_per_leaf", std::to_string(settings.kd_objects_per_leaf)},
+            {"margin", fmt::format("{}", std::ranges::max(settings.margin))}};
+  }
+  // The original never reads Tracy's own key.
+  if (family == "Grid BF" || family == "Grid SAP" || family == "Tracy") {
+    return {{"objects_per_cell", std::to_string(settings.grid_objects_per_cell)}};
+  }
+  return {};
+}
+
+/// The original's ids of algorithms that are known.
+std::vector<std::string> knownNames(const std::vector<Algorithm>& known) {
+  std::vector<std::string> names;
+  for (const OriginalId& id : originalIds()) {
+    if (findAlgorithm(std::string(id.algorithm), known) != nullptr) names.emplace_back(id.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>& known) {
+  const OriginalId* id = findOriginalId(settings.algorithm);
+  const Algorithm* algorithm =
+      id == nullptr ? nullptr : findAlgorithm(std::string(id->algorithm), known);
+  if (algorithm == nullptr) {
+    throw InputError("m_algorithm: " +
+                     unknownName("algorithm", settings.algorithm, knownNames(known)));
+  }
+  const auto threads = static_cast<int>(std::clamp<std::int64_t>(settings.threads, 1, 1024));
+  return makeCase(*algorithm, id->isa.value_or(bestIsa()), threads, {},
+                  originalParameters(settings, *algorithm));
+}
+
 namespace {
 
 OpenedSource open(NamedSource& source, const OpeningOptions& options) {

@@ -83,21 +83,17 @@ Source simulationAgain(const RecordingReference& reference, const fs::path& resu
   return simulationSource(std::move(simulation));
 }
 
-/// The recording, or the imported file, that a case ran on.
-Source fileAgain(const std::string& path, const fs::path& results_file,
-                 const ReadingOptions& reading) {
-  const std::string file = statedPath(results_file, path).string();
-  if (const auto import = importOf(file)) return importedSource({file}, *import, reading);
-  return recordingSource(file);
-}
-
 /// What a case ran on: opening it checks that it is the same.
 Source sourceOf(const RecordingReference& reference, const fs::path& results_file) {
   ReadingOptions reading;
   setParameters(reading, reference.reading);
-  Source source = reference.path.empty() ? simulationAgain(reference, results_file)
-                                         : fileAgain(reference.path, results_file, reading);
-  if (reading.swept) sweepBoxes(source);
+  Source source;
+  if (reference.path.empty()) {
+    source = simulationAgain(reference, results_file);
+    if (reading.swept) sweepBoxes(source);
+  } else {
+    source = fileSource({statedPath(results_file, reference.path).string()}, reading);
+  }
   source.reference.swept = reference.swept;
   source.expected_hash = reference.hash;
   return source;

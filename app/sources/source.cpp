@@ -133,7 +133,7 @@ void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& en
     };
     if (entries.empty() || std::ranges::any_of(entries, heeds)) continue;
     throw InputError(
-        fmt::format("{}: no source here has a use for it: leave it out", readingOption(name)));
+        fmt::format("{}: no source here has a use for it: leave it out", parameterOption(name)));
   }
 }
 

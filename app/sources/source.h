@@ -15,7 +15,7 @@
 #include "broadmark/scenes/simulation.h"
 #include "original/settings.h"
 #include "request/reading_options.h"
-#include "request/scene_options.h"
+#include "request/run_request.h"
 
 namespace broadmark {
 

@@ -1,15 +1,23 @@
 // Parts that can be left out of a build, in messages.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
 
+#include "broadmark/error.h"
 #include "parts.h"
 
 namespace broadmark {
 
 /// "this build has no renderer (BROADMARK_RENDER=OFF)"
-std::string leftOut(const BuildPart&);
+inline std::string leftOut(const BuildPart& part) {
+  return fmt::format("this build has no {} ({}=OFF)", part.name, part.option);
+}
 /// Throws InputError if a part that `option` needs has been left out of this build.
-void requirePart(const BuildPart&, std::string_view option);
+inline void requirePart(const BuildPart& part, std::string_view option) {
+  if (!part.included) throw InputError(fmt::format("{}: {}", option, leftOut(part)));
+}
+
 }  // namespace broadmark

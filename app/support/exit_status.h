@@ -1,6 +1,7 @@
 // How the program ends, the same in all commands.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "broadmark/harness/status.h"
@@ -31,6 +32,12 @@ inline constexpr NameTable kExitStatuses{
      {exit_status::interrupted, "interrupted (Ctrl-C)"}}};
 
 /// How a command ends whose cases have these statuses. A case that cannot run here is no failure.
-int exitStatusOf(std::span<const Status> statuses);
+inline int exitStatusOf(std::span<const Status> statuses) {
+  const auto any = [&](Status status) {
+    return std::ranges::find(statuses, status) != statuses.end();
+  };
+  if (any(Status::mismatch) || any(Status::error)) return exit_status::wrong_answer;
+  return any(Status::timeout) ? exit_status::timeout : exit_status::fine;
+}
 
 }  // namespace broadmark

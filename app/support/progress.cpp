@@ -102,16 +102,4 @@ void Progress::draw(double seconds_left) {
   std::fflush(stderr);
 }
 
-bool TerminalTasks::cancelled() { return InterruptGuard::requested(); }
-
-void TerminalTasks::onTaskStart(const std::string& task, std::uint64_t steps) {
-  progress_.reset();  // its last line comes before the next one's first
-  progress_.emplace(task, steps, quiet_);
-}
-
-void TerminalTasks::onProgress(std::uint64_t done, const std::string& detail) {
-  progress_->detail(detail);
-  progress_->update(done);
-}
-
 }  // namespace broadmark

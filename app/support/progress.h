@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "support/interrupt.h"
+
 namespace broadmark {
 
 /// Receives the progress of long work, and may end it.
@@ -39,6 +41,11 @@ class Progress {
   void update(std::uint64_t done);
   /// The same with a better estimate of the time left.
   void update(std::uint64_t done, double seconds_left);
+  /// update(), for work that can be interrupted: false once it has been.
+  bool goOn(std::uint64_t done) {
+    update(done);
+    return !InterruptGuard::requested();
+  }
 
   /// Prints a line on standard output or error without disturbing the progress line.
   void print(std::string_view line) { print(stdout, line); }
@@ -62,13 +69,20 @@ class Progress {
 };
 
 /// Shows one task after the other as Progress; Ctrl-C (InterruptGuard) ends them.
-class TerminalTasks final : public TaskObserver {
+template <class Observer = TaskObserver>
+class TerminalTasks : public Observer {
  public:
   explicit TerminalTasks(bool quiet) : quiet_(quiet) {}
 
-  bool cancelled() override;
-  void onTaskStart(const std::string& task, std::uint64_t steps) override;
-  void onProgress(std::uint64_t done, const std::string& detail = {}) override;
+  bool cancelled() override { return InterruptGuard::requested(); }
+  void onTaskStart(const std::string& task, std::uint64_t steps) override {
+    end();  // its last line comes before the next one's first
+    progress_.emplace(task, steps, quiet_);
+  }
+  void onProgress(std::uint64_t done, const std::string& detail = {}) override {
+    progress_->detail(detail);
+    progress_->update(done);
+  }
   /// The present task has ended.
   void end() { progress_.reset(); }
 

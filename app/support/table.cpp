@@ -64,16 +64,6 @@ std::string variedParameters(const CaseResult& result, std::span<const CaseResul
   return text;
 }
 
-/// Leaves out a column that is empty but for its heading.
-void dropEmptyColumn(std::vector<std::vector<std::string>>& rows, std::vector<bool>& right_aligned,
-                     std::size_t column) {
-  const auto is_empty = [&](const auto& row) { return row[column].empty(); };
-  if (!std::all_of(rows.begin() + 1, rows.end(), is_empty)) return;
-  const auto at = static_cast<std::ptrdiff_t>(column);
-  for (auto& row : rows) row.erase(row.begin() + at);
-  right_aligned.erase(right_aligned.begin() + at);
-}
-
 }  // namespace
 
 std::string cellText(const CaseColumn& column, const CaseResult& result, const Summary& summary,
@@ -143,7 +133,13 @@ std::string formatTable(std::span<const CaseResult> results) {
   }
   if (results.front().answer == AnswerKind::events) text += ", events";
   text += '\n';
-  const std::vector<const CaseColumn*> columns = caseColumns(&ColumnShown::terminal);
+  std::vector<const CaseColumn*> columns = caseColumns(&ColumnShown::terminal);
+  const auto is_varied = [&](const CaseResult& result) {
+    return !variedParameters(result, results).empty();
+  };
+  if (std::ranges::none_of(results, is_varied)) {
+    std::erase_if(columns, [](const CaseColumn* column) { return column->key == kParameters; });
+  }
   std::vector<std::vector<std::string>> table = {{""}};
   std::vector<bool> right_aligned = {false};
   for (const CaseColumn* column : columns) {
@@ -161,8 +157,6 @@ std::string formatTable(std::span<const CaseResult> results) {
                                                  : cellText(*column, *row->result, row->summary));
     }
   }
-  const auto parameters = std::ranges::find(columns, kParameters, &CaseColumn::key);
-  dropEmptyColumn(table, right_aligned, static_cast<std::size_t>(parameters - columns.begin()) + 1);
   text += alignColumns(table, right_aligned);
   for (const Row& row : rows) {
     if (row.result->reason.empty()) continue;

@@ -28,6 +28,12 @@ std::string counted(std::uint64_t count, std::string_view one, std::string_view 
   return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
 }
 
+std::string shellQuoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string extentText(std::size_t bodies, std::size_t frames) {
   return fmt::format("{}, {}", counted(bodies, "body", "bodies"), counted(frames, "frame"));
 }

@@ -18,6 +18,9 @@ std::string bytesText(std::uint64_t bytes);
 /// "1 case", "2 cases"; of "body" the plural is stated.
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
+/// In single quotes, as a shell takes it.
+std::string shellQuoted(const std::string& text);
+
 /// "3 bodies, 1 frame"
 std::string extentText(std::size_t bodies, std::size_t frames);
 

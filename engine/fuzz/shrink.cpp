@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -96,35 +95,22 @@ double squaredGap(const Aabb& a, const Aabb& b) {
   return sum;
 }
 
-/// Squared distance of two boxes' centres; infinite if one is empty.
-double squaredDistance(const Aabb& a, const Aabb& b) {
-  if (isEmpty(a) || isEmpty(b)) return std::numeric_limits<double>::infinity();
-  double sum = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double twice = (static_cast<double>(a.min[axis]) + a.max[axis]) -
-                         (static_cast<double>(b.min[axis]) + b.max[axis]);
-    sum += twice * twice / 4;
-  }
-  return sum;
-}
-
 /// The `count` bodies nearest to the suspects, these first.
 std::vector<std::uint32_t> nearest(const std::vector<std::uint32_t>& suspects,
                                    std::span<const Aabb> boxes, std::size_t count) {
-  using Key = std::tuple<bool, double, double, std::uint32_t>;
+  using Key = std::tuple<bool, double, std::uint32_t>;
   std::vector<Key> keys;
   for (std::uint32_t body = 0; body < boxes.size(); ++body) {
-    Key key = {true, std::numeric_limits<double>::infinity(), 0, body};
+    Key key = {true, std::numeric_limits<double>::infinity(), body};
     for (const std::uint32_t suspect : suspects) {
-      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]),
-                              squaredDistance(boxes[body], boxes[suspect]), body});
+      key = std::min(key, Key{body != suspect, squaredGap(boxes[body], boxes[suspect]), body});
     }
     keys.push_back(key);
   }
   count = std::min(count, keys.size());
   std::ranges::partial_sort(keys, keys.begin() + static_cast<std::ptrdiff_t>(count));
   std::vector<std::uint32_t> bodies;
-  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<3>(keys[i]));
+  for (std::size_t i = 0; i < count; ++i) bodies.push_back(std::get<2>(keys[i]));
   return bodies;
 }
 
@@ -151,14 +137,6 @@ class Shrinker {
   }
 
  private:
-  /// A part of the recording that is held in memory, as it is there.
-  struct Held {
-    Part origin;
-    FrameList frames;
-
-    Held(Part part, FrameSource& source) : origin(std::move(part)), frames(source) {}
-  };
-
   /// Holds a part in memory, if it fits. Whether it is held now.
   bool hold(const Part& part) {
     if (isHeld(part)) return true;
@@ -166,20 +144,18 @@ class Shrinker {
       return false;
     }
     held_.reset();
-    Part origin = partOf(whole_.scene(), part.bodies, part.frames);
-    SubRecording frames(whole_, origin, partName(whole_.scene()));
-    held_ = std::make_unique<Held>(std::move(origin), frames);
+    origin_ = partOf(whole_.scene(), part.bodies, part.frames);
+    SubRecording frames(whole_, origin_, partName(whole_.scene()));
+    held_.emplace(frames);
     return true;
   }
 
-  [[nodiscard]] bool isHeld(const Part& part) const {
-    return held_ && isWithin(part, held_->origin);
-  }
+  [[nodiscard]] bool isHeld(const Part& part) const { return held_ && isWithin(part, origin_); }
 
   SubRecording framesOf(const Part& part) {
     const std::string name = partName(whole_.scene());
     if (!isHeld(part)) return {whole_, part, name};
-    return {held_->frames, renumbered(part, held_->origin), name};
+    return {*held_, renumbered(part, origin_), name};
   }
 
   /// Tries a part, which becomes the best when it fails.
@@ -342,7 +318,8 @@ class Shrinker {
   IndexedFrames& whole_;
   std::uint32_t last_;  ///< frame
   ShrunkPart best_;
-  std::unique_ptr<Held> held_;
+  Part origin_;                    ///< a part of the recording, as it is there
+  std::optional<FrameList> held_;  ///< that part in memory
 };
 
 /// How a case's answer for the last frame differs from the right one; nothing when it does not get

@@ -95,7 +95,7 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   stop();
   requireRunnable(case_, scene);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  processor_counts_ = {};
+  report_.processor = {};
   if (!processor_) processor_.emplace();
   processor_->restart();
   if (usable_cores_.empty()) usable_cores_ = usableCores();
@@ -141,7 +141,7 @@ void LocalHost::pinThreads() {
   const std::vector<int> cores =
       quietestCores(execution_->threads(), usable_cores_,
                     is_choice ? watchCores(kMoment) : BusyShares(), coreSiblings());
-  pinned_ = execution_->team().pin(cores, usable_cores_);
+  report_.pinned = execution_->team().pin(cores, usable_cores_);
 }
 
 FrameTimes LocalHost::runCounted(const Frame& frame) {
@@ -160,7 +160,7 @@ void LocalHost::stop() {
   answer_ = {};
   events_ = {};
   if (instance_ == nullptr) return;
-  processor_counts_ = processor_->counts();
+  report_.processor = processor_->counts();
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   instance_.reset();
 }

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 #include <sys/utsname.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -15,6 +14,7 @@
 #include "broadmark/compiler.h"
 #include "broadmark/cores.h"
 #include "broadmark/execution.h"
+#include "broadmark/harness/memory_limit.h"
 
 namespace broadmark {
 namespace {
@@ -92,8 +92,7 @@ Environment thisEnvironment() {
       .physical_cores = physicalCores(),
       .caches = caches(),
       .isa = std::string(isaName(bestIsa())),
-      .memory_bytes = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                      static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)),
+      .memory_bytes = machineMemory(),
       .governor = firstLine("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"),
       .os = operatingSystem(system),
       .compiler = BROADMARK_COMPILER,

@@ -157,15 +157,15 @@ bool runRepetition(CaseResult& result, CaseRun& run, FrameSource& source, Oracle
     }
     const bool instance_survived = run.hasInstance();
     run.stop();
-    repetition.processor = run.processorCounts();
+    repetition.processor = run.report().processor;
     if (measured && instance_survived) result.repetitions.push_back(std::move(repetition));
   } catch (const Cancelled&) {
     return false;
   }
   result.status = run.status();
   result.reason = run.reason();
-  result.peak_bytes = run.peakBytes();
-  result.conditions.pinned = run.pinned();
+  result.peak_bytes = run.report().peak_bytes;
+  result.conditions.pinned = run.report().pinned;
   return true;
 }
 

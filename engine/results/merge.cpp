@@ -18,52 +18,33 @@ bool isSame(Environment a, const Environment& b) {
   return a == b;
 }
 
-class Merger {
- public:
-  void add(const Results& run) {
-    merged_.results.complete &= run.complete;
-    for (const CaseResult& result : run.cases) {
-      CaseResult moved = result;
-      moved.environment = placeOf(run.environments[result.environment]);
-      add(std::move(moved));
-    }
-  }
-
-  MergedResults take() { return std::move(merged_); }
-
- private:
-  std::size_t placeOf(const Environment& environment) {
-    std::vector<Environment>& known = merged_.results.environments;
-    const auto found = std::ranges::find_if(
-        known, [&](const Environment& one) { return isSame(one, environment); });
-    const auto place = static_cast<std::size_t>(found - known.begin());
-    if (found == known.end()) known.push_back(environment);
-    return place;
-  }
-
-  void add(CaseResult result) {
-    std::vector<CaseResult>& cases = merged_.results.cases;
-    const auto [at, is_new] =
-        places_.try_emplace({result.environment, result.recording.hash, result.id}, cases.size());
-    if (is_new) {
-      cases.push_back(std::move(result));
-      return;
-    }
-    ++merged_.repeated;
-    CaseResult& present = cases[at->second];
-    if (result.isComplete() || !present.isComplete()) present = std::move(result);
-  }
-
-  MergedResults merged_{.results = {.complete = true}};
-  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> places_;
-};
-
 }  // namespace
 
 MergedResults mergeResults(const std::vector<Results>& runs) {
-  Merger merger;
-  for (const Results& run : runs) merger.add(run);
-  return merger.take();
+  MergedResults merged{.results = {.complete = true}};
+  std::vector<Environment>& environments = merged.results.environments;
+  std::vector<CaseResult>& cases = merged.results.cases;
+  std::map<std::tuple<std::size_t, std::string, std::string>, std::size_t> places;
+  for (const Results& run : runs) {
+    merged.results.complete &= run.complete;
+    for (CaseResult result : run.cases) {
+      const Environment& environment = run.environments[result.environment];
+      const auto known = std::ranges::find_if(
+          environments, [&](const Environment& one) { return isSame(one, environment); });
+      result.environment = static_cast<std::size_t>(known - environments.begin());
+      if (known == environments.end()) environments.push_back(environment);
+      const auto [at, is_new] =
+          places.try_emplace({result.environment, result.recording.hash, result.id}, cases.size());
+      if (is_new) {
+        cases.push_back(std::move(result));
+        continue;
+      }
+      ++merged.repeated;
+      CaseResult& present = cases[at->second];
+      if (result.isComplete() || !present.isComplete()) present = std::move(result);
+    }
+  }
+  return merged;
 }
 
 }  // namespace broadmark

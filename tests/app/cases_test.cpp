@@ -11,11 +11,12 @@
 #include "engine/helpers.h"
 #include "original/ids.h"
 #include "parts.h"
-#include "sources/original_case.h"
+#include "sources/original_settings.h"
 
 namespace broadmark::tests {
 namespace {
 
+using sources::original_settings::originalCase;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;

@@ -40,10 +40,9 @@ struct Options {
 
 HostMaker workerMaker(bool pin) {
   return [pin](const Case& run, CancelQuery) {
-    return std::make_unique<WorkerProcess>(run,
-                                           WorkerOptions{.command = {"/proc/self/exe", "worker"},
-                                                         .hard_limit = std::chrono::hours(1),
-                                                         .pin = pin});
+    return makeWorkerProcess(run, WorkerOptions{.command = {"/proc/self/exe", "worker"},
+                                                .hard_limit = std::chrono::hours(1),
+                                                .pin = pin});
   };
 }
 

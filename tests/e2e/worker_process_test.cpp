@@ -43,7 +43,7 @@ std::vector<std::vector<Pair>> answerOf(CaseHost& host, AnswerKind kind) {
 
 void expectSameAnswers(const Case& run) {
   LocalHost here(run);
-  WorkerProcess there(run, thisProgram());
+  const auto there = makeWorkerProcess(run, thisProgram());
   for (const ChangingWorld& world : movingClusters()) {
     const std::vector<std::vector<Aabb>>& frames = world.frames;
     SceneInfo scene = sceneOf(frames);
@@ -56,24 +56,24 @@ void expectSameAnswers(const Case& run) {
     } catch (const UnsupportedError&) {
       GTEST_SKIP() << "cannot run here";
     }
-    EXPECT_GE(there.start(scene, first), 0);
+    EXPECT_GE(there->start(scene, first), 0);
     if (run.answer == AnswerKind::events) {
-      EXPECT_EQ(answerOf(there, run.answer), answerOf(here, run.answer)) << "the initial pose";
+      EXPECT_EQ(answerOf(*there, run.answer), answerOf(here, run.answer)) << "the initial pose";
     }
     for (std::uint32_t index = 1; index < frames.size(); ++index) {
       const Frame frame = changed_bodies.complete({index, frames[index]});
       const FrameRun run_here = here.step(frame);
-      const FrameRun run_there = there.step(frame);
+      const FrameRun run_there = there->step(frame);
       EXPECT_EQ(run_there.pairs, run_here.pairs);
       EXPECT_GT(run_there.times[Phase::total], 0);
       if (run.answer == AnswerKind::pairs) {
-        EXPECT_EQ(there.digest(), here.digest());
+        EXPECT_EQ(there->digest(), here.digest());
       }
-      EXPECT_EQ(answerOf(there, run.answer), answerOf(here, run.answer));
-      EXPECT_EQ(there.counters().size(), here.counters().size());
+      EXPECT_EQ(answerOf(*there, run.answer), answerOf(here, run.answer));
+      EXPECT_EQ(there->counters().size(), here.counters().size());
     }
-    EXPECT_EQ(there.setup().size(), here.setup().size());
-    const RecordedDrawing drawn = there.structure();
+    EXPECT_EQ(there->setup().size(), here.setup().size());
+    const RecordedDrawing drawn = there->structure();
     const RecordedDrawing expected = here.structure();
     EXPECT_EQ(drawn.leftOut(), expected.leftOut());
     EXPECT_EQ(drawn.tests(), expected.tests());
@@ -83,7 +83,7 @@ void expectSameAnswers(const Case& run) {
       EXPECT_EQ(drawn.boxes()[i].box, expected.boxes()[i].box);
       EXPECT_EQ(drawn.boxes()[i].level, expected.boxes()[i].level);
     }
-    there.stop();
+    there->stop();
     here.stop();
   }
 }
@@ -111,27 +111,28 @@ INSTANTIATE_TEST_SUITE_P(All, WorkerHost, ::testing::ValuesIn(algorithmsWithPair
                          });
 
 TEST(WorkerProcess, TakesScenesOfAnySize) {
-  WorkerProcess host(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), thisProgram());
+  const auto host = makeWorkerProcess(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
+                                      thisProgram());
   for (const std::size_t bodies : {0, 1, 2, 3000, 3}) {
     std::vector<Aabb> boxes;  // none overlaps another
     for (std::size_t i = 0; i < bodies; ++i) {
       const auto x = static_cast<float>(2 * i);
       boxes.push_back({{x, 0, 0, 0}, {x + 1, 1, 1, 0}});
     }
-    host.start(sceneOf({boxes, boxes}), {0, boxes});
-    EXPECT_EQ(host.step({1, boxes, std::span<const std::uint32_t>()}).pairs, 0U);
-    EXPECT_TRUE(sorted(host.answer()).empty());
-    host.stop();
+    host->start(sceneOf({boxes, boxes}), {0, boxes});
+    EXPECT_EQ(host->step({1, boxes, std::span<const std::uint32_t>()}).pairs, 0U);
+    EXPECT_TRUE(sorted(host->answer()).empty());
+    host->stop();
   }
 }
 
 /// What is said of a program that does `script`.
 std::string complaint(const std::string& script) {
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
-  WorkerProcess host(
+  const auto host = makeWorkerProcess(
       makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
       {.command = {"/bin/sh", "-c", script}, .hard_limit = std::chrono::milliseconds(1)});
-  return inputErrorOf([&] { host.start(sceneOf({boxes, boxes}), {0, boxes}); });
+  return inputErrorOf([&] { host->start(sceneOf({boxes, boxes}), {0, boxes}); });
 }
 
 TEST(WorkerProcess, ADifferentProgramIsNamed) {
@@ -140,10 +141,11 @@ TEST(WorkerProcess, ADifferentProgramIsNamed) {
   EXPECT_THAT(complaint("printf '{\"protocol\": 99}' >&3; cat <&3 >/dev/null"),
               AllOf(HasSubstr("/bin/sh"), HasSubstr("99"), HasSubstr("version")));
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
-  WorkerProcess missing(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
+  const auto missing =
+      makeWorkerProcess(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}),
                         {.command = {"/no/such/program"}});
   EXPECT_THAT(inputErrorOf([&] {
-                missing.start(sceneOf({boxes, boxes}), {0, boxes});
+                missing->start(sceneOf({boxes, boxes}), {0, boxes});
               }),
               HasSubstr("/no/such/program"));
 }
@@ -154,7 +156,7 @@ std::string ending(const std::string& script,
   const std::vector<Aabb> boxes = {{{0, 0, 0, 0}, {1, 1, 1, 0}}};
   CaseRun run(makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {}), {},
               [&](const Case& one, CancelQuery) {
-                return std::make_unique<WorkerProcess>(
+                return makeWorkerProcess(
                     one,
                     WorkerOptions{.command = {"/bin/sh", "-c",
                                               fmt::format("printf '{{\"protocol\": {}}}' >&3; {}",

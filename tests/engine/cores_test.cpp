@@ -143,7 +143,7 @@ TEST(Pinning, OfACaseWhoseThreadsFitTheCores) {
       run.threads = threads;
       LocalHost host(run, pin);
       host.start(source.scene(), first);
-      is_pinned = host.pinned();
+      is_pinned = host.report().pinned;
       if (!is_pinned) {
         EXPECT_EQ(usableCores().size(), static_cast<std::size_t>(cores));
       }

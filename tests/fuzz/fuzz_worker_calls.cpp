@@ -11,7 +11,7 @@
 
 #include "broadmark/algorithms.h"
 #include "broadmark/error.h"
-#include "worker/server.h"
+#include "worker/protocol.h"
 
 namespace broadmark {
 namespace {

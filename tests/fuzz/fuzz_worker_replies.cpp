@@ -71,7 +71,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   options.command = {WORKER_PARROT, fmt::format("/proc/{}/fd/{}", ::getpid(), file.get())};
   options.hard_limit = options.begin_limit = std::chrono::seconds(5);
   static const Case run = makeCase(builtinAlgorithms().front(), Isa::scalar, 1, "", {});
-  WorkerProcess host(run, options);
-  callEverything(host);
+  callEverything(*makeWorkerProcess(run, options));
   return 0;
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "broadmark/scenes/simulation.h"
@@ -13,31 +12,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kGlance{20};
-
-void take(const BakedJob& baked, BakeReport& report) {
-  for (BakeReport::Item& item : report.items) {
-    if (std::ranges::find(baked.paths, item.path) == baked.paths.end()) continue;
-    item.outcome = baked.failure.empty() ? BakeOutcome::baked : BakeOutcome::failed;
-    item.failure = baked.failure;
-  }
-}
-
 void bake(BackgroundBake& job, std::vector<BakeJob> jobs, int threads) {
-  BakeBatch batch(std::move(jobs), threads);
-  while (!batch.ended()) {
-    if (job.cancelled()) batch.cancel();
-    const std::vector<BakedJob> ended = batch.await(kGlance);
-    const BatchState state = batch.state();
+  const auto on_ended = [&](const BakedJob& baked) {
     job.update([&](BakeReport& report) {
-      for (const BakedJob& baked : ended) take(baked, report);
+      for (BakeReport::Item& item : report.items) {
+        if (std::ranges::find(baked.paths, item.path) == baked.paths.end()) continue;
+        item.outcome = baked.failure.empty() ? BakeOutcome::baked : BakeOutcome::failed;
+        item.failure = baked.failure;
+      }
+    });
+  };
+  const auto on_progress = [&](const BatchState& state) {
+    job.update([&](BakeReport& report) {
       report.doing = state.running;
       report.seconds_left = state.seconds_left;
       report.fraction =
           static_cast<float>(static_cast<double>(state.done) /
                              static_cast<double>(std::max<std::uint64_t>(state.total, 1)));
     });
-  }
+    return !job.cancelled();
+  };
+  bakeAll(std::move(jobs), threads, on_ended, on_progress);
 }
 
 void planAndBake(BackgroundBake& job, const BakeOptions& options) {

@@ -64,7 +64,7 @@ std::optional<std::uint64_t> Trial::heapAfter(IndexedFrames& world, int passes) 
   for (int i = 0; i < passes; ++i) {
     if (run(world) || !supported_) return std::nullopt;
   }
-  return run_->heapBytes();
+  return run_->report().heap_bytes;
 }
 
 std::optional<Fault> Trial::leak(IndexedFrames& world) {

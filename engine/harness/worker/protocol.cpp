@@ -117,8 +117,7 @@ Json toJson(const Case& run) {
           {"answer", kAnswerKinds.nameOf(run.answer)}};
 }
 
-Case caseFrom(const Json& json,
-              const std::function<Algorithm(const std::string&, const std::string&)>& find) {
+Case caseFrom(const Json& json, const AlgorithmFinder& find) {
   const auto isa = json.at("isa").get<std::string>();
   Case run{.algorithm =
                find(json.at("algorithm").get<std::string>(), json.at("plugin").get<std::string>()),
@@ -191,37 +190,6 @@ CollisionFilter readFilter(const Json& json, const SharedMemory& memory, std::ui
     }
   }
   return {groups, matrix};
-}
-
-Json toJson(const FrameTimes& times) {
-  Json json = Json::object();
-  for (const auto& [phase, name] : kPhases.entries) json[std::string(name)] = times[phase];
-  return json;
-}
-
-FrameTimes timesFrom(const Json& json) {
-  FrameTimes times;
-  for (const auto& [phase, name] : kPhases.entries) {
-    times[phase] = json.at(std::string(name)).get<std::int64_t>();
-  }
-  return times;
-}
-
-Json toJson(const ProcessorCounts& counts) {
-  Json json = Json::object();
-  for (const auto& [which, name] : kProcessorCounters.entries) {
-    if (counts[which]) json[std::string(name)] = *counts[which];
-  }
-  return json;
-}
-
-ProcessorCounts processorCountsFrom(const Json& json) {
-  ProcessorCounts counts;
-  for (const auto& [which, name] : kProcessorCounters.entries) {
-    const auto found = json.find(std::string(name));
-    if (found != json.end()) counts[which] = found->get<std::uint64_t>();
-  }
-  return counts;
 }
 
 }  // namespace broadmark::worker

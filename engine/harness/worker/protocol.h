@@ -39,7 +39,7 @@
 #include <vector>
 
 #include "broadmark/files.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/worker_process.h"
 #include "broadmark/json_fields.h"
 
 namespace broadmark::worker {
@@ -114,11 +114,14 @@ class SharedMemory {
   FileDescriptor file_;
 };
 
+/// The worker's side of the protocol, without what it does to its process: answers the calls of the
+/// other side until that hangs up. Throws HostError for what is no message.
+void answerCalls(Channel& channel, SharedMemory frames, SharedMemory answers,
+                 const AlgorithmFinder& find);
+
 Json toJson(const Case&);
 /// Throws InputError (no such algorithm) and Json::exception.
-Case caseFrom(
-    const Json&,
-    const std::function<Algorithm(const std::string& id, const std::string& plugin)>& find);
+Case caseFrom(const Json&, const AlgorithmFinder& find);
 /// All but the filter, which is too large for a message.
 Json toJson(const SceneInfo&);
 SceneInfo sceneFrom(const Json&);
@@ -126,10 +129,23 @@ SceneInfo sceneFrom(const Json&);
 Json writeFilter(const CollisionFilter&, const SharedMemory&, std::uint64_t offset);
 CollisionFilter readFilter(const Json&, const SharedMemory&, std::uint64_t offset,
                            std::size_t bodies);
-Json toJson(const FrameTimes&);
-FrameTimes timesFrom(const Json&);
-Json toJson(const ProcessorCounts&);
-/// What an earlier worker does not tell is not known.
-ProcessorCounts processorCountsFrom(const Json&);
+
+/// The values of the names in a table, as far as they are known.
+template <class Table, class Values>
+Json namedToJson(const Table& table, const Values& values) {
+  Json json = Json::object();
+  for (const auto& [key, name] : table.entries) {
+    if (const std::optional value = values[key]) json[std::string(name)] = *value;
+  }
+  return json;
+}
+/// And back. What the other side does not tell stays as it is.
+template <class Table, class Values>
+void readNamed(const Json& json, const Table& table, Values& values) {
+  for (const auto& [key, name] : table.entries) {
+    using Value = typename decltype(std::optional(values[key]))::value_type;
+    if (json.contains(name)) values[key] = json.at(std::string(name)).template get<Value>();
+  }
+}
 
 }  // namespace broadmark::worker

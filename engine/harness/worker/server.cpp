@@ -13,11 +13,9 @@
 
 #include "broadmark/error.h"
 #include "broadmark/harness/memory_limit.h"
-#include "broadmark/harness/worker_process.h"
 #include "broadmark/headers_hash.h"
 #include "broadmark/large_array.h"
 #include "worker/protocol.h"
-#include "worker/server.h"
 
 namespace broadmark {
 namespace {
@@ -118,7 +116,7 @@ class Server {
     started_ = false;
     const std::int64_t initialize_ns = host().start(scene, first);
     started_ = true;
-    return {{"initialize_ns", initialize_ns}, {"pinned", host().pinned()}};
+    return {{"initialize_ns", initialize_ns}, {"pinned", host().report().pinned}};
   }
 
   /// The frame in shared memory, in this process's own.
@@ -133,7 +131,7 @@ class Server {
 
   Json step(const Json& message) {
     const FrameRun run = startedHost().step(takeFrame(message));
-    return {{"times_ns", worker::toJson(run.times)}, {"pairs", run.pairs}};
+    return {{"times_ns", worker::namedToJson(kPhases, run.times)}, {"pairs", run.pairs}};
   }
 
   Json digest(const Json& /*message*/) {
@@ -185,7 +183,7 @@ class Server {
     std::vector<std::uint32_t>().swap(changed_);
     return {{"peak_bytes", growth_ ? Json(*growth_) : Json(nullptr)},
             {"heap_bytes", heapBytes()},
-            {"processor", worker::toJson(host().processorCounts())}};
+            {"processor", worker::namedToJson(kProcessorCounters, host().report().processor)}};
   }
 
   /// Only the first pass tells: later ones use memory again that the first has freed.

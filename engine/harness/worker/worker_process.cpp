@@ -2,12 +2,19 @@
 
 #include "broadmark/harness/worker_process.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
+#include <cstring>
+#include <initializer_list>
+#include <thread>
 
 #include "broadmark/error.h"
-#include "worker/child_process.h"
 #include "worker/protocol.h"
 
 namespace broadmark {
@@ -16,18 +23,63 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using worker::SharedMemory;
 
+/// How long it may take to end by itself.
+constexpr std::chrono::seconds kTimeToEnd{5};
+
+std::string endText(int wait_status) {
+  if (WIFEXITED(wait_status)) {
+    return fmt::format("ended its process by itself, with status {}", WEXITSTATUS(wait_status));
+  }
+  const int signal = WTERMSIG(wait_status);
+  const char* name = ::sigabbrev_np(signal);
+  const std::string what =
+      fmt::format("SIG{} ({})", name == nullptr ? "?" : name, ::sigdescr_np(signal));
+  if (signal == SIGKILL) return "killed with " + what + ", perhaps as memory ran out";
+  return "crashed with " + what;
+}
+
+/// Starts a command with these descriptors as 3, 4, … and no others: standard input is empty, what
+/// it prints goes to our standard error. Throws InputError when it cannot be started.
+pid_t spawn(std::vector<std::string> command, std::initializer_list<int> handed) {
+  posix_spawn_file_actions_t actions{};
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  // What a plug-in prints is not to stand among our results.
+  ::posix_spawn_file_actions_adddup2(&actions, STDERR_FILENO, STDOUT_FILENO);
+  std::vector<FileDescriptor> copies;
+  int next = STDERR_FILENO + 1;
+  for (const int descriptor : handed) {
+    // By way of a number beyond all of these, so that none is overwritten before its turn.
+    constexpr int kBeyond = 16;
+    copies.emplace_back(::fcntl(descriptor, F_DUPFD_CLOEXEC, kBeyond));
+    ::posix_spawn_file_actions_adddup2(&actions, copies.back().get(), next++);
+  }
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, next);
+  std::vector<char*> arguments;
+  for (std::string& word : command) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t pid = 0;
+  const int error =
+      ::posix_spawn(&pid, arguments.front(), &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) {
+    throw InputError(fmt::format("{}: cannot be started as a worker process: {}", command.front(),
+                                 std::strerror(error)));
+  }
+  return pid;
+}
+
 /// How often somebody is asked whether to go on waiting.
 constexpr int kPollMilliseconds = 50;
 
-}  // namespace
-
-class WorkerProcess::Link {
+/// To a process, which does not outlive it.
+class Link {
  public:
   explicit Link(const WorkerOptions& options) : Link(options, worker::openChannel()) {}
   ~Link() {
     // Without a channel it ends, unless it hangs.
     channel_.reset();
-    if (!process_.ended()) process_.wait();
+    if (alive()) wait();
   }
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
@@ -35,7 +87,8 @@ class WorkerProcess::Link {
   SharedMemory frames;
   SharedMemory answers;
 
-  [[nodiscard]] bool alive() const { return !process_.ended(); }
+  /// Whether kill() or wait() has not seen its end.
+  [[nodiscard]] bool alive() const { return pid_ != 0; }
 
   /// Introduces both sides, and names the case.
   void begin(const Json& case_message) {
@@ -55,8 +108,7 @@ class WorkerProcess::Link {
     if (version == worker::kProtocolVersion) return;
     const std::string& program = options_.command.front();
     if (!hello) {
-      throw InputError(
-          fmt::format("{}: not fit as a worker process: {}", program, process_.wait()));
+      throw InputError(fmt::format("{}: not fit as a worker process: {}", program, wait()));
     }
     throw InputError(fmt::format("{}: speaks version {} of the worker protocol, this program {}",
                                  program, version, worker::kProtocolVersion));
@@ -76,7 +128,7 @@ class WorkerProcess::Link {
 
   Link(const WorkerOptions& options, worker::ChannelEnds ends)
       : options_(options),
-        process_(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()}),
+        pid_(spawn(options.command, {ends.there.get(), frames.descriptor(), answers.descriptor()})),
         channel_(std::in_place, std::move(ends.here)) {}
 
   /// The next message; nothing once the process has hung up.
@@ -84,150 +136,166 @@ class WorkerProcess::Link {
     const auto end = Clock::now() + limit;
     while (!channel_->wait(kPollMilliseconds)) {
       if (options_.cancelled && options_.cancelled()) {
-        process_.kill();
+        kill();
         throw Cancelled();
       }
       if (Clock::now() < end) continue;
-      process_.kill();
+      kill();
       throw HardLimitError(
           fmt::format("no answer within the hard limit of {:.3g} s", limit.count()));
     }
     try {
       return channel_->receive();
     } catch (const HostError&) {
-      process_.kill();
+      kill();
       throw;
     }
   }
 
+  void kill() {
+    ::kill(pid_, SIGKILL);
+    wait();
+  }
+
+  /// Waits for its end, and brings that about after a while. Says how it ended: "crashed with
+  /// SIGSEGV (Segmentation fault)".
+  std::string wait() {
+    const auto end = Clock::now() + kTimeToEnd;
+    int status = 0;
+    while (::waitpid(pid_, &status, WNOHANG) == 0) {
+      if (Clock::now() > end) ::kill(pid_, SIGKILL);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    pid_ = 0;
+    return endText(status);
+  }
+
   /// The process has hung up.
-  [[noreturn]] void fail() { throw HostError(process_.wait()); }
+  [[noreturn]] void fail() { throw HostError(wait()); }
 
   const WorkerOptions& options_;
-  worker::ChildProcess process_;
+  pid_t pid_;
   std::optional<worker::Channel> channel_;
 };
 
-WorkerProcess::WorkerProcess(Case run, WorkerOptions options)
-    : case_(std::move(run)), options_(std::move(options)) {}
+class WorkerProcess final : public CaseHost {
+ public:
+  WorkerProcess(Case run, WorkerOptions options)
+      : case_(std::move(run)), options_(std::move(options)) {}
 
-WorkerProcess::~WorkerProcess() = default;
-
-/// A call that says nothing more.
-static auto calling(const char* name) {
-  return [name](auto& link) { return link.call({{"call", name}}); };
-}
-
-template <class Talk>
-auto WorkerProcess::talk(Talk&& talk) {
-  try {
-    return talk(*link_);
-  } catch (...) {
-    if (!link_->alive()) link_.reset();
-    throw;
+  std::int64_t start(const SceneInfo& scene, const Frame& first) override {
+    report_.processor = {};
+    open();
+    const std::uint64_t end = link_->frames.write(first.boxes);
+    const Json started =
+        link_->call({{"call", "start"},
+                     {"scene", worker::toJson(scene)},
+                     {"filter", worker::writeFilter(scene.filter, link_->frames, end)}});
+    report_.pinned = started.value("pinned", false);
+    return started.at("initialize_ns").get<std::int64_t>();
   }
-}
 
-void WorkerProcess::open() {
-  if (link_) return;
-  link_ = std::make_unique<Link>(options_);
-  talk([&](Link& link) {
+  FrameRun step(const Frame& frame) override {
+    changed_boxes_.clear();
+    for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
+    link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
+    const Json run =
+        link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
+    FrameRun result{.pairs = run.at("pairs").get<std::uint64_t>()};
+    worker::readNamed(run.at("times_ns"), kPhases, result.times);
+    return result;
+  }
+
+  void stop() override {
+    answer_ = {};
+    ended_ = {};
+    if (!isOpen()) return;
+    const Json stopped = call("stop");
+    if (!report_.peak_bytes && stopped.at("peak_bytes").is_number()) {
+      report_.peak_bytes = stopped.at("peak_bytes").get<std::uint64_t>();
+    }
+    report_.heap_bytes.reset();
+    if (stopped.contains("heap_bytes")) {
+      report_.heap_bytes = stopped.at("heap_bytes").get<std::uint64_t>();
+    }
+    report_.processor = {};
+    worker::readNamed(stopped.value("processor", Json::object()), kProcessorCounters,
+                      report_.processor);
+    link_->frames.clear();
+    link_->answers.clear();
+  }
+
+  PairDigest digest() override {
+    const Json digest = call("digest");
+    return {.count = digest.at("count").get<std::uint64_t>(),
+            .hash = digest.at("hash").get<std::uint64_t>()};
+  }
+
+  PairRuns answer() override {
+    link_->answers.read(answer_, call("answer").at("pairs").get<std::size_t>());
+    answer_run_ = answer_;
+    return {&answer_run_, 1};
+  }
+
+  PairEvents events() override {
+    const Json counts = call("events");
+    link_->answers.read(answer_, counts.at("began").get<std::size_t>());
+    link_->answers.read(ended_, counts.at("ended").get<std::size_t>(),
+                        answer_.size() * sizeof(Pair));
+    answer_run_ = answer_;
+    ended_run_ = ended_;
+    return {{&answer_run_, 1}, {&ended_run_, 1}};
+  }
+
+  Counts counters() override { return call("counters").at("counts").get<Counts>(); }
+  Counts setup() override { return call("setup").at("counts").get<Counts>(); }
+  std::string validate() override { return call("validate").at("broken").get<std::string>(); }
+
+  RecordedDrawing structure() override {
+    const Json drawn = call("structure");
+    std::vector<RecordedDrawing::Box> boxes;
+    std::vector<RecordedDrawing::Line> lines;
+    std::vector<std::uint32_t> tests;
+    link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
+    std::uint64_t end = boxes.size() * sizeof(RecordedDrawing::Box);
+    link_->answers.read(lines, drawn.at("lines").get<std::size_t>(), end);
+    end += lines.size() * sizeof(RecordedDrawing::Line);
+    link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
+    return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
+            std::move(tests)};
+  }
+
+ private:
+  [[nodiscard]] bool isOpen() const { return link_ && link_->alive(); }
+
+  /// Starts the process, if none runs.
+  void open() {
+    if (isOpen()) return;
+    link_ = std::make_unique<Link>(options_);
     Json message = worker::toJson(case_);
     message["call"] = "case";
     message["memory_limit_bytes"] = options_.memory_limit_bytes;
     message["pin"] = options_.pin;
-    link.begin(message);
-  });
-}
-
-std::int64_t WorkerProcess::start(const SceneInfo& scene, const Frame& first) {
-  processor_counts_ = {};
-  open();
-  return talk([&](Link& link) {
-    const std::uint64_t end = link.frames.write(first.boxes);
-    const Json started =
-        link.call({{"call", "start"},
-                   {"scene", worker::toJson(scene)},
-                   {"filter", worker::writeFilter(scene.filter, link.frames, end)}});
-    pinned_ = started.value("pinned", false);
-    return started.at("initialize_ns").get<std::int64_t>();
-  });
-}
-
-FrameRun WorkerProcess::step(const Frame& frame) {
-  return talk([&](Link& link) {
-    shareChanged(link.frames, frame);
-    const Json run =
-        link.call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
-    return FrameRun{.times = worker::timesFrom(run.at("times_ns")),
-                    .pairs = run.at("pairs").get<std::uint64_t>()};
-  });
-}
-
-void WorkerProcess::shareChanged(const SharedMemory& memory, const Frame& frame) {
-  changed_boxes_.clear();
-  for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
-  memory.write(std::span<const Aabb>(changed_boxes_), memory.write(*frame.changed));
-}
-
-void WorkerProcess::stop() {
-  answer_ = {};
-  ended_ = {};
-  if (!link_) return;
-  const Json stopped = talk(calling("stop"));
-  if (!peak_bytes_ && stopped.at("peak_bytes").is_number()) {
-    peak_bytes_ = stopped.at("peak_bytes").get<std::uint64_t>();
+    link_->begin(message);
   }
-  heap_bytes_.reset();
-  if (stopped.contains("heap_bytes")) heap_bytes_ = stopped.at("heap_bytes").get<std::uint64_t>();
-  processor_counts_ = worker::processorCountsFrom(stopped.value("processor", Json::object()));
-  link_->frames.clear();
-  link_->answers.clear();
-}
 
-PairDigest WorkerProcess::digest() {
-  const Json digest = talk(calling("digest"));
-  return {.count = digest.at("count").get<std::uint64_t>(),
-          .hash = digest.at("hash").get<std::uint64_t>()};
-}
+  /// A call that says nothing more.
+  Json call(const char* name) { return link_->call({{"call", name}}); }
 
-PairRuns WorkerProcess::answer() {
-  const auto count = talk(calling("answer")).at("pairs").get<std::size_t>();
-  link_->answers.read(answer_, count);
-  answer_run_ = answer_;
-  return {&answer_run_, 1};
-}
+  Case case_;
+  WorkerOptions options_;
+  std::unique_ptr<Link> link_;
+  std::vector<Aabb> changed_boxes_;
+  std::vector<Pair> answer_;  ///< of events: those that began
+  std::vector<Pair> ended_;
+  PairRun answer_run_;
+  PairRun ended_run_;
+};
 
-PairEvents WorkerProcess::events() {
-  const Json counts = talk(calling("events"));
-  link_->answers.read(answer_, counts.at("began").get<std::size_t>());
-  link_->answers.read(ended_, counts.at("ended").get<std::size_t>(), answer_.size() * sizeof(Pair));
-  answer_run_ = answer_;
-  ended_run_ = ended_;
-  return {{&answer_run_, 1}, {&ended_run_, 1}};
-}
+}  // namespace
 
-Counts WorkerProcess::counters() { return talk(calling("counters")).at("counts").get<Counts>(); }
-
-Counts WorkerProcess::setup() { return talk(calling("setup")).at("counts").get<Counts>(); }
-
-std::string WorkerProcess::validate() {
-  return talk(calling("validate")).at("broken").get<std::string>();
-}
-
-RecordedDrawing WorkerProcess::structure() {
-  const Json drawn = talk(calling("structure"));
-  std::vector<RecordedDrawing::Box> boxes;
-  std::vector<RecordedDrawing::Line> lines;
-  std::vector<std::uint32_t> tests;
-  link_->answers.read(boxes, drawn.at("boxes").get<std::size_t>());
-  link_->answers.read(lines, drawn.at("lines").get<std::size_t>(),
-                      boxes.size() * sizeof(RecordedDrawing::Box));
-  const std::uint64_t end =
-      boxes.size() * sizeof(RecordedDrawing::Box) + lines.size() * sizeof(RecordedDrawing::Line);
-  link_->answers.read(tests, drawn.value("tests", std::size_t{0}), end);  // older ones have none
-  return {std::move(boxes), std::move(lines), drawn.at("left_out").get<std::size_t>(),
-          std::move(tests)};
+std::unique_ptr<CaseHost> makeWorkerProcess(Case run, WorkerOptions options) {
+  return std::make_unique<WorkerProcess>(std::move(run), std::move(options));
 }
 
 }  // namespace broadmark

@@ -28,6 +28,14 @@ struct FrameRun {
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included; of events all that there are
 };
 
+/// Measurements of a host's passes; those of memory are missing where its process has other work.
+struct PassReport {
+  std::optional<std::uint64_t> heap_bytes;  ///< allocated and not freed after the last stop()
+  std::optional<std::uint64_t> peak_bytes;  ///< growth of the peak of memory by the first pass
+  ProcessorCounts processor;  ///< of the four phases of all frames; nothing before stop()
+  bool pinned = false;        ///< each thread had a core of its own, to which it was bound
+};
+
 /// Holds at most one instance of a case's algorithm, and calls it. Its frames say what changed.
 ///
 /// Every call throws what the algorithm throws. A host outside this process also throws HostError
@@ -60,17 +68,11 @@ class CaseHost {
   /// As BroadPhase::validate().
   virtual std::string validate() = 0;
 
-  /// What the process had allocated and not freed after the last stop(); nothing where others share
-  /// its memory, and before that.
-  [[nodiscard]] virtual std::optional<std::uint64_t> heapBytes() const { return std::nullopt; }
-  /// By how much the first pass made the peak of the process's memory grow; nothing where others
-  /// share that memory, and before the first stop().
-  [[nodiscard]] virtual std::optional<std::uint64_t> peakBytes() const { return std::nullopt; }
-  /// What the processor counted during the four phases of all frames of the last pass. Nothing
-  /// before its stop().
-  [[nodiscard]] virtual ProcessorCounts processorCounts() const { return {}; }
-  /// Whether each thread of the last pass had a core of its own, to which it was bound.
-  [[nodiscard]] virtual bool pinned() const { return false; }
+  /// Of the last pass.
+  [[nodiscard]] const PassReport& report() const { return report_; }
+
+ protected:
+  PassReport report_;
 };
 
 /// A host in this process. All passes share one Execution: threads, a device's context and its
@@ -96,8 +98,6 @@ class LocalHost final : public CaseHost {
   Counts setup() override;
   RecordedDrawing structure() override;
   std::string validate() override;
-  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
-  [[nodiscard]] bool pinned() const override { return pinned_; }
 
   /// The instance: to call its phases one by one, as tests do. Only between start() and stop().
   BroadPhase& instance() { return *instance_; }
@@ -110,12 +110,10 @@ class LocalHost final : public CaseHost {
 
   Case case_;
   bool pin_;
-  bool pinned_ = false;
   std::vector<int> usable_cores_;  ///< before any thread was pinned
   // From the first start() on. The counters come first: they count the threads made after them.
   std::optional<ProcessorCounters> processor_;
   std::optional<Execution> execution_;
-  ProcessorCounts processor_counts_;
   std::unique_ptr<BroadPhase> instance_;
   std::uint32_t bodies_ = 0;  ///< of its scene
   PairRuns answer_;

@@ -90,7 +90,7 @@ struct CaseResult {
   std::uint64_t allowed_extra_count = 0;
   std::uint64_t invalid_count = 0;
   std::vector<FrameDifference> differences;  ///< of the frames that are mismatches
-  std::optional<std::uint64_t> peak_bytes;   ///< as CaseHost::peakBytes()
+  std::optional<std::uint64_t> peak_bytes;   ///< as PassReport::peak_bytes
   /// The algorithm's own counts of work, mean per frame.
   std::map<std::string, double> counters;
   /// What it counted once, in the first initialisation.

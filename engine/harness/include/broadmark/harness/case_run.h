@@ -93,14 +93,8 @@ class CaseRun {
   [[nodiscard]] std::uint64_t pairs() const { return last_.pairs; }
   /// Bodies that changed in the last frame.
   [[nodiscard]] std::uint64_t changedBodies() const { return changed_count_; }
-  /// As CaseHost::peakBytes().
-  [[nodiscard]] std::optional<std::uint64_t> peakBytes() const { return host_->peakBytes(); }
-  /// As CaseHost::heapBytes().
-  [[nodiscard]] std::optional<std::uint64_t> heapBytes() const { return host_->heapBytes(); }
-  /// As CaseHost::processorCounts().
-  [[nodiscard]] ProcessorCounts processorCounts() const { return host_->processorCounts(); }
-  /// As CaseHost::pinned().
-  [[nodiscard]] bool pinned() const { return host_->pinned(); }
+  /// What its host knows of it.
+  [[nodiscard]] const PassReport& report() const { return host_->report(); }
 
   // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
   // while hasInstance().

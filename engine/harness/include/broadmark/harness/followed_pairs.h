@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "broadmark/pair.h"
@@ -18,7 +19,7 @@ class FollowedPairs {
 
   /// No pair has begun.
   void clear();
-  /// Takes the events of the next frame, of a scene with that many bodies. O(k + e log e), k pairs
+  /// Takes the events of the next frame, of a scene with that many bodies. O(k + e log ek), k pairs
   /// and e events; O(1) if there is none.
   void apply(const PairEvents& events, std::size_t bodies);
 
@@ -37,6 +38,7 @@ class FollowedPairs {
   std::vector<Pair> began_;
   std::vector<Pair> ended_;
   std::vector<Pair> next_;
+  std::vector<std::pair<Pair, bool>> events_;  ///< whether it ends
 };
 
 }  // namespace broadmark

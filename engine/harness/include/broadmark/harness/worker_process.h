@@ -4,7 +4,7 @@
 // The worker process is a program with a command that calls serveCase(): this one, or another
 // build of it. Both sides talk by messages, one JSON object each; frames and answers lie in memory
 // that both share. From there the worker copies a frame into memory of its own before the clock
-// starts. What is said is told in engine/worker/protocol.h; it has a version.
+// starts. What is said is told in worker/protocol.h; it has a version.
 #pragma once
 
 #include <chrono>
@@ -17,10 +17,6 @@
 #include "broadmark/harness/case_host.h"
 
 namespace broadmark {
-
-namespace worker {
-class SharedMemory;
-}
 
 struct WorkerOptions {
   /// What to start: a program, and the arguments that make it call serveCase().
@@ -35,54 +31,10 @@ struct WorkerOptions {
   CancelQuery cancelled = {};
 };
 
-/// The host of a case in a worker process, which lasts from the first start() until it fails or
-/// this goes. The next start() after a failure has a new process.
-class WorkerProcess final : public CaseHost {
- public:
-  WorkerProcess(Case run, WorkerOptions options);
-  ~WorkerProcess() override;
-  WorkerProcess(const WorkerProcess&) = delete;
-  WorkerProcess& operator=(const WorkerProcess&) = delete;
-
-  /// Throws InputError when the process cannot be started or speaks another version.
-  std::int64_t start(const SceneInfo& scene, const Frame& first) override;
-  FrameRun step(const Frame& frame) override;
-  void stop() override;
-  PairDigest digest() override;
-  PairRuns answer() override;
-  PairEvents events() override;
-  Counts counters() override;
-  Counts setup() override;
-  RecordedDrawing structure() override;
-  std::string validate() override;
-  [[nodiscard]] std::optional<std::uint64_t> heapBytes() const override { return heap_bytes_; }
-  [[nodiscard]] std::optional<std::uint64_t> peakBytes() const override { return peak_bytes_; }
-  [[nodiscard]] ProcessorCounts processorCounts() const override { return processor_counts_; }
-  [[nodiscard]] bool pinned() const override { return pinned_; }
-
- private:
-  class Link;  ///< to a process
-
-  /// Starts the process, if there is none.
-  void open();
-  void shareChanged(const worker::SharedMemory& memory, const Frame& frame);
-  /// Calls talk(link); drops the link when its process has ended.
-  template <class Talk>
-  auto talk(Talk&& talk);
-
-  Case case_;
-  WorkerOptions options_;
-  std::unique_ptr<Link> link_;  ///< null: no process runs
-  std::optional<std::uint64_t> peak_bytes_;
-  std::optional<std::uint64_t> heap_bytes_;
-  ProcessorCounts processor_counts_;
-  bool pinned_ = false;
-  std::vector<Aabb> changed_boxes_;
-  std::vector<Pair> answer_;  ///< of events: those that began
-  std::vector<Pair> ended_;
-  PairRun answer_run_;
-  PairRun ended_run_;
-};
+/// The host of a case in a worker process, which lasts from the first start() until it fails or the
+/// host goes. The next start() after a failure has a new process; it throws InputError when the
+/// process cannot be started or speaks another version.
+std::unique_ptr<CaseHost> makeWorkerProcess(Case run, WorkerOptions options);
 
 /// Finds an algorithm by its id and the file of its plug-in ("": built in). Throws InputError.
 using AlgorithmFinder = std::function<Algorithm(const std::string& id, const std::string& plugin)>;

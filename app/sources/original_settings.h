@@ -6,9 +6,9 @@
 #include "broadmark/harness/case.h"
 #include "original/settings.h"
 
-namespace broadmark {
+namespace broadmark::sources::original_settings {
 
 /// Its case, the algorithm being one of `known`. Throws InputError.
 Case originalCase(const OriginalSettings&, const std::vector<Algorithm>& known);
 
-}  // namespace broadmark
+}  // namespace broadmark::sources::original_settings
