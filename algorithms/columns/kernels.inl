@@ -147,7 +147,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
   std::uint64_t* const bits = sink.bits();
   for (std::size_t row = rows.begin; row < rows.end; row += kLanes) {
     const Keys limits = limitsOf(loadKeys(keys + row));
-    Keys left = minus(loadKeys(ends + row), lanesFrom(static_cast<std::uint32_t>(row + 1)));
+    Keys left = loadKeys(ends + row) - lanesFrom(static_cast<std::uint32_t>(row + 1));
     std::size_t distance = 1;
     for (unsigned going_on = positive(left); going_on != 0; going_on = positive(left)) {
       if (distance > 1 && __builtin_popcount(going_on) <= kFew) {
@@ -161,7 +161,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
         places[hits] = placeOf(row, distance);
         bits[hits] = found;
         hits += found != 0 ? 1 : 0;
-        left = minus(left, broadcastKey(std::uint32_t{kHitSteps}));
+        left -= std::uint32_t{kHitSteps};
         distance += kHitSteps;
       }
       sink.advance(hits);
