@@ -40,7 +40,6 @@
 #include "opencl/bullet_library.h"
 #include "opencl/device_algorithm.h"
 #include "opencl/device_context.h"
-#include "opencl/timer.h"
 
 namespace broadmark::bullet_opencl {
 namespace {
@@ -319,11 +318,9 @@ class BulletOpenCl final : public BroadPhase {
 
 template <class Traits>
 Algorithm variant(std::string id, std::string summary, AlgorithmDescription description) {
-  return opencl::deviceAlgorithm(
-      std::move(id), std::move(summary), std::move(description),
-      {.max_objects = Traits::kMaxObjects,
-       .exclusive = std::string(Traits::kExclusive),
-       .create = [] { return std::make_unique<BulletOpenCl<Traits>>(); }});
+  return opencl::deviceAlgorithm<BulletOpenCl<Traits>>(std::move(id), std::move(summary),
+                                                       std::move(description), Traits::kMaxObjects,
+                                                       std::string(Traits::kExclusive));
 }
 
 }  // namespace

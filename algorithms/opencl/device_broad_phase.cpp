@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "broadmark/error.h"
-#include "opencl/timer.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {
@@ -112,7 +111,7 @@ cl_uint DeviceBroadPhase::searchOnce() {
 
 FrameSummary DeviceBroadPhase::summarise() {
   const auto strip = static_cast<cl_uint>((count_ + kStrips - 1) / kStrips);
-  launch(context_->queue(), summarise_, kStrips, group_, boxes_, n(), strip, summaries_);
+  context_->launch(summarise_, kStrips, group_, boxes_, n(), strip, summaries_);
   std::array<Float4, kStrips * kSumsPerStrip> strips;
   context_->queue().enqueueReadBuffer(summaries_, CL_TRUE, 0, sizeof strips, strips.data());
 
