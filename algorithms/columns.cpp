@@ -11,7 +11,7 @@
 //     Where bounds share a step, the boxes decide.
 //  5. A column that turns out to be crowded is cut into columns of its own instead, as if it were a
 //     world: steps 1 to 4 again. Where that does not help and many of its boxes overlap, these are
-//     swept themselves (columns/dense_sweep.h).
+//     swept themselves.
 //
 // A pair that shares several columns is reported in one of them: see MarkedBody, whose argument
 // holds for any columns that tile the plane, split ones, too. A mark says that the body begins
@@ -36,12 +36,12 @@
 #include <string>
 #include <vector>
 
-#include "columns/dense_sweep.h"
 #include "columns/hits.h"
 #include "columns/walk.h"
 #include "past_caches.h"
 #include "prefetch.h"
 #include "sample.h"
+#include "simd/overlap_kernels.h"
 #include "test_counts.h"
 #include "variants.h"
 
@@ -94,10 +94,33 @@ struct Search {
   std::size_t rows_per_look;
 };
 
+/// For columns in which many copies overlap: the boxes themselves are tested, so that a hit is a
+/// pair at once. So a hit costs less than in the sweep of keys, a miss more.
+struct DenseColumn {
+  BoxArrays boxes;  ///< of the copies
+  LargeArray<MarkedBody> bodies;
+};
+
+/// Whether that is the faster sweep for a column, by a sample of its tests: it follows from the
+/// column alone.
+bool isDense(const Sorted& column) {
+  constexpr std::size_t kTests = 256;
+  // From this part of hits on, by the times of both sweeps.
+  constexpr std::size_t kHits = kTests / 8;
+  std::size_t hits = 0;
+  for (std::size_t test = 0; test < kTests; ++test) {
+    const std::size_t i = test * column.size / kTests;
+    const std::size_t behind = column.ends[i] - i;
+    const std::size_t j = i + test * 97 % behind;  // somewhere in its window
+    hits += std::size_t{j > i && overlapInSteps(column.copies[i], column.copies[j])};
+  }
+  return hits >= kHits;
+}
+
 /// Finds the pairs in columns.
 class Sweep final : public ColumnVisitor {
  public:
-  Sweep(const Search& search, const Sorted& sorted, DenseSweep& dense, PairBuffer& pairs)
+  Sweep(const Search& search, const Sorted& sorted, DenseColumn& dense, PairBuffer& pairs)
       : search_(search),
         dense_(dense),
         pairs_(pairs),
@@ -106,7 +129,7 @@ class Sweep final : public ColumnVisitor {
   void column(Walk& walk, const Part& part) override {
     const Sorted& sorted = walk.sorted();
     // It is crowded, and cutting it would not help.
-    const bool dense = walk.crowded() && DenseSweep::pays(sorted);
+    const bool dense = walk.crowded() && isDense(sorted);
     const std::size_t together = dense ? Kernels::kSweptRows : search_.rows_per_look;
     const Range rows = {rowAt(sorted, part.from, together), rowAt(sorted, part.to, together)};
     if (dense) {
@@ -144,8 +167,14 @@ class Sweep final : public ColumnVisitor {
   }
 
   void sweepBoxes(const Sorted& sorted, Range rows) {
-    dense_.begin(sorted, search_.boxes);
-    dense_.sweep(search_.dense_kernels, rows, pairs_);
+    dense_.boxes.resize(sorted.size);
+    dense_.bodies.resize(sorted.size);
+    for (std::size_t i = 0; i < sorted.size; ++i) {
+      dense_.bodies[i] = sorted.copies[i].body;
+      dense_.boxes.set(i, search_.boxes[bodyNumber(dense_.bodies[i])]);
+    }
+    search_.dense_kernels.sweep_cells(dense_.boxes, sorted.ends.data(), dense_.bodies.data(), rows,
+                                      pairs_);
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
       done_.compared_boxes += sorted.ends[i] - i - 1;
     }
@@ -157,7 +186,7 @@ class Sweep final : public ColumnVisitor {
   }
 
   Search search_;
-  DenseSweep& dense_;
+  DenseColumn& dense_;
   PairBuffer& pairs_;
   HitSink sink_;
   Done done_;
@@ -264,7 +293,7 @@ class Columns final : public PairBroadPhase {
   /// One worker's own data, on cache lines of their own.
   struct alignas(64) Worker {
     Walk walk;
-    DenseSweep dense;
+    DenseColumn dense;
     Done done;
   };
 
