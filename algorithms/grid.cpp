@@ -32,9 +32,9 @@
 #include "cell_buckets.h"
 #include "cell_grid.h"
 #include "prefetch.h"
-#include "row_shares.h"
 #include "simd/overlap_kernels.h"
 #include "test_counts.h"
+#include "work_shares.h"
 
 namespace broadmark::grid {
 namespace {
@@ -92,7 +92,7 @@ class Grid final : public PairBroadPhase {
     placeCopies();
     sortCopies();
     orderCells();
-    shares_.measure(ends_, team());
+    shares_.measureRows(ends_, team());
   }
 
   void drawStructure(DebugDraw& draw) const override;
@@ -117,7 +117,7 @@ class Grid final : public PairBroadPhase {
   void findPairs() override {
     const Range large = contents(kLarge);
     team().run(large.end, [&](int worker, Range part) {
-      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
+      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.of(worker),
                             pairs(worker));
       for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachRowOfCells(i, [&](Range copies, MarkedBody marks) {
@@ -258,7 +258,7 @@ class Grid final : public PairBroadPhase {
   BoxArrays arrays_;                   ///< by cell, in the order of the sweep
   std::vector<MarkedBody> bodies_;     ///< of arrays_
   std::vector<std::uint32_t> ends_;    ///< of the windows of arrays_
-  RowShares shares_;
+  WorkShares shares_;
 };
 
 void Grid::drawStructure(DebugDraw& draw) const {

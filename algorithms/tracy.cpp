@@ -33,10 +33,10 @@
 
 #include "broadmark/pair_set.h"
 #include "tracy/cell.h"
-#include "tracy/cell_shares.h"
 #include "tracy/grid.h"
 #include "tracy/mailbox.h"
 #include "variants.h"
+#include "work_shares.h"
 
 namespace broadmark::tracy {
 namespace {
@@ -76,7 +76,6 @@ class Tracy final : public BroadPhase {
     pairs_.resize(team_size);
     if (reports_events_) pairs_before_.resize(team_size);
     runs_.reserve(team_size);
-    shares_.resize(team_size);
 
     bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
     bodies_.boxes[kNow] = bodies_.boxes[kBefore];
@@ -208,13 +207,12 @@ class Tracy final : public BroadPhase {
       const std::uint64_t size = cells_[concerned_[i]].size();
       return 1 + size * (64 + size);
     };
-    std::uint64_t total = 0;
-    for (std::size_t i = 0; i < concerned_.size(); ++i) total += cost(i);
-    shares_.shareOut(concerned_.size(), cost, total);
+    shares_.measure(concerned_.size(), 1, cost, *team_);
   }
 
   void updateCells(int worker) {
-    shares_.forEachIndex(worker, [&](std::size_t i) {
+    const Range mine = shares_.of(worker);
+    for (std::size_t i = mine.begin; i < mine.end; ++i) {
       const std::uint32_t cell = concerned_[i];
       CellWork& work = workerOf(worker).work;
       work.moved.clear();
@@ -225,7 +223,7 @@ class Tracy final : public BroadPhase {
         for (const Worker& from : workers_) from.mailbox.arrivals().forEach(cell, enter);
       });
       for (Worker& from : workers_) from.mailbox.forget(cell);
-    });
+    }
   }
 
   /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
@@ -317,13 +315,13 @@ class Tracy final : public BroadPhase {
     const auto bodies_in = [&](std::size_t cell) {
       return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);
     };
-    shares_.shareOut(
-        cells_.size(), [&](std::size_t cell) { return 1 + bodies_in(cell).size(); },
-        cells_.size() + bodies.size());
+    shares_.measure(
+        cells_.size(), 1, [&](std::size_t cell) { return 1 + bodies_in(cell).size(); }, *team_);
     team_->run([&](int worker) {
-      shares_.forEachIndex(worker, [&](std::size_t cell) {
+      const Range mine = shares_.of(worker);
+      for (std::size_t cell = mine.begin; cell < mine.end; ++cell) {
         cells_[cell].build(grid_.position(cell), bodies_in(cell), bodies_, workerOf(worker).work);
-      });
+      }
     });
   }
 
@@ -336,7 +334,7 @@ class Tracy final : public BroadPhase {
   Bodies bodies_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> concerned_;  ///< in this frame: cells in which something has moved
-  CellShares shares_;
+  WorkShares shares_;
   std::vector<Worker> workers_;
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
   std::vector<PairRun> runs_;

@@ -1,4 +1,4 @@
-// Shares a triangle of tests out over a team, by work and not by number of rows.
+// Shares things out over a team, by their work and not by their number.
 #pragma once
 
 #include <algorithm>
@@ -9,48 +9,55 @@
 #include <vector>
 
 #include "broadmark/execution.h"
-#include "simd/overlap_kernels.h"
 
 namespace broadmark {
 
-/// Row i is tested against the columns (i, ends[i]). Shares are contiguous and fixed by `ends` and
-/// the size of the team alone. Workers get whole chunks of rows, also in crowded parts.
-class RowShares {
+/// Shares are contiguous, and fixed by the work and the size of the team alone: so the memory that
+/// each worker needs is the same in every run.
+class WorkShares {
  public:
-  void measure(std::span<const std::uint32_t> ends, ThreadTeam& team) {
-    rows_ = ends.size();
+  /// Thing i of `count` takes work_of(i). Workers get whole chunks of things.
+  template <class WorkOf>
+  void measure(std::size_t count, std::size_t chunk, WorkOf work_of, ThreadTeam& team) {
+    count_ = count;
+    chunk_ = chunk;
     workers_ = team.size();
-    work_.resize((rows_ + kChunk - 1) / kChunk);
+    work_.resize((count + chunk - 1) / chunk);
     team.run(work_.size(), [&](int, Range chunks) {
-      for (std::size_t chunk = chunks.begin; chunk < chunks.end; ++chunk) {
-        const std::size_t rows_end = std::min(rows_, (chunk + 1) * kChunk);
+      for (std::size_t k = chunks.begin; k < chunks.end; ++k) {
+        const std::size_t end = std::min(count, (k + 1) * chunk);
         std::uint64_t work = 0;
-        for (std::size_t i = chunk * kChunk; i < rows_end; ++i) work += ends[i] - i;
-        work_[chunk] = work;
+        for (std::size_t i = k * chunk; i < end; ++i) work += work_of(i);
+        work_[k] = work;
       }
     });
     std::inclusive_scan(work_.begin(), work_.end(), work_.begin());
   }
+  /// Rows, of which row i is tested against the columns (i, ends[i]).
+  void measureRows(std::span<const std::uint32_t> ends, ThreadTeam& team) {
+    constexpr std::size_t kRows = 64;
+    measure(
+        ends.size(), kRows, [&](std::size_t i) { return ends[i] - i; }, team);
+  }
 
-  /// The rows of one worker: all have about the same work.
-  [[nodiscard]] Range rowsOf(int worker) const {
-    return {firstRow(worker), worker + 1 == workers_ ? rows_ : firstRow(worker + 1)};
+  /// The things of one worker: all have about the same work.
+  [[nodiscard]] Range of(int worker) const {
+    return {firstOf(worker), worker + 1 == workers_ ? count_ : firstOf(worker + 1)};
   }
 
  private:
-  static constexpr std::size_t kChunk = 64;  ///< rows whose work is summed up together
-
-  [[nodiscard]] std::size_t firstRow(int worker) const {
+  [[nodiscard]] std::size_t firstOf(int worker) const {
     const std::uint64_t total = work_.empty() ? 0 : work_.back();
     const std::uint64_t before =
         total / static_cast<std::uint64_t>(workers_) * static_cast<std::uint64_t>(worker);
     const auto chunk = std::ranges::upper_bound(work_, before) - work_.begin();
-    return std::min(static_cast<std::size_t>(chunk) * kChunk, rows_);
+    return std::min(static_cast<std::size_t>(chunk) * chunk_, count_);
   }
 
-  std::size_t rows_ = 0;
+  std::size_t count_ = 0;
+  std::size_t chunk_ = 1;
   int workers_ = 1;
-  std::vector<std::uint64_t> work_;  ///< tests up to and with each chunk
+  std::vector<std::uint64_t> work_;  ///< up to and with each chunk
 };
 
 }  // namespace broadmark

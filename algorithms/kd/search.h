@@ -12,8 +12,8 @@
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 #include "kd/tree.h"
-#include "radix_sort.h"
 #include "simd/overlap_kernels.h"
+#include "sorted_windows.h"
 
 namespace broadmark::kd {
 
@@ -87,15 +87,9 @@ class Searcher {
   std::vector<std::uint32_t> arranged_;
   std::vector<std::uint32_t> own_still_;
   BoxArrays boxes_;
-  std::size_t capacity_ = 0;
 
-  // For the sweep: positions among the arranged bodies, sorted, and their boxes.
   ThreadTeam alone_{1};
-  RadixSorter sorter_;
-  std::vector<std::uint32_t> positions_;
-  BoxArrays sorted_;
-  std::size_t sorted_capacity_ = 0;
-  std::vector<std::uint32_t> ends_;
+  SortedWindows sorted_;  ///< of positions among the arranged bodies, for the sweep
 
   PairBuffer hits_;  ///< by position among the arranged bodies
 };
