@@ -52,7 +52,6 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(raw(numbers), _mm256_setzero_si256())));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   __m256i hits[kHitSteps];

@@ -65,7 +65,6 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm512_cmpgt_epi32_mask(raw(numbers), _mm512_setzero_si512()));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 16;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   Mask hits[kHitSteps];

@@ -21,3 +21,6 @@ inline void storeSteps(Vector value, float low, float factor, float last, std::u
   const Vector step = (value - broadcast(low)) * broadcast(factor);
   storeWhole(minOf(maxOf(step, Vector{}), broadcast(last)), to);
 }
+
+/// How many steps behind all lanes are tested at once.
+inline constexpr std::size_t kHitSteps = 4;

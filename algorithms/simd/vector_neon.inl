@@ -45,7 +45,6 @@ inline void storeWhole(Vector value, std::uint32_t* to) { vst1q_u32(to, vcvtq_u3
 inline unsigned equal(Keys a, Keys b) { return bits(vceqq_u32(a, b)); }
 inline unsigned positive(Keys numbers) { return bits(vcgtzq_s32(vreinterpretq_s32_u32(numbers))); }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   std::uint64_t hits = 0;

@@ -50,8 +50,6 @@ inline void storeWhole(Vector value, std::uint32_t* to) {
 inline unsigned equal(Keys a, Keys b) { return a == b ? 1 : 0; }
 /// The lanes with a number above 0, signed.
 inline unsigned positive(Keys numbers) { return static_cast<std::int32_t>(numbers) > 0 ? 1 : 0; }
-/// How many steps behind all lanes are tested at once.
-inline constexpr std::size_t kHitSteps = 4;
 /// How many lanes of a step are neighbours in the bits of hits: bit
 /// (l / kHitLanes * kHitSteps + s) * kHitLanes + l % kHitLanes is lane l and step s.
 inline constexpr std::size_t kHitLanes = 1;

@@ -44,7 +44,6 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm_castsi128_ps(_mm_cmpgt_epi32(raw(numbers), _mm_setzero_si128())));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   __m128i hits[kHitSteps];

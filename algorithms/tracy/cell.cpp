@@ -34,7 +34,7 @@ void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bo
   free_.reserve(capacity_);
   for (const std::uint32_t body : bodies) {
     const Aabb& box = all.boxes[kNow][body];
-    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    const Crossing crossing = crossingOf(all.ranges[kNow][body], position_);
     bodies_.push_back(body);
     slots_.push_back({{box, box}});
     crossings_.push_back({crossing, crossing});
@@ -109,7 +109,7 @@ void Cell::sortOut(std::uint32_t slot, const Bodies& all, CellWork& work) {
     work.leaving.push_back(slot);
     return;
   }
-  crossings_[slot][kNow] = range.crossing(position_);
+  crossings_[slot][kNow] = crossingOf(range, position_);
   (jumps(slot) ? work.jumping : work.staying).push_back(slot);
 }
 
@@ -137,7 +137,7 @@ void Cell::leave(std::uint32_t slot, CellWork& work) {
 void Cell::enter(std::uint32_t body, const Bodies& all, CellWork& work) {
   const std::uint32_t slot = takeSlot(body);
   slots_[slot].boxes = {all.boxes[kBefore][body], all.boxes[kNow][body]};
-  crossings_[slot][kNow] = all.ranges[kNow][body].crossing(position_);
+  crossings_[slot][kNow] = crossingOf(all.ranges[kNow][body], position_);
   arrive(slot, work);
   work.entered.push_back(slot);
 }
@@ -268,7 +268,7 @@ std::string Cell::validate(const Bodies& all) const {
     if (body == kNobody) continue;
     ++occupied;
     if (!all.ranges[kNow][body].contains(position_)) return "body in a cell that it does not touch";
-    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    const Crossing crossing = crossingOf(all.ranges[kNow][body], position_);
     if (crossings_[slot] != Crossings{crossing, crossing}) return "wrong sides of a cell crossed";
     for (const Aabb& kept : slots_[slot].boxes) {
       if (kept != all.boxes[kNow][body]) return "box out of date";

@@ -33,13 +33,24 @@
 
 #include "broadmark/collision_filter.h"
 #include "broadmark/pair.h"
-#include "tracy/grid.h"
+#include "cell_grid.h"
 #include "tracy/segmented_list.h"
 
 namespace broadmark::tracy {
 
 /// The two moments between which bodies move; indices of arrays.
 enum Moment : std::uint8_t { kBefore, kNow };
+
+/// Where a body pokes out of a cell that it touches: bit `axis` if it begins in a lower cell on
+/// that axis, bit `axis` + 3 if it ends in a higher one.
+using Crossing = std::uint8_t;
+constexpr Crossing crossesBelow(int axis) { return static_cast<Crossing>(1 << axis); }
+constexpr Crossing crossesAbove(int axis) { return static_cast<Crossing>(8 << axis); }
+constexpr Crossing kCrossesBelow = crossesBelow(0) | crossesBelow(1) | crossesBelow(2);
+inline Crossing crossingOf(const CellRange& range, const CellPosition& cell) {
+  const unsigned below = axesWhere(cornerOf(range.first) < cornerOf(cell));
+  return static_cast<Crossing>(below | axesWhere(cornerOf(cell) < cornerOf(range.last)) << 3);
+}
 
 /// All bodies, as far as the cells have to know them.
 struct Bodies {

@@ -21,7 +21,7 @@ Aabb boundsOf(const std::vector<Aabb>& boxes) {
 
 CellGrid gridOver(const std::vector<Aabb>& boxes, std::size_t cells, bool columns = false) {
   CellGrid grid;
-  grid.fit(boxes, boundsOf(boxes), cells, columns);
+  grid.fit(boxes, cells, columns);
   return grid;
 }
 
@@ -35,7 +35,7 @@ std::vector<Aabb> large(std::size_t n, std::uint32_t frame, std::uint64_t seed) 
 
 TEST(CellGrid, NothingAndOneThingAreOneCell) {
   CellGrid grid;
-  grid.fit({}, {}, 100, false);
+  grid.fit({}, 100, false);
   EXPECT_EQ(grid.size(), 1U);
   EXPECT_EQ(gridOver(inputs::identical(50, 0, 1), 100).size(), 1U);
   EXPECT_EQ(gridOver({inputs::boxAt({1, 2, 3}, {0, 0, 0})}, 100).size(), 1U);
