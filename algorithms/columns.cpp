@@ -34,11 +34,11 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "columns/hits.h"
 #include "columns/walk.h"
-#include "past_caches.h"
 #include "prefetch.h"
 #include "sample.h"
 #include "simd/overlap_kernels.h"
@@ -55,23 +55,11 @@ constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
 constexpr std::size_t kRowsPerLook = 16 * Kernels::kSweptRows;
 constexpr std::size_t kRowsPerLookPastCaches = 4 * kRowsPerLook;
 
-/// What there was to do, for the counters.
-struct Done {
-  std::uint64_t columns = 0;
-  std::uint64_t splits = 0;
-  std::uint64_t copies = 0;
-  std::uint64_t tests = 0;
-  std::uint64_t compared_boxes = 0;
-
-  Done& operator+=(const Done& other) {
-    columns += other.columns;
-    splits += other.splits;
-    copies += other.copies;
-    tests += other.tests;
-    compared_boxes += other.compared_boxes;
-    return *this;
-  }
-};
+/// What there was to do, as counters call it.
+enum Count { cut_columns, splits, copies, tests, compared_boxes };
+constexpr std::array<std::string_view, 5> kCountNames = {"columns", "split columns", "copies",
+                                                         "tests", "pairs decided by their boxes"};
+using Counts = std::array<std::uint64_t, kCountNames.size()>;
 
 /// The row of a column up to which a part of its tests goes; a multiple of `look`, or the last.
 std::size_t rowAt(const Sorted& sorted, double part, std::size_t look) {
@@ -137,18 +125,20 @@ class Sweep final : public ColumnVisitor {
     } else {
       sweepKeys(walk, rows);
     }
-    if (rows.begin == 0) count(sorted);
+    if (rows.begin > 0) return;  // another counts it
+    done_[copies] += sorted.size;
+    done_[tests] += sorted.tests - sorted.size;
   }
 
   void split(const Walk&, const CutWorld& inside, const Part& part) override {
     if (part.from > 0) return;  // another counts it
-    ++done_.splits;
-    done_.columns += inside.layout.size();
+    ++done_[splits];
+    done_[cut_columns] += inside.layout.size();
   }
 
-  [[nodiscard]] Done done() const {
-    Done done = done_;
-    done.compared_boxes += sink_.comparedBoxes();
+  [[nodiscard]] Counts done() const {
+    Counts done = done_;
+    done[compared_boxes] += sink_.comparedBoxes();
     return done;
   }
 
@@ -176,20 +166,15 @@ class Sweep final : public ColumnVisitor {
     search_.dense_kernels.sweep_cells(dense_.boxes, sorted.ends.data(), dense_.bodies.data(), rows,
                                       pairs_);
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
-      done_.compared_boxes += sorted.ends[i] - i - 1;
+      done_[compared_boxes] += sorted.ends[i] - i - 1;
     }
-  }
-
-  void count(const Sorted& sorted) {
-    done_.copies += sorted.size;
-    done_.tests += sorted.tests - sorted.size;
   }
 
   Search search_;
   DenseColumn& dense_;
   PairBuffer& pairs_;
   HitSink sink_;
-  Done done_;
+  Counts done_{};
 };
 
 /// Draws columns, and tells the tests in them.
@@ -294,14 +279,15 @@ class Columns final : public PairBroadPhase {
   struct alignas(64) Worker {
     Walk walk;
     DenseColumn dense;
-    Done done;
+    Counts done{};
   };
 
-  [[nodiscard]] Costs costs() const { return {static_cast<double>(copy_cost_)}; }
   [[nodiscard]] bool boxesPastCaches() const { return boxes_.size() >= kBoxesPastCaches; }
   [[nodiscard]] Walk::Boxes allBoxes() const {
-    return {
-        kernels_, {boxes_.data(), boxes_.size()}, costs(), static_cast<std::uint64_t>(crowded_)};
+    return {kernels_,
+            {boxes_.data(), boxes_.size()},
+            static_cast<double>(copy_cost_),
+            static_cast<std::uint64_t>(crowded_)};
   }
   [[nodiscard]] CutWorld world() const { return {layout_, chains_}; }
 
@@ -325,7 +311,7 @@ void Columns::updateObjects(const Frame& frame) {
   boxes_.resize(frame.boxes.size());
   takeSample(
       boxes_.size(), [&](std::size_t i) -> const Aabb& { return frame.boxes[i]; }, sample_);
-  layout_ = Layout(sample_, boxes_.size(), costs());
+  layout_ = Layout(sample_, boxes_.size(), static_cast<double>(copy_cost_));
   while (!copyBoxes(frame)) layout_.widen();
 }
 
@@ -387,13 +373,11 @@ void Columns::drawStructure(DebugDraw& draw) const {
 }
 
 void Columns::visitCounters(const CounterVisitor& visit) const {
-  Done done;
-  for (const Worker& worker : workers_) done += worker.done;
-  visit("columns", layout_.size() + done.columns);
-  visit("split columns", done.splits);
-  visit("copies", done.copies);
-  visit("tests", done.tests);
-  visit("pairs decided by their boxes", done.compared_boxes);
+  for (std::size_t i = 0; i < kCountNames.size(); ++i) {
+    std::uint64_t sum = i == cut_columns ? layout_.size() : 0;
+    for (const Worker& worker : workers_) sum += worker.done[i];
+    visit(kCountNames[i], sum);
+  }
 }
 
 std::string Columns::validate() const {

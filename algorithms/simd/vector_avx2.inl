@@ -19,10 +19,6 @@ inline bool none(Mask mask) { return bits(mask) == 0; }
 
 using Keys = std::uint32_t __attribute__((vector_size(32)));
 inline __m256i raw(Keys keys) { return reinterpret_cast<__m256i>(keys); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const __m256i above = _mm256_subs_epu8(raw(keys), raw(limits));
-  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(above, _mm256_setzero_si256())));
-}
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];  // corners r and r + 4

@@ -31,10 +31,6 @@ inline bool none(Mask mask) { return _mm512_kortestz(mask, mask) != 0; }
 
 using Keys = std::uint32_t __attribute__((vector_size(64)));
 inline __m512i raw(Keys keys) { return reinterpret_cast<__m512i>(keys); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const __m512i above = _mm512_subs_epu8(raw(keys), raw(limits));
-  return bits(_mm512_testn_epi32_mask(above, above));
-}
 
 // By shuffles: a gather of sixteen numbers takes several times as long (Zen 4).
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {

@@ -18,10 +18,6 @@ inline bool none(Mask mask) { return bits(mask) == 0; }
 
 using Keys = std::uint32_t __attribute__((vector_size(16)));
 inline __m128i raw(Keys keys) { return reinterpret_cast<__m128i>(keys); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const __m128i above = _mm_subs_epu8(raw(keys), raw(limits));
-  return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(above, _mm_setzero_si128())));
-}
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];
