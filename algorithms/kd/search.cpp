@@ -17,12 +17,6 @@
 #include "prefetch.h"
 
 namespace broadmark::kd {
-namespace {
-
-/// Vector tests that cost as much as to sort a box and find its window.
-constexpr std::size_t kVectorsPerSorted = 16;
-
-}  // namespace
 
 Searcher::Searcher(Isa isa)
     : kernels_(&overlapKernels(isa)), tests_per_sorted_(kVectorsPerSorted * kernels_->lanes) {}
@@ -121,17 +115,13 @@ void Searcher::test() {
   if (tests == 0) return;
   hits_.clear();
   if (tests <= tests_per_sorted_ * sections_.end) {
-    testTiles();
+    const Sections& s = sections_;
+    kernels_->test_tile(boxes_, {0, s.listed_still}, {0, s.end}, hits_);
+    kernels_->test_tile(boxes_, {s.listed_moving, s.own_still}, {s.own_still, s.end}, hits_);
   } else {
     sweep();
   }
   addPairs();
-}
-
-void Searcher::testTiles() {
-  const Sections& s = sections_;
-  kernels_->test_tile(boxes_, {0, s.listed_still}, {0, s.end}, hits_);
-  kernels_->test_tile(boxes_, {s.listed_moving, s.own_still}, {s.own_still, s.end}, hits_);
 }
 
 void Searcher::sweep() {

@@ -40,6 +40,9 @@ class Searcher {
   [[nodiscard]] std::uint64_t boxesTested() const { return boxes_tested_; }
 
  private:
+  /// Vector tests that cost as much as to sort a box and find its window.
+  static constexpr std::size_t kVectorsPerSorted = 16;
+
   /// Bodies kept further up that reach into a cell: a stretch of lists_, the moving ones first.
   struct List {
     std::size_t begin = 0;
@@ -61,7 +64,6 @@ class Searcher {
   void gatherBoxes();
   [[nodiscard]] std::size_t testsWanted() const;
   void test();
-  void testTiles();
   void sweep();
   void addPairs();
   template <class Reaches>
