@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -203,7 +204,9 @@ class Tracy final : public BroadPhase {
   /// Of the cells that have messages.
   void shareOutCells() {
     concerned_.clear();
-    for (const Worker& worker : workers_) worker.mailbox.listCells(concerned_);
+    for (const Worker& worker : workers_) {
+      std::ranges::copy(worker.mailbox.cells(), std::back_inserter(concerned_));
+    }
     std::ranges::sort(concerned_);
     const auto twice = std::ranges::unique(concerned_);
     concerned_.erase(twice.begin(), twice.end());

@@ -15,10 +15,6 @@ bool overlapsOnAxis(const Aabb& a, const Aabb& b, int axis) {
   return std::max(a.min[axis], b.min[axis]) <= std::min(a.max[axis], b.max[axis]);
 }
 
-void report(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
-  shares[std::min(a, b) % shares.size()].add(a, b);
-}
-
 }  // namespace
 
 void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bodies,
@@ -62,7 +58,7 @@ void Cell::reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work)
       if (endpoints[j].isEnd()) continue;
       const std::uint32_t other = endpoints[j].slot();
       if (overlaps(box(slot, kNow), box(other, kNow)) && isOurs(slot, other, kNow)) {
-        reportBegun(slot, other, work);
+        report(slot, other, work.begun);
       }
     }
   }
@@ -167,7 +163,7 @@ void Cell::grow() {
 }
 
 void Cell::depart(std::uint32_t slot, CellWork& work) {
-  reportMeeting(slot, kNow, kBefore, [&](std::uint32_t other) { reportEnded(slot, other, work); });
+  reportMeeting(slot, kNow, kBefore, work.ended);
   const Ends from = ends(slot, kBefore);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].remove(from[axis][0], from[axis][1]);
 }
@@ -175,17 +171,17 @@ void Cell::depart(std::uint32_t slot, CellWork& work) {
 void Cell::arrive(std::uint32_t slot, CellWork& work) {
   const Ends to = ends(slot, kNow);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].insert(to[axis][0], to[axis][1]);
-  reportMeeting(slot, kBefore, kNow, [&](std::uint32_t other) { reportBegun(slot, other, work); });
+  reportMeeting(slot, kBefore, kNow, work.begun);
 }
 
 /// Reports all that the body overlaps at one moment and not at the other.
-template <class Report>
-void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const {
+void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with,
+                         std::vector<PairBuffer>& shares) const {
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) { prefetch(&slots_[other]); });
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) {
     if (overlaps(box(slot, with), box(other, with)) && isOurs(slot, other, with) &&
         !overlaps(box(slot, without), box(other, without))) {
-      report(other);
+      report(slot, other, shares);
     }
   });
 }
@@ -204,17 +200,16 @@ void Cell::move(std::uint32_t slot, CellWork& work) {
 
 void Cell::movePoint(int axis, Endpoint from, Endpoint to, CellWork& work) {
   const bool may_begin = from.isEnd() == (from < to);
+  const Moment without = may_begin ? kBefore : kNow;
+  const Moment with = may_begin ? kNow : kBefore;
+  std::vector<PairBuffer>& shares = may_begin ? work.begun : work.ended;
   std::uint64_t swaps = 0;
   lists_[axis].move(from, to, [&](Endpoint passed) {
     ++swaps;
     if (passed.isEnd() == from.isEnd()) return;
     const std::uint32_t starts = from.isEnd() ? passed.slot() : from.slot();
     const std::uint32_t ends = from.isEnd() ? from.slot() : passed.slot();
-    if (may_begin) {
-      if (reports(starts, ends, axis, kBefore, kNow)) reportBegun(starts, ends, work);
-    } else {
-      if (reports(starts, ends, axis, kNow, kBefore)) reportEnded(starts, ends, work);
-    }
+    if (reports(starts, ends, axis, without, with)) report(starts, ends, shares);
   });
   work.counts.swaps += swaps;
 }
@@ -232,12 +227,10 @@ bool Cell::reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment wi
   return box(starts, without).min[axis] > box(ends, without).max[axis];
 }
 
-void Cell::reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  if (isWanted(p, q)) report(work.begun, bodies_[p], bodies_[q]);
-}
-
-void Cell::reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  if (isWanted(p, q)) report(work.ended, bodies_[p], bodies_[q]);
+void Cell::report(std::uint32_t p, std::uint32_t q, std::vector<PairBuffer>& shares) const {
+  const std::uint32_t a = bodies_[p];
+  const std::uint32_t b = bodies_[q];
+  if (filter_ == nullptr || filter_->wanted(a, b)) shares[std::min(a, b) % shares.size()].add(a, b);
 }
 
 /// For the next frame, now is before.

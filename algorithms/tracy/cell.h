@@ -149,9 +149,6 @@ class Cell {
   [[nodiscard]] bool isOurs(std::uint32_t p, std::uint32_t q, Moment moment) const {
     return (crossings_[p][moment] & crossings_[q][moment] & kCrossesBelow) == 0;
   }
-  [[nodiscard]] bool isWanted(std::uint32_t p, std::uint32_t q) const {
-    return filter_ == nullptr || filter_->wanted(bodies_[p], bodies_[q]);
-  }
 
   void sortOutMoved(const Bodies& all, CellWork& work);
   void sortOut(std::uint32_t slot, const Bodies& all, CellWork& work);
@@ -166,11 +163,10 @@ class Cell {
   void movePoint(int axis, Endpoint from, Endpoint to, CellWork& work);
   [[nodiscard]] bool reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
                              Moment with) const;
-  template <class Report>
-  void reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const;
+  void reportMeeting(std::uint32_t slot, Moment without, Moment with,
+                     std::vector<PairBuffer>& shares) const;
   void reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
-  void reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const;
-  void reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const;
+  void report(std::uint32_t p, std::uint32_t q, std::vector<PairBuffer>& shares) const;
 
   std::uint32_t takeSlot(std::uint32_t body);
   void grow();
