@@ -39,10 +39,10 @@ class DeviceBroadPhase : public BroadPhase {
   void visitParameters(const ParameterVisitor&) override;
 
   void initialize(const SceneInfo&, const Frame& first, Execution&) final;
-  void updateObjects(const Frame& frame) final { upload(frame.boxes); }
-  void cleanCache() final { dropAnswer(); }
-  void updateStructures() final { updateOnDevice(); }
-  void searchOverlaps() final { findPairs(); }
+  void updateObjects(const Frame& frame) final;
+  void cleanCache() final;
+  void updateStructures() final;
+  void searchOverlaps() final;
 
   [[nodiscard]] PairRuns overlaps() const final { return {&run_, 1}; }
   [[nodiscard]] TransferTimes transfers() const final { return transfers_; }
@@ -101,10 +101,6 @@ class DeviceBroadPhase : public BroadPhase {
 
  private:
   void makeProgram();
-  void upload(std::span<const Aabb> boxes);
-  void dropAnswer();
-  void updateOnDevice();
-  void findPairs();
   cl_uint searchOnce();
 
   Choice way_{"auto", {"auto", "cpu", "gpu"}};

@@ -1,6 +1,12 @@
 // An OpenCL device made ready.
 #pragma once
 
+// Khronos's C++ bindings, as all of Broadmark uses them: OpenCL 1.2, errors as cl::Error.
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -9,7 +15,6 @@
 #include <vector>
 
 #include "broadmark/execution.h"
-#include "opencl/opencl.h"
 
 namespace broadmark::opencl {
 
