@@ -273,8 +273,7 @@ TEST(ColumnLayout, NothingAndOneThingAreOneColumn) {
 TEST(ColumnLayout, HasMoreColumnsForMoreBoxes) {
   const std::vector<Aabb> sample = inputs::uniform(2000, 0, 1);
   EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(), Layout(sample, 2000, kCopyCost).size());
-  EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(),
-            Layout(sample, 2'000'000, 10'000).size());
+  EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(), Layout(sample, 2'000'000, 10'000).size());
 }
 
 // A line is swept along, and a plane is not cut through.
