@@ -201,7 +201,7 @@ class AxisSweep final : public BulletBroadPhase {
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
-    sweep_ = std::make_unique<Sweep>(boxes(), reportsEvents() ? &candidates_ : nullptr);
+    sweep_ = std::make_unique<Sweep>(boxes(), reportsEvents() ? &changes_ : nullptr);
     filterPairs(*sweep_->getOverlappingPairCache());
     sweep_->findFirstPairs();
     if (!reportsEvents()) return;
@@ -243,27 +243,12 @@ class AxisSweep final : public BulletBroadPhase {
   [[nodiscard]] std::string validate() const override { return sweep_->validate(boxes()); }
 
  private:
-  /// Pairs that may have begun or ended, some of them several times.
-  struct Candidates final : btNullPairCache {
-    std::vector<Pair> pairs;
-
-    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
-      pairs.push_back(pairOf(*a, *b));
-      return nullptr;
-    }
-    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
-                                btDispatcher* /*dispatcher*/) override {
-      pairs.push_back(pairOf(*a, *b));
-      return nullptr;
-    }
-  };
-
   /// Adds the bodies that those which moved touch now, as far as positions tell. Only where they
   /// moved: on another axis nothing has come about.
   void addTouching() {
     for (const std::uint32_t body : moved()) {
       const auto add = [&](std::uint32_t other) {
-        candidates_.pairs.push_back(orderedPair(body, other));
+        changes_.added.push_back(orderedPair(body, other));
       };
       for (int axis = 0; axis < 3; ++axis) {
         const auto moved_at = [&](auto side) {
@@ -277,17 +262,19 @@ class AxisSweep final : public BulletBroadPhase {
 
   void gatherEvents() {
     findEvents([this](std::vector<Pair>& began, std::vector<Pair>& ended) {
-      for (const Pair pair : candidates_.pairs) {
-        const bool before = broadmark::overlaps(before_[pair.a], before_[pair.b]);
-        const bool now = broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]);
-        if (before != now && isWanted(pair)) (now ? began : ended).push_back(pair);
+      for (std::vector<Pair>* const candidates : {&changes_.added, &changes_.removed}) {
+        for (const Pair pair : *candidates) {
+          const bool before = broadmark::overlaps(before_[pair.a], before_[pair.b]);
+          const bool now = broadmark::overlaps(boxes()[pair.a], boxes()[pair.b]);
+          if (before != now && isWanted(pair)) (now ? began : ended).push_back(pair);
+        }
+        candidates->clear();
       }
       for (std::vector<Pair>* const pairs : {&began, &ended}) {
         std::ranges::sort(*pairs);
         pairs->erase(std::unique(pairs->begin(), pairs->end()), pairs->end());
       }
     });
-    candidates_.pairs.clear();
   }
 
   void findPairs() override {
@@ -300,7 +287,7 @@ class AxisSweep final : public BulletBroadPhase {
   Aabb world_;
   // Of events only.
   std::vector<Aabb> before_;  ///< in the frame before
-  Candidates candidates_;
+  Changes changes_;           ///< pairs that may have begun or ended, on either list
 
   std::unique_ptr<Sweep> sweep_;
   std::uint64_t swaps_before_ = 0;  ///< this frame's

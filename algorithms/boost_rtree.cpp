@@ -56,14 +56,22 @@ Value valueOf(const Aabb& box, std::uint32_t body) {
           body};
 }
 
-/// Keeps the values, and finds pairs by looking each of them up.
-class RTree : public MovedBoxes {
+class RTree final : public MovedBoxes {
  public:
+  explicit RTree(bool incremental) : incremental_(incremental) {}
+
+  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+    MovedBoxes::initialize(scene, first, execution);
+    pack();
+  }
+
+  void updateStructures() override { incremental_ ? update() : pack(); }
+
   [[nodiscard]] std::string validate() const override {
     return tree_.size() == boxes().size() ? "" : "the tree has not one value for each body";
   }
 
- protected:
+ private:
   /// Makes the tree of all boxes.
   void pack() {
     values_.clear();
@@ -73,34 +81,7 @@ class RTree : public MovedBoxes {
     tree_ = Tree(values_);
   }
 
-  /// By body: as in the tree.
-  std::vector<Value> values_;
-  Tree tree_;
-
- private:
-  void findPairs() override {
-    for (const Value& value : tree_) {
-      const auto add = [&](const Value& found) {
-        if (value.second < found.second) pairs().add(value.second, found.second);
-      };
-      tree_.query(index::intersects(value.first), boost::make_function_output_iterator(add));
-    }
-  }
-};
-
-class Packed final : public RTree {
- public:
-  void updateStructures() override { pack(); }
-};
-
-class Incremental final : public RTree {
- public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
-    RTree::initialize(scene, first, execution);
-    pack();
-  }
-
-  void updateStructures() override {
+  void update() {
     for (; values_.size() > boxes().size(); values_.pop_back()) tree_.remove(values_.back());
     for (const std::uint32_t body : moved()) {
       const Value value = valueOf(boxes()[body], body);
@@ -113,6 +94,19 @@ class Incremental final : public RTree {
       tree_.insert(value);
     }
   }
+
+  void findPairs() override {
+    for (const Value& value : tree_) {
+      const auto add = [&](const Value& found) {
+        if (value.second < found.second) pairs().add(value.second, found.second);
+      };
+      tree_.query(index::intersects(value.first), boost::make_function_output_iterator(add));
+    }
+  }
+
+  bool incremental_;
+  std::vector<Value> values_;  ///< by body: as in the tree
+  Tree tree_;
 };
 
 }  // namespace
@@ -128,8 +122,8 @@ std::vector<Algorithm> variants() {
           .time = "O(n log n + k)",
           .space = "O(n + k)",
           .source = "Boost.Geometry, index::rtree; Guttman 1984; Leutenegger et al. 1997"}};
-  const auto packed = [] { return std::make_unique<Packed>(); };
-  const auto incremental = [] { return std::make_unique<Incremental>(); };
+  const auto packed = [] { return std::make_unique<RTree>(/*incremental=*/false); };
+  const auto incremental = [] { return std::make_unique<RTree>(/*incremental=*/true); };
   std::vector<Algorithm> all = {
       variantOf(family, packed, "boost-rtree-packed",
                 "Boost.Geometry's R-tree, packed from scratch every frame"),

@@ -13,14 +13,13 @@
 #include <string>
 #include <vector>
 
-#include "axis_overlap.h"
 #include "simd/overlap_kernels.h"
 #include "variants.h"
 
 namespace broadmark::brute_force {
 namespace {
 
-/// Columns of a tile: 24 or 32 KiB of boxes.
+/// Columns of a tile: 24 KiB of boxes.
 constexpr std::size_t kTile = 1024;
 
 /// The rows of one worker. Rows [0, r) hold n·r − r²/2 pairs or so: solved for a share of n²/2.
@@ -33,70 +32,35 @@ Range rowsOf(int worker, int workers, std::size_t count) {
   return {first_row(worker), first_row(worker + 1)};
 }
 
-/// Calls test(rows, columns) for all tiles of the worker's part of the triangle.
-template <class Test>
-void forEachTile(int worker, int workers, std::size_t count, Test test) {
-  const Range rows = rowsOf(worker, workers, count);
-  for (std::size_t begin = rows.begin; begin < count; begin += kTile) {
-    const std::size_t end = std::min(begin + kTile, count);
-    test(Range{rows.begin, std::min(rows.end, end)}, Range{begin, end});
-  }
-}
-
-/// Every body was tested against every other.
-void tellTests(std::size_t bodies, DebugDraw& draw) {
-  for (std::uint32_t body = 0; body < bodies; ++body) {
-    draw.tests(body, static_cast<std::uint32_t>(bodies - 1));
-  }
-}
-
-class Plain final : public BoxBroadPhase {
+class BruteForce final : public SimdBroadPhase {
  public:
-  void drawStructure(DebugDraw& draw) const override { tellTests(boxes().size(), draw); }
+  explicit BruteForce(bool vectorised) : vectorised_(vectorised) {}
 
- private:
-  void findPairs() override {
-    team().run([this](int worker) {
-      forEachTile(worker, team().size(), boxes().size(),
-                  [&](Range rows, Range columns) { testTile(rows, columns, pairs(worker)); });
-    });
-  }
-
-  void testTile(Range rows, Range columns, PairBuffer& found) const {
-    const Aabb* const first = boxes().data();
-    const Aabb* const end = first + columns.end;
-    for (std::size_t i = rows.begin; i < rows.end; ++i) {
-      const Aabb row = first[i];
-      for (const Aabb* j = first + std::max(columns.begin, i + 1); j < end; ++j) {
-        // One axis rules most pairs out, so this branch is predicted well; the others wait.
-        if (overlapsOnAxis(row, *j, 0)) [[unlikely]] {
-          if (overlapsOnAxis(row, *j, 1) && overlapsOnAxis(row, *j, 2)) {
-            found.add(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j - first));
-          }
-        }
-      }
-    }
-  }
-};
-
-class Simd final : public SimdBroadPhase {
- public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     SimdBroadPhase::initialize(scene, first, execution);
-    kernels_ = &overlapKernels(execution.isa());
+    kernels_ = &overlapKernels(vectorised_ ? execution.isa() : Isa::scalar);
   }
 
-  void drawStructure(DebugDraw& draw) const override { tellTests(arrays().size(), draw); }
+  /// Every body was tested against every other.
+  void drawStructure(DebugDraw& draw) const override {
+    const auto bodies = static_cast<std::uint32_t>(arrays().size());
+    for (std::uint32_t body = 0; body < bodies; ++body) draw.tests(body, bodies - 1);
+  }
 
  private:
   void findPairs() override {
     team().run([this](int worker) {
-      forEachTile(worker, team().size(), arrays().size(), [&](Range rows, Range columns) {
-        kernels_->test_tile(arrays(), rows, columns, pairs(worker));
-      });
+      const std::size_t count = arrays().size();
+      const Range rows = rowsOf(worker, team().size(), count);
+      for (std::size_t begin = rows.begin; begin < count; begin += kTile) {
+        const std::size_t end = std::min(begin + kTile, count);
+        kernels_->test_tile(arrays(), {rows.begin, std::min(rows.end, end)}, {begin, end},
+                            pairs(worker));
+      }
     });
   }
 
+  bool vectorised_;
   const OverlapKernels* kernels_ = nullptr;
 };
 
@@ -111,8 +75,8 @@ std::vector<Algorithm> variants() {
           .time = "O(n²)",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"}};
-  const auto plain = [] { return std::make_unique<Plain>(); };
-  const auto simd = [] { return std::make_unique<Simd>(); };
+  const auto plain = [] { return std::make_unique<BruteForce>(/*vectorised=*/false); };
+  const auto simd = [] { return std::make_unique<BruteForce>(/*vectorised=*/true); };
   return {variantOf(family, plain, "bf", "tests every box against every other"),
           variantOf(family, simd, "bf-simd", "brute force, one box against a vector of boxes",
                     {.vectorised = true}),

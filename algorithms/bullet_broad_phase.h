@@ -24,6 +24,22 @@ class BulletBroadPhase : public MovedBoxes {
   [[nodiscard]] PairEvents events() const final { return {{&began_run_, 1}, {&ended_run_, 1}}; }
 
  protected:
+  /// Pairs that Bullet added and removed, some of them several times.
+  struct Changes final : btNullPairCache {
+    std::vector<Pair> added;
+    std::vector<Pair> removed;
+
+    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
+      added.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
+                                btDispatcher* /*dispatcher*/) override {
+      removed.push_back(pairOf(*a, *b));
+      return nullptr;
+    }
+  };
+
   /// Whether the answer is events; set before initialize().
   [[nodiscard]] bool reportsEvents() const { return reports_events_; }
   /// Has find(began, ended) put this frame's events, each once, into two empty vectors.

@@ -40,7 +40,6 @@
 #include "opencl/bullet_library.h"
 #include "opencl/device_algorithm.h"
 #include "opencl/device_context.h"
-#include "opencl/timer.h"
 
 namespace broadmark::bullet_opencl {
 namespace {
@@ -65,44 +64,40 @@ struct Sizes {
 
 // What differs between the three. Each: the library's class, its limits, and how it wants bodies.
 
-struct GridTraits {
-  using BroadPhase = opencl::BulletGrid;
+template <class Library>
+struct UsualTraits {
+  using BroadPhase = Library;
   static constexpr std::uint64_t kMaxObjects = 1 << 26;
+  static constexpr std::string_view kExclusive = {};
+  static constexpr bool kHasLarge = false;
+
+  template <class... Options>
+  static std::unique_ptr<Library> create(const opencl::DeviceContext& context, Options... options) {
+    return std::make_unique<Library>(context.context()(), context.device()(), context.queue()(),
+                                     options...);
+  }
+  static int padded(int count) { return count; }
+  static void prepare(Library&, const Sizes&) {}
+};
+
+struct GridTraits : UsualTraits<opencl::BulletGrid> {
   /// The grid's kernels are global variables.
   static constexpr std::string_view kExclusive = "Bullet 3's OpenCL grid";
   static constexpr bool kHasLarge = true;
 
-  static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
-    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()());
-  }
-  static int padded(int count) { return count; }
   static void prepare(BroadPhase& grid, const Sizes& sizes) { grid.setCellSize(sizes.cell); }
 };
 
-struct BvhTraits {
-  using BroadPhase = b3GpuParallelLinearBvhBroadphase;
-  static constexpr std::uint64_t kMaxObjects = 1 << 26;
-  static constexpr std::string_view kExclusive = {};
-  static constexpr bool kHasLarge = false;
-
-  static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
-    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()());
-  }
+struct BvhTraits : UsualTraits<b3GpuParallelLinearBvhBroadphase> {
   static int padded(int count) { return (count + 62) / 64 * 64 + 1; }
-  static void prepare(BroadPhase&, const Sizes&) {}
 };
 
-struct SapTraits {
-  using BroadPhase = b3GpuSapBroadphase;
+struct SapTraits : UsualTraits<b3GpuSapBroadphase> {
   static constexpr std::uint64_t kMaxObjects = (1 << 19) - 1;
-  static constexpr std::string_view kExclusive = {};
-  static constexpr bool kHasLarge = false;
 
   static std::unique_ptr<BroadPhase> create(const opencl::DeviceContext& context) {
-    return std::make_unique<BroadPhase>(context.context()(), context.device()(), context.queue()(),
-                                        BroadPhase::B3_GPU_SAP_KERNEL_ORIGINAL);
+    return UsualTraits::create(context, BroadPhase::B3_GPU_SAP_KERNEL_ORIGINAL);
   }
-  static int padded(int count) { return count; }
   static void prepare(BroadPhase& sap, const Sizes& sizes) {
     sap.m_smallAabbsMappingCPU.resize(sizes.small.size());
   }
@@ -137,28 +132,11 @@ class BulletOpenCl final : public BroadPhase {
     broad_phase_ = &library.broadPhase();
     build_ns_ = library.buildNanoseconds();
     if (!execution.shared<opencl::DeviceContext>().onCpu()) requireSelfCheck();
-    answer(first.boxes);
+    answer(first);
   }
 
-  void updateObjects(const Frame& frame) override { upload(frame.boxes); }
-  void cleanCache() override { pairs_.clear(); }
-  void searchOverlaps() override { findPairs(); }
-
-  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
-  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
-
-  void visitCounters(const CounterVisitor& visit) const override {
-    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
-  }
-  void visitSetup(const CounterVisitor& visit) const override {
-    visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));
-  }
-
- private:
-  /// Farther from the origin the cell of a float is too inaccurate.
-  static constexpr float kMostCellsAway = 1 << 20;
-
-  void upload(std::span<const Aabb> boxes) {
+  void updateObjects(const Frame& frame) override {
+    const std::span<const Aabb> boxes = frame.boxes;
     transfers_ = {};
     count_ = static_cast<int>(boxes.size());
     host_boxes_.resize(Traits::padded(count_));
@@ -174,8 +152,8 @@ class BulletOpenCl final : public BroadPhase {
     Traits::prepare(*broad_phase_, sizes_);
     opencl::requireNoBulletError();
   }
-
-  void findPairs() {
+  void cleanCache() override { pairs_.clear(); }
+  void searchOverlaps() override {
     if (sizes_.small.size() > 0) {  // without bodies a grid's answer is undefined
       searchOnDevice();
       download();
@@ -184,16 +162,28 @@ class BulletOpenCl final : public BroadPhase {
     run_ = pairs_.run();
   }
 
-  void answer(std::span<const Aabb> boxes) {
-    upload(boxes);
-    pairs_.clear();
-    findPairs();
+  [[nodiscard]] PairRuns overlaps() const override { return {&run_, 1}; }
+  [[nodiscard]] TransferTimes transfers() const override { return transfers_; }
+
+  void visitCounters(const CounterVisitor& visit) const override {
+    visit("large_bodies", static_cast<std::uint64_t>(sizes_.large.size()));
+  }
+  void visitSetup(const CounterVisitor& visit) const override {
+    visit("kernel_build_ns", static_cast<std::uint64_t>(build_ns_));
+  }
+
+ private:
+  /// Farther from the origin the cell of a float is too inaccurate.
+  static constexpr float kMostCellsAway = 1 << 20;
+
+  void answer(const Frame& frame) {
+    updateObjects(frame);
+    cleanCache();
+    searchOverlaps();
   }
 
   static float longestEdge(const Aabb& box) {
-    float edge = 0;
-    for (int axis = 0; axis < 3; ++axis) edge = std::max(edge, box.max[axis] - box.min[axis]);
-    return edge;
+    return static_cast<float>(broadmark::longestEdge(box));
   }
 
   static float distance(const Aabb& box) {
@@ -294,7 +284,7 @@ class BulletOpenCl final : public BroadPhase {
         box.max[axis] = box.min[axis] + 1;
       }
     }
-    answer(boxes);
+    answer({.boxes = boxes});
     const std::vector<Pair> right = bruteForcePairs(boxes);
     const PairRun right_run = right;
     if (digest({&run_, 1}) != digest({&right_run, 1})) {
@@ -319,11 +309,9 @@ class BulletOpenCl final : public BroadPhase {
 
 template <class Traits>
 Algorithm variant(std::string id, std::string summary, AlgorithmDescription description) {
-  return opencl::deviceAlgorithm(
-      std::move(id), std::move(summary), std::move(description),
-      {.max_objects = Traits::kMaxObjects,
-       .exclusive = std::string(Traits::kExclusive),
-       .create = [] { return std::make_unique<BulletOpenCl<Traits>>(); }});
+  return opencl::deviceAlgorithm<BulletOpenCl<Traits>>(std::move(id), std::move(summary),
+                                                       std::move(description), Traits::kMaxObjects,
+                                                       std::string(Traits::kExclusive));
 }
 
 }  // namespace

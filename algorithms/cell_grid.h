@@ -13,11 +13,13 @@
 
 namespace broadmark {
 
-/// The cells that a box touches: first to last on each axis, both inclusive. (The fourth component
-/// is padding, 0.)
+/// A cell by its number on each axis. (The fourth component is padding, 0.)
+using CellPosition = std::array<std::int32_t, 4>;
+
+/// The cells that a box touches: first to last on each axis, both inclusive.
 struct CellRange {
-  alignas(16) std::array<std::int32_t, 4> first{};
-  alignas(16) std::array<std::int32_t, 4> last{};
+  alignas(16) CellPosition first{};
+  alignas(16) CellPosition last{};
 
   /// Exact, and at most the number of cells of the grid.
   [[nodiscard]] std::size_t count() const {
@@ -27,6 +29,10 @@ struct CellRange {
     }
     return cells;
   }
+  [[nodiscard]] bool contains(const CellPosition& cell) const {
+    return isEveryAxis((cornerOf(first) <= cornerOf(cell)) & (cornerOf(cell) <= cornerOf(last)));
+  }
+  friend bool operator==(const CellRange&, const CellRange&) = default;
 };
 
 /// Cells of equal size, aligned to the axes. The outermost ones reach to infinity, so every box
@@ -34,22 +40,37 @@ struct CellRange {
 /// on that alone: boxes that overlap have a cell in common.
 class CellGrid {
  public:
+  /// One cell.
+  CellGrid() = default;
+  /// Cuts a world on each axis into so many.
+  CellGrid(const Aabb& world, std::int32_t cells_per_axis);
+
   /// Lays about `cells` cells (at least one; at most two and a half times as many, by rounding)
-  /// over the bulk of `boxes`, all of which lie in `bounds`; a few boxes far off don't stretch the
-  /// grid. `columns`: the cells are not cut on the y axis. Cells are about twice as long as the
-  /// mean box or longer on each axis, so that boxes of similar size touch few of them.
-  void fit(std::span<const Aabb> boxes, const Aabb& bounds, std::size_t cells, bool columns);
+  /// over the bulk of `boxes`; a few boxes far off don't stretch the grid. `columns`: the cells are
+  /// not cut on the y axis. Cells are about twice as long as the mean box or longer on each axis,
+  /// so that boxes of similar size touch few of them.
+  void fit(std::span<const Aabb> boxes, std::size_t cells, bool columns);
 
   [[nodiscard]] std::size_t size() const {
     return static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(counts_[1]) *
            static_cast<std::size_t>(counts_[2]);
   }
-  [[nodiscard]] const std::array<std::int32_t, 4>& counts() const { return counts_; }
+  [[nodiscard]] const CellPosition& counts() const { return counts_; }
   [[nodiscard]] std::size_t indexOf(std::int32_t x, std::int32_t y, std::int32_t z) const {
     return static_cast<std::size_t>(x) +
            static_cast<std::size_t>(counts_[0]) *
                (static_cast<std::size_t>(y) +
                 static_cast<std::size_t>(counts_[1]) * static_cast<std::size_t>(z));
+  }
+
+  [[nodiscard]] CellPosition position(std::size_t index) const {
+    CellPosition cell{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto count = static_cast<std::size_t>(counts_[axis]);
+      cell[axis] = static_cast<std::int32_t>(index % count);
+      index /= count;
+    }
+    return cell;
   }
 
   [[nodiscard]] CellRange touched(const Aabb& box) const {
@@ -77,19 +98,19 @@ class CellGrid {
   [[nodiscard]] Aabb cell(std::size_t index, const Aabb& bounds) const;
 
  private:
+  void cut(int axis, double low, double extent, double count);
   /// The cells that a box's corner lies in. All axes at once: this is done to each box twice a
   /// frame.
-  [[nodiscard]] std::array<std::int32_t, 4> cellsOf(const std::array<float, 4>& corner) const {
+  [[nodiscard]] CellPosition cellsOf(const std::array<float, 4>& corner) const {
     const Corner cell = (cornerOf(corner) - cornerOf(low_)) * cornerOf(scale_);
     // What overflows ends in an outermost cell, and NaN (infinity · 0), the first operand, in 0.
-    return std::bit_cast<std::array<std::int32_t, 4>>(
-        truncated(smaller(larger(cell, Corner{}), cornerOf(last_))));
+    return std::bit_cast<CellPosition>(truncated(smaller(larger(cell, Corner{}), cornerOf(last_))));
   }
 
   alignas(16) std::array<float, 4> low_{};
   alignas(16) std::array<float, 4> scale_{};  ///< cells per unit of length; 0 where there is one
   alignas(16) std::array<float, 4> last_{};   ///< counts_ - 1
-  std::array<std::int32_t, 4> counts_ = {1, 1, 1, 1};
+  CellPosition counts_ = {1, 1, 1, 1};
 };
 
 }  // namespace broadmark

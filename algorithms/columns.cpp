@@ -11,7 +11,7 @@
 //     Where bounds share a step, the boxes decide.
 //  5. A column that turns out to be crowded is cut into columns of its own instead, as if it were a
 //     world: steps 1 to 4 again. Where that does not help and many of its boxes overlap, these are
-//     swept themselves (columns/dense_sweep.h).
+//     swept themselves.
 //
 // A pair that shares several columns is reported in one of them: see MarkedBody, whose argument
 // holds for any columns that tile the plane, split ones, too. A mark says that the body begins
@@ -34,14 +34,14 @@
 #include <memory>
 #include <numeric>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "columns/dense_sweep.h"
 #include "columns/hits.h"
 #include "columns/walk.h"
-#include "past_caches.h"
 #include "prefetch.h"
 #include "sample.h"
+#include "simd/overlap_kernels.h"
 #include "test_counts.h"
 #include "variants.h"
 
@@ -55,23 +55,11 @@ constexpr std::size_t kBoxesPastCaches = std::size_t{1} << 17;
 constexpr std::size_t kRowsPerLook = 16 * Kernels::kSweptRows;
 constexpr std::size_t kRowsPerLookPastCaches = 4 * kRowsPerLook;
 
-/// What there was to do, for the counters.
-struct Done {
-  std::uint64_t columns = 0;
-  std::uint64_t splits = 0;
-  std::uint64_t copies = 0;
-  std::uint64_t tests = 0;
-  std::uint64_t compared_boxes = 0;
-
-  Done& operator+=(const Done& other) {
-    columns += other.columns;
-    splits += other.splits;
-    copies += other.copies;
-    tests += other.tests;
-    compared_boxes += other.compared_boxes;
-    return *this;
-  }
-};
+/// What there was to do, as counters call it.
+enum Count { cut_columns, splits, copies, tests, compared_boxes };
+constexpr std::array<std::string_view, 5> kCountNames = {"columns", "split columns", "copies",
+                                                         "tests", "pairs decided by their boxes"};
+using Counts = std::array<std::uint64_t, kCountNames.size()>;
 
 /// The row of a column up to which a part of its tests goes; a multiple of `look`, or the last.
 std::size_t rowAt(const Sorted& sorted, double part, std::size_t look) {
@@ -94,10 +82,33 @@ struct Search {
   std::size_t rows_per_look;
 };
 
+/// For columns in which many copies overlap: the boxes themselves are tested, so that a hit is a
+/// pair at once. So a hit costs less than in the sweep of keys, a miss more.
+struct DenseColumn {
+  BoxArrays boxes;  ///< of the copies
+  LargeArray<MarkedBody> bodies;
+};
+
+/// Whether that is the faster sweep for a column, by a sample of its tests: it follows from the
+/// column alone.
+bool isDense(const Sorted& column) {
+  constexpr std::size_t kTests = 256;
+  // From this part of hits on, by the times of both sweeps.
+  constexpr std::size_t kHits = kTests / 8;
+  std::size_t hits = 0;
+  for (std::size_t test = 0; test < kTests; ++test) {
+    const std::size_t i = test * column.size / kTests;
+    const std::size_t behind = column.ends[i] - i;
+    const std::size_t j = i + test * 97 % behind;  // somewhere in its window
+    hits += std::size_t{j > i && overlapInSteps(column.copies[i], column.copies[j])};
+  }
+  return hits >= kHits;
+}
+
 /// Finds the pairs in columns.
 class Sweep final : public ColumnVisitor {
  public:
-  Sweep(const Search& search, const Sorted& sorted, DenseSweep& dense, PairBuffer& pairs)
+  Sweep(const Search& search, const Sorted& sorted, DenseColumn& dense, PairBuffer& pairs)
       : search_(search),
         dense_(dense),
         pairs_(pairs),
@@ -106,7 +117,7 @@ class Sweep final : public ColumnVisitor {
   void column(Walk& walk, const Part& part) override {
     const Sorted& sorted = walk.sorted();
     // It is crowded, and cutting it would not help.
-    const bool dense = walk.crowded() && DenseSweep::pays(sorted);
+    const bool dense = walk.crowded() && isDense(sorted);
     const std::size_t together = dense ? Kernels::kSweptRows : search_.rows_per_look;
     const Range rows = {rowAt(sorted, part.from, together), rowAt(sorted, part.to, together)};
     if (dense) {
@@ -114,18 +125,20 @@ class Sweep final : public ColumnVisitor {
     } else {
       sweepKeys(walk, rows);
     }
-    if (rows.begin == 0) count(sorted);
+    if (rows.begin > 0) return;  // another counts it
+    done_[copies] += sorted.size;
+    done_[tests] += sorted.tests - sorted.size;
   }
 
   void split(const Walk&, const CutWorld& inside, const Part& part) override {
     if (part.from > 0) return;  // another counts it
-    ++done_.splits;
-    done_.columns += inside.layout.size();
+    ++done_[splits];
+    done_[cut_columns] += inside.layout.size();
   }
 
-  [[nodiscard]] Done done() const {
-    Done done = done_;
-    done.compared_boxes += sink_.comparedBoxes();
+  [[nodiscard]] Counts done() const {
+    Counts done = done_;
+    done[compared_boxes] += sink_.comparedBoxes();
     return done;
   }
 
@@ -144,23 +157,24 @@ class Sweep final : public ColumnVisitor {
   }
 
   void sweepBoxes(const Sorted& sorted, Range rows) {
-    dense_.begin(sorted, search_.boxes);
-    dense_.sweep(search_.dense_kernels, rows, pairs_);
+    dense_.boxes.resize(sorted.size);
+    dense_.bodies.resize(sorted.size);
+    for (std::size_t i = 0; i < sorted.size; ++i) {
+      dense_.bodies[i] = sorted.copies[i].body;
+      dense_.boxes.set(i, search_.boxes[bodyNumber(dense_.bodies[i])]);
+    }
+    search_.dense_kernels.sweep_cells(dense_.boxes, sorted.ends.data(), dense_.bodies.data(), rows,
+                                      pairs_);
     for (std::size_t i = rows.begin; i < rows.end; ++i) {
-      done_.compared_boxes += sorted.ends[i] - i - 1;
+      done_[compared_boxes] += sorted.ends[i] - i - 1;
     }
   }
 
-  void count(const Sorted& sorted) {
-    done_.copies += sorted.size;
-    done_.tests += sorted.tests - sorted.size;
-  }
-
   Search search_;
-  DenseSweep& dense_;
+  DenseColumn& dense_;
   PairBuffer& pairs_;
   HitSink sink_;
-  Done done_;
+  Counts done_{};
 };
 
 /// Draws columns, and tells the tests in them.
@@ -264,15 +278,16 @@ class Columns final : public PairBroadPhase {
   /// One worker's own data, on cache lines of their own.
   struct alignas(64) Worker {
     Walk walk;
-    DenseSweep dense;
-    Done done;
+    DenseColumn dense;
+    Counts done{};
   };
 
-  [[nodiscard]] Costs costs() const { return {static_cast<double>(copy_cost_)}; }
   [[nodiscard]] bool boxesPastCaches() const { return boxes_.size() >= kBoxesPastCaches; }
   [[nodiscard]] Walk::Boxes allBoxes() const {
-    return {
-        kernels_, {boxes_.data(), boxes_.size()}, costs(), static_cast<std::uint64_t>(crowded_)};
+    return {kernels_,
+            {boxes_.data(), boxes_.size()},
+            static_cast<double>(copy_cost_),
+            static_cast<std::uint64_t>(crowded_)};
   }
   [[nodiscard]] CutWorld world() const { return {layout_, chains_}; }
 
@@ -296,7 +311,7 @@ void Columns::updateObjects(const Frame& frame) {
   boxes_.resize(frame.boxes.size());
   takeSample(
       boxes_.size(), [&](std::size_t i) -> const Aabb& { return frame.boxes[i]; }, sample_);
-  layout_ = Layout(sample_, boxes_.size(), costs());
+  layout_ = Layout(sample_, boxes_.size(), static_cast<double>(copy_cost_));
   while (!copyBoxes(frame)) layout_.widen();
 }
 
@@ -358,13 +373,11 @@ void Columns::drawStructure(DebugDraw& draw) const {
 }
 
 void Columns::visitCounters(const CounterVisitor& visit) const {
-  Done done;
-  for (const Worker& worker : workers_) done += worker.done;
-  visit("columns", layout_.size() + done.columns);
-  visit("split columns", done.splits);
-  visit("copies", done.copies);
-  visit("tests", done.tests);
-  visit("pairs decided by their boxes", done.compared_boxes);
+  for (std::size_t i = 0; i < kCountNames.size(); ++i) {
+    std::uint64_t sum = i == cut_columns ? layout_.size() : 0;
+    for (const Worker& worker : workers_) sum += worker.done[i];
+    visit(kCountNames[i], sum);
+  }
 }
 
 std::string Columns::validate() const {

@@ -18,6 +18,10 @@ inline Corner cornerOf(const std::array<float, 4>& numbers) {
   return std::bit_cast<Corner>(numbers);
 }
 
+inline WholeCorner cornerOf(const std::array<std::int32_t, 4>& numbers) {
+  return std::bit_cast<WholeCorner>(numbers);
+}
+
 /// On each axis the second one where they cannot be compared (NaN).
 template <class AnyCorner>
 AnyCorner smaller(AnyCorner a, AnyCorner b) {

@@ -135,34 +135,16 @@ class Dbvt final : public BulletBroadPhase {
   }
 
  private:
-  /// Pairs that came and went, told by Bullet's hash table; one may do so several times.
-  struct Changes final : btOverlappingPairCallback {
-    std::vector<Pair> came;
-    std::vector<Pair> went;
-
-    btBroadphasePair* addOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b) override {
-      came.push_back(pairOf(*a, *b));
-      return nullptr;
-    }
-    void* removeOverlappingPair(btBroadphaseProxy* a, btBroadphaseProxy* b,
-                                btDispatcher* /*dispatcher*/) override {
-      went.push_back(pairOf(*a, *b));
-      return nullptr;
-    }
-    void removeOverlappingPairsContainingProxy(btBroadphaseProxy* /*proxy*/,
-                                               btDispatcher* /*dispatcher*/) override {}
-  };
-
   /// A pair that went and came again has neither ended nor begun.
   void gatherEvents() {
-    std::ranges::sort(changes_.came);
-    std::ranges::sort(changes_.went);
+    std::ranges::sort(changes_.added);
+    std::ranges::sort(changes_.removed);
     findEvents([this](std::vector<Pair>& began, std::vector<Pair>& ended) {
-      std::ranges::set_difference(changes_.came, changes_.went, std::back_inserter(began));
-      std::ranges::set_difference(changes_.went, changes_.came, std::back_inserter(ended));
+      std::ranges::set_difference(changes_.added, changes_.removed, std::back_inserter(began));
+      std::ranges::set_difference(changes_.removed, changes_.added, std::back_inserter(ended));
     });
-    changes_.came.clear();
-    changes_.went.clear();
+    changes_.added.clear();
+    changes_.removed.clear();
   }
 
   void findPairs() override {

@@ -35,6 +35,7 @@
 
 #include "broadmark/algorithm.h"
 #include "broadmark/destroy.h"
+#include "broadmark/reference_pairs.h"
 #include "variants.h"
 
 namespace broadmark::embree {
@@ -133,28 +134,21 @@ class Embree final : public BoxBroadPhase {
   }
 
   void findPairs() override {
-    if (boxes().size() <= kFew) return testAll();
+    if (boxes().size() <= kFew) {
+      for (const Pair pair : bruteForcePairs(boxes())) pairs().add(pair.a, pair.b);
+      return;
+    }
     threads_->run([this] { rtcCollide(scene_.get(), scene_.get(), report, this); });
   }
 
-  void testAll() {
-    for (std::uint32_t b = 0; b < boxes().size(); ++b) {
-      for (std::uint32_t a = 0; a < b; ++a) {
-        if (broadmark::overlaps(boxes()[a], boxes()[b])) pairs().add(a, b);
-      }
-    }
-  }
-
   static void report(void* self, RTCCollision* found, unsigned count) {
-    static_cast<Embree*>(self)->add(found, count);
-  }
-  void add(const RTCCollision* found, unsigned count) {
+    auto& embree = *static_cast<Embree*>(self);
     PairBuffer* own = nullptr;  // asked for where there is a pair: that takes time
     for (unsigned i = 0; i < count; ++i) {
       const std::uint32_t a = found[i].primID0;
       const std::uint32_t b = found[i].primID1;
-      if (a >= b || !broadmark::overlaps(boxes()[a], boxes()[b])) continue;
-      if (own == nullptr) own = &pairs(tbb::this_task_arena::current_thread_index());
+      if (a >= b || !broadmark::overlaps(embree.boxes()[a], embree.boxes()[b])) continue;
+      if (own == nullptr) own = &embree.pairs(tbb::this_task_arena::current_thread_index());
       own->add(a, b);
     }
   }

@@ -158,12 +158,14 @@ class Fcl final : public MovedBoxes {
   void findPairs() override { manager_.collide(this, report); }
 
   static bool report(fcl::CollisionObjectd* a, fcl::CollisionObjectd* b, void* self) {
-    static_cast<Fcl*>(self)->add(static_cast<Body*>(a)->number(), static_cast<Body*>(b)->number());
+    auto& tree = *static_cast<Fcl*>(self);
+    const std::uint32_t first = static_cast<Body*>(a)->number();
+    const std::uint32_t second = static_cast<Body*>(b)->number();
+    if (broadmark::overlaps(tree.boxes()[first], tree.boxes()[second])) {
+      tree.pairs().add(first, second);
+    }
     constexpr bool kEnough = false;
     return kEnough;
-  }
-  void add(std::uint32_t a, std::uint32_t b) {
-    if (broadmark::overlaps(boxes()[a], boxes()[b])) pairs().add(a, b);
   }
 
   std::shared_ptr<fcl::CollisionGeometryd> shape_ = std::make_shared<fcl::Sphered>(1);

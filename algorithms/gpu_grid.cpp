@@ -167,7 +167,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {opencl::ownDeviceAlgorithm<GpuGrid>(
+  return {opencl::deviceAlgorithm<GpuGrid>(
       "gpu-grid", "hierarchical grid on an OpenCL device",
       {.principle = "grid",
        .optimisations = "radix sort, levels by size",

@@ -97,12 +97,12 @@ class GpuLbvh final : public opencl::DeviceBroadPhase {
 }  // namespace
 
 std::vector<Algorithm> variants() {
-  return {opencl::ownDeviceAlgorithm<GpuLbvh>(
-      "gpu-lbvh", "linear bounding volume hierarchy on an OpenCL device",
-      {.principle = "tree",
-       .optimisations = "Morton order, radix sort",
-       .time = "O(n log n + k)",
-       .source = "Lauterbach et al. 2009; Karras 2012"})};
+  return {opencl::deviceAlgorithm<GpuLbvh>("gpu-lbvh",
+                                           "linear bounding volume hierarchy on an OpenCL device",
+                                           {.principle = "tree",
+                                            .optimisations = "Morton order, radix sort",
+                                            .time = "O(n log n + k)",
+                                            .source = "Lauterbach et al. 2009; Karras 2012"})};
 }
 
 }  // namespace broadmark::gpu_lbvh

@@ -68,11 +68,11 @@ class GpuSap final : public opencl::DeviceBroadPhase {
 
 std::vector<Algorithm> variants() {
   return {
-      opencl::ownDeviceAlgorithm<GpuSap>("gpu-sap", "sweep and prune on an OpenCL device",
-                                         {.principle = "sorting",
-                                          .optimisations = "axis by variance, radix sort, vectors",
-                                          .time = "O(n + w), w pairs that overlap on the sort axis",
-                                          .source = "Liu et al. 2010; Merrill and Grimshaw 2010"})};
+      opencl::deviceAlgorithm<GpuSap>("gpu-sap", "sweep and prune on an OpenCL device",
+                                      {.principle = "sorting",
+                                       .optimisations = "axis by variance, radix sort, vectors",
+                                       .time = "O(n + w), w pairs that overlap on the sort axis",
+                                       .source = "Liu et al. 2010; Merrill and Grimshaw 2010"})};
 }
 
 }  // namespace broadmark::gpu_sap

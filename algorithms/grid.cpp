@@ -32,9 +32,9 @@
 #include "cell_buckets.h"
 #include "cell_grid.h"
 #include "prefetch.h"
-#include "row_shares.h"
 #include "simd/overlap_kernels.h"
 #include "test_counts.h"
+#include "work_shares.h"
 
 namespace broadmark::grid {
 namespace {
@@ -71,28 +71,20 @@ class Grid final : public PairBroadPhase {
 
   void updateObjects(const Frame& frame) override {
     boxes_.resize(frame.boxes.size());
-    bounds_ = {};
-    if (boxes_.empty()) return;
-    team().run(boxes_.size(), [&](int worker, Range part) {
-      Aabb bounds = frame.boxes.front();
-      for (std::size_t i = part.begin; i < part.end; ++i) {
-        boxes_[i] = frame.boxes[i];
-        bounds = merged(bounds, boxes_[i]);
-      }
-      workerData(worker).bounds = bounds;
+    team().run(boxes_.size(), [&](int, Range part) {
+      const auto mine = frame.boxes.subspan(part.begin, part.size());
+      std::ranges::copy(mine, boxes_.begin() + static_cast<std::ptrdiff_t>(part.begin));
     });
-    bounds_ = boxes_.front();
-    for (const Worker& worker : workers_) bounds_ = merged(bounds_, worker.bounds);
   }
 
   void updateStructures() override {
     const std::size_t cells = boxes_.size() / static_cast<std::size_t>(objects_per_cell_);
-    grid_.fit(boxes_, bounds_, cells, cut_ == Cut::columns);
+    grid_.fit(boxes_, cells, cut_ == Cut::columns);
     findCopies();
     placeCopies();
     sortCopies();
     orderCells();
-    shares_.measure(ends_, team());
+    shares_.measureRows(ends_, team());
   }
 
   void drawStructure(DebugDraw& draw) const override;
@@ -102,7 +94,6 @@ class Grid final : public PairBroadPhase {
  private:
   /// One worker's own data, on cache lines of their own.
   struct alignas(64) Worker {
-    Aabb bounds;                         ///< of its share of the boxes
     std::vector<Copy> copies;            ///< of its share of the boxes
     std::vector<std::uint32_t> places;   ///< per cell: number of its copies, then where they go
     std::vector<Aabb> boxes;             ///< of the cell at hand
@@ -117,7 +108,7 @@ class Grid final : public PairBroadPhase {
   void findPairs() override {
     const Range large = contents(kLarge);
     team().run(large.end, [&](int worker, Range part) {
-      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.rowsOf(worker),
+      kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.of(worker),
                             pairs(worker));
       for (std::size_t i = part.begin; i < part.end; ++i) {
         forEachRowOfCells(i, [&](Range copies, MarkedBody marks) {
@@ -251,14 +242,13 @@ class Grid final : public PairBroadPhase {
   std::vector<Worker> workers_;
 
   std::vector<Aabb> boxes_;
-  Aabb bounds_;  ///< of all boxes
   CellGrid grid_;
   std::vector<std::uint32_t> starts_;  ///< of cells in what follows, and the end
   std::vector<MarkedBody> copies_;     ///< by cell, in the order of the bodies
   BoxArrays arrays_;                   ///< by cell, in the order of the sweep
   std::vector<MarkedBody> bodies_;     ///< of arrays_
   std::vector<std::uint32_t> ends_;    ///< of the windows of arrays_
-  RowShares shares_;
+  WorkShares shares_;
 };
 
 void Grid::drawStructure(DebugDraw& draw) const {
@@ -273,8 +263,10 @@ void Grid::drawStructure(DebugDraw& draw) const {
     std::ranges::nth_element(cells, cells.begin() + kMostDrawn, std::ranges::greater(), copies);
     cells.resize(kMostDrawn);
   }
+  Aabb bounds = kEmptyBox;
+  for (const Aabb& box : boxes_) bounds = merged(bounds, box);
   for (const std::size_t cell : cells) {
-    draw.cell(grid_.cell(cell - 1, bounds_), 0, copies(cell));
+    draw.cell(grid_.cell(cell - 1, bounds), 0, copies(cell));
   }
   TestCounts tests(ends_.size());
   tests.addWindows(ends_);

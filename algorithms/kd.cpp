@@ -172,7 +172,7 @@ class Kd final : public BroadPhase {
     visit("moved bodies", moved_);
     visit("bodies at rest", rest_.size());
     visit("boxes looked at", boxes_tested);
-    tree_.counts().visit(visit);
+    tree_.visitCounters(visit);
     visit("subtrees skipped in searches", skipped);
     visit("pairs kept", kept);
   }

@@ -78,9 +78,9 @@ class OdeSpace : public MovedBoxes {
  public:
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     MovedBoxes::initialize(scene, first, execution);
-    const int geom_class = geomClass();  // before anything else of the library
+    geomClass();  // before anything else of the library
     space_.reset(makeSpace());
-    for (std::uint32_t body = 0; body < boxes().size(); ++body) add(geom_class);
+    for (std::uint32_t body = 0; body < boxes().size(); ++body) add();
     prepare(*space_);
     dSpaceClean(space_.get());
   }
@@ -92,7 +92,7 @@ class OdeSpace : public MovedBoxes {
         dGeomSetPosition(geoms_[body], boxes()[body].min[0], boxes()[body].min[1],
                          boxes()[body].min[2]);
       } else {
-        add(geomClass());
+        add();
       }
     }
     if (!moved().empty()) prepare(*space_);
@@ -104,8 +104,8 @@ class OdeSpace : public MovedBoxes {
   /// Called when boxes have changed.
   virtual void prepare(dxSpace& /*space*/) {}
 
-  void add(int geom_class) {
-    dxGeom* const geom = dCreateGeom(geom_class);
+  void add() {
+    dxGeom* const geom = dCreateGeom(geomClass());
     *static_cast<Place*>(dGeomGetClassData(geom)) = {&boxes(),
                                                      static_cast<std::uint32_t>(geoms_.size())};
     geoms_.push_back(geom);

@@ -1,7 +1,12 @@
-// Sending for memory before it is needed.
+// Sending for memory before it is needed, and writing past the caches: what is not looked at soon
+// should neither be read before it is written nor push out what is needed.
 #pragma once
 
 #include <cstddef>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 namespace broadmark {
 
@@ -33,6 +38,13 @@ void prefetchFar(const T* begin, const T* end) {
   for (const auto* line = reinterpret_cast<const char*>(begin); line < stop; line += kCacheLine) {
     prefetchFar(line);
   }
+}
+
+/// Other threads see what was written past the caches once the writer has called this.
+inline void showWritesPastCaches() {
+#if defined(__SSE2__)
+  _mm_sfence();
+#endif
 }
 
 }  // namespace broadmark

@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -33,16 +34,16 @@
 
 #include "broadmark/pair_set.h"
 #include "tracy/cell.h"
-#include "tracy/cell_shares.h"
-#include "tracy/grid.h"
 #include "tracy/mailbox.h"
 #include "variants.h"
+#include "work_shares.h"
 
 namespace broadmark::tracy {
 namespace {
 
 /// On average; evenly spread small bodies touch 1 to 3.
 constexpr std::uint64_t kMostCellsPerBody = 8;
+constexpr double kMostCellsPerAxis = 1024;
 /// When fewer bodies than one of so many have moved, each is looked up in its cells; otherwise it
 /// takes less to look at all bodies of these cells.
 constexpr std::size_t kFew = 64;
@@ -53,6 +54,12 @@ struct alignas(64) Worker {
   std::vector<std::uint32_t> moved;  ///< in this frame, of the worker's share of the bodies
   std::uint64_t cells_touched = 0;   ///< by the worker's share of the bodies
 };
+
+/// The cells that a box touches, none if it is empty.
+CellRange cellsOf(const CellGrid& grid, const Aabb& box) {
+  if (isEmpty(box)) return {.first = {1, 1, 1, 0}, .last = {0, 0, 0, 0}};
+  return grid.touched(box);
+}
 
 /// Directly on BroadPhase: the pairs are a set that is kept from frame to frame.
 class Tracy final : public BroadPhase {
@@ -76,7 +83,6 @@ class Tracy final : public BroadPhase {
     pairs_.resize(team_size);
     if (reports_events_) pairs_before_.resize(team_size);
     runs_.reserve(team_size);
-    shares_.resize(team_size);
 
     bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
     bodies_.boxes[kNow] = bodies_.boxes[kBefore];
@@ -86,8 +92,7 @@ class Tracy final : public BroadPhase {
 
     const double wanted =
         std::ceil(std::cbrt(static_cast<double>(count) / static_cast<double>(objects_per_cell_)));
-    wanted_cells_ = static_cast<std::uint32_t>(
-        std::clamp(wanted, 1.0, static_cast<double>(Grid::kMostCellsPerAxis)));
+    wanted_cells_ = static_cast<std::int32_t>(std::clamp(wanted, 1.0, kMostCellsPerAxis));
     rebuild(affordable(wanted_cells_));
     searchOverlaps();
     if (!reports_events_) cleanCache();
@@ -123,7 +128,7 @@ class Tracy final : public BroadPhase {
     if (moved == 0) return;
     bodies_.few_moved = kFew * moved < bodies_.boxes[kNow].size();
     team_->run([this](int worker) { findCells(worker); });
-    if (const std::uint32_t cells = suitableCellsPerAxis(); cells != grid_.cellsPerAxis()) {
+    if (const std::int32_t cells = suitableCellsPerAxis(); cells != grid_.counts()[0]) {
       rebuild(cells);
       return;
     }
@@ -170,9 +175,9 @@ class Tracy final : public BroadPhase {
     std::uint64_t& touched = workerOf(worker).cells_touched;
     for (const std::uint32_t body : workerOf(worker).moved) {
       CellRange& now = bodies_.ranges[kNow][body];
-      bodies_.ranges[kBefore][body] = std::exchange(now, grid_.range(bodies_.boxes[kNow][body]));
-      touched += now.size();
-      touched -= bodies_.ranges[kBefore][body].size();
+      bodies_.ranges[kBefore][body] = std::exchange(now, cellsOf(grid_, bodies_.boxes[kNow][body]));
+      touched += now.count();
+      touched -= bodies_.ranges[kBefore][body].count();
     }
   }
 
@@ -182,7 +187,7 @@ class Tracy final : public BroadPhase {
     for (const std::uint32_t body : workerOf(worker).moved) {
       const CellRange& before = bodies_.ranges[kBefore][body];
       const CellRange& now = bodies_.ranges[kNow][body];
-      grid_.forEachCell(before, [&](const CellPosition&, std::size_t cell) {
+      grid_.forEachCell(before, [&](std::size_t cell, MarkedBody) {
         if (bodies_.few_moved) {
           mailbox.notify(cell, body);
         } else {
@@ -190,8 +195,8 @@ class Tracy final : public BroadPhase {
         }
       });
       if (now == before) continue;
-      grid_.forEachCell(now, [&](const CellPosition& position, std::size_t cell) {
-        if (!before.contains(position)) mailbox.announce(cell, body);
+      grid_.forEachCell(now, [&](std::size_t cell, MarkedBody) {
+        if (!before.contains(grid_.position(cell))) mailbox.announce(cell, body);
       });
     }
   }
@@ -199,7 +204,9 @@ class Tracy final : public BroadPhase {
   /// Of the cells that have messages.
   void shareOutCells() {
     concerned_.clear();
-    for (const Worker& worker : workers_) worker.mailbox.listCells(concerned_);
+    for (const Worker& worker : workers_) {
+      std::ranges::copy(worker.mailbox.cells(), std::back_inserter(concerned_));
+    }
     std::ranges::sort(concerned_);
     const auto twice = std::ranges::unique(concerned_);
     concerned_.erase(twice.begin(), twice.end());
@@ -208,13 +215,12 @@ class Tracy final : public BroadPhase {
       const std::uint64_t size = cells_[concerned_[i]].size();
       return 1 + size * (64 + size);
     };
-    std::uint64_t total = 0;
-    for (std::size_t i = 0; i < concerned_.size(); ++i) total += cost(i);
-    shares_.shareOut(concerned_.size(), cost, total);
+    shares_.measure(concerned_.size(), 1, cost, *team_);
   }
 
   void updateCells(int worker) {
-    shares_.forEachIndex(worker, [&](std::size_t i) {
+    const Range mine = shares_.of(worker);
+    for (std::size_t i = mine.begin; i < mine.end; ++i) {
       const std::uint32_t cell = concerned_[i];
       CellWork& work = workerOf(worker).work;
       work.moved.clear();
@@ -225,16 +231,16 @@ class Tracy final : public BroadPhase {
         for (const Worker& from : workers_) from.mailbox.arrivals().forEach(cell, enter);
       });
       for (Worker& from : workers_) from.mailbox.forget(cell);
-    });
+    }
   }
 
   /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
-  std::uint64_t cellsTouchedIn(const Grid& grid) {
+  std::uint64_t cellsTouchedIn(const CellGrid& grid) {
     std::atomic<std::uint64_t> all = 0;
     team_->run(bodies_.boxes[kNow].size(), [&](int, Range part) {
       std::uint64_t touched = 0;
       for (std::size_t i = part.begin; i < part.end; ++i)
-        touched += grid.range(bodies_.boxes[kNow][i]).size();
+        touched += cellsOf(grid, bodies_.boxes[kNow][i]).count();
       all += touched;
     });
     return all;
@@ -245,23 +251,23 @@ class Tracy final : public BroadPhase {
   }
 
   /// `cells_per_axis`, or as often halved as it takes.
-  std::uint32_t affordable(std::uint32_t cells_per_axis) {
+  std::int32_t affordable(std::int32_t cells_per_axis) {
     while (cells_per_axis > 1 &&
-           cellsTouchedIn(Grid(world_, cells_per_axis)) > mostCellsTouched()) {
+           cellsTouchedIn(CellGrid(world_, cells_per_axis)) > mostCellsTouched()) {
       cells_per_axis /= 2;
     }
     return cells_per_axis;
   }
 
-  std::uint32_t suitableCellsPerAxis() {
-    const std::uint32_t present = grid_.cellsPerAxis();
+  std::int32_t suitableCellsPerAxis() {
+    const std::int32_t present = grid_.counts()[0];
     std::uint64_t touched = 0;
     for (const Worker& worker : workers_) touched += worker.cells_touched;
     if (touched > mostCellsTouched()) return affordable(present / 2);
     if (present == wanted_cells_) return present;
     // Well below the limit, or the next frame might be above it again.
-    const std::uint32_t more = std::min(2 * present + 1, wanted_cells_);
-    return 2 * cellsTouchedIn(Grid(world_, more)) <= mostCellsTouched() ? more : present;
+    const std::int32_t more = std::min(2 * present + 1, wanted_cells_);
+    return 2 * cellsTouchedIn(CellGrid(world_, more)) <= mostCellsTouched() ? more : present;
   }
 
   /// All pairs have begun anew: leaves those that did, and adds those that ended.
@@ -285,12 +291,12 @@ class Tracy final : public BroadPhase {
   }
 
   /// Starts over with another grid; all pairs are found anew.
-  void rebuild(std::uint32_t cells_per_axis) {
+  void rebuild(std::int32_t cells_per_axis) {
     ++rebuilds_;
     if (reports_events_) pairs_.swap(pairs_before_);
-    grid_ = Grid(world_, cells_per_axis);
+    grid_ = CellGrid(world_, cells_per_axis);
     cells_.clear();
-    cells_.resize(grid_.cellCount());
+    cells_.resize(grid_.size());
     concerned_.reserve(workers_.size() * cells_.size());
     for (Worker& worker : workers_) {
       worker.mailbox.resize(cells_.size());
@@ -302,28 +308,27 @@ class Tracy final : public BroadPhase {
     std::vector<std::size_t> ends(cells_.size() + 1, 0);
     for (std::size_t body = 0; body < bodies_.boxes[kNow].size(); ++body) {
       CellRange& range = bodies_.ranges[kNow][body];
-      range = grid_.range(bodies_.boxes[kNow][body]);
+      range = cellsOf(grid_, bodies_.boxes[kNow][body]);
       bodies_.ranges[kBefore][body] = range;
-      grid_.forEachCell(range, [&](const CellPosition&, std::size_t cell) { ++ends[cell]; });
-      workers_.front().cells_touched += range.size();
+      grid_.forEachCell(range, [&](std::size_t cell, MarkedBody) { ++ends[cell]; });
+      workers_.front().cells_touched += range.count();
     }
     std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
     std::vector<std::uint32_t> bodies(ends.back());
     for (auto body = static_cast<std::uint32_t>(bodies_.boxes[kNow].size()); body-- > 0;) {
-      grid_.forEachCell(bodies_.ranges[kNow][body], [&](const CellPosition&, std::size_t cell) {
-        bodies[--ends[cell]] = body;
-      });
+      grid_.forEachCell(bodies_.ranges[kNow][body],
+                        [&](std::size_t cell, MarkedBody) { bodies[--ends[cell]] = body; });
     }
     const auto bodies_in = [&](std::size_t cell) {
       return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);
     };
-    shares_.shareOut(
-        cells_.size(), [&](std::size_t cell) { return 1 + bodies_in(cell).size(); },
-        cells_.size() + bodies.size());
+    shares_.measure(
+        cells_.size(), 1, [&](std::size_t cell) { return 1 + bodies_in(cell).size(); }, *team_);
     team_->run([&](int worker) {
-      shares_.forEachIndex(worker, [&](std::size_t cell) {
+      const Range mine = shares_.of(worker);
+      for (std::size_t cell = mine.begin; cell < mine.end; ++cell) {
         cells_[cell].build(grid_.position(cell), bodies_in(cell), bodies_, workerOf(worker).work);
-      });
+      }
     });
   }
 
@@ -331,12 +336,12 @@ class Tracy final : public BroadPhase {
   std::int64_t objects_per_cell_ = 100;
   ThreadTeam* team_ = nullptr;
   Aabb world_;
-  std::uint32_t wanted_cells_ = 1;  ///< per axis, bodies permitting
-  Grid grid_;
+  std::int32_t wanted_cells_ = 1;  ///< per axis, bodies permitting
+  CellGrid grid_;
   Bodies bodies_;
   std::vector<Cell> cells_;
   std::vector<std::uint32_t> concerned_;  ///< in this frame: cells in which something has moved
-  CellShares shares_;
+  WorkShares shares_;
   std::vector<Worker> workers_;
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
   std::vector<PairRun> runs_;
@@ -352,7 +357,7 @@ class Tracy final : public BroadPhase {
 void Tracy::drawStructure(DebugDraw& draw) const {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (cells_[cell].size() == 0) continue;
-    const Aabb bounds = grid_.bounds(grid_.position(cell));
+    const Aabb bounds = grid_.cell(cell, world_);
     draw.cell(bounds, 0, cells_[cell].size());
     Aabb segment = bounds;
     cells_[cell].forEachSegment([&](float begin) {
@@ -405,10 +410,10 @@ std::string Tracy::validate() const {
   std::uint64_t touched = 0;
   for (const Worker& worker : workers_) touched += worker.cells_touched;
   for (std::size_t body = 0; body < cells_of_body.size(); ++body) {
-    const CellRange range = grid_.range(bodies_.boxes[kNow][body]);
+    const CellRange range = cellsOf(grid_, bodies_.boxes[kNow][body]);
     if (bodies_.ranges[kNow][body] != range) return "cells of a body out of date";
-    if (cells_of_body[body] != range.size()) return "body missing from a cell that it touches";
-    touched -= range.size();
+    if (cells_of_body[body] != range.count()) return "body missing from a cell that it touches";
+    touched -= range.count();
   }
   if (touched != 0) return "cells miscounted";
   return {};

@@ -18,19 +18,17 @@ void HitSink::flush() {
   decide();
 }
 
+/// One bit of all hits after the other, so that nothing depends on how many each of them has.
 void HitSink::takeAll() {
-  // One bit of all hits after the other, so that nothing depends on how many each of them has.
-  while (size_ > 0) takeOneEach();
-}
-
-void HitSink::takeOneEach() {
-  if (doubts_ + size_ > kMostDoubts) decide();
-  Pair* const begin = pairs_.room(size_ + Kernels::kTakenTogether);
-  Pair* pairs = begin;
-  Pair* doubtful = doubtful_ + doubts_;
-  size_ = kernels_.take_pairs(places_, bits_, size_, sorted_.copies.data(), pairs, doubtful);
-  pairs_.advance(static_cast<std::size_t>(pairs - begin));
-  doubts_ = static_cast<std::size_t>(doubtful - doubtful_);
+  while (size_ > 0) {
+    if (doubts_ + size_ > kMostDoubts) decide();
+    Pair* const begin = pairs_.room(size_ + Kernels::kTakenTogether);
+    Pair* pairs = begin;
+    Pair* doubtful = doubtful_ + doubts_;
+    size_ = kernels_.take_pairs(places_, bits_, size_, sorted_.copies.data(), pairs, doubtful);
+    pairs_.advance(static_cast<std::size_t>(pairs - begin));
+    doubts_ = static_cast<std::size_t>(doubtful - doubtful_);
+  }
 }
 
 /// Has the boxes decide.

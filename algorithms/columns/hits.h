@@ -43,7 +43,6 @@ class HitSink {
   static constexpr std::size_t kMostDoubts = 2 * kSize;
 
   void takeAll();
-  void takeOneEach();
   void decide();
 
   const Kernels& kernels_;

@@ -109,51 +109,18 @@ constexpr std::uint64_t placeOf(std::size_t row, std::size_t distance) {
   return std::uint64_t{row} | std::uint64_t{distance} << 32;
 }
 
-/// Tests `row` against the columns from `begin` to `end`.
-inline void sweepRow(const std::uint32_t* keys, std::size_t row, std::size_t begin, std::size_t end,
-                     columns::HitSink& sink) {
-  const Keys limits = limitsOf(broadcastKey(keys[row]));
-  for (std::size_t column = begin; column < end; column += kLanes) {
-    std::size_t hits = sink.room();
-    unsigned found = withinLimits(loadKeys(keys + column), limits);
-    if (end - column < kLanes) found &= (1U << (end - column)) - 1;
-    for (; found != 0; found &= found - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(found));
-      sink.places()[hits] = placeOf(row, column + lane - row);
-      sink.bits()[hits] = 1;  // its first lane and step
-      ++hits;
-    }
-    sink.advance(hits);
-  }
-}
-
-/// Tests rows one by one against what lies `distance` places and more behind them; bit i of `which`
-/// is for row `first` + i.
-inline void sweepEach(const std::uint32_t* keys, const std::uint32_t* ends, std::size_t first,
-                      unsigned which, std::size_t distance, columns::HitSink& sink) {
-  for (; which != 0; which &= which - 1) {
-    const std::size_t row = first + static_cast<std::size_t>(__builtin_ctz(which));
-    sweepRow(keys, row, row + distance, ends[row], sink);
-  }
-}
-
 void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
            columns::HitSink& sink) {
-  // So far rows go together before those are counted that are to go on. A few do it one by one.
+  // So far rows go together before those are counted that are to go on.
   constexpr std::size_t kStretch = 32;
-  constexpr int kFew = kLanes / 2;
   static_assert(kStretch / kHitSteps <= columns::HitSink::kRoom);
   std::uint64_t* const places = sink.places();
   std::uint64_t* const bits = sink.bits();
   for (std::size_t row = rows.begin; row < rows.end; row += kLanes) {
     const Keys limits = limitsOf(loadKeys(keys + row));
-    Keys left = minus(loadKeys(ends + row), lanesFrom(static_cast<std::uint32_t>(row + 1)));
+    Keys left = loadKeys(ends + row) - lanesFrom(static_cast<std::uint32_t>(row + 1));
     std::size_t distance = 1;
-    for (unsigned going_on = positive(left); going_on != 0; going_on = positive(left)) {
-      if (distance > 1 && __builtin_popcount(going_on) <= kFew) {
-        sweepEach(keys, ends, row, going_on, distance, sink);
-        break;
-      }
+    while (positive(left) != 0) {
       std::size_t hits = sink.room();
       const std::size_t stop = distance + kStretch;
       while (distance < stop && positive(left) != 0) {
@@ -161,7 +128,7 @@ void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
         places[hits] = placeOf(row, distance);
         bits[hits] = found;
         hits += found != 0 ? 1 : 0;
-        left = minus(left, broadcastKey(std::uint32_t{kHitSteps}));
+        left -= std::uint32_t{kHitSteps};
         distance += kHitSteps;
       }
       sink.advance(hits);

@@ -56,7 +56,7 @@ double meetingPart(std::span<const Aabb> sample, int axis) {
 
 }  // namespace
 
-Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& costs) {
+Layout::Layout(std::span<const Aabb> sample, std::size_t count, double copy_cost) {
   sample = sample.first(std::min(sample.size(), kMostSampled));
   if (sample.empty()) return;
   std::array<Bulk, 3> measured;
@@ -87,7 +87,7 @@ Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& cos
                             crossed_first * crossed_second * parts.without[sweep];
       const double in_column = static_cast<double>(count) * copies / (firsts * seconds);
       const double window = in_column * met;
-      const double cost = copies * (costs.copy + window);
+      const double cost = copies * (copy_cost + window);
       if (cost < cost_) {
         cost_ = cost;
         met_ = met;
@@ -96,7 +96,7 @@ Layout::Layout(std::span<const Aabb> sample, std::size_t count, const Costs& cos
       }
       if (!(side > 0)) break;
       // Narrower columns only cost more copies from here on.
-      if (copies * costs.copy > cost_) break;
+      if (copies * copy_cost > cost_) break;
     }
   }
   const auto factor = [](double steps, const Bulk& axis) {

@@ -25,11 +25,6 @@ struct StepScales {
   std::uint32_t columns_in_row = 1;  ///< on the first of these
 };
 
-/// What work costs, in tests of a pair: the unit in which layouts are compared.
-struct Costs {
-  double copy = 0;  ///< to copy a box into a column, and to put it in order there
-};
-
 /// Columns over two axes; along the third, the sweep axis, they are not cut. Coordinates are turned
 /// into steps, whole numbers: on the two axes 256 of them across each column, on the sweep axis as
 /// many as floats can tell apart.
@@ -47,8 +42,9 @@ class Layout {
   /// One column.
   Layout() = default;
   /// The columns that are expected to cost least for `count` boxes of which `sample` are some,
-  /// chosen evenly. A sample that misleads costs time, nothing else.
-  Layout(std::span<const Aabb> sample, std::size_t count, const Costs& costs);
+  /// chosen evenly. To copy a box into a column, and to put it in order there, costs as much as
+  /// `copy_cost` tests of a pair. A sample that misleads costs time, nothing else.
+  Layout(std::span<const Aabb> sample, std::size_t count, double copy_cost);
 
   /// Half as many columns on each axis that is cut.
   void widen();

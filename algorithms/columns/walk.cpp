@@ -89,7 +89,7 @@ bool Walk::split(const Part& part) {
         return boxes_.boxes[bodyNumber(sorted_.copies[i].body)];
       },
       sample_);
-  const Layout layout(sample_, count, boxes_.costs);
+  const Layout layout(sample_, count, boxes_.copy_cost);
   const double cost = layout.costPerBox() * static_cast<double>(count);
   if (layout.size() == 1 || cost >= static_cast<double>(sorted_.tests) / 2) return false;
   Chains& chains = chains_[static_cast<std::size_t>(level_)];

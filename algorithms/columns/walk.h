@@ -68,7 +68,7 @@ class Walk {
   struct Boxes {
     const Kernels* kernels = nullptr;
     std::span<const Aabb> boxes;
-    Costs costs;
+    double copy_cost = 0;       ///< in tests of a pair
     std::uint64_t crowded = 0;  ///< tests per copy from which on a column is cut, if that helps
   };
 

@@ -13,26 +13,10 @@
 
 #include <algorithm>
 
-#include "boundary_near.h"
 #include "moments.h"
 #include "prefetch.h"
 
 namespace broadmark::kd {
-namespace {
-
-/// Vector tests that cost as much as to sort a box and find its window.
-constexpr std::size_t kVectorsPerSorted = 16;
-
-/// As BoxArrays::resize, but with room to spare once it has to grow.
-void resize(BoxArrays& boxes, std::size_t& capacity, std::size_t count) {
-  if (count > capacity) {
-    capacity = 2 * count;
-    boxes.resize(capacity);
-  }
-  boxes.resize(count);
-}
-
-}  // namespace
 
 Searcher::Searcher(Isa isa)
     : kernels_(&overlapKernels(isa)), tests_per_sorted_(kVectorsPerSorted * kernels_->lanes) {}
@@ -113,7 +97,7 @@ void Searcher::arrange(std::span<const std::uint32_t> own, List list) {
 void Searcher::gatherBoxes() {
   const std::size_t count = sections_.end;
   boxes_tested_ += count;
-  resize(boxes_, capacity_, count);
+  boxes_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     if (i + kPrefetchAhead < count) prefetch(&scene_->boxes[arranged_[i + kPrefetchAhead]]);
     boxes_.set(i, scene_->boxes[arranged_[i]]);
@@ -131,17 +115,13 @@ void Searcher::test() {
   if (tests == 0) return;
   hits_.clear();
   if (tests <= tests_per_sorted_ * sections_.end) {
-    testTiles();
+    const Sections& s = sections_;
+    kernels_->test_tile(boxes_, {0, s.listed_still}, {0, s.end}, hits_);
+    kernels_->test_tile(boxes_, {s.listed_moving, s.own_still}, {s.own_still, s.end}, hits_);
   } else {
     sweep();
   }
   addPairs();
-}
-
-void Searcher::testTiles() {
-  const Sections& s = sections_;
-  kernels_->test_tile(boxes_, {0, s.listed_still}, {0, s.end}, hits_);
-  kernels_->test_tile(boxes_, {s.listed_moving, s.own_still}, {s.own_still, s.end}, hits_);
 }
 
 void Searcher::sweep() {
@@ -152,30 +132,10 @@ void Searcher::sweep() {
   for (std::size_t i = 0; i < rows; ++i) moments.add(boxes_.box(i), origin);
   const AxisOrder axes = moments.axes(static_cast<double>(rows));
 
-  sorter_.resize(count, 1);
-  for (std::size_t i = 0; i < count; ++i) {
-    sorter_.entries()[i] = {sortKey(boxes_.min(axes[0])[i]), static_cast<std::uint32_t>(i)};
-  }
-  sorter_.sort(alone_);
-  resize(sorted_, sorted_capacity_, count);
-  positions_.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t position = sorter_.entries()[i].body;
-    positions_[i] = position;
-    for (int axis = 0; axis < 3; ++axis) {
-      sorted_.min(axis)[i] = boxes_.min(axes[axis])[position];
-      sorted_.max(axis)[i] = boxes_.max(axes[axis])[position];
-    }
-  }
-  ends_.resize(count);
-  const float* const min = sorted_.min(0);
-  for (std::size_t i = 0, end = 0; i < count; ++i) {
-    const float limit = sorted_.max(0)[i];
-    end = boundaryNear(std::max(end, i + 1), i + 1, count,
-                       [&](std::size_t j) { return min[j] <= limit; });
-    ends_[i] = static_cast<std::uint32_t>(end);
-  }
-  kernels_->sweep(sorted_, ends_.data(), positions_.data(), {0, count}, hits_);
+  const auto box_of = [this](std::size_t i) -> const Aabb& { return scene_->boxes[arranged_[i]]; };
+  sorted_.build(count, box_of, axes, alone_);
+  kernels_->sweep(sorted_.boxes(), sorted_.ends().data(), sorted_.bodies().data(), {0, count},
+                  hits_);
 }
 
 /// Adds those of the hits that are wanted and that only this node finds.

@@ -12,8 +12,8 @@
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 #include "kd/tree.h"
-#include "radix_sort.h"
 #include "simd/overlap_kernels.h"
+#include "sorted_windows.h"
 
 namespace broadmark::kd {
 
@@ -40,6 +40,9 @@ class Searcher {
   [[nodiscard]] std::uint64_t boxesTested() const { return boxes_tested_; }
 
  private:
+  /// Vector tests that cost as much as to sort a box and find its window.
+  static constexpr std::size_t kVectorsPerSorted = 16;
+
   /// Bodies kept further up that reach into a cell: a stretch of lists_, the moving ones first.
   struct List {
     std::size_t begin = 0;
@@ -61,7 +64,6 @@ class Searcher {
   void gatherBoxes();
   [[nodiscard]] std::size_t testsWanted() const;
   void test();
-  void testTiles();
   void sweep();
   void addPairs();
   template <class Reaches>
@@ -87,15 +89,9 @@ class Searcher {
   std::vector<std::uint32_t> arranged_;
   std::vector<std::uint32_t> own_still_;
   BoxArrays boxes_;
-  std::size_t capacity_ = 0;
 
-  // For the sweep: positions among the arranged bodies, sorted, and their boxes.
   ThreadTeam alone_{1};
-  RadixSorter sorter_;
-  std::vector<std::uint32_t> positions_;
-  BoxArrays sorted_;
-  std::size_t sorted_capacity_ = 0;
-  std::vector<std::uint32_t> ends_;
+  SortedWindows sorted_;  ///< of positions among the arranged bodies, for the sweep
 
   PairBuffer hits_;  ///< by position among the arranged bodies
 };

@@ -116,12 +116,6 @@ void Tree::update() {
   summarise(root_);
 }
 
-UpdateCounts Tree::counts() const {
-  UpdateCounts sum;
-  for (const Worker& worker : workers_) sum.add(worker.counts);
-  return sum;
-}
-
 Tree::Place Tree::leftPlace(const Node& node, const Place& place) {
   Place left = {place.begin, Side::left, place.cell};
   // Not simply the plane: it may have been moved beyond what an ancestor leaves of the cell.
@@ -202,7 +196,7 @@ void Tree::findTasks(Node& node, const Place& place) {
 
 void Tree::refit(Node& node, const Place& place, Scope scope, Worker& worker) {
   if (!node.touched && scope == Scope::touched) {
-    ++worker.counts.skipped_subtrees;
+    ++worker.counts[skipped_subtrees];
     return;
   }
   if (!node.isLeaf()) {
@@ -278,7 +272,7 @@ void Tree::settleAll() {
 /// `defer_small`: subtrees that are not worth dividing further become tasks instead.
 void Tree::settle(Node& node, const Place& place, Worker& worker, bool defer_small) {
   if (!node.touched) {
-    ++worker.counts.skipped_subtrees;
+    ++worker.counts[skipped_subtrees];
     return;
   }
   if (defer_small && node.size <= grain_) {
@@ -324,7 +318,7 @@ void Tree::waterfall(Node& node, const Place& place, Worker& worker) {
 }
 
 void Tree::trim(Node& node, const Place& place, Worker& worker) {
-  ++worker.counts.trims;
+  ++worker.counts[trims];
   nodes_.releaseChildren(node);
   node.own = node.size;
   node.own_touched = node.touched = true;
@@ -339,7 +333,7 @@ bool Tree::translate(Node& node, const Place& place, Worker& worker) {
   const auto mean = static_cast<float>(sum / node.size);
   if (mean == node.plane || !isGood(populationsAt(bodies, node.axis, mean))) return false;
 
-  ++worker.counts.translations;
+  ++worker.counts[translations];
   const float before = std::exchange(node.plane, mean);
   node.own_touched = node.unsettled = true;
   // One child's cell has become smaller, and all its bodies have to be looked at.
@@ -354,7 +348,7 @@ bool Tree::translate(Node& node, const Place& place, Worker& worker) {
 
 /// The larger child takes over all bodies, then the node's place.
 void Tree::erase(Node& node, const Place& place, Worker& worker) {
-  ++worker.counts.erasures;
+  ++worker.counts[erasures];
   Node* const pair = node.children;
   Node& left = node.left();
   Node& right = node.right();
@@ -381,7 +375,7 @@ void Tree::erase(Node& node, const Place& place, Worker& worker) {
 bool Tree::partition(Node& node, const Place& place, Worker& worker) {
   if (node.own <= objects_per_leaf_) return false;
   if (!findSplit(node, {at(place.begin), node.own}, worker)) return false;
-  ++worker.counts.partitions;
+  ++worker.counts[partitions];
   node.setChildren(nodes_.take());
   node.own_touched = node.unsettled = true;
   return true;
@@ -441,7 +435,7 @@ void Tree::receive(Node& node, std::size_t begin, std::size_t count, Worker& wor
   for (std::size_t i = begin; i < begin + count; ++i) homes_[bodies_[i]] = &node;
   node.own += static_cast<std::uint32_t>(count);
   node.own_touched = node.touched = true;
-  worker.counts.moves += count;
+  worker.counts[moves] += count;
 }
 
 void Tree::makeHome(Node& node, const Place& place) {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "broadmark/aabb.h"
@@ -38,18 +39,11 @@ struct Cell {
 inline bool isLeft(const Aabb& box, int axis, float plane) { return box.max[axis] < plane; }
 inline bool isRight(const Aabb& box, int axis, float plane) { return box.min[axis] >= plane; }
 
-/// What one frame's update did.
-struct UpdateCounts {
-  std::uint64_t moves = 0;  ///< of a body from one node to another
-  std::uint64_t trims = 0;
-  std::uint64_t translations = 0;
-  std::uint64_t erasures = 0;
-  std::uint64_t partitions = 0;
-  std::uint64_t skipped_subtrees = 0;
-
-  void add(const UpdateCounts& other);
-  void visit(const CounterVisitor& visitor) const;
-};
+/// What one frame's update did, as counters call it.
+enum Count { moves, trims, translations, erasures, partitions, skipped_subtrees };
+inline constexpr std::array<std::string_view, 6> kCountNames = {
+    "moves between nodes",        "trims", "translations", "erasures", "partitions",
+    "subtrees skipped in updates"};
 
 class Tree {
  public:
@@ -79,7 +73,7 @@ class Tree {
   /// The array of bodies that nodes own slices of: all in the tree.
   [[nodiscard]] std::span<const std::uint32_t> bodies() const { return bodies_; }
   /// Of the last update.
-  [[nodiscard]] UpdateCounts counts() const;
+  void visitCounters(const CounterVisitor& visit) const;
 
   void draw(DebugDraw& draw, const Aabb& world) const;
   /// "" or which invariant is broken.
@@ -104,7 +98,7 @@ class Tree {
     std::size_t right = 0;
   };
   struct alignas(64) Worker {
-    UpdateCounts counts;
+    std::array<std::uint64_t, kCountNames.size()> counts{};
     std::vector<std::uint32_t> aside;  ///< the smaller block of a rotation
     std::vector<float> centres;        ///< room for finding their median
   };

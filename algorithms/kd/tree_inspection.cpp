@@ -8,22 +8,12 @@
 
 namespace broadmark::kd {
 
-void UpdateCounts::add(const UpdateCounts& other) {
-  moves += other.moves;
-  trims += other.trims;
-  translations += other.translations;
-  erasures += other.erasures;
-  partitions += other.partitions;
-  skipped_subtrees += other.skipped_subtrees;
-}
-
-void UpdateCounts::visit(const CounterVisitor& visitor) const {
-  visitor("moves between nodes", moves);
-  visitor("trims", trims);
-  visitor("translations", translations);
-  visitor("erasures", erasures);
-  visitor("partitions", partitions);
-  visitor("subtrees skipped in updates", skipped_subtrees);
+void Tree::visitCounters(const CounterVisitor& visit) const {
+  for (std::size_t i = 0; i < kCountNames.size(); ++i) {
+    std::uint64_t sum = 0;
+    for (const Worker& worker : workers_) sum += worker.counts[i];
+    visit(kCountNames[i], sum);
+  }
 }
 
 void Tree::draw(DebugDraw& draw, const Aabb& world) const { drawNode(draw, root_, world, 0); }

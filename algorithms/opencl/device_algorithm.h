@@ -1,8 +1,6 @@
 // Listing algorithms that run on a compute device.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,16 +9,13 @@
 
 namespace broadmark::opencl {
 
-/// What one algorithm on a device has of its own.
-struct DeviceVariant {
-  std::uint64_t max_objects = 0;
-  std::string exclusive = {};
-  std::function<std::unique_ptr<BroadPhase>()> create;
-};
+/// Kernels count sixteen floats for each body with 32 bits.
+constexpr std::uint64_t kMostObjects = std::uint64_t{1} << 28;
 
 /// The entry of an algorithm on a device. All are linear in space, and drivers allocate.
-inline Algorithm deviceAlgorithm(std::string id, std::string summary,
-                                 AlgorithmDescription description, DeviceVariant own) {
+template <class Phase>
+Algorithm deviceAlgorithm(std::string id, std::string summary, AlgorithmDescription description,
+                          std::uint64_t max_objects = kMostObjects, std::string exclusive = {}) {
   description.space = "O(n + k)";
   return {.id = std::move(id),
           .family = "GPU",
@@ -29,10 +24,10 @@ inline Algorithm deviceAlgorithm(std::string id, std::string summary,
                      .on_device = true,
                      .library_allocates = true,
                      .changing_worlds = ChangingWorlds::compacted,
-                     .max_objects = own.max_objects,
-                     .exclusive = std::move(own.exclusive)},
+                     .max_objects = max_objects,
+                     .exclusive = std::move(exclusive)},
           .description = std::move(description),
-          .create = std::move(own.create)};
+          .create = [] { return std::make_unique<Phase>(); }};
 }
 
 }  // namespace broadmark::opencl

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "broadmark/error.h"
-#include "opencl/timer.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {
@@ -32,9 +31,9 @@ bool DeviceBroadPhase::likeGpu() const {
 void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Execution& execution) {
   context_ = &execution.shared<DeviceContext>();
   makeProgram();
-  upload(first.boxes);
-  updateOnDevice();
-  findPairs();
+  updateObjects(first);
+  updateStructures();
+  searchOverlaps();
 }
 
 void DeviceBroadPhase::makeProgram() {
@@ -51,9 +50,9 @@ void DeviceBroadPhase::makeProgram() {
   makeKernels(program);
 }
 
-void DeviceBroadPhase::upload(std::span<const Aabb> boxes) {
+void DeviceBroadPhase::updateObjects(const Frame& frame) {
   transfers_ = {};
-  count_ = boxes.size();
+  count_ = frame.boxes.size();
   if (count_ < 2) return;
   if (count_ > capacity_) {
     capacity_ = count_;
@@ -63,22 +62,23 @@ void DeviceBroadPhase::upload(std::span<const Aabb> boxes) {
   }
   sorter_->resize(count_);
   const ScopedTimer timer(transfers_.upload_ns);
-  context_->queue().enqueueWriteBuffer(boxes_, CL_TRUE, 0, boxes.size_bytes(), boxes.data());
+  context_->queue().enqueueWriteBuffer(boxes_, CL_TRUE, 0, frame.boxes.size_bytes(),
+                                       frame.boxes.data());
 }
 
-void DeviceBroadPhase::dropAnswer() {
+void DeviceBroadPhase::cleanCache() {
   pairs_.clear();
   run_ = {};
 }
 
-void DeviceBroadPhase::updateOnDevice() {
+void DeviceBroadPhase::updateStructures() {
   if (count_ < 2) return;
   build();
   context_->queue().finish();
 }
 
-void DeviceBroadPhase::findPairs() {
-  dropAnswer();
+void DeviceBroadPhase::searchOverlaps() {
+  cleanCache();
   if (count_ < 2) return;
   cl_uint found = searchOnce();
   while (found > sink_.capacity) {
@@ -112,7 +112,7 @@ cl_uint DeviceBroadPhase::searchOnce() {
 
 FrameSummary DeviceBroadPhase::summarise() {
   const auto strip = static_cast<cl_uint>((count_ + kStrips - 1) / kStrips);
-  launch(context_->queue(), summarise_, kStrips, group_, boxes_, n(), strip, summaries_);
+  context_->launch(summarise_, kStrips, group_, boxes_, n(), strip, summaries_);
   std::array<Float4, kStrips * kSumsPerStrip> strips;
   context_->queue().enqueueReadBuffer(summaries_, CL_TRUE, 0, sizeof strips, strips.data());
 

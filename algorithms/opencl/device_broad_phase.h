@@ -11,7 +11,6 @@
 #include "opencl/device_algorithm.h"
 #include "opencl/device_context.h"
 #include "opencl/device_sorter.h"
-#include "opencl/launch.h"
 
 namespace broadmark::opencl {
 
@@ -29,9 +28,6 @@ struct PairSink {
   cl_uint capacity = 0;
 };
 
-/// Kernels count sixteen floats for each body with 32 bits.
-constexpr std::size_t kMostObjects = std::size_t{1} << 28;
-
 /// As common.cl has it: bodies behind the last one that meet nothing.
 constexpr std::size_t kPadding = 16;
 
@@ -43,10 +39,10 @@ class DeviceBroadPhase : public BroadPhase {
   void visitParameters(const ParameterVisitor&) override;
 
   void initialize(const SceneInfo&, const Frame& first, Execution&) final;
-  void updateObjects(const Frame& frame) final { upload(frame.boxes); }
-  void cleanCache() final { dropAnswer(); }
-  void updateStructures() final { updateOnDevice(); }
-  void searchOverlaps() final { findPairs(); }
+  void updateObjects(const Frame& frame) final;
+  void cleanCache() final;
+  void updateStructures() final;
+  void searchOverlaps() final;
 
   [[nodiscard]] PairRuns overlaps() const final { return {&run_, 1}; }
   [[nodiscard]] TransferTimes transfers() const final { return transfers_; }
@@ -77,7 +73,7 @@ class DeviceBroadPhase : public BroadPhase {
   template <class... Arguments>
   void forBodies(cl::Kernel& kernel, std::size_t bodies, const Arguments&... arguments) {
     const std::size_t items = (bodies + bodies_per_item_ - 1) / bodies_per_item_;
-    launch(context_->queue(), kernel, items, group_, arguments...);
+    context_->launch(kernel, items, group_, arguments...);
   }
 
   /// Whether a work item takes one body: for a GPU's many. Else hundreds, sixteen at a time.
@@ -105,10 +101,6 @@ class DeviceBroadPhase : public BroadPhase {
 
  private:
   void makeProgram();
-  void upload(std::span<const Aabb> boxes);
-  void dropAnswer();
-  void updateOnDevice();
-  void findPairs();
   cl_uint searchOnce();
 
   Choice way_{"auto", {"auto", "cpu", "gpu"}};
@@ -126,14 +118,5 @@ class DeviceBroadPhase : public BroadPhase {
   PairRun run_;
   TransferTimes transfers_;
 };
-
-/// Lists one of our algorithms on a device.
-template <class Phase>
-Algorithm ownDeviceAlgorithm(std::string id, std::string summary,
-                             AlgorithmDescription description) {
-  return deviceAlgorithm(
-      std::move(id), std::move(summary), std::move(description),
-      {.max_objects = kMostObjects, .create = [] { return std::make_unique<Phase>(); }});
-}
 
 }  // namespace broadmark::opencl

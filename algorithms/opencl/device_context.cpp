@@ -8,7 +8,6 @@
 
 #include "broadmark/compute_devices.h"
 #include "broadmark/error.h"
-#include "opencl/timer.h"
 
 namespace broadmark {
 namespace opencl {

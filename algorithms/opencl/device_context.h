@@ -1,6 +1,13 @@
 // An OpenCL device made ready.
 #pragma once
 
+// Khronos's C++ bindings, as all of Broadmark uses them: OpenCL 1.2, errors as cl::Error.
+#define CL_HPP_ENABLE_EXCEPTIONS
+#define CL_HPP_TARGET_OPENCL_VERSION 120
+#define CL_HPP_MINIMUM_OPENCL_VERSION 120
+#include <CL/opencl.hpp>
+
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -8,9 +15,22 @@
 #include <vector>
 
 #include "broadmark/execution.h"
-#include "opencl/opencl.h"
 
 namespace broadmark::opencl {
+
+/// Adds the time of its own life to `ns`.
+class ScopedTimer {
+ public:
+  explicit ScopedTimer(std::int64_t& ns) : ns_(ns) {}
+  ~ScopedTimer() { ns_ += std::chrono::nanoseconds(Clock::now() - start_).count(); }
+  ScopedTimer(const ScopedTimer&) = delete;
+  ScopedTimer& operator=(const ScopedTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::int64_t& ns_;
+  Clock::time_point start_ = Clock::now();
+};
 
 /// The devices in the order of computeDevices().
 std::vector<cl::Device> devices();
@@ -40,6 +60,20 @@ class DeviceContext final : public SharedResource {
 
   /// A buffer of at least one byte. Throws UnsupportedError when the device cannot hold it.
   [[nodiscard]] cl::Buffer buffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE) const;
+
+  /// Runs a kernel with these arguments, in order, on `items` work items rounded up to whole groups
+  /// of `group`. (A stated group size: PoCL compiles a kernel anew for each it has to guess.)
+  template <class... Arguments>
+  void launch(cl::Kernel& kernel, std::size_t items, std::size_t group,
+              const Arguments&... arguments) const {
+    cl_uint position = 0;
+    (kernel.setArg(position++, arguments), ...);
+    const std::size_t groups = (items + group - 1) / group;
+    if (groups > 0) {
+      queue_.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group),
+                                  cl::NDRange(group));
+    }
+  }
 
  private:
   cl::Device device_;

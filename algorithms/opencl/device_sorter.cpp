@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "opencl/launch.h"
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {
@@ -53,26 +52,25 @@ void DeviceSorter::sort(int bits) {
 
 void DeviceSorter::pass(int shift_bits, int digit_bits) {
   const auto shift = static_cast<cl_uint>(shift_bits);
-  const cl::CommandQueue& queue = context_.queue();
   const auto n = static_cast<cl_uint>(size_);
   const int to = 1 - current_;
   if (by_groups_) {
     const std::size_t groups = (size_ + kGroupBlock - 1) / kGroupBlock;
     const auto counts = static_cast<cl_uint>(groups << kGroupDigitBits);
-    launch(queue, count_, groups * kGroupSize, kGroupSize, keys(), n, shift, counts_);
-    launch(queue, places_, kGroupSize, kGroupSize, counts_, counts);
-    launch(queue, scatter_, groups * kGroupSize, kGroupSize, keys(), values(), n, shift, counts_,
-           keys_[to], values_[to]);
+    context_.launch(count_, groups * kGroupSize, kGroupSize, keys(), n, shift, counts_);
+    context_.launch(places_, kGroupSize, kGroupSize, counts_, counts);
+    context_.launch(scatter_, groups * kGroupSize, kGroupSize, keys(), values(), n, shift, counts_,
+                    keys_[to], values_[to]);
   } else {
     const std::size_t blocks =
         kBlocksPerUnit * context_.device().getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
     const auto block_size = static_cast<cl_uint>((size_ + blocks - 1) / blocks);
     const cl_uint digits = cl_uint{1} << digit_bits;
     const auto counts = static_cast<cl_uint>(blocks << digit_bits);
-    launch(queue, count_, blocks, 1, keys(), n, shift, digits, block_size, counts_);
-    launch(queue, places_, 1, 1, counts_, counts);
-    launch(queue, scatter_, blocks, 1, keys(), values(), n, shift, digits, block_size, counts_,
-           keys_[to], values_[to]);
+    context_.launch(count_, blocks, 1, keys(), n, shift, digits, block_size, counts_);
+    context_.launch(places_, 1, 1, counts_, counts);
+    context_.launch(scatter_, blocks, 1, keys(), values(), n, shift, digits, block_size, counts_,
+                    keys_[to], values_[to]);
   }
   current_ = to;
 }

@@ -148,25 +148,9 @@ void sweep(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_
   sweepWindows<1>(boxes, ends, rows, Windows{ends, bodies}, pairs);
 }
 
-/// Whether there is a mark on the rows' bodies, or on those in their windows.
-bool areMarked(const std::uint32_t* ends, const MarkedBody* bodies, Range rows) {
-  std::size_t end = rows.begin;
-  for (std::size_t row = rows.begin; row < rows.end; ++row) {
-    for (; end < ends[row]; ++end) {
-      if (bodies[end] != bodyNumber(bodies[end])) return true;
-    }
-  }
-  return false;
-}
-
 void sweepCells(const BoxArrays& boxes, const std::uint32_t* ends, const MarkedBody* bodies,
                 Range rows, PairBuffer& pairs) {
-  // Without marks, as in the only cell there is, all pairs are reported.
-  if (areMarked(ends, bodies, rows)) {
-    sweepWindows<0>(boxes, ends, rows, CellWindows{ends, bodies}, pairs);
-  } else {
-    sweepWindows<0>(boxes, ends, rows, Windows{ends, bodies}, pairs);
-  }
+  sweepWindows<0>(boxes, ends, rows, CellWindows{ends, bodies}, pairs);
 }
 
 void testRow(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range columns,

@@ -17,17 +17,8 @@ inline Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
 inline bool none(Mask mask) { return bits(mask) == 0; }
 
-using Keys = __m256i;
-inline Keys loadKeys(const std::uint32_t* from) {
-  return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from));
-}
-inline Keys broadcastKey(std::uint32_t key) { return _mm256_set1_epi32(static_cast<int>(key)); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const Keys above = _mm256_subs_epu8(keys, limits);
-  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(above, _mm256_setzero_si256())));
-}
-
-#include "simd/test_box_avx.inl"
+using Keys = std::uint32_t __attribute__((vector_size(32)));
+inline __m256i raw(Keys keys) { return reinterpret_cast<__m256i>(keys); }
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];  // corners r and r + 4
@@ -42,36 +33,30 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   axes[2] = _mm256_shuffle_ps(_mm256_unpackhi_ps(rows[0], rows[1]),
                               _mm256_unpackhi_ps(rows[2], rows[3]), 0x44);
 }
-inline void store(float* to, Vector value) { _mm256_storeu_ps(to, value); }
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const Vector step = _mm256_mul_ps(_mm256_sub_ps(value, broadcast(low)), broadcast(factor));
-  const Vector kept = _mm256_min_ps(_mm256_max_ps(step, _mm256_setzero_ps()), broadcast(last));
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_cvttps_epi32(kept));
+inline Vector minOf(Vector a, Vector b) { return _mm256_min_ps(a, b); }
+inline Vector maxOf(Vector a, Vector b) { return _mm256_max_ps(a, b); }
+inline void storeWhole(Vector value, std::uint32_t* to) {
+  _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_cvttps_epi32(value));
 }
 
-inline Keys lanesFrom(std::uint32_t position) {
-  return _mm256_add_epi32(broadcastKey(position), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
-}
-inline Keys minus(Keys a, Keys b) { return _mm256_sub_epi32(a, b); }
+#include "simd/vector_common.inl"
+
 inline unsigned equal(Keys a, Keys b) {
-  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(a, b)));
+  return bits(_mm256_castsi256_ps(_mm256_cmpeq_epi32(raw(a), raw(b))));
 }
 inline unsigned positive(Keys numbers) {
-  return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(numbers, _mm256_setzero_si256())));
-}
-inline Keys limitsOf(Keys keys) {
-  const Keys swapped = _mm256_or_si256(_mm256_slli_epi32(keys, 16), _mm256_srli_epi32(keys, 16));
-  return _mm256_xor_si256(swapped, _mm256_set1_epi32(-1));
+  return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(raw(numbers), _mm256_setzero_si256())));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   __m256i hits[kHitSteps];
   for (std::size_t s = 0; s < kHitSteps; ++s) {
-    const __m256i above = _mm256_subs_epu8(loadKeys(keys + s), limits);
-    hits[s] = _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
-                               _mm256_cmpgt_epi32(left, _mm256_set1_epi32(static_cast<int>(s))));
+    const __m256i above = _mm256_subs_epu8(
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(keys + s)), raw(limits));
+    hits[s] =
+        _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
+                         _mm256_cmpgt_epi32(raw(left), _mm256_set1_epi32(static_cast<int>(s))));
   }
   const __m256i packed = _mm256_packs_epi16(_mm256_packs_epi32(hits[0], hits[1]),
                                             _mm256_packs_epi32(hits[2], hits[3]));

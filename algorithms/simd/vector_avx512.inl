@@ -29,15 +29,8 @@ inline unsigned bits(Mask mask) {
 }
 inline bool none(Mask mask) { return _mm512_kortestz(mask, mask) != 0; }
 
-using Keys = __m512i;
-inline Keys loadKeys(const std::uint32_t* from) { return _mm512_loadu_si512(from); }
-inline Keys broadcastKey(std::uint32_t key) { return _mm512_set1_epi32(static_cast<int>(key)); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const Keys above = _mm512_subs_epu8(keys, limits);
-  return bits(_mm512_testn_epi32_mask(above, above));
-}
-
-#include "simd/test_box_avx.inl"
+using Keys = std::uint32_t __attribute__((vector_size(64)));
+inline __m512i raw(Keys keys) { return reinterpret_cast<__m512i>(keys); }
 
 // By shuffles: a gather of sixteen numbers takes several times as long (Zen 4).
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
@@ -55,33 +48,26 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   axes[2] = _mm512_shuffle_ps(_mm512_unpackhi_ps(rows[0], rows[1]),
                               _mm512_unpackhi_ps(rows[2], rows[3]), 0x44);
 }
-inline void store(float* to, Vector value) { _mm512_storeu_ps(to, value); }
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const Vector step = _mm512_mul_ps(_mm512_sub_ps(value, broadcast(low)), broadcast(factor));
-  const Vector kept = _mm512_min_ps(_mm512_max_ps(step, _mm512_setzero_ps()), broadcast(last));
-  _mm512_storeu_si512(to, _mm512_cvttps_epi32(kept));
+inline Vector minOf(Vector a, Vector b) { return _mm512_min_ps(a, b); }
+inline Vector maxOf(Vector a, Vector b) { return _mm512_max_ps(a, b); }
+inline void storeWhole(Vector value, std::uint32_t* to) {
+  _mm512_storeu_si512(to, _mm512_cvttps_epi32(value));
 }
 
-inline Keys lanesFrom(std::uint32_t position) {
-  return _mm512_add_epi32(broadcastKey(position),
-                          _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
-}
-inline Keys minus(Keys a, Keys b) { return _mm512_sub_epi32(a, b); }
-inline unsigned equal(Keys a, Keys b) { return bits(_mm512_cmpeq_epi32_mask(a, b)); }
+#include "simd/vector_common.inl"
+
+inline unsigned equal(Keys a, Keys b) { return bits(_mm512_cmpeq_epi32_mask(raw(a), raw(b))); }
 inline unsigned positive(Keys numbers) {
-  return bits(_mm512_cmpgt_epi32_mask(numbers, _mm512_setzero_si512()));
-}
-inline Keys limitsOf(Keys keys) {
-  return _mm512_xor_si512(_mm512_rol_epi32(keys, 16), _mm512_set1_epi32(-1));
+  return bits(_mm512_cmpgt_epi32_mask(raw(numbers), _mm512_setzero_si512()));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 16;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   Mask hits[kHitSteps];
   for (std::size_t s = 0; s < kHitSteps; ++s) {
-    const Keys above = _mm512_subs_epu8(loadKeys(keys + s), limits);
-    const Mask in_window = _mm512_cmpgt_epi32_mask(left, _mm512_set1_epi32(static_cast<int>(s)));
+    const __m512i above = _mm512_subs_epu8(_mm512_loadu_si512(keys + s), raw(limits));
+    const Mask in_window =
+        _mm512_cmpgt_epi32_mask(raw(left), _mm512_set1_epi32(static_cast<int>(s)));
     hits[s] = _mm512_mask_testn_epi32_mask(in_window, above, above);
   }
   // Within mask registers: a way out of them for each step takes longer.

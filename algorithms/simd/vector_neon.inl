@@ -20,23 +20,10 @@ inline unsigned bits(Mask mask) {
 inline bool none(Mask mask) { return vmaxvq_u32(mask) == 0; }
 
 using Keys = uint32x4_t;
-inline Keys loadKeys(const std::uint32_t* from) { return vld1q_u32(from); }
-inline Keys broadcastKey(std::uint32_t key) { return vdupq_n_u32(key); }
 inline unsigned withinLimits(Keys keys, Keys limits) {
   const Keys above =
       vreinterpretq_u32_u8(vqsubq_u8(vreinterpretq_u8_u32(keys), vreinterpretq_u8_u32(limits)));
   return bits(vceqzq_u32(above));
-}
-
-struct TestBox {
-  float32x4_t min;
-  float32x4_t max;
-};
-inline TestBox testBox(const float* box) { return {vld1q_f32(box), vld1q_f32(box + 4)}; }
-inline unsigned meets(const float* box, const TestBox& other) {
-  const uint32x4_t on_axes =
-      vandq_u32(vcleq_f32(vld1q_f32(box), other.max), vcleq_f32(other.min, vld1q_f32(box + 4)));
-  return vminvq_u32(vsetq_lane_u32(~0U, on_axes, 3)) != 0 ? 1 : 0;
 }
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
@@ -49,31 +36,21 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   axes[1] = both.val[1];
   axes[2] = vzipq_f32(low.val[1], high.val[1]).val[0];
 }
-inline void store(float* to, Vector value) { vst1q_f32(to, value); }
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const Vector step = vmulq_f32(vsubq_f32(value, broadcast(low)), broadcast(factor));
-  const Vector kept = vminq_f32(vmaxnmq_f32(step, broadcast(0)), broadcast(last));
-  vst1q_u32(to, vcvtq_u32_f32(kept));
-}
+inline Vector minOf(Vector a, Vector b) { return vminq_f32(a, b); }
+inline Vector maxOf(Vector a, Vector b) { return vmaxnmq_f32(a, b); }
+inline void storeWhole(Vector value, std::uint32_t* to) { vst1q_u32(to, vcvtq_u32_f32(value)); }
 
-inline Keys lanesFrom(std::uint32_t position) {
-  constexpr Keys kLaneNumbers = {0, 1, 2, 3};
-  return vaddq_u32(broadcastKey(position), kLaneNumbers);
-}
-inline Keys minus(Keys a, Keys b) { return vsubq_u32(a, b); }
+#include "simd/vector_common.inl"
+
 inline unsigned equal(Keys a, Keys b) { return bits(vceqq_u32(a, b)); }
 inline unsigned positive(Keys numbers) { return bits(vcgtzq_s32(vreinterpretq_s32_u32(numbers))); }
-inline Keys limitsOf(Keys keys) {
-  return vmvnq_u32(vreinterpretq_u32_u16(vrev32q_u16(vreinterpretq_u16_u32(keys))));
-}
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   std::uint64_t hits = 0;
   for (std::size_t s = 0; s < kHitSteps; ++s) {
-    const unsigned of_step = withinLimits(loadKeys(keys + s), limits) &
-                             positive(minus(left, broadcastKey(static_cast<std::uint32_t>(s))));
+    const unsigned of_step =
+        withinLimits(vld1q_u32(keys + s), limits) & positive(left - static_cast<std::uint32_t>(s));
     hits |= std::uint64_t{of_step} << (s * kHitLanes);
   }
   return hits;
@@ -99,7 +76,7 @@ inline ComparedCopies compareCopies(const std::uint32_t* a, const std::uint32_t*
   return {vmaxvq_u32(above) == 0 ? 1U : 0U, vmaxvq_u32(same) != 0 ? 1U : 0U};
 }
 
-inline void storePastCaches(float* to, Vector value) { store(to, value); }
+inline void storePastCaches(float* to, Vector value) { vst1q_f32(to, value); }
 inline Vector loadFromAnywhere(const float* from) { return vld1q_f32(from); }
 
 inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {

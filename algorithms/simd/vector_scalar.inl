@@ -20,10 +20,8 @@ inline Mask either(Mask a, Mask b) { return a | b; }
 inline unsigned bits(Mask mask) { return mask; }
 inline bool none(Mask mask) { return mask == 0; }
 
-/// Keys: 32 bits each, four bytes. Loaded from any address.
+/// Keys: 32 bits each, four bytes.
 using Keys = std::uint32_t;
-inline Keys loadKeys(const std::uint32_t* from) { return *from; }
-inline Keys broadcastKey(std::uint32_t key) { return key; }
 /// The lanes in which no byte of the key is above that of the limits; lane i is bit i.
 inline unsigned withinLimits(Keys keys, Keys limits) {
   // Even and odd bytes apart, each in front of a bit from which it may borrow.
@@ -34,43 +32,24 @@ inline unsigned withinLimits(Keys keys, Keys limits) {
   return (even & odd & kBorrow) == kBorrow ? 1 : 0;
 }
 
-/// A box to test others against, one at a time: of each eight floats, as in an Aabb, of which the
-/// fourth and the last may be anything. meets() is 1 or 0.
-struct TestBox {
-  const float* box;
-};
-inline TestBox testBox(const float* box) { return {box}; }
-inline unsigned meets(const float* box, const TestBox& other) {
-  const float* const b = other.box;
-  return unsigned{box[0] <= b[4]} & unsigned{b[0] <= box[4]} & unsigned{box[1] <= b[5]} &
-         unsigned{b[1] <= box[5]} & unsigned{box[2] <= b[6]} & unsigned{b[2] <= box[6]};
-}
-
 /// The coordinates of kLanes corners, eight floats apart, by axis.
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   for (int axis = 0; axis < 3; ++axis) axes[axis] = corners[axis];
 }
-/// To any address.
-inline void store(float* to, Vector value) { *to = value; }
-/// (value - low) * factor as whole numbers from 0 to `last`; NaN becomes 0.
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const float step = (value - low) * factor;
-  const float at_least = step > 0 ? step : 0;
-  *to = static_cast<std::uint32_t>(static_cast<std::int32_t>(at_least < last ? at_least : last));
+/// Where they cannot be compared (NaN): b.
+inline Vector minOf(Vector a, Vector b) { return a < b ? a : b; }
+inline Vector maxOf(Vector a, Vector b) { return a > b ? a : b; }
+/// Towards 0, to any address; all of them are in the range of an integer.
+inline void storeWhole(Vector value, std::uint32_t* to) {
+  *to = static_cast<std::uint32_t>(static_cast<std::int32_t>(value));
 }
 
-/// `position` and those behind it.
-inline Keys lanesFrom(std::uint32_t position) { return position; }
-inline Keys minus(Keys a, Keys b) { return a - b; }
+#include "simd/vector_common.inl"
+
 /// The lanes in which they are equal; lane i is bit i.
 inline unsigned equal(Keys a, Keys b) { return a == b ? 1 : 0; }
 /// The lanes with a number above 0, signed.
 inline unsigned positive(Keys numbers) { return static_cast<std::int32_t>(numbers) > 0 ? 1 : 0; }
-/// The limits that follow from keys: see columns/copies.h.
-inline Keys limitsOf(Keys keys) { return ~(keys << 16 | keys >> 16); }
-
-/// How many steps behind all lanes are tested at once.
-inline constexpr std::size_t kHitSteps = 4;
 /// How many lanes of a step are neighbours in the bits of hits: bit
 /// (l / kHitLanes * kHitSteps + s) * kHitLanes + l % kHitLanes is lane l and step s.
 inline constexpr std::size_t kHitLanes = 1;

@@ -16,26 +16,8 @@ inline Mask either(Mask a, Mask b) { return _mm_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm_movemask_ps(mask)); }
 inline bool none(Mask mask) { return bits(mask) == 0; }
 
-using Keys = __m128i;
-inline Keys loadKeys(const std::uint32_t* from) {
-  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
-}
-inline Keys broadcastKey(std::uint32_t key) { return _mm_set1_epi32(static_cast<int>(key)); }
-inline unsigned withinLimits(Keys keys, Keys limits) {
-  const Keys above = _mm_subs_epu8(keys, limits);
-  return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(above, _mm_setzero_si128())));
-}
-
-struct TestBox {
-  __m128 min;
-  __m128 max;
-};
-inline TestBox testBox(const float* box) { return {_mm_loadu_ps(box), _mm_loadu_ps(box + 4)}; }
-inline unsigned meets(const float* box, const TestBox& other) {
-  const __m128 on_axes = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(box), other.max),
-                                    _mm_cmple_ps(other.min, _mm_loadu_ps(box + 4)));
-  return (bits(on_axes) & 7) == 7 ? 1 : 0;
-}
+using Keys = std::uint32_t __attribute__((vector_size(16)));
+inline __m128i raw(Keys keys) { return reinterpret_cast<__m128i>(keys); }
 
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];
@@ -43,34 +25,28 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   _MM_TRANSPOSE4_PS(rows[0], rows[1], rows[2], rows[3]);
   for (int axis = 0; axis < 3; ++axis) axes[axis] = rows[axis];
 }
-inline void store(float* to, Vector value) { _mm_storeu_ps(to, value); }
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const Vector step = _mm_mul_ps(_mm_sub_ps(value, broadcast(low)), broadcast(factor));
-  const Vector kept = _mm_min_ps(_mm_max_ps(step, _mm_setzero_ps()), broadcast(last));
-  _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_cvttps_epi32(kept));
+inline Vector minOf(Vector a, Vector b) { return _mm_min_ps(a, b); }
+inline Vector maxOf(Vector a, Vector b) { return _mm_max_ps(a, b); }
+inline void storeWhole(Vector value, std::uint32_t* to) {
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(to), _mm_cvttps_epi32(value));
 }
 
-inline Keys lanesFrom(std::uint32_t position) {
-  return _mm_add_epi32(broadcastKey(position), _mm_setr_epi32(0, 1, 2, 3));
+#include "simd/vector_common.inl"
+
+inline unsigned equal(Keys a, Keys b) {
+  return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(raw(a), raw(b))));
 }
-inline Keys minus(Keys a, Keys b) { return _mm_sub_epi32(a, b); }
-inline unsigned equal(Keys a, Keys b) { return bits(_mm_castsi128_ps(_mm_cmpeq_epi32(a, b))); }
 inline unsigned positive(Keys numbers) {
-  return bits(_mm_castsi128_ps(_mm_cmpgt_epi32(numbers, _mm_setzero_si128())));
-}
-inline Keys limitsOf(Keys keys) {
-  const Keys swapped = _mm_or_si128(_mm_slli_epi32(keys, 16), _mm_srli_epi32(keys, 16));
-  return _mm_xor_si128(swapped, _mm_set1_epi32(-1));
+  return bits(_mm_castsi128_ps(_mm_cmpgt_epi32(raw(numbers), _mm_setzero_si128())));
 }
 
-inline constexpr std::size_t kHitSteps = 4;
 inline constexpr std::size_t kHitLanes = 4;
 inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
   __m128i hits[kHitSteps];
   for (std::size_t s = 0; s < kHitSteps; ++s) {
-    const __m128i above = _mm_subs_epu8(loadKeys(keys + s), limits);
+    const __m128i above = _mm_subs_epu8(raw(loadKeys(keys + s)), raw(limits));
     hits[s] = _mm_and_si128(_mm_cmpeq_epi32(above, _mm_setzero_si128()),
-                            _mm_cmpgt_epi32(left, _mm_set1_epi32(static_cast<int>(s))));
+                            _mm_cmpgt_epi32(raw(left), _mm_set1_epi32(static_cast<int>(s))));
   }
   const __m128i packed =
       _mm_packs_epi16(_mm_packs_epi32(hits[0], hits[1]), _mm_packs_epi32(hits[2], hits[3]));

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "axis_overlap.h"
 #include "prefetch.h"
 
 namespace broadmark::tracy {
@@ -11,8 +10,9 @@ namespace {
 
 constexpr std::uint32_t kFewestSlots = 64;
 
-void report(std::vector<PairBuffer>& shares, std::uint32_t a, std::uint32_t b) {
-  shares[std::min(a, b) % shares.size()].add(a, b);
+/// Three instructions and no branch, where the two comparisons of the usual form take six.
+bool overlapsOnAxis(const Aabb& a, const Aabb& b, int axis) {
+  return std::max(a.min[axis], b.min[axis]) <= std::min(a.max[axis], b.max[axis]);
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ void Cell::build(const CellPosition& position, std::span<const std::uint32_t> bo
   free_.reserve(capacity_);
   for (const std::uint32_t body : bodies) {
     const Aabb& box = all.boxes[kNow][body];
-    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    const Crossing crossing = crossingOf(all.ranges[kNow][body], position_);
     bodies_.push_back(body);
     slots_.push_back({{box, box}});
     crossings_.push_back({crossing, crossing});
@@ -58,7 +58,7 @@ void Cell::reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work)
       if (endpoints[j].isEnd()) continue;
       const std::uint32_t other = endpoints[j].slot();
       if (overlaps(box(slot, kNow), box(other, kNow)) && isOurs(slot, other, kNow)) {
-        reportBegun(slot, other, work);
+        report(slot, other, work.begun);
       }
     }
   }
@@ -105,7 +105,7 @@ void Cell::sortOut(std::uint32_t slot, const Bodies& all, CellWork& work) {
     work.leaving.push_back(slot);
     return;
   }
-  crossings_[slot][kNow] = range.crossing(position_);
+  crossings_[slot][kNow] = crossingOf(range, position_);
   (jumps(slot) ? work.jumping : work.staying).push_back(slot);
 }
 
@@ -133,7 +133,7 @@ void Cell::leave(std::uint32_t slot, CellWork& work) {
 void Cell::enter(std::uint32_t body, const Bodies& all, CellWork& work) {
   const std::uint32_t slot = takeSlot(body);
   slots_[slot].boxes = {all.boxes[kBefore][body], all.boxes[kNow][body]};
-  crossings_[slot][kNow] = all.ranges[kNow][body].crossing(position_);
+  crossings_[slot][kNow] = crossingOf(all.ranges[kNow][body], position_);
   arrive(slot, work);
   work.entered.push_back(slot);
 }
@@ -163,7 +163,7 @@ void Cell::grow() {
 }
 
 void Cell::depart(std::uint32_t slot, CellWork& work) {
-  reportMeeting(slot, kNow, kBefore, [&](std::uint32_t other) { reportEnded(slot, other, work); });
+  reportMeeting(slot, kNow, kBefore, work.ended);
   const Ends from = ends(slot, kBefore);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].remove(from[axis][0], from[axis][1]);
 }
@@ -171,17 +171,17 @@ void Cell::depart(std::uint32_t slot, CellWork& work) {
 void Cell::arrive(std::uint32_t slot, CellWork& work) {
   const Ends to = ends(slot, kNow);
   for (std::size_t axis = 0; axis < 3; ++axis) lists_[axis].insert(to[axis][0], to[axis][1]);
-  reportMeeting(slot, kBefore, kNow, [&](std::uint32_t other) { reportBegun(slot, other, work); });
+  reportMeeting(slot, kBefore, kNow, work.begun);
 }
 
 /// Reports all that the body overlaps at one moment and not at the other.
-template <class Report>
-void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const {
+void Cell::reportMeeting(std::uint32_t slot, Moment without, Moment with,
+                         std::vector<PairBuffer>& shares) const {
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) { prefetch(&slots_[other]); });
   lists_[0].forEachMeeting(slot, [&](std::uint32_t other) {
     if (overlaps(box(slot, with), box(other, with)) && isOurs(slot, other, with) &&
         !overlaps(box(slot, without), box(other, without))) {
-      report(other);
+      report(slot, other, shares);
     }
   });
 }
@@ -200,17 +200,16 @@ void Cell::move(std::uint32_t slot, CellWork& work) {
 
 void Cell::movePoint(int axis, Endpoint from, Endpoint to, CellWork& work) {
   const bool may_begin = from.isEnd() == (from < to);
+  const Moment without = may_begin ? kBefore : kNow;
+  const Moment with = may_begin ? kNow : kBefore;
+  std::vector<PairBuffer>& shares = may_begin ? work.begun : work.ended;
   std::uint64_t swaps = 0;
   lists_[axis].move(from, to, [&](Endpoint passed) {
     ++swaps;
     if (passed.isEnd() == from.isEnd()) return;
     const std::uint32_t starts = from.isEnd() ? passed.slot() : from.slot();
     const std::uint32_t ends = from.isEnd() ? from.slot() : passed.slot();
-    if (may_begin) {
-      if (reports(starts, ends, axis, kBefore, kNow)) reportBegun(starts, ends, work);
-    } else {
-      if (reports(starts, ends, axis, kNow, kBefore)) reportEnded(starts, ends, work);
-    }
+    if (reports(starts, ends, axis, without, with)) report(starts, ends, shares);
   });
   work.counts.swaps += swaps;
 }
@@ -228,12 +227,10 @@ bool Cell::reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment wi
   return box(starts, without).min[axis] > box(ends, without).max[axis];
 }
 
-void Cell::reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  if (isWanted(p, q)) report(work.begun, bodies_[p], bodies_[q]);
-}
-
-void Cell::reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const {
-  if (isWanted(p, q)) report(work.ended, bodies_[p], bodies_[q]);
+void Cell::report(std::uint32_t p, std::uint32_t q, std::vector<PairBuffer>& shares) const {
+  const std::uint32_t a = bodies_[p];
+  const std::uint32_t b = bodies_[q];
+  if (filter_ == nullptr || filter_->wanted(a, b)) shares[std::min(a, b) % shares.size()].add(a, b);
 }
 
 /// For the next frame, now is before.
@@ -264,7 +261,7 @@ std::string Cell::validate(const Bodies& all) const {
     if (body == kNobody) continue;
     ++occupied;
     if (!all.ranges[kNow][body].contains(position_)) return "body in a cell that it does not touch";
-    const Crossing crossing = all.ranges[kNow][body].crossing(position_);
+    const Crossing crossing = crossingOf(all.ranges[kNow][body], position_);
     if (crossings_[slot] != Crossings{crossing, crossing}) return "wrong sides of a cell crossed";
     for (const Aabb& kept : slots_[slot].boxes) {
       if (kept != all.boxes[kNow][body]) return "box out of date";

@@ -33,13 +33,24 @@
 
 #include "broadmark/collision_filter.h"
 #include "broadmark/pair.h"
-#include "tracy/grid.h"
+#include "cell_grid.h"
 #include "tracy/segmented_list.h"
 
 namespace broadmark::tracy {
 
 /// The two moments between which bodies move; indices of arrays.
 enum Moment : std::uint8_t { kBefore, kNow };
+
+/// Where a body pokes out of a cell that it touches: bit `axis` if it begins in a lower cell on
+/// that axis, bit `axis` + 3 if it ends in a higher one.
+using Crossing = std::uint8_t;
+constexpr Crossing crossesBelow(int axis) { return static_cast<Crossing>(1 << axis); }
+constexpr Crossing crossesAbove(int axis) { return static_cast<Crossing>(8 << axis); }
+constexpr Crossing kCrossesBelow = crossesBelow(0) | crossesBelow(1) | crossesBelow(2);
+inline Crossing crossingOf(const CellRange& range, const CellPosition& cell) {
+  const unsigned below = axesWhere(cornerOf(range.first) < cornerOf(cell));
+  return static_cast<Crossing>(below | axesWhere(cornerOf(cell) < cornerOf(range.last)) << 3);
+}
 
 /// All bodies, as far as the cells have to know them.
 struct Bodies {
@@ -138,9 +149,6 @@ class Cell {
   [[nodiscard]] bool isOurs(std::uint32_t p, std::uint32_t q, Moment moment) const {
     return (crossings_[p][moment] & crossings_[q][moment] & kCrossesBelow) == 0;
   }
-  [[nodiscard]] bool isWanted(std::uint32_t p, std::uint32_t q) const {
-    return filter_ == nullptr || filter_->wanted(bodies_[p], bodies_[q]);
-  }
 
   void sortOutMoved(const Bodies& all, CellWork& work);
   void sortOut(std::uint32_t slot, const Bodies& all, CellWork& work);
@@ -155,11 +163,10 @@ class Cell {
   void movePoint(int axis, Endpoint from, Endpoint to, CellWork& work);
   [[nodiscard]] bool reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
                              Moment with) const;
-  template <class Report>
-  void reportMeeting(std::uint32_t slot, Moment without, Moment with, Report report) const;
+  void reportMeeting(std::uint32_t slot, Moment without, Moment with,
+                     std::vector<PairBuffer>& shares) const;
   void reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
-  void reportBegun(std::uint32_t p, std::uint32_t q, CellWork& work) const;
-  void reportEnded(std::uint32_t p, std::uint32_t q, CellWork& work) const;
+  void report(std::uint32_t p, std::uint32_t q, std::vector<PairBuffer>& shares) const;
 
   std::uint32_t takeSlot(std::uint32_t body);
   void grow();

@@ -77,10 +77,8 @@ class Mailbox {
   }
 
   [[nodiscard]] bool concerns(std::size_t cell) const { return concerned_[cell] != 0; }
-  /// Adds the cells that have messages, each once.
-  void listCells(std::vector<std::uint32_t>& cells) const {
-    cells.insert(cells.end(), cells_.begin(), cells_.end());
-  }
+  /// The cells that have messages, each once.
+  [[nodiscard]] const std::vector<std::uint32_t>& cells() const { return cells_; }
   [[nodiscard]] const BodiesByCell& moved() const { return moved_; }
   [[nodiscard]] const BodiesByCell& arrivals() const { return arrivals_; }
   /// Forgets the messages to this cell. Workers may do so for different cells at the same time.

@@ -14,7 +14,7 @@
 #include "columns/hits.h"
 #include "columns/kernels.h"
 #include "columns/layout.h"
-#include "past_caches.h"
+#include "prefetch.h"
 
 namespace broadmark::tests {
 namespace {
@@ -25,7 +25,7 @@ using columns::Copy;
 using columns::Layout;
 using columns::StepScale;
 
-constexpr columns::Costs kCosts = {.copy = 150};
+constexpr double kCopyCost = 150;
 
 /// What kernels make of a coordinate.
 std::uint32_t stepOf(const StepScale& scale, float coordinate) {
@@ -209,7 +209,7 @@ TEST(ColumnKernels, FindTheSameSteps) {
   std::iota(bodies.begin(), bodies.end(), 1000);
   for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
     const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
-    const Layout layout(boxes, 1'000'000, kCosts);
+    const Layout layout(boxes, 1'000'000, kCopyCost);
     for (const Isa isa : supportedIsas()) {
       for (const std::size_t count : {1U, 7U, 16U, 33U, 128U}) {
         BoxBlock block;
@@ -250,7 +250,7 @@ TEST(ColumnLayout, StepsKeepTheOrderOfCoordinates) {
   constexpr float kMost = std::numeric_limits<float>::max();
   for (const inputs::Generator boxes : {inputs::uniform, inputs::limits, inputs::tiny, inputs::huge,
                                         inputs::identical, inputs::zeroSize}) {
-    const Layout layout(boxes(200, 0, 1), 100'000, kCosts);
+    const Layout layout(boxes(200, 0, 1), 100'000, kCopyCost);
     const auto& [cut, sweep, columns] = layout.scales();
     for (const StepScale& scale : {cut[0], cut[1], sweep}) {
       std::uint32_t before = 0;
@@ -266,30 +266,29 @@ TEST(ColumnLayout, StepsKeepTheOrderOfCoordinates) {
 
 TEST(ColumnLayout, NothingAndOneThingAreOneColumn) {
   EXPECT_EQ(Layout().size(), 1U);
-  EXPECT_EQ(Layout({}, 0, kCosts).size(), 1U);
-  EXPECT_EQ(Layout(inputs::identical(50, 0, 1), 1'000'000, kCosts).size(), 1U);
+  EXPECT_EQ(Layout({}, 0, kCopyCost).size(), 1U);
+  EXPECT_EQ(Layout(inputs::identical(50, 0, 1), 1'000'000, kCopyCost).size(), 1U);
 }
 
 TEST(ColumnLayout, HasMoreColumnsForMoreBoxes) {
   const std::vector<Aabb> sample = inputs::uniform(2000, 0, 1);
-  EXPECT_GT(Layout(sample, 2'000'000, kCosts).size(), Layout(sample, 2000, kCosts).size());
-  EXPECT_GT(Layout(sample, 2'000'000, kCosts).size(),
-            Layout(sample, 2'000'000, {.copy = 10'000}).size());
+  EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(), Layout(sample, 2000, kCopyCost).size());
+  EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(), Layout(sample, 2'000'000, 10'000).size());
 }
 
 // A line is swept along, and a plane is not cut through.
 TEST(ColumnLayout, CutsWhereBoxesExtend) {
-  const Layout plane(inputs::onePlane(2000, 0, 1), 100'000, kCosts);
+  const Layout plane(inputs::onePlane(2000, 0, 1), 100'000, kCopyCost);
   EXPECT_NE(plane.scales().sweep.axis, 2);
   EXPECT_GT(plane.size(), 4U);
   const std::vector<Aabb> line = inputs::generate(2000, 0, 1, [](inputs::Random& random, auto) {
     return inputs::boxAt({0, random.uniform(0, 4000), 0}, {1, 1, 1});
   });
-  EXPECT_EQ(Layout(line, 2000, kCosts).scales().sweep.axis, 1);
+  EXPECT_EQ(Layout(line, 2000, kCopyCost).scales().sweep.axis, 1);
 }
 
 TEST(ColumnLayout, WidensDownToOneColumn) {
-  Layout layout(inputs::uniform(2000, 0, 1), 1'000'000, kCosts);
+  Layout layout(inputs::uniform(2000, 0, 1), 1'000'000, kCopyCost);
   ASSERT_GT(layout.size(), 64U);
   std::size_t before = layout.size();
   while (layout.size() > 1) {

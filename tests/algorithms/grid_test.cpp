@@ -8,7 +8,7 @@
 
 #include "algorithms/runs.h"
 #include "cell_grid.h"
-#include "row_shares.h"
+#include "work_shares.h"
 
 namespace broadmark::tests {
 namespace {
@@ -21,7 +21,7 @@ Aabb boundsOf(const std::vector<Aabb>& boxes) {
 
 CellGrid gridOver(const std::vector<Aabb>& boxes, std::size_t cells, bool columns = false) {
   CellGrid grid;
-  grid.fit(boxes, boundsOf(boxes), cells, columns);
+  grid.fit(boxes, cells, columns);
   return grid;
 }
 
@@ -35,7 +35,7 @@ std::vector<Aabb> large(std::size_t n, std::uint32_t frame, std::uint64_t seed) 
 
 TEST(CellGrid, NothingAndOneThingAreOneCell) {
   CellGrid grid;
-  grid.fit({}, {}, 100, false);
+  grid.fit({}, 100, false);
   EXPECT_EQ(grid.size(), 1U);
   EXPECT_EQ(gridOver(inputs::identical(50, 0, 1), 100).size(), 1U);
   EXPECT_EQ(gridOver({inputs::boxAt({1, 2, 3}, {0, 0, 0})}, 100).size(), 1U);
@@ -153,20 +153,20 @@ TEST(CellGrid, CellsTileTheBounds) {
   EXPECT_NEAR(volume / expected, 1, 1e-4);
 }
 
-TEST(RowShares, HoldEveryRowOnceAndTheSameWork) {
+TEST(WorkShares, HoldEveryRowOnceAndTheSameWork) {
   for (const int threads : {1, 2, 3, 5}) {
     ThreadTeam team(threads);
     for (const std::uint32_t count : {0U, 1U, 63U, 64U, 65U, 10'007U}) {
       // One crowded cell behind many sparse rows.
       std::vector<std::uint32_t> ends(count);
       for (std::uint32_t i = 0; i < count; ++i) ends[i] = i < count / 2 ? i + 1 : count;
-      RowShares shares;
-      shares.measure(ends, team);
+      WorkShares shares;
+      shares.measureRows(ends, team);
       std::size_t next = 0;
       std::uint64_t most = 0;
       std::uint64_t total = 0;
       for (int worker = 0; worker < threads; ++worker) {
-        const Range rows = shares.rowsOf(worker);
+        const Range rows = shares.of(worker);
         ASSERT_EQ(rows.begin, next);
         ASSERT_LE(rows.begin, rows.end);
         next = rows.end;
