@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/aabb.h"
 #include "broadmark/pair.h"
 #include "broadmark/render/colour.h"
 
