@@ -31,7 +31,6 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
-#include <string>
 
 #include "broadmark/algorithm.h"
 #include "broadmark/destroy.h"

@@ -6,7 +6,6 @@
 // GPUs", Eurographics 2009; T. Karras, "Maximizing Parallelism in the Construction of BVHs,
 // Octrees, and k-d Trees", HPG 2012.
 
-#include <algorithm>
 #include <bit>
 
 #include "opencl/device_broad_phase.h"

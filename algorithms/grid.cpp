@@ -19,11 +19,9 @@
 // Algorithms", Computer Graphics Forum, 2019 (these variants).
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>

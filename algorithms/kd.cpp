@@ -25,7 +25,6 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>

@@ -27,7 +27,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "broadmark/algorithm.h"

@@ -12,7 +12,6 @@
 // name); C. Ericson, "Real-Time Collision Detection", 2005, 7.5 (the axis); Y. R. Serpa and M. A.
 // F. Rodrigues, "Broadmark", Computer Graphics Forum, 2019 (these variants).
 
-#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>

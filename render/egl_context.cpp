@@ -4,9 +4,7 @@
 #include <EGL/eglext.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <optional>
 #include <string_view>
 #include <vector>
 

@@ -6,7 +6,6 @@
 
 #include <bitset>
 #include <cctype>
-#include <span>
 #include <utility>
 
 namespace broadmark {

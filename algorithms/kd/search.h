@@ -1,10 +1,8 @@
 // Finding the pairs of an adaptive KD tree.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 

@@ -21,7 +21,6 @@
 #include <algorithm>
 #include <atomic>
 #include <functional>
-#include <numeric>
 #include <utility>
 
 #include "moments.h"

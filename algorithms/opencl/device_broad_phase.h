@@ -2,10 +2,7 @@
 // buffers there that stay and grow.
 #pragma once
 
-#include <memory>
 #include <optional>
-#include <span>
-#include <string>
 #include <string_view>
 
 #include "opencl/device_algorithm.h"

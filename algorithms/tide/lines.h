@@ -5,7 +5,6 @@
 // full lines behind its own.
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>

@@ -14,7 +14,6 @@
 #include <unistd.h>
 
 #include <assimp/Importer.hpp>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>

@@ -1,7 +1,6 @@
 // Scripts: what a user does, line by line, with assertions; for demonstrations and tests.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>

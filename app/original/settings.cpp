@@ -2,7 +2,6 @@
 
 #include "original/settings.h"
 
-#include <fmt/format.h>
 
 #include "broadmark/json_fields.h"
 

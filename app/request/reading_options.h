@@ -1,7 +1,6 @@
 // How a source's file is read, where there is more than one way.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "broadmark/parameters.h"

@@ -6,7 +6,6 @@
 
 #include <iostream>
 #include <map>
-#include <memory>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"

@@ -2,9 +2,7 @@
 
 #include "run/screenshot.h"
 
-#include <fmt/format.h>
 
-#include <algorithm>
 
 namespace broadmark {
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recordings/recording.h"

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
-#include <chrono>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <set>

@@ -3,7 +3,6 @@
 #include "broadmark/recordings/posrot.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>

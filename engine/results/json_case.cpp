@@ -1,6 +1,5 @@
 #include "json_case.h"
 
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "broadmark/scenes/body_pool.h"

@@ -10,11 +10,9 @@
 #include <cmath>
 #include <deque>
 #include <map>
-#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include "broadmark/exclusive_use.h"
 #include "broadmark/scenes/body_pool.h"

@@ -1,6 +1,5 @@
 #include "inspector/authoring/brush_stroke.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "broadmark/render/picking.h"

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "broadmark/error.h"
 #include "broadmark/render/scene_view.h"

@@ -1,11 +1,9 @@
 // Baking in the background.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bake/bake_plan.h"

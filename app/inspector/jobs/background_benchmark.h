@@ -1,7 +1,6 @@
 // Running algorithms on recordings in the background, as a run without the inspector does.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"

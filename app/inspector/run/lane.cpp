@@ -1,6 +1,5 @@
 #include "inspector/run/lane.h"
 
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <span>

@@ -5,7 +5,6 @@
 // lower body. A steady state allocates nothing.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>

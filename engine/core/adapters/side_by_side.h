@@ -2,9 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "broadmark/frame.h"

@@ -1,6 +1,5 @@
 #include "broadmark/fuzz/torture.h"
 
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>

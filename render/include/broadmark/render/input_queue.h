@@ -5,8 +5,6 @@
 // it can tell apart.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <deque>
 #include <string>
 
