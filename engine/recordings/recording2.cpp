@@ -10,7 +10,6 @@
 #include <numeric>
 
 #include "broadmark/error.h"
-#include "packed_box.h"
 #include "recording2_header.h"
 #include "recording_file.h"
 

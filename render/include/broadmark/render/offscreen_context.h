@@ -15,10 +15,7 @@ struct OffscreenOptions {
   bool software = false;  ///< no hardware devices: the same picture on every machine
 };
 
+/// Throws RenderError.
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource, const OffscreenOptions&);
-
-// The two sources. Both throw RenderError.
-std::unique_ptr<OffscreenContext> makeEglContext(const OffscreenOptions&);
-std::unique_ptr<OffscreenContext> makeOsmesaContext(const OffscreenOptions&);
 
 }  // namespace broadmark
