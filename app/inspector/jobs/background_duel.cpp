@@ -26,33 +26,26 @@ void BackgroundDuel::start(const std::vector<Case>& cases, std::unique_ptr<Index
   if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
   Report first;
   first.most_seconds = most_seconds;
-  first.bodies = frames->scene().objects;
   std::vector<DuelSide> sides;
   for (const Case& run : cases) {
     sides.push_back({caseName(run), run, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
-  begin(std::move(first),
-        [this, sides = std::move(sides), frames = std::move(frames), most_seconds] {
-          double reported = 0;
-          DuelResult result = runDuel(sides, *frames,
-                                      {.most_seconds = most_seconds,
-                                       .progress =
-                                           [&](const DuelResult& so_far, double seconds) {
-                                             if (seconds < reported + kBetweenReports) return;
-                                             reported = seconds;
-                                             update([&](Report& report) {
-                                               report.result = so_far;
-                                               report.seconds = seconds;
-                                             });
-                                           },
-                                       .cancelled = [this] { return cancelled(); }});
-          update([&](Report& report) {
-            report.seconds = result.seconds;
-            report.result = std::move(result);
-          });
-          return true;
-        });
+  begin(std::move(first), [this, sides = std::move(sides), frames = std::move(frames),
+                           most_seconds] {
+    double reported = 0;
+    const auto tell = [&](const DuelResult& so_far) {
+      if (so_far.seconds < reported + kBetweenReports) return;
+      reported = so_far.seconds;
+      update([&](Report& report) { report.result = so_far; });
+    };
+    const DuelOptions options{.most_seconds = most_seconds, .progress = tell, .cancelled = [this] {
+                                return cancelled();
+                              }};
+    DuelResult result = runDuel(sides, *frames, options);
+    update([&](Report& report) { report.result = std::move(result); });
+    return true;
+  });
 }
 
 }  // namespace broadmark

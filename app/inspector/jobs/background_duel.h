@@ -12,9 +12,7 @@ namespace broadmark {
 
 struct DuelReport : TaskReport {
   DuelResult result;  ///< so far: without places until it is done
-  double seconds = 0;
   double most_seconds = 0;
-  std::uint32_t bodies = 0;
 };
 
 /// Runs one duel at a time.
