@@ -43,24 +43,19 @@ Json sidecarJson(Simulation& simulation, const std::string& hash) {
   return json;
 }
 
-/// The JSON object in a file; empty if the file holds anything else. Throws InputError.
-Sidecar readSidecar(const fs::path& path) {
-  const Sidecar json = jsonOrNull(readTextFile(path, kSidecarLimitBytes));
-  return json.is_object() ? json : Sidecar::object();
-}
-
 std::optional<std::string> statedHash(const Sidecar& sidecar) {
   const auto hash = sidecar.find("hash");
   if (hash == sidecar.end() || !hash->is_string()) return {};
   return hash->get<std::string>();
 }
 
-/// The sidecar of a recording; empty if it has none.
+/// The sidecar of a recording; empty if it has none. Throws InputError.
 Sidecar sidecarOf(const fs::path& recording) {
   const fs::path path = sidecarPath(recording);
   if (!fs::exists(path)) return Sidecar::object();
-  const Sidecar sidecar = readSidecar(path);
-  return sidecar.value("schema", Sidecar()) == kBakeSchema ? sidecar : Sidecar::object();
+  const Sidecar json = jsonOrNull(readTextFile(path, kSidecarLimitBytes));
+  const bool is_sidecar = json.is_object() && json.value("schema", Sidecar()) == kBakeSchema;
+  return is_sidecar ? json : Sidecar::object();
 }
 
 /// Writes one recording, of the kind that the path's extension names: positions and rotations, or
@@ -110,8 +105,7 @@ std::vector<RecorderListing> builtinRecorders() {
 }
 
 bool isBaked(const fs::path& path, Simulation& simulation) {
-  if (!fs::exists(sidecarPath(path))) return false;
-  const Sidecar sidecar = readSidecar(sidecarPath(path));
+  const Sidecar sidecar = sidecarOf(path);
   try {
     const std::optional<std::string> hash = statedHash(sidecar);
     if (!hash || sidecar != Sidecar(sidecarJson(simulation, *hash))) return false;

@@ -1,20 +1,105 @@
 #include "physics_simulation.h"
 
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
 #include "authoring/faults.h"
 #include "broadmark/scenes/authored_simulation.h"
-#include "engines/worlds_engine.h"
+#include "broadmark/scenes/registry.h"
+#include "entries.h"
 
 namespace broadmark::scenes {
 namespace {
 
-bool contains(const Aabb& box, const Vec3& point) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (point[axis] < box.min[axis] || point[axis] > box.max[axis]) return false;
-  }
-  return true;
+std::unique_ptr<PhysicsEngine> engineOf(const std::string& id, const PhysicsSettings& settings) {
+  return entryOf(engineEntries(), id, "physics engine").create(settings);
 }
 
+using EngineMaker = std::function<std::unique_ptr<PhysicsEngine>()>;
+
+/// An engine for each world, made when its first body is added. One engine for all would have to
+/// look at every pair of bodies at the same place, only to find that nearly all are in different
+/// worlds.
+class WorldsEngine final : public PhysicsEngine {
+ public:
+  explicit WorldsEngine(EngineMaker make_engine) : make_engine_(std::move(make_engine)) {}
+
+  void setLayers(const LayerMatrix& layers) override { layers_ = layers; }
+
+  PhysicsBody& addBody(const BodyDescription& description) override {
+    PhysicsEngine& world = worldOf(description.world);
+    PhysicsBody& body = world.addBody(description);
+    world_of_body_[&body] = &world;
+    return body;
+  }
+
+  void removeBody(PhysicsBody& body) override {
+    const auto found = world_of_body_.find(&body);
+    found->second->removeBody(body);
+    world_of_body_.erase(found);
+  }
+
+  void addWall(const HalfSpace& wall) override {
+    walls_.push_back(wall);
+    for (auto& [number, world] : worlds_) world->addWall(wall);
+  }
+
+  void setGravity(const Vec3& gravity) override {
+    gravity_ = gravity;
+    for (auto& [number, world] : worlds_) world->setGravity(gravity);
+  }
+  [[nodiscard]] Vec3 gravity() const override { return gravity_; }
+
+  void step() override {
+    for (auto& [number, world] : worlds_) {
+      if (!world->allAsleep()) world->step();
+    }
+  }
+
+  [[nodiscard]] bool allAsleep() const override {
+    return std::ranges::all_of(worlds_,
+                               [](const auto& world) { return world.second->allAsleep(); });
+  }
+
+ private:
+  PhysicsEngine& worldOf(std::uint32_t number) {
+    auto& world = worlds_[number];
+    if (!world) {
+      world = make_engine_();
+      if (layers_) world->setLayers(*layers_);
+      for (const HalfSpace& wall : walls_) world->addWall(wall);
+      world->setGravity(gravity_);
+    }
+    return *world;
+  }
+
+  EngineMaker make_engine_;
+  std::optional<LayerMatrix> layers_;
+  std::vector<HalfSpace> walls_;
+  Vec3 gravity_{};
+  std::map<std::uint32_t, std::unique_ptr<PhysicsEngine>> worlds_;  ///< by number
+  std::unordered_map<const PhysicsBody*, PhysicsEngine*> world_of_body_;
+};
+
 }  // namespace
+
+Parametrised& ChosenEngine::parameters(const std::string& id, const PhysicsSettings& settings) {
+  if (!engine_ || id_ != id) {
+    engine_ = engineOf(id, settings);
+    id_ = id;
+  }
+  return *engine_;
+}
+
+std::unique_ptr<PhysicsEngine> ChosenEngine::create(const std::string& id,
+                                                    const PhysicsSettings& settings) {
+  auto engine = engineOf(id, settings);
+  setParameters(*engine, parameterValues(parameters(id, settings)));
+  return engine;
+}
 
 const SceneInfo& PhysicsSimulation::scene() const {
   // Until the first frame the parameters may still change.
@@ -92,7 +177,7 @@ void PhysicsSimulation::makeEngine() {
   if (info_.filter.worlds().empty()) {
     engine_ = createEngine();
   } else {
-    engine_ = makeWorlds([this] { return createEngine(); });
+    engine_ = std::make_unique<WorldsEngine>([this] { return createEngine(); });
   }
   const LayerMatrix layers = pushing(info_);
   const bool all_push = info_.filter.layers().empty() && layers.collide(0, 0);
@@ -115,7 +200,7 @@ void PhysicsSimulation::freezeEscapees() {
   for (const std::uint32_t id : bodies_->inEngine()) {
     PhysicsBody* body = (*bodies_)[id];
     if (body == nullptr || body->frozen()) continue;
-    if (!contains(info_.world, body->pose().position)) body->freeze();
+    if (!contains(info_.world, boxAround(body->pose().position, {}))) body->freeze();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "broadmark/scenes/authored_scene.h"
@@ -13,6 +14,19 @@
 #include "broadmark/scenes/simulation.h"
 
 namespace broadmark::scenes {
+
+/// Keeps the parameters of the physics engine that is chosen, and forgets them when another one is.
+class ChosenEngine {
+ public:
+  /// The parameters of the engine `id`: an engine without bodies.
+  Parametrised& parameters(const std::string& id, const PhysicsSettings& settings);
+  /// A new engine with these parameters.
+  std::unique_ptr<PhysicsEngine> create(const std::string& id, const PhysicsSettings& settings);
+
+ private:
+  std::string id_;
+  std::unique_ptr<PhysicsEngine> engine_;
+};
 
 /// Drives a physics engine, frame by frame, within six walls. A body whose centre leaves the world
 /// is frozen.

@@ -1,36 +1,21 @@
 #include "broadmark/scenes/shape.h"
 
-#include <type_traits>
-
 namespace broadmark::scenes {
-namespace {
-
-/// Half the size of the box around a shape turned by `rotation`.
-Vec3 reach(const BoxShape& box, const Quaternion& rotation) {
-  return turnedExtents(box.half_extents, rotation);
-}
-
-Vec3 reach(const SphereShape& sphere, const Quaternion&) {
-  return {sphere.radius, sphere.radius, sphere.radius};
-}
-
-}  // namespace
 
 Vec3 edgesOf(const Shape& shape) {
-  const auto edges = [](const auto& kind) -> Vec3 {
-    if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, BoxShape>) {
-      const auto& [x, y, z] = kind.half_extents;
-      return {2 * x, 2 * y, 2 * z};
-    } else {
-      return {2 * kind.radius, 2 * kind.radius, 2 * kind.radius};
-    }
-  };
-  return std::visit(edges, shape);
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+    return {2 * sphere->radius, 2 * sphere->radius, 2 * sphere->radius};
+  }
+  const auto& [x, y, z] = std::get<BoxShape>(shape).half_extents;
+  return {2 * x, 2 * y, 2 * z};
 }
 
 Aabb tightBox(const Shape& shape, const Pose& pose) {
-  const Vec3 half = std::visit([&](const auto& kind) { return reach(kind, pose.rotation); }, shape);
-  return boxAround(pose.position, half);
+  if (const auto* sphere = std::get_if<SphereShape>(&shape)) {
+    return boxAround(pose.position, {sphere->radius, sphere->radius, sphere->radius});
+  }
+  return boxAround(pose.position,
+                   turnedExtents(std::get<BoxShape>(shape).half_extents, pose.rotation));
 }
 
 }  // namespace broadmark::scenes

@@ -9,7 +9,6 @@
 #include "broadmark/names.h"
 #include "broadmark/recordings/recording.h"
 #include "broadmark/scenes/scene.h"
-#include "engines/chosen_engine.h"
 #include "engines/replay.h"
 #include "entries.h"
 #include "physics_simulation.h"

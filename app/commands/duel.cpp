@@ -97,11 +97,11 @@ int run(Options options) {
   constexpr double kTicks = 1000;
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.cancelled = InterruptGuard::requested;
-  options.duel.progress = [&](const DuelResult& now, double seconds) {
-    const double left = std::max(options.duel.most_seconds - seconds, 0.0);
+  options.duel.progress = [&](const DuelResult& now) {
+    const double left = std::max(options.duel.most_seconds - now.seconds, 0.0);
     progress.detail(counted(now.rounds(), "round"));
     progress.update(
-        static_cast<std::uint64_t>(kTicks * std::min(1.0, seconds / options.duel.most_seconds)),
+        static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.most_seconds)),
         left);
   };
   const DuelResult result = [&] {

@@ -16,14 +16,6 @@
 #include "support/words.h"
 
 namespace broadmark {
-
-#define COMPARISON_WRITER(name) \
-  namespace comparisons::name { \
-  ComparisonWriter writer();    \
-  }
-#include "comparison_writers.inc"
-#undef COMPARISON_WRITER
-
 namespace {
 
 /// A case of one run.
@@ -40,31 +32,17 @@ struct Candidate {
 /// those that are alike in both.
 using CaseKey = std::tuple<std::string, std::string, int>;
 
-bool isThreads(const std::string& part) {
-  return part.size() > 1 && part[0] == 't' &&
-         std::all_of(part.begin() + 1, part.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
-/// Whether a part of a case's name, but the first, states this.
-bool states(const std::string& part, const std::string& what) {
-  if (what == "threads") return isThreads(part);
-  if (what == "isa") return kIsas.find(part).has_value();
-  return part.starts_with(what + '=');
-}
-
 /// The case's name without what is compared.
 std::string nameWithout(const CaseResult& result, const std::string& by) {
   if (by == "algorithm") return {};
   std::string name = caseNameOf(result);
   if (by.empty()) return name;
-  std::string rest;
-  for (std::size_t from = 0; from <= name.size();) {
-    const std::size_t to = std::min(name.find('/', from), name.size());
-    const std::string part = name.substr(from, to - from);
-    if (from == 0 || !states(part, by)) rest += '/' + part;
-    from = to + 1;
-  }
-  return rest;
+  std::string part = fmt::format("/{}=", by);
+  if (by == "threads") part = fmt::format("/t{}", result.threads);
+  if (by == "isa") part = fmt::format("/{}", isaName(result.isa));
+  const std::size_t at = name.find(part);
+  if (at != name.npos) name.erase(at, name.find('/', at + 1) - at);
+  return name;
 }
 
 /// The cases of one run by what they are compared as, in their order.
@@ -80,12 +58,10 @@ std::vector<std::pair<CaseKey, Candidate>> keysOf(const Results& results, const 
   return keys;
 }
 
-void requireKnown(const std::string& by, std::span<const NamedResults> runs) {
+void requireKnown(const std::string& by, const Results& results) {
   std::vector<std::string> known = {"algorithm", "isa", "threads"};
-  for (const NamedResults& run : runs) {
-    for (const CaseResult& result : run.results.cases) {
-      for (const auto& [name, value] : result.parameters) known.push_back(name);
-    }
+  for (const CaseResult& result : results.cases) {
+    for (const auto& [name, value] : result.parameters) known.push_back(name);
   }
   std::ranges::sort(known);
   known.erase(std::unique(known.begin(), known.end()), known.end());
@@ -275,7 +251,7 @@ std::optional<double> Comparison::drift() const {
 
 Comparison compareResults(std::span<const NamedResults> before, const NamedResults& after,
                           const ComparisonOptions& options) {
-  if (!options.by.empty()) requireKnown(options.by, {&after, 1});
+  if (!options.by.empty()) requireKnown(options.by, after.results);
   Comparison comparison{.options = options, .cases = {}, .notes = {}};
   for (const NamedResults& run : before) noteRun(run, comparison.notes);
   noteRun(after, comparison.notes);
@@ -323,14 +299,6 @@ std::string summaryText(const Comparison& comparison) {
     text += fmt::format("; drift {:+.1f} %", 100 * *drift);
   }
   return text;
-}
-
-std::vector<ComparisonWriter> comparisonWriters() {
-  return {
-#define COMPARISON_WRITER(name) comparisons::name::writer(),
-#include "comparison_writers.inc"
-#undef COMPARISON_WRITER
-  };
 }
 
 }  // namespace broadmark

@@ -72,13 +72,13 @@ std::string verdictText(const CaseComparison&);
 /// "12 cases: 10 same, 1 faster, 1 REGRESSED; the machine was up to 2 % slower"
 std::string summaryText(const Comparison&);
 
-/// One way to write a comparison: `broadmark::comparisons::NAME::writer()` for a NAME in the list
-/// in CMakeLists.txt.
+/// One way to write a comparison.
 struct ComparisonWriter {
   std::string_view name;  ///< of the command line option, without dashes: "junit"
   std::string_view doc;
   std::string (*format)(const Comparison&);
 };
+/// In the order of the help.
 std::vector<ComparisonWriter> comparisonWriters();
 /// As a table for people.
 std::string formatComparison(const Comparison&);

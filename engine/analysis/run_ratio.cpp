@@ -8,8 +8,6 @@
 #include <numeric>
 #include <random>
 
-#include "broadmark/statistics/block_bootstrap.h"
-
 namespace broadmark {
 namespace {
 

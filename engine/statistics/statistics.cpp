@@ -6,8 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-
-#include "broadmark/statistics/block_bootstrap.h"
+#include <random>
 
 namespace broadmark {
 namespace {
@@ -137,6 +136,27 @@ std::size_t blockLength(std::span<const double> values) {
 
 std::size_t safeBlockLength(std::span<const double> values) {
   return std::max(blockLength(values), shortestBlock(values.size()));
+}
+
+Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
+                          const std::function<double(std::span<const std::size_t>)>& statistic) {
+  constexpr int kResamples = 500;
+  std::mt19937_64 random;
+  std::uniform_int_distribution<std::size_t> starts(0, count - 1);
+  std::vector<double> resampled(kResamples);
+  std::vector<std::size_t> drawn(count);
+  for (double& one : resampled) {
+    for (std::size_t i = 0; i < count;) {
+      std::size_t from = starts(random);
+      for (std::size_t k = 0; k < block && i < count; ++k, ++i, ++from) drawn[i] = from % count;
+    }
+    one = statistic(drawn);
+  }
+  // A few blocks know less than resampling them says, as a few values do (Student).
+  const double blocks = static_cast<double>(count) / static_cast<double>(block);
+  const double widen = studentT975(std::max(blocks - 1, 1.0)) / 1.96;
+  return {estimate + widen * (quantile(resampled, 0.025) - estimate),
+          estimate + widen * (quantile(resampled, 0.975) - estimate)};
 }
 
 Estimate medianOfSeries(std::span<const double> values) {

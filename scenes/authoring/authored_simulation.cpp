@@ -12,7 +12,6 @@
 #include "broadmark/error.h"
 #include "broadmark/hasher.h"
 #include "broadmark/scenes/registry.h"
-#include "engines/chosen_engine.h"
 #include "entries.h"
 #include "physics_simulation.h"
 

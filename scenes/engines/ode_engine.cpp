@@ -73,66 +73,17 @@ Vec3 fromOde(const dReal* v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
 
-/// The points of a shape that can touch a wall first, in the body's own coordinates. That of a
-/// sphere depends on the wall: its centre stands for it, with the radius as pointRadius().
-std::vector<Vec3> wallPoints(const BoxShape& box) {
-  std::vector<Vec3> corners;
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    Vec3 at = box.half_extents;
-    for (unsigned axis = 0; axis < 3; ++axis) {
-      if ((corner >> axis & 1U) != 0) at[axis] = -at[axis];
-    }
-    corners.push_back(at);
-  }
-  return corners;
-}
-std::vector<Vec3> wallPoints(const SphereShape&) { return {Vec3{}}; }
-
-double pointRadius(const BoxShape&) { return 0; }
-double pointRadius(const SphereShape& sphere) { return sphere.radius; }
-
-/// From the centre to the farthest point.
-double boundingRadius(const BoxShape& box) {
-  const Vec3& half = box.half_extents;
-  return std::hypot(half[0], half[1], half[2]);
-}
-double boundingRadius(const SphereShape& sphere) { return sphere.radius; }
-
-dGeomID makeGeom(dSpaceID space, const BoxShape& box) {
-  const Vec3& half = box.half_extents;
-  return dCreateBox(space, 2 * half[0], 2 * half[1], 2 * half[2]);
-}
-dGeomID makeGeom(dSpaceID space, const SphereShape& sphere) {
-  return dCreateSphere(space, sphere.radius);
-}
-
-void setMass(dMass& mass, double total, const BoxShape& box) {
-  const Vec3& half = box.half_extents;
-  dMassSetBoxTotal(&mass, total, 2 * half[0], 2 * half[1], 2 * half[2]);
-}
-void setMass(dMass& mass, double total, const SphereShape& sphere) {
-  dMassSetSphereTotal(&mass, total, sphere.radius);
-}
-
 class OdeBody : public PhysicsBody {
  public:
   /// `collides_with`: the layers whose bodies it pushes.
   OdeBody(const BodyDescription& description, dWorldID world, dSpaceID space,
           std::uint32_t collides_with)
       : shape_(description.shape), body_(dBodyCreate(world)) {
-    std::visit(
-        [&](const auto& shape) {
-          dMass mass;
-          setMass(mass, description.mass, shape);
-          dBodySetMass(body_.get(), &mass);
-          // The diagonal of three rows of four.
-          mean_inertia_ = (mass.I[0] + mass.I[5] + mass.I[10]) / 3 / mass.mass;
-          geom_.reset(makeGeom(space, shape));
-          wall_points_ = wallPoints(shape);
-          point_radius_ = pointRadius(shape);
-          bounding_radius_ = boundingRadius(shape);
-        },
-        shape_);
+    dMass mass;
+    std::visit([&](const auto& kind) { take(kind, space, description.mass, mass); }, shape_);
+    dBodySetMass(body_.get(), &mass);
+    // The diagonal of three rows of four.
+    mean_inertia_ = (mass.I[0] + mass.I[5] + mass.I[10]) / 3 / mass.mass;
     dGeomSetBody(geom_.get(), body_.get());
     dGeomSetData(geom_.get(), this);
     dGeomSetCategoryBits(geom_.get(), std::uint32_t{1} << description.layer);
@@ -240,6 +191,26 @@ class OdeBody : public PhysicsBody {
   }
 
  private:
+  /// Makes the geom and what walls need; `mass` becomes that of such a body.
+  void take(const BoxShape& box, dSpaceID space, double total, dMass& mass) {
+    const auto& [x, y, z] = box.half_extents;
+    geom_.reset(dCreateBox(space, 2 * x, 2 * y, 2 * z));
+    dMassSetBoxTotal(&mass, total, 2 * x, 2 * y, 2 * z);
+    bounding_radius_ = std::hypot(x, y, z);
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Vec3& at = wall_points_.emplace_back(box.half_extents);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        if ((corner >> axis & 1U) != 0) at[axis] = -at[axis];
+      }
+    }
+  }
+  void take(const SphereShape& sphere, dSpaceID space, double total, dMass& mass) {
+    geom_.reset(dCreateSphere(space, sphere.radius));
+    dMassSetSphereTotal(&mass, total, sphere.radius);
+    bounding_radius_ = point_radius_ = sphere.radius;
+    wall_points_ = {Vec3{}};
+  }
+
   void stop() {
     dBodySetLinearVel(body_.get(), 0, 0, 0);
     dBodySetAngularVel(body_.get(), 0, 0, 0);
@@ -249,6 +220,8 @@ class OdeBody : public PhysicsBody {
   Shape shape_;
   Body body_;
   Geom geom_;
+  /// The points that can touch a wall first, in the body's own coordinates: the corners of a box.
+  /// That of a sphere depends on the wall: its centre stands for it, with its radius.
   std::vector<Vec3> wall_points_;
   double point_radius_ = 0;  ///< of a ball around each wall point
   double bounding_radius_ = 0;

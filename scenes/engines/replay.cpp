@@ -71,7 +71,7 @@ class ReplaySimulation final : public Simulation {
     return info_;
   }
 
-  [[nodiscard]] fs::path input() const override { return find().path; }
+  [[nodiscard]] fs::path input() const override { return find(); }
   /// Of what is replayed, even if another recording has taken its name meanwhile.
   [[nodiscard]] std::string inputHash() override {
     return replay_ ? replay_->inputHash() : openRecordingFile(input())->hash();
@@ -112,7 +112,7 @@ class ReplaySimulation final : public Simulation {
 
   /// Opens the wanted recording and checks that it holds what its name says.
   [[nodiscard]] std::unique_ptr<Replay> open() const {
-    const fs::path path = find().path;
+    const fs::path path = find();
     auto recording = openRecordingFile(path);
     const SceneInfo& info = recording->scene();
     if (info.name != listing().name || info.object_type != objectTypeName() ||
@@ -131,7 +131,7 @@ class ReplaySimulation final : public Simulation {
 
   /// The wanted recording: the shortest that is long enough, or the longest when all frames are
   /// wanted; among equals that with the preferred extension.
-  [[nodiscard]] Candidate find() const {
+  [[nodiscard]] fs::path find() const {
     const auto& extensions = entry_.extensions;
     if (needed_ == kBroadmarkExtension &&
         std::ranges::find(extensions, needed_) == extensions.end()) {
@@ -161,18 +161,18 @@ class ReplaySimulation final : public Simulation {
       throw InputError(
           fmt::format("{}: no recording of {}{}", input_, wanted(), whatIsThere(there)));
     }
-    return *best;
+    return best->path;
   }
 
   /// The file that `input` names.
-  [[nodiscard]] Candidate given() const {
-    const fs::path path = input_;
+  [[nodiscard]] fs::path given() const {
+    fs::path path = input_;
     if (std::ranges::find(entry_.extensions, path.extension().string()) ==
         entry_.extensions.end()) {
       throw InputError(fmt::format("{}: --engine {} reads {}", input_, engine_.value,
                                    fmt::join(entry_.extensions, " or ")));
     }
-    return {.path = path};
+    return path;
   }
 
   [[nodiscard]] bool isBetter(const Candidate& a, const Candidate& b) const {

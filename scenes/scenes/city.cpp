@@ -27,21 +27,14 @@ struct Lot {
 };
 
 /// The shape scaled to `width`; the height of a box is also multiplied by `stretch`, within limits.
-Shape fitted(BoxShape box, double width, double stretch) {
-  const double factor = width / (2 * std::max(box.half_extents[0], box.half_extents[2]));
-  const double half_height = factor * stretch * box.half_extents[1];
-  box.half_extents = {static_cast<float>(factor * box.half_extents[0]),
-                      static_cast<float>(std::clamp(half_height, 0.02 * width, 2.0 * width)),
-                      static_cast<float>(factor * box.half_extents[2])};
-  return box;
-}
-
-Shape fitted(const SphereShape&, double width, double) {
-  return SphereShape{static_cast<float>(width / 2)};
-}
-
 Shape fitted(const Shape& shape, double width, double stretch) {
-  return std::visit([&](const auto& kind) { return fitted(kind, width, stretch); }, shape);
+  const auto* box = std::get_if<BoxShape>(&shape);
+  if (box == nullptr) return SphereShape{static_cast<float>(width / 2)};
+  const auto& [x, y, z] = box->half_extents;
+  const double factor = width / (2 * std::max(x, z));
+  const double half_height = std::clamp(factor * stretch * y, 0.02 * width, 2.0 * width);
+  return BoxShape{{static_cast<float>(factor * x), static_cast<float>(half_height),
+                   static_cast<float>(factor * z)}};
 }
 
 class City final : public Scene {
@@ -73,11 +66,13 @@ class City final : public Scene {
     drivers_.clear();
   }
 
-  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
-                       Random& random) override {
-    const Shape base = type.shape(index, settings.scale, random);
-    return kinds_[index] == Kind::mover ? mover(index, base, settings, random)
-                                        : building(base, settings, random);
+  void place(std::size_t index, BodyDescription& body, const Settings& settings,
+             Random& random) override {
+    if (kinds_[index] == Kind::mover) {
+      placeMover(index, body, settings, random);
+    } else {
+      placeBuilding(body, settings, random);
+    }
   }
 
   void start(Stage& stage) override {
@@ -134,23 +129,22 @@ class City final : public Scene {
     return closed;
   }
 
-  BodyDescription building(const Shape& base, const Settings& settings, Random& random) {
+  void placeBuilding(BodyDescription& body, const Settings& settings, Random& random) {
     const Lot lot = lots_.back();
     lots_.pop_back();
     const double wanted = lot.edge * random.between(std::min(0.6, crowding_), crowding_);
     const double width =
         std::min(wanted, lot.edge + 0.2 * street(settings));  // the lanes stay free
     const double stretch = 0.4 + 3 * std::pow(random.uniform(), 2);
-    BodyDescription body{.shape = fitted(base, width, stretch), .mass = settings.mass};
+    body.shape = fitted(body.shape, width, stretch);
     body.pose.position = {static_cast<float>(lot.x), onGround(body.shape, settings),
                           static_cast<float>(lot.z)};
-    return body;
   }
 
-  BodyDescription mover(std::size_t index, const Shape& base, const Settings& settings,
-                        Random& random) {
+  void placeMover(std::size_t index, BodyDescription& body, const Settings& settings,
+                  Random& random) {
     const double side = settings.side();
-    BodyDescription body{.shape = fitted(base, 0.25 * street(settings), 1), .mass = settings.mass};
+    body.shape = fitted(body.shape, 0.25 * street(settings), 1);
     const float limit = farthestInside(body.shape, side);
     const auto somewhere = [&] { return static_cast<float>(random.between(-limit, limit)); };
 
@@ -177,7 +171,6 @@ class City final : public Scene {
     body.pose = course.poseAt(somewhere());
     body.linear_velocity = course.velocityAt(body.pose.position);
     drivers_.push_back(driver);
-    return body;
   }
 
   static void drive(PhysicsBody& body, Driver& driver) {

@@ -35,9 +35,8 @@ class Conveyor final : public Scene {
 
   void prepare(const Settings&, Random&) override { riders_.clear(); }
 
-  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
-                       Random& random) override {
-    BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
+  void place(std::size_t index, BodyDescription& body, const Settings& settings,
+             Random& random) override {
     const Course course = courseOn(static_cast<std::int64_t>(index) % belts_, settings, random);
     // A body must not meet the wall in the frame in which it passes the end.
     const auto step = std::abs(course.speed) * static_cast<float>(settings.physics.time_step);
@@ -45,7 +44,6 @@ class Conveyor final : public Scene {
     body.pose = course.poseAt(static_cast<float>(random.between(-limit, limit)));
     body.linear_velocity = course.velocityAt(body.pose.position);
     riders_.push_back({course, limit});
-    return body;
   }
 
   void act(Stage& stage, std::uint32_t) override {

@@ -25,4 +25,9 @@ float farthestInside(const Shape& shape, double side) {
   return static_cast<float>(std::max(0.0, side / 2 - reach));
 }
 
+double sizeOfMany(double most, Random& random) {
+  // The share of bodies larger than x is 1/x³.
+  return std::min(1 / std::cbrt(1 - random.uniform()), std::max(1.0, most));
+}
+
 }  // namespace broadmark::scenes

@@ -1,7 +1,9 @@
-// Bodies that are driven along straight lines, whatever forces act on them.
+// Bodies that are driven along straight lines, whatever forces act on them; places and sizes of
+// bodies.
 #pragma once
 
 #include "broadmark/scenes/physics_engine.h"
+#include "broadmark/scenes/random.h"
 
 namespace broadmark::scenes {
 
@@ -21,5 +23,9 @@ struct Course {
 /// The largest coordinate of a body's centre at which the body is inside a world of this side,
 /// however it is turned; 0 for a body larger than the world.
 float farthestInside(const Shape&, double side);
+
+/// A random size from 1 to `most` (at least 1). Of bodies twice as large there are an eighth as
+/// many: large and small ones fill about the same room.
+double sizeOfMany(double most, Random&);
 
 }  // namespace broadmark::scenes

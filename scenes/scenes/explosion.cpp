@@ -63,9 +63,8 @@ class Explosion final : public Scene {
     random.shuffle(places_);  // ids must not tell places
   }
 
-  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
-                       Random& random) override {
-    BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
+  void place(std::size_t index, BodyDescription& body, const Settings& settings,
+             Random& random) override {
     const double speed = settings.initial_speed * settings.side() * random.between(slowest_, 1);
     for (int axis = 0; axis < 3; ++axis) {
       const double place = places_[index][axis] + jitter_ * random.between(-0.5, 0.5);
@@ -73,7 +72,6 @@ class Explosion final : public Scene {
       body.linear_velocity[axis] = static_cast<float>(speed * places_[index][axis] / outermost_);
     }
     body.angular_velocity = random.inBall(tumbling_);
-    return body;
   }
 
  private:

@@ -11,7 +11,6 @@
 #include "entries.h"
 #include "scenes/course.h"
 #include "scenes/lifetimes.h"
-#include "scenes/sizes.h"
 
 namespace broadmark::scenes::fountain {
 namespace {
@@ -45,9 +44,7 @@ class Fountain final : public Scene {
     const auto count = static_cast<std::size_t>(filled_ * static_cast<double>(stage.bodies.size()));
     for (std::size_t i = 0; i < count; ++i) {
       const auto id = lifetimes_.take(framesOf(stage.random.uniform()));
-      BodyDescription body = describeBody(*id, stage);
-      body.pose.position = anywhereInside(body.shape, stage.settings.side(), stage.random);
-      stage.bodies.add(*id, body);
+      stage.bodies.add(*id, stage.describeAnywhere(*id));
     }
   }
 
@@ -69,16 +66,10 @@ class Fountain final : public Scene {
     return 1 + static_cast<std::uint32_t>(lifetimes * static_cast<double>(lifetime_));
   }
 
-  static BodyDescription describeBody(std::size_t id, Stage& stage) {
-    const Settings& settings = stage.settings;
-    return {.shape = stage.object_type.shape(id, settings.scale, stage.random),
-            .mass = settings.mass};
-  }
-
   [[nodiscard]] BodyDescription thrown(std::size_t id, Stage& stage) const {
     const Settings& settings = stage.settings;
     const double side = settings.side();
-    BodyDescription body = describeBody(id, stage);
+    BodyDescription body = stage.describeBody(id);
     const float reach = farthestInside(body.shape, side);
     const Vec3 place = stage.random.inBall(std::min<double>(settings.initial_radius * side, reach));
     body.pose.position = {place[0], -reach, place[2]};

@@ -18,11 +18,28 @@ namespace broadmark::scenes {
 class Lifetimes {
  public:
   /// The ids [first, end) are free, and no others.
-  void reset(std::size_t first, std::size_t end);
+  void reset(std::size_t first, std::size_t end) {
+    free_.clear();
+    ends_ = {};
+    for (std::size_t id = end; id > first; --id) free_.push_back(id - 1);
+  }
   /// A free id, until removeOld() is called for frame `last` or a later one; nothing: none is free.
-  std::optional<std::size_t> take(std::uint32_t last);
+  std::optional<std::size_t> take(std::uint32_t last) {
+    if (free_.empty()) return {};
+    const std::size_t id = free_.back();
+    free_.pop_back();
+    ends_.emplace(last, id);
+    return id;
+  }
   /// Removes the bodies whose time is over after frame `frame`.
-  void removeOld(Bodies& bodies, std::uint32_t frame);
+  void removeOld(Bodies& bodies, std::uint32_t frame) {
+    while (!ends_.empty() && ends_.top().first <= frame) {
+      const std::size_t id = ends_.top().second;
+      ends_.pop();
+      bodies.remove(id);
+      free_.push_back(id);
+    }
+  }
 
  private:
   using End = std::pair<std::uint32_t, std::size_t>;  ///< frame, id

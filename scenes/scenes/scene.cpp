@@ -1,20 +1,32 @@
 #include "broadmark/scenes/scene.h"
 
+#include "scenes/course.h"
+
 namespace broadmark::scenes {
 
-BodyDescription Scene::body(std::size_t index, const Settings& settings, const ObjectType& type,
-                            Random& random) {
-  BodyDescription body;
-  body.shape = type.shape(index, settings.scale, random);
-  body.mass = settings.mass;
+BodyDescription Stage::describeBody(std::size_t id, double size) const {
+  return {.shape = object_type.shape(id, size * settings.scale, random), .mass = settings.mass};
+}
+
+BodyDescription Stage::describeAnywhere(std::size_t id, double size) const {
+  BodyDescription body = describeBody(id, size);
+  const double reach = farthestInside(body.shape, settings.side());
+  for (float& coordinate : body.pose.position) {
+    coordinate = static_cast<float>(random.between(-reach, reach));
+  }
+  return body;
+}
+
+void Scene::place(std::size_t, BodyDescription& body, const Settings& settings, Random& random) {
   body.pose.position = random.inBall(settings.initial_radius * settings.side());
   body.linear_velocity = launchVelocity(settings, random);
-  return body;
 }
 
 void Scene::populate(Stage& stage) {
   for (std::size_t i = 0; i < stage.bodies.size(); ++i) {
-    stage.bodies.add(i, body(i, stage.settings, stage.object_type, stage.random));
+    BodyDescription body = stage.describeBody(i);
+    place(i, body, stage.settings, stage.random);
+    stage.bodies.add(i, body);
   }
 }
 

@@ -13,7 +13,6 @@
 #include "entries.h"
 #include "scenes/course.h"
 #include "scenes/lifetimes.h"
-#include "scenes/sizes.h"
 
 namespace broadmark::scenes::shooter {
 namespace {
@@ -84,12 +83,12 @@ class Shooter final : public Scene {
       stage.bodies.add(id, levelBox(id, stage)).freeze();
     }
     for (std::size_t id = ends_.level; id < ends_.characters; ++id) {
-      BodyDescription body = describeBody(id, 1, stage);
+      BodyDescription body = stage.describeAnywhere(id);
       body.pose.position[1] = std::abs(body.pose.position[1]);  // they drop into the level
       stage.bodies.add(id, body);
     }
     for (std::size_t id = ends_.characters; id < ends_.triggers; ++id) {
-      const BodyDescription body = describeBody(id, stage.random.between(2, 5), stage);
+      const BodyDescription body = stage.describeAnywhere(id, stage.random.between(2, 5));
       stage.bodies.place(id, body.shape, body.pose);
     }
   }
@@ -124,19 +123,10 @@ class Shooter final : public Scene {
     return {static_cast<float>(std::cos(angle)), 0, static_cast<float>(std::sin(angle))};
   }
 
-  /// A body of `size` times the usual size, anywhere in the world.
-  static BodyDescription describeBody(std::size_t id, double size, Stage& stage) {
-    const Settings& settings = stage.settings;
-    BodyDescription body{.shape = stage.object_type.shape(id, size * settings.scale, stage.random),
-                         .mass = settings.mass};
-    body.pose.position = anywhereInside(body.shape, settings.side(), stage.random);
-    return body;
-  }
-
   [[nodiscard]] BodyDescription levelBox(std::size_t id, Stage& stage) const {
     const Settings& settings = stage.settings;
     const double most = largest_ * settings.side() / settings.scale;
-    BodyDescription body = describeBody(id, sizeOfMany(most, stage.random), stage);
+    BodyDescription body = stage.describeAnywhere(id, sizeOfMany(most, stage.random));
     // Half of it stands on the floor.
     if (id % 2 == 0) body.pose.position[1] = -farthestInside(body.shape, settings.side());
     return body;
@@ -153,7 +143,7 @@ class Shooter final : public Scene {
     const auto id = lifetimes_.take(frame + static_cast<std::uint32_t>(lifetime_));
     if (!id) return;
     const Settings& settings = stage.settings;
-    BodyDescription body = describeBody(*id, kSize, stage);
+    BodyDescription body = stage.describeAnywhere(*id, kSize);
     const float reach = farthestInside(body.shape, settings.side());
     const Vec3 heading = headings_[shooter - ends_.level];
     const Vec3 spread = stage.random.inBall(0.2);

@@ -32,11 +32,8 @@ class Spot final : public Scene {
     spot_ = random.inBall(settings.initial_radius * settings.side() / 2);
   }
 
-  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
-                       Random& random) override {
-    return {.shape = type.shape(index, settings.scale, random),
-            .mass = settings.mass,
-            .pose = {.position = spot_}};
+  void place(std::size_t, BodyDescription& body, const Settings&, Random&) override {
+    body.pose.position = spot_;
   }
 
   void act(Stage& stage, std::uint32_t frame) override {

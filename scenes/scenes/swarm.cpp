@@ -48,15 +48,13 @@ class Swarm final : public Scene {
     }
   }
 
-  BodyDescription body(std::size_t index, const Settings& settings, const ObjectType& type,
-                       Random& random) override {
+  void place(std::size_t index, BodyDescription& body, const Settings& settings,
+             Random& random) override {
     const Start& start = starts_[index % starts_.size()];
-    BodyDescription body{.shape = type.shape(index, settings.scale, random), .mass = settings.mass};
     body.pose.position =
         sum(start.centre, random.inBall(settings.initial_radius * settings.side()));
     body.linear_velocity =
         sum(start.velocity, random.inBall(disorder_ * settings.initial_speed * settings.side()));
-    return body;
   }
 
  private:

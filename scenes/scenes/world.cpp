@@ -9,7 +9,7 @@
 #include "broadmark/scenes/scene.h"
 #include "broadmark/scenes/simulation.h"
 #include "entries.h"
-#include "scenes/sizes.h"
+#include "scenes/course.h"
 
 namespace broadmark::scenes::world {
 namespace {
@@ -47,9 +47,7 @@ class World final : public Scene {
     for (std::size_t id = 0; id < stage.bodies.size(); ++id) {
       const bool mover = isMover(id, settings);
       const double size = mover ? 1 : sizeOfMany(most, random);
-      BodyDescription body{.shape = stage.object_type.shape(id, size * settings.scale, random),
-                           .mass = settings.mass};
-      body.pose.position = anywhereInside(body.shape, settings.side(), random);
+      BodyDescription body = stage.describeAnywhere(id, size);
       if (mover) {
         body.linear_velocity = launchVelocity(settings, random);
         stage.bodies.add(id, body);

@@ -41,10 +41,9 @@ class Worlds final : public Scene {
     one_ = ofOneWorld(settings);
   }
 
-  BodyDescription body(std::size_t index, const Settings&, const ObjectType& type,
-                       Random& random) override {
-    starts_.push_back(Scene::body(index, one_, type, random));
-    return starts_.back();
+  void place(std::size_t index, BodyDescription& body, const Settings&, Random& random) override {
+    Scene::place(index, body, one_, random);
+    starts_.push_back(body);
   }
 
   void start(Stage& stage) override {

@@ -26,33 +26,26 @@ void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
   if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
   DuelReport first;
   first.most_seconds = most_seconds;
-  first.bodies = frames->scene().objects;
   std::vector<DuelSide> sides;
   for (const Case& run : cases) {
     sides.push_back({caseName(run), run, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
-  job.begin(std::move(first),
-            [&job, sides = std::move(sides), frames = std::move(frames), most_seconds] {
-              double reported = 0;
-              DuelResult result = runDuel(sides, *frames,
-                                          {.most_seconds = most_seconds,
-                                           .progress =
-                                               [&](const DuelResult& so_far, double seconds) {
-                                                 if (seconds < reported + kBetweenReports) return;
-                                                 reported = seconds;
-                                                 job.update([&](DuelReport& report) {
-                                                   report.result = so_far;
-                                                   report.seconds = seconds;
-                                                 });
-                                               },
-                                           .cancelled = [&job] { return job.cancelled(); }});
-              job.update([&](DuelReport& report) {
-                report.seconds = result.seconds;
-                report.result = std::move(result);
-              });
-              return true;
-            });
+  job.begin(std::move(first), [&job, sides = std::move(sides), frames = std::move(frames),
+                               most_seconds] {
+    double reported = 0;
+    const auto tell = [&](const DuelResult& so_far) {
+      if (so_far.seconds < reported + kBetweenReports) return;
+      reported = so_far.seconds;
+      job.update([&](DuelReport& report) { report.result = so_far; });
+    };
+    const DuelOptions options{.most_seconds = most_seconds, .progress = tell, .cancelled = [&job] {
+                                return job.cancelled();
+                              }};
+    DuelResult result = runDuel(sides, *frames, options);
+    job.update([&](DuelReport& report) { report.result = std::move(result); });
+    return true;
+  });
 }
 
 }  // namespace broadmark

@@ -15,9 +15,7 @@ struct DuelReport : TaskReport {
   static constexpr const char* kPrefix = "duel";
 
   DuelResult result;  ///< so far: without places until it is done
-  double seconds = 0;
   double most_seconds = 0;
-  std::uint32_t bodies = 0;
 
   [[nodiscard]] JobStatus status() const;
 };

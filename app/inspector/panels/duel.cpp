@@ -57,7 +57,7 @@ class DuelPanel final : public Panel {
       ImGui::SameLine();
       ImGui::AlignTextToFramePadding();
       ui.faint(fmt::format("{}, {:.0f} of at most {:.0f} s",
-                           counted(report.result.rounds(), "round"), report.seconds,
+                           counted(report.result.rounds(), "round"), report.result.seconds,
                            report.most_seconds));
       return;
     }
@@ -72,7 +72,8 @@ class DuelPanel final : public Panel {
     if (report.state == TaskState::idle) return;
     ImGui::SameLine();
     ui.faint(fmt::format("{}: {} in {}", kTaskStates.nameOf(report.state),
-                         counted(report.result.rounds(), "round"), waitingTime(report.seconds)));
+                         counted(report.result.rounds(), "round"),
+                         waitingTime(report.result.seconds)));
     ui.note("rounds");
   }
 

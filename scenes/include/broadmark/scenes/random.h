@@ -17,11 +17,23 @@ class Random {
   explicit Random(std::uint64_t seed) : engine_(seed) {}
 
   /// Uniform in [0, 1), in steps of 2^-53.
-  double uniform();
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
   /// Uniform in [low, high).
   double between(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform in the ball of this radius around the origin.
-  Vec3 inBall(double radius);
+  Vec3 inBall(double radius) {
+    // Rejection from the cube: exactly uniform, and no library function that might round
+    // differently.
+    for (;;) {
+      const double x = 2 * uniform() - 1;
+      const double y = 2 * uniform() - 1;
+      const double z = 2 * uniform() - 1;
+      if (x * x + y * y + z * z <= 1) {
+        return {static_cast<float>(radius * x), static_cast<float>(radius * y),
+                static_cast<float>(radius * z)};
+      }
+    }
+  }
 
   /// Puts the elements into random order.
   template <class Element>

@@ -20,6 +20,11 @@ struct Stage {
   PhysicsEngine& engine;
   Bodies& bodies;
   Random& random;
+
+  /// Body `id`, at rest at the origin, `size` times as large as usual.
+  [[nodiscard]] BodyDescription describeBody(std::size_t id, double size = 1) const;
+  /// The same at a random place where it is inside the world, however it is turned.
+  [[nodiscard]] BodyDescription describeAnywhere(std::size_t id, double size = 1) const;
 };
 
 /// One implementation per file, listed in CMakeLists.txt. Visits the parameters that only this
@@ -38,14 +43,14 @@ class Scene : public Parametrised {
     return info.filter.matrix();
   }
 
-  /// Called before the first call of body(): decides what concerns all bodies.
+  /// Called before the first call of place(): decides what concerns all bodies.
   virtual void prepare(const Settings&, Random&) {}
 
-  /// Body `index` as it starts. By default at a uniformly random place in a ball around the origin,
-  /// unturned, with a random velocity.
-  virtual BodyDescription body(std::size_t index, const Settings&, const ObjectType&, Random&);
+  /// Says where body `index` starts, and with which velocity. By default at a uniformly random
+  /// place in a ball around the origin, unturned, with a random velocity.
+  virtual void place(std::size_t index, BodyDescription& body, const Settings&, Random&);
 
-  /// Brings on the bodies of the initial pose. By default all, in order, as body() says.
+  /// Brings on the bodies of the initial pose. By default all, in order, as place() says.
   virtual void populate(Stage& stage);
 
   /// Called when all bodies are in their initial pose. By default gravity points down.

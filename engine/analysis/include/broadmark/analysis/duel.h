@@ -30,8 +30,8 @@ struct DuelOptions {
   double most_seconds = 60;           ///< after which it ends whatever is known
   std::uint64_t seed = 1;             ///< of the order of turns
   CheckMode check = CheckMode::hash;  ///< of the first pass; later ones give the same answers
-  /// Told after each round what is known so far, and after how many seconds.
-  std::function<void(const DuelResult&, double seconds)> progress = {};
+  /// Told after each round what is known so far.
+  std::function<void(const DuelResult&)> progress = {};
   CancelQuery cancelled = {};
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,6 +41,16 @@ Estimate medianOfSeries(std::span<const double> values);
 /// Politis and White (2004, corrected 2009) for circular blocks. At least 1, at most a quarter of
 /// the series.
 std::size_t blockLength(std::span<const double> values);
+
+/// The length of blocks for a series that is judged by these values' mean: as blockLength() says,
+/// but never short, since in short series likeness hides in the noise.
+std::size_t safeBlockLength(std::span<const double> values);
+/// 95 % interval around `estimate`, which is `statistic` of all `count` values, by a percentile
+/// bootstrap of circular blocks (Politis and Romano, 1992). `block` values stay together.
+/// `statistic` is called with the places of the values drawn. The interval is widened as Student's
+/// t is when there are few blocks. The same values give the same interval.
+Interval blockBootstrap95(std::size_t count, std::size_t block, double estimate,
+                          const std::function<double(std::span<const std::size_t>)>& statistic);
 
 /// 95 % confidence interval of the mean of independent values; nothing for fewer than two.
 std::optional<Interval> confidence95(std::span<const double> values);

@@ -1,0 +1,229 @@
+// A comparison as text: a table for people, and files for programs.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "broadmark/json_fields.h"
+#include "broadmark/results/csv.h"
+#include "compare/comparison.h"
+#include "support/table.h"
+#include "support/words.h"
+
+namespace broadmark {
+namespace {
+
+/// A, B, B/A and its interval.
+std::vector<std::string> timeCells(const CaseComparison& compared) {
+  if (!compared.ratio) return std::vector<std::string>(4);
+  const RunRatio& ratio = *compared.ratio;
+  return {durationText(ratio.before), durationText(ratio.after),
+          fmt::format("{:.3f}", ratio.ratio.value),
+          fmt::format("{:.3f}…{:.3f}", ratio.ratio.ci95.low, ratio.ratio.ci95.high)};
+}
+
+/// What differs beside the times, each once, with how many cases it concerns.
+std::string conditionsText(const Comparison& comparison) {
+  std::map<std::string, std::pair<std::size_t, bool>> found;
+  for (const CaseComparison& compared : comparison.cases) {
+    for (const ConditionDifference& difference : compared.conditions) {
+      auto& [count, refused] = found[difference.what];
+      ++count;
+      refused = difference.refused;
+    }
+  }
+  std::string text;
+  for (const auto& [what, how] : found) {
+    text += fmt::format("conditions differ: {} ({}){}\n", what, counted(how.first, "case"),
+                        how.second && !comparison.options.any_conditions
+                            ? ": not compared without --any-conditions"
+                            : "");
+  }
+  return text;
+}
+
+std::string markdown(const Comparison& comparison) {
+  std::string text =
+      "| case | A | B | B/A | 95 % interval | verdict |\n|---|--:|--:|--:|--:|---|\n";
+  for (const CaseComparison& compared : comparison.cases) {
+    text += fmt::format("| `{}` |", compared.id);
+    for (const std::string& cell : timeCells(compared)) {
+      text += cell.empty() ? " |" : fmt::format(" {} |", cell);
+    }
+    const char* bold = comparison.fails(compared) ? "**" : "";
+    text += fmt::format(" {}{}{} |\n", bold, verdictText(compared), bold);
+  }
+  text += '\n' + summaryText(comparison) + '\n';
+  for (const std::string& note : comparison.notes) text += "\n- " + note;
+  return text;
+}
+
+Json caseToJson(const Comparison& comparison, const CaseComparison& compared) {
+  Json json = {{"id", compared.id},
+               {"baseline", compared.baseline.empty() ? compared.id : compared.baseline},
+               {"verdict", kVerdicts.nameOf(compared.verdict)},
+               {"fails", comparison.fails(compared)},
+               {"status_before", statusName(compared.status_before)},
+               {"status_after", statusName(compared.status_after)},
+               {"seconds_before", nullptr},
+               {"seconds_after", nullptr},
+               {"ratio", nullptr},
+               {"ci95", nullptr},
+               {"drift", nullptr},
+               {"conditions", Json::array()}};
+  if (const auto& ratio = compared.ratio) {
+    json["seconds_before"] = ratio->before;
+    json["seconds_after"] = ratio->after;
+    json["ratio"] = ratio->ratio.value;
+    json["ci95"] = {ratio->ratio.ci95.low, ratio->ratio.ci95.high};
+    if (ratio->drift) json["drift"] = *ratio->drift;
+  }
+  for (const ConditionDifference& difference : compared.conditions) {
+    json["conditions"].push_back(difference.what);
+  }
+  return json;
+}
+
+std::string json(const Comparison& comparison) {
+  Json document = {{"schema", "broadmark-comparison/1"},
+                   {"margin", comparison.options.margin},
+                   {"fail_above", comparison.options.fail_above},
+                   {"summary", summaryText(comparison)},
+                   {"notes", comparison.notes},
+                   {"cases", Json::array()}};
+  for (const CaseComparison& compared : comparison.cases) {
+    document["cases"].push_back(caseToJson(comparison, compared));
+  }
+  return formatJson(document);
+}
+
+std::string csv(const Comparison& comparison) {
+  std::string text =
+      "id,baseline,verdict,status_before,status_after,seconds_before,seconds_after,ratio,ci95_low,"
+      "ci95_high,drift\n";
+  for (const CaseComparison& compared : comparison.cases) {
+    text += fmt::format("{},{},{},{},{}", csvField(compared.id), csvField(compared.baseline),
+                        kVerdicts.nameOf(compared.verdict), statusName(compared.status_before),
+                        statusName(compared.status_after));
+    if (const auto& ratio = compared.ratio) {
+      text += fmt::format(",{:.9g},{:.9g},{:.6g},{:.6g},{:.6g},{}\n", ratio->before, ratio->after,
+                          ratio->ratio.value, ratio->ratio.ci95.low, ratio->ratio.ci95.high,
+                          ratio->drift ? fmt::format("{:.6g}", *ratio->drift) : "");
+    } else {
+      text += ",,,,,,\n";
+    }
+  }
+  return text;
+}
+
+std::string escapedForXml(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:  // XML has no way to write other control characters
+        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return result;
+}
+
+/// Whether nothing can be said of the case.
+bool isSkipped(const CaseComparison& compared) {
+  return compared.verdict == Verdict::other_conditions ||
+         compared.verdict == Verdict::other_recording || compared.verdict == Verdict::not_timed;
+}
+
+std::string testCase(const Comparison& comparison, const CaseComparison& compared) {
+  const std::string verdict = escapedForXml(verdictText(compared));
+  std::string text =
+      fmt::format("  <testcase classname=\"broadmark\" name=\"{}\" time=\"{:.9f}\"",
+                  escapedForXml(compared.id), compared.ratio ? compared.ratio->after : 0);
+  if (comparison.fails(compared)) {
+    return text + fmt::format("><failure message=\"{}\"/></testcase>\n", verdict);
+  }
+  if (isSkipped(compared)) {
+    return text + fmt::format("><skipped message=\"{}\"/></testcase>\n", verdict);
+  }
+  return text + fmt::format("><system-out>{}</system-out></testcase>\n", verdict);
+}
+
+std::string junit(const Comparison& comparison) {
+  const auto failures = std::ranges::count_if(
+      comparison.cases, [&](const CaseComparison& one) { return comparison.fails(one); });
+  const auto skipped = std::ranges::count_if(comparison.cases, [&](const CaseComparison& one) {
+    return isSkipped(one) && !comparison.fails(one);
+  });
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<testsuite name=\"broadmark compare\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n",
+      comparison.cases.size(), failures, skipped);
+  for (const CaseComparison& compared : comparison.cases) text += testCase(comparison, compared);
+  return text + fmt::format("  <system-out>{}</system-out>\n</testsuite>\n",
+                            escapedForXml(summaryText(comparison)));
+}
+
+/// A message as workflow commands want it.
+std::string escapedForGithub(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '%' || c == '\n' || c == '\r') {
+      result += fmt::format("%{:02X}", static_cast<unsigned>(c));
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+std::string github(const Comparison& comparison) {
+  std::string text;
+  for (const CaseComparison& compared : comparison.cases) {
+    const bool fails = comparison.fails(compared);
+    if (!fails && compared.verdict != Verdict::undecided) continue;
+    text +=
+        fmt::format("::{} title=broadmark compare::{}\n", fails ? "error" : "warning",
+                    escapedForGithub(fmt::format("{}: {}", compared.id, verdictText(compared))));
+  }
+  return text + fmt::format("::notice title=broadmark compare::{}\n",
+                            escapedForGithub(summaryText(comparison)));
+}
+
+}  // namespace
+
+std::string formatComparison(const Comparison& comparison) {
+  std::vector<std::vector<std::string>> rows = {
+      {"case", "A", "B", "B/A", "95 % interval", "verdict"}};
+  for (const CaseComparison& compared : comparison.cases) {
+    std::vector<std::string>& row = rows.emplace_back(timeCells(compared));
+    const std::string& baseline = compared.baseline;
+    row.insert(row.begin(), compared.id + (baseline.empty() ? "" : " against " + baseline));
+    row.push_back(verdictText(compared));
+  }
+  std::string text = alignColumns(rows, {false, true, true, true, true, false});
+  text += conditionsText(comparison);
+  for (const std::string& note : comparison.notes) text += note + '\n';
+  return text + summaryText(comparison) + '\n';
+}
+
+std::vector<ComparisonWriter> comparisonWriters() {
+  return {{"markdown", "the comparison as Markdown", markdown},
+          {"json", "the comparison as JSON", json},
+          {"csv", "the comparison as CSV", csv},
+          {"junit", "the comparison as JUnit XML", junit},
+          {"github", "failures and undecided cases as annotations of GitHub's workflows", github}};
+}
+
+}  // namespace broadmark
