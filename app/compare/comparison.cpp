@@ -32,17 +32,31 @@ struct Candidate {
 /// those that are alike in both.
 using CaseKey = std::tuple<std::string, std::string, int>;
 
+bool isThreads(const std::string& part) {
+  return part.size() > 1 && part[0] == 't' &&
+         std::all_of(part.begin() + 1, part.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Whether a part of a case's name, but the first, states this.
+bool states(const std::string& part, const std::string& what) {
+  if (what == "threads") return isThreads(part);
+  if (what == "isa") return kIsas.find(part).has_value();
+  return part.starts_with(what + '=');
+}
+
 /// The case's name without what is compared.
 std::string nameWithout(const CaseResult& result, const std::string& by) {
   if (by == "algorithm") return {};
   std::string name = caseNameOf(result);
   if (by.empty()) return name;
-  std::string part = fmt::format("/{}=", by);
-  if (by == "threads") part = fmt::format("/t{}", result.threads);
-  if (by == "isa") part = fmt::format("/{}", isaName(result.isa));
-  const std::size_t at = name.find(part);
-  if (at != name.npos) name.erase(at, name.find('/', at + 1) - at);
-  return name;
+  std::string rest;
+  for (std::size_t from = 0; from <= name.size();) {
+    const std::size_t to = std::min(name.find('/', from), name.size());
+    const std::string part = name.substr(from, to - from);
+    if (from == 0 || !states(part, by)) rest += '/' + part;
+    from = to + 1;
+  }
+  return rest;
 }
 
 /// The cases of one run by what they are compared as, in their order.
