@@ -1,6 +1,5 @@
 #include "opencl/device_sorter.h"
 
-
 #include "opencl_kernels.h"
 
 namespace broadmark::opencl {

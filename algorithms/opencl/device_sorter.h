@@ -1,7 +1,6 @@
 // Stable radix sort on a device, of 32-bit keys with 32-bit values. O(n) per digit.
 #pragma once
 
-
 #include "opencl/device_context.h"
 
 namespace broadmark::opencl {

@@ -2,7 +2,6 @@
 
 #include "original/settings.h"
 
-
 #include "broadmark/json_fields.h"
 
 namespace broadmark {

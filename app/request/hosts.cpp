@@ -2,7 +2,6 @@
 
 #include "request/hosts.h"
 
-
 #include "broadmark/harness/memory_limit.h"
 #include "broadmark/harness/worker_process.h"
 

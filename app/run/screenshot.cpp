@@ -2,8 +2,6 @@
 
 #include "run/screenshot.h"
 
-
-
 namespace broadmark {
 
 void takeScreenshot(IndexedFrames& recording, std::uint32_t index, Oracle& oracle,

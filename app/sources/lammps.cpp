@@ -1,7 +1,6 @@
 // Particle trajectories as LAMMPS dumps them as text: sections "ITEM: …", of which the last of each
 // frame names the columns and holds a line for each atom, in any order.
 
-
 #include <algorithm>
 
 #include "imports/text_frames.h"

@@ -1,6 +1,5 @@
 #include "json_case.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,6 +1,5 @@
 #include "inspector/run/lane.h"
 
-
 #include <algorithm>
 #include <span>
 

@@ -1,6 +1,5 @@
 #include "broadmark/fuzz/torture.h"
 
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -23,7 +23,7 @@ namespace broadmark {
 struct Repetition {
   std::int64_t initialize_ns = 0;
   std::vector<FrameTimes> frames;
-  ProcessorCounts processor = {};                 ///< sums over the frames' four phases
+  ProcessorCounts processor = {};  ///< sums over the frames' four phases
 };
 
 /// What is counted in each frame: pairs in the answer (of events: that began or ended), bodies
