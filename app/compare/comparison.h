@@ -69,7 +69,7 @@ Comparison compareResults(std::span<const NamedResults> before, const NamedResul
 
 /// "ok -> timeout", "1.5 % slower": a verdict in words.
 std::string verdictText(const CaseComparison&);
-/// "12 cases: 10 same, 1 faster, 1 REGRESSED; the machine was up to 2 % slower"
+/// "12 cases: 10 same, 1 faster, 1 REGRESSED; drift +1.3 %"
 std::string summaryText(const Comparison&);
 
 /// One way to write a comparison.

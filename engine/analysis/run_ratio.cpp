@@ -199,6 +199,7 @@ class OwnRatios {
  public:
   explicit OwnRatios(std::span<const PairedCase> cases) : cases_(cases) {
     std::ranges::transform(cases, std::back_inserter(ratios_), ownRatio);
+    for (std::size_t i = 0; i < ratios_.size(); ++i) drifts_.push_back(medianOfOthers(i));
   }
 
   [[nodiscard]] const std::optional<OwnRatio>& operator[](std::size_t i) const {
@@ -207,20 +208,14 @@ class OwnRatios {
 
   /// Median ratio of the other cases on the same recording, which took turns with this one, or of
   /// all others where there are fewer than two of those. Nothing if there are no others.
-  [[nodiscard]] std::optional<double> driftOf(std::size_t i) const {
-    constexpr std::size_t kMinTurns = 2;
-    std::vector<double> others = othersOf(i, true);
-    if (others.size() < kMinTurns) others = othersOf(i, false);
-    if (others.empty()) return std::nullopt;
-    return quantile(others, 0.5);
-  }
+  [[nodiscard]] std::optional<double> driftOf(std::size_t i) const { return drifts_[i]; }
 
   /// Half of an interval of what the other cases' ratios differ from their drift by, which contains
   /// the noise within their runs. Nothing if there are too few.
   [[nodiscard]] std::optional<double> spreadWithout(std::size_t i) const {
     std::vector<double> deviations;
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
-      if (j != i && ratios_[j]) deviations.push_back(std::abs(ratios_[j]->ratio - *driftOf(j)));
+      if (j != i && ratios_[j]) deviations.push_back(std::abs(ratios_[j]->ratio - *drifts_[j]));
     }
     if (deviations.size() < kMinOthers) return std::nullopt;
     constexpr double kSigmas = 1.4826;  // of a normal distribution, in its median deviation
@@ -229,6 +224,14 @@ class OwnRatios {
   }
 
  private:
+  [[nodiscard]] std::optional<double> medianOfOthers(std::size_t i) const {
+    constexpr std::size_t kMinTurns = 2;
+    std::vector<double> others = othersOf(i, true);
+    if (others.size() < kMinTurns) others = othersOf(i, false);
+    if (others.empty()) return std::nullopt;
+    return quantile(others, 0.5);
+  }
+
   [[nodiscard]] std::vector<double> othersOf(std::size_t i, bool on_the_same_recording) const {
     std::vector<double> others;
     for (std::size_t j = 0; j < ratios_.size(); ++j) {
@@ -241,6 +244,7 @@ class OwnRatios {
 
   std::span<const PairedCase> cases_;
   std::vector<std::optional<OwnRatio>> ratios_;
+  std::vector<std::optional<double>> drifts_;
 };
 
 }  // namespace
