@@ -255,8 +255,8 @@ class Columns final : public PairBroadPhase {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"copy_cost", "cost of a copy of a box, in tests of a pair: more make wider columns",
            &copy_cost_, 1, 1'000'000});
-    visit({"crowded", "tests per copy in a column from which on it is split", &crowded_, 1,
-           1'000'000'000});
+    visit({"split_threshold", "tests per copy in a column from which on it is split",
+           &split_threshold_, 1, 1'000'000'000});
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
@@ -287,7 +287,7 @@ class Columns final : public PairBroadPhase {
     return {kernels_,
             {boxes_.data(), boxes_.size()},
             static_cast<double>(copy_cost_),
-            static_cast<std::uint64_t>(crowded_)};
+            static_cast<std::uint64_t>(split_threshold_)};
   }
   [[nodiscard]] CutWorld world() const { return {layout_, chains_}; }
 
@@ -295,7 +295,7 @@ class Columns final : public PairBroadPhase {
   bool copyBoxes(const Frame& frame);
 
   std::int64_t copy_cost_ = 150;
-  std::int64_t crowded_ = 100;
+  std::int64_t split_threshold_ = 100;
   const Kernels* kernels_ = nullptr;
   const OverlapKernels* dense_kernels_ = nullptr;
 

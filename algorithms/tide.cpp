@@ -38,10 +38,10 @@ namespace {
 class Tide final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"from_scratch_cost",
-           "cost of finding all pairs anew, in percent of what is expected: more of it keeps to "
-           "the grid longer",
-           &from_scratch_cost_, 1, 1'000'000});
+    visit({"full_search_cost_scale",
+           "cost of a full search, in percent of the prediction: the grid is kept longer if it is "
+           "higher",
+           &full_search_cost_scale_, 1, 1'000'000});
   }
 
   void reportEvents() override { reports_events_ = true; }
@@ -71,7 +71,7 @@ class Tide final : public BroadPhase {
   void takePairs();
   void countPairs();
 
-  std::int64_t from_scratch_cost_ = 100;
+  std::int64_t full_search_cost_scale_ = 100;
   bool reports_events_ = false;
   CollisionFilter filter_;
   std::vector<std::uint32_t> bodies_;  ///< all ids
@@ -98,7 +98,7 @@ class Tide final : public BroadPhase {
 void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   filter_ = scene.filter;
   costs_ = CostModel(reports_events_ ? kCostsOfEvents : kCostsOfPairs,
-                     static_cast<double>(from_scratch_cost_) / 100, first.boxes.size());
+                     static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size());
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
   anew_ = columns::create();
@@ -263,7 +263,7 @@ std::vector<Algorithm> variants() {
                  .instance_per_world = true,
                  .max_objects =
                      std::min<std::uint64_t>(kMaxMarkedBodies - 1, LooseGrid::kMostBodies),
-                 .rare_parameters = {{"from_scratch_cost", "1000000"}}},
+                 .rare_parameters = {{"full_search_cost_scale", "1000000"}}},
       .description = {.principle = "grid",
                       .optimisations = "events without pairs, several sizes of cells",
                       .time = "O(m · k), m bodies that move, k around each; O(n) if many move",

@@ -21,11 +21,12 @@ using Float4 = std::array<float, 4>;
 }  // namespace
 
 void DeviceBroadPhase::visitParameters(const ParameterVisitor& visit) {
-  visit({"way", "how work is divided: for a CPU's few threads or a GPU's many", &way_});
+  visit({"work_division", "how work is divided: for a CPU's few threads or a GPU's many",
+         &work_division_});
 }
 
 bool DeviceBroadPhase::likeGpu() const {
-  return way_.value == "auto" ? !context_->onCpu() : way_.value == "gpu";
+  return work_division_.value == "auto" ? !context_->onCpu() : work_division_.value == "gpu";
 }
 
 void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Execution& execution) {

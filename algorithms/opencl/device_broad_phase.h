@@ -100,7 +100,7 @@ class DeviceBroadPhase : public BroadPhase {
   void makeProgram();
   cl_uint searchOnce();
 
-  Choice way_{"auto", {"auto", "cpu", "gpu"}};
+  Choice work_division_{"auto", {"auto", "cpu", "gpu"}};
   DeviceContext* context_ = nullptr;  ///< the execution's
   std::optional<DeviceSorter> sorter_;
   std::size_t bodies_per_item_ = 1;

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "broadmark/scenes/simulation.h"
+#include "request/former_names.h"
 #include "request/sweep.h"
 
 namespace broadmark {
@@ -55,7 +56,7 @@ ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
   ParameterValues values;
   for (const std::string& text : texts) {
     const auto split = text.find('=');
-    const std::string key = text.substr(0, std::min(split, text.size()));
+    const std::string key = currentParameterKey(text.substr(0, std::min(split, text.size())));
     if (split == std::string::npos || key.empty() || key.front() == ':' || key.back() == ':') {
       throw InputError(
           fmt::format("--param: '{}' is not of the form KEY=VALUE or ALGORITHM:KEY=VALUE", text));

@@ -9,17 +9,25 @@
 #include "broadmark/json_fields.h"
 #include "broadmark/names.h"
 #include "command_line/session_options.h"
+#include "request/former_names.h"
 #include "request/sweep.h"
 
 namespace broadmark {
 namespace {
 
 /// "--order-seed" as "order_seed", "source" as it is.
-std::string keyOf(const CLI::Option& option) {
-  std::string key = option.get_name();
+std::string keyOf(std::string key) {
   key.erase(0, key.find_first_not_of('-'));
   std::ranges::replace(key, '-', '_');
   return key;
+}
+
+std::string keyOf(const CLI::Option& option) { return keyOf(option.get_name()); }
+
+/// "order_seed" as "--order-seed".
+std::string optionOf(std::string key) {
+  std::ranges::replace(key, '_', '-');
+  return "--" + key;
 }
 
 /// Whether each of several values is given by the option once more, as they may hold commas.
@@ -119,8 +127,9 @@ std::vector<std::string> argumentsOf(std::string_view text, const std::string& n
     keys.push_back(keyOf(*option));
   }
   std::vector<std::string> arguments;
-  for (const auto& [key, value] : json.items()) {
-    if (key == "schema") continue;
+  for (const auto& [given, value] : json.items()) {
+    if (given == "schema") continue;
+    const std::string key = keyOf(currentOption(optionOf(given)));
     const auto found = std::ranges::find(keys, key);
     if (found == keys.end())
       throw InputError(fmt::format("{}: {}", name, unknownName("key", key, keys)));

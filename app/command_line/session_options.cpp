@@ -167,7 +167,7 @@ void SessionParser::addRun() {
                     "of --repetitions auto: width of the mean's 95 % interval over the "
                     "repetitions"));
   tag_auto(addPositive(
-      app_, "--most-seconds", "S", repetitions.most_seconds,
+      app_, "--max-seconds", "S", repetitions.max_seconds,
       fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
                   "more than {} times",
                   RepetitionOptions::kFewestUntilPrecise)));

@@ -20,6 +20,7 @@
 #include "commands/command.h"
 #include "inspector/run_inspector.h"
 #include "parts.h"
+#include "request/former_names.h"
 #include "request/plugins.h"
 #include "run/export_case.h"
 #include "run/headless.h"
@@ -110,6 +111,7 @@ class CommandLine {
 
   /// The help that is asked for; nothing if there is anything to run.
   std::optional<std::string> parse(std::vector<std::string> arguments) {
+    arguments = withCurrentOptions(std::move(arguments));
     std::ranges::reverse(arguments);  // as CLI11 takes them
     try {
       app_.parse(std::move(arguments));

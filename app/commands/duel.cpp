@@ -63,7 +63,8 @@ std::vector<DuelSide> sidesOf(const Options& options) {
   }
   if (sides.size() < 2) {
     throw InputError(
-        "duel: one variant alone: name another, or another build of this program (--with)");
+        "duel: one variant alone: name another, or another build of this program "
+        "(--baseline-program)");
   }
   return sides;
 }
@@ -98,10 +99,10 @@ int run(Options options) {
   Progress progress("duel", static_cast<std::uint64_t>(kTicks), options.quiet);
   options.duel.cancelled = InterruptGuard::requested;
   options.duel.progress = [&](const DuelResult& now) {
-    const double left = std::max(options.duel.most_seconds - now.seconds, 0.0);
+    const double left = std::max(options.duel.max_seconds - now.seconds, 0.0);
     progress.detail(counted(now.rounds(), "round"));
     progress.update(
-        static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.most_seconds)),
+        static_cast<std::uint64_t>(kTicks * std::min(1.0, now.seconds / options.duel.max_seconds)),
         left);
   };
   const DuelResult result = [&] {
@@ -128,13 +129,12 @@ std::function<int()> add(CLI::App& app) {
                  "PLUGIN.so:ID… or NAME:ID…")
       ->type_name("VARIANT")
       ->required();
-  addPath(app, "--with", "PROGRAM", options->program,
-          "another build of broadmark, which runs every variant, too");
+  addPath(app, "--baseline-program", "PROGRAM", options->program,
+          "also run every variant with this build of broadmark");
   addShare(app, "--precision", options->duel.precision, true,
            "ends the duel: width of the ratios' 95 % intervals; variants within twice that are the "
            "same");
-  addPositive(app, "--seconds", "S", options->duel.most_seconds,
-              "ends the duel, whatever is known then");
+  addPositive(app, "--max-seconds", "S", options->duel.max_seconds, "stop after this many seconds");
   addNamed(app, "--check", "MODE", options->duel.check, kCheckModes,
            "answers of the first pass: full: as exact pair sets; hash: counts and hashes; off");
   addDevice(app, options->cases.device);

@@ -14,6 +14,7 @@
 #include "broadmark/error.h"
 #include "broadmark/names.h"
 #include "original/ids.h"
+#include "request/former_names.h"
 #include "request/plugins.h"
 #include "request/sweep.h"
 
@@ -102,7 +103,7 @@ void takeCasePart(Case& made, const std::string& part, const std::string& name) 
   } else if (answer) {
     made.answer = *answer;
   } else if (equals != std::string::npos && equals > 0) {
-    made.parameters[part.substr(0, equals)] = part.substr(equals + 1);
+    made.parameters[currentParameterKey(part.substr(0, equals))] = part.substr(equals + 1);
   } else if (part.size() > 1 && part[0] == 't' && part[1] >= '0' && part[1] <= '9' &&
              traits.parallel) {
     made.threads = parseThreadCount(part.substr(1));

@@ -10,7 +10,7 @@ bool RepetitionRule::isEnough(const CaseResult& result) const {
   if (done >= options_.most) return true;
   if (!options_.until_precise || done < RepetitionOptions::kFewestUntilPrecise) return false;
   const std::chrono::duration<double> passed = Clock::now() - begin_;
-  if (passed.count() >= options_.most_seconds) return true;
+  if (passed.count() >= options_.max_seconds) return true;
   const Summary summary = result.summary();
   return summary.ci95 &&
          summary.ci95->high - summary.ci95->low <= options_.precision * summary.seconds_per_frame;

@@ -19,7 +19,7 @@ struct RepetitionOptions {
   int most = 1;                ///< and fewest, unless:
   bool until_precise = false;  ///< a case is repeated until its mean is known well enough
   double precision = 0.02;     ///< width of the mean's interval, as a share of it
-  double most_seconds = 300;   ///< of a recording
+  double max_seconds = 300;    ///< of a recording
   std::uint64_t order_seed = 1;
 
   /// Repetitions of a case, with those for warming up.

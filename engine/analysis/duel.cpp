@@ -135,7 +135,7 @@ class Duel {
     const std::size_t rounds = result_.rounds();
     result_.seconds = elapsed();
     if (options_.progress) options_.progress(result_);
-    const bool time_is_up = result_.seconds >= options_.most_seconds;
+    const bool time_is_up = result_.seconds >= options_.max_seconds;
     if (rounds < next_look_ && !time_is_up) return;
     next_look_ = static_cast<std::size_t>(static_cast<double>(rounds) * kNextLook) + 1;
     const bool narrow = rounds >= kFewestRounds && isNarrow();

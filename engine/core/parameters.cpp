@@ -55,6 +55,18 @@ void setChoice(const Parameter& parameter, std::string_view text, Choice& choice
 
 }  // namespace
 
+std::string_view currentParameterName(std::string_view name) {
+  constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {
+      {"crowded", "split_threshold"},
+      {"from_scratch_cost", "full_search_cost_scale"},
+      {"way", "work_division"},
+  };
+  for (const auto& [former, current] : kFormerNames) {
+    if (name == former) return current;
+  }
+  return name;
+}
+
 std::string_view parameterUnit(const Parameter& parameter) {
   constexpr std::pair<std::string_view, std::string_view> kUnits[] = {
       {"seconds", "s"},

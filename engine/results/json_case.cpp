@@ -196,7 +196,11 @@ CaseResult caseFrom(const JsonFields& json) {
   result.threads = json.integer<int>("threads", 1);
   result.vectorised = json.boolean("vectorised");
   if (json.has("plugin")) result.plugin = json.text("plugin");  // not in earlier files
-  json.read("params", result.parameters);
+  ParameterValues parameters;
+  json.read("params", parameters);
+  for (auto& [name, value] : parameters) {
+    result.parameters.emplace(currentParameterName(name), std::move(value));
+  }
   if (json.has("bodies")) {
     const JsonFields bodies = json.object("bodies");
     result.bodies = {bodies.number("mean"), bodies.integer<std::uint64_t>("max")};

@@ -361,7 +361,7 @@ class ColumnsFamily : public testing::TestWithParam<Algorithm> {
     for (const Configuration& way : configurations(GetParam())) {
       for (const ParameterValues& parameters :
            {ParameterValues{}, ParameterValues{{"copy_cost", "1"}},
-            ParameterValues{{"copy_cost", "1"}, {"crowded", "1"}}}) {
+            ParameterValues{{"copy_cost", "1"}, {"split_threshold", "1"}}}) {
         SCOPED_TRACE(caseName(caseOf(GetParam(), way, parameters)));
         TestRun run(GetParam(), way, parameters);
         SceneInfo scene;
@@ -510,7 +510,7 @@ TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
         inputs::uniform(150'000, 1, 1)}) {  // so many are kept past the caches
     std::vector<Pair> first;
     for (const int threads : {1, 2, 3, 5, 8}) {
-      TestRun run(GetParam(), {bestIsa(), threads}, {{"copy_cost", "5"}, {"crowded", "5"}});
+      TestRun run(GetParam(), {bestIsa(), threads}, {{"copy_cost", "5"}, {"split_threshold", "5"}});
       run.start(boxes);
       std::vector<Pair> pairs;
       for (const PairRun part : run.step(boxes))

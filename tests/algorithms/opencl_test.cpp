@@ -126,7 +126,7 @@ class OwnKernels : public OnDevice {};
 
 TEST_P(OwnKernels, BothWaysGiveTheRightPairs) {
   for (const char* way : {"cpu", "gpu"}) {
-    TestRun run(GetParam(), kTwoThreads, {{"way", way}});
+    TestRun run(GetParam(), kTwoThreads, {{"work_division", way}});
     for (const inputs::Input& input : inputs::kAll) {
       for (const std::size_t n : {2, 127, 128, 129, 513, 1000}) {
         ASSERT_TRUE(findsAll(run, framesOf(input, n, 3)))
@@ -152,7 +152,7 @@ TEST_P(OwnKernels, DrawCellsOrNodesRoundEveryBodyOrTheAxis) {
 // Little enough for an interpreter that watches each access to memory.
 TEST_P(OwnKernels, FewBodiesAreRight) {
   for (const char* way : {"cpu", "gpu"}) {
-    TestRun run(GetParam(), kTwoThreads, {{"way", way}});
+    TestRun run(GetParam(), kTwoThreads, {{"work_division", way}});
     for (const std::size_t n : {2, 65, 130}) {
       ASSERT_TRUE(findsAll(run, framesOf({"few", inputs::uniform}, n, 2)))
           << "n = " << n << ", way " << way;

@@ -161,13 +161,26 @@ TEST(Session, ValuesAreUnderstood) {
 
 TEST(Session, AutomaticRepetitions) {
   const SessionOptions options = session(
-      {"--repetitions", "auto", "--precision", "1%", "--most-seconds", "60", "--order-seed", "7"});
+      {"--repetitions", "auto", "--precision", "1%", "--max-seconds", "60", "--order-seed", "7"});
   EXPECT_TRUE(options.repetitions.until_precise);
   EXPECT_EQ(options.repetitions.most, RepetitionOptions::kMostUntilPrecise);
   EXPECT_EQ(options.repetitions.precision, 0.01);
-  EXPECT_EQ(options.repetitions.most_seconds, 60);
+  EXPECT_EQ(options.repetitions.max_seconds, 60);
   EXPECT_EQ(options.repetitions.order_seed, 7U);
   EXPECT_FALSE(session({}).repetitions.until_precise);
+}
+
+TEST(Session, FormerNamesAreAcceptedWithALine) {
+  testing::internal::CaptureStderr();
+  const SessionOptions options = session({"--repetitions", "auto", "--most-seconds=60", "--param",
+                                          "tide:from_scratch_cost=50", "--param", "crowded=7"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "broadmark: '--most-seconds' is now called '--max-seconds'\n"
+            "broadmark: 'from_scratch_cost' is now called 'full_search_cost_scale'\n"
+            "broadmark: 'crowded' is now called 'split_threshold'\n");
+  EXPECT_EQ(options.repetitions.max_seconds, 60);
+  EXPECT_EQ(options.parameters,
+            (ParameterValues{{"tide:full_search_cost_scale", "50"}, {"split_threshold", "7"}}));
 }
 
 TEST(Session, NumbersOutOfRangeAreNamed) {
@@ -188,8 +201,8 @@ TEST(Session, NumbersOutOfRangeAreNamed) {
   expectSessionRefused({"--repetitions", "0"}, {"--repetitions", "'0'"});
   expectSessionRefused({"--repetitions", "x"}, {"--repetitions", "'x'"});
   expectSessionRefused({"--precision", "1%"}, {"--precision", "--repetitions auto"});
-  expectSessionRefused({"--most-seconds", "9", "--repetitions", "5"},
-                       {"--most-seconds", "--repetitions auto"});
+  expectSessionRefused({"--max-seconds", "9", "--repetitions", "5"},
+                       {"--max-seconds", "--repetitions auto"});
   expectSessionRefused({"--repetitions", "auto", "--precision", "0"}, {"--precision", "'0'"});
   expectSessionRefused({"--warmup", "-1"}, {"--warmup", "'-1'"});
   expectSessionRefused({"--frame", "-1"}, {"--frame", "'-1'"});

@@ -45,7 +45,7 @@ TEST(RepetitionRule, AutoEndsWhenTheMeanIsKnown) {
 }
 
 TEST(RepetitionRule, AutoEndsWhenTimeIsUpButNotBeforeFive) {
-  const RepetitionOptions options{.most = 9, .until_precise = true, .most_seconds = 0};
+  const RepetitionOptions options{.most = 9, .until_precise = true, .max_seconds = 0};
   const RepetitionRule rule(options);
   EXPECT_FALSE(rule.isEnough(resultOfFrames({1, 5, 1, 5})));
   EXPECT_TRUE(rule.isEnough(resultOfFrames({1, 5, 1, 5, 1})));

@@ -55,7 +55,7 @@ TEST_F(RunRequests, KeepEveryOption) {
       {"--param", "kd:b=x=y", "--plugin", "p,q.so", "--plugin", "r.so", "--recorder", "posrot"},
       {"--algorithm", "sap*,kd", "--threads", "2,1", "--isa", "sse2", "--device", "0"},
       {"--answer", "events", "--filter", "1e5|x", "--shard", "1/4", "--repetitions", "auto"},
-      {"--precision", "1.5%", "--most-seconds", "60", "--order-seed", "7", "--warmup", "2"},
+      {"--precision", "1.5%", "--max-seconds", "60", "--order-seed", "7", "--warmup", "2"},
       {"--time-limit", "0.25", "--allow-timeout", "--check", "hash", "--hard-limit", "2.5"},
       {"--pin", "--memory-limit", "0.5", "--json", "r.json", "--csv", "r.csv", "--record", "dir"},
       {"--screenshot", "s.png", "--frame", "0", "--size", "16x9", "--gl", "egl", "--swept"},
@@ -99,6 +99,13 @@ TEST_F(RunRequests, AreUnderstoodHoweverValuesAreWritten) {
   EXPECT_TRUE(options.hosts.pin);
   EXPECT_FALSE(options.allow_timeout);
   EXPECT_THAT(options.plugins, ElementsAre("one.so"));
+}
+
+TEST_F(RunRequests, MayHoldFormerNames) {
+  const SessionOptions options = sessionWith(
+      R"("source": "freefall", "repetitions": "auto", "most_seconds": 60, "param": {"crowded": 7})");
+  EXPECT_EQ(options.repetitions.max_seconds, 60);
+  EXPECT_EQ(options.parameters, (ParameterValues{{"split_threshold", "7"}}));
 }
 
 TEST_F(RunRequests, GiveWayToOptionsBesideThem) {

@@ -83,7 +83,7 @@ bool measure(const std::string& id, Drifting& frames, const Options& options) {
   const Case run = makeCase(*algorithm, bestIsa(), options.threads, "", {});
   const DuelResult duel =
       runDuel(sidesOf(run, options.pin), frames,
-              {.precision = kSame, .most_seconds = options.seconds, .check = CheckMode::off});
+              {.precision = kSame, .max_seconds = options.seconds, .check = CheckMode::off});
   fmt::print("{:>8}  {:10} ", frames.scene().objects, id);
   if (!duel.ok()) {
     const auto failed = std::ranges::find_if(

@@ -38,7 +38,7 @@ TEST_F(Duel, TellsTheFasterOne) {
 }
 
 TEST_F(Duel, RanksMoreThanTwo) {
-  const Ended ended = run(duelOf({"bf", "sap-simd/scalar", "kd"}, {"--seconds", "0.5"}));
+  const Ended ended = run(duelOf({"bf", "sap-simd/scalar", "kd"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"bf", "sap-simd/scalar", "kd", "1."}) {
     EXPECT_THAT(ended.out, HasSubstr(word));
@@ -46,14 +46,14 @@ TEST_F(Duel, RanksMoreThanTwo) {
 }
 
 TEST_F(Duel, OfPairsAndEvents) {
-  const Ended ended = run(duelOf({"kd", "kd/events", "tracy/events"}, {"--seconds", "0.5"}));
+  const Ended ended = run(duelOf({"kd", "kd/events", "tracy/events"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   for (const char* word : {"kd/events", "tracy/events"}) EXPECT_THAT(ended.out, HasSubstr(word));
-  EXPECT_EQ(run(duelOf({"bf", "sap"}, {"--seconds", "0.2", "--answer", "events"})).status, 0);
+  EXPECT_EQ(run(duelOf({"bf", "sap"}, {"--max-seconds", "0.2", "--answer", "events"})).status, 0);
 }
 
 TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
-  const Ended ended = run(duelOf({"bf", "sap"}, {"--seconds", "0.5", "--json", "-"}));
+  const Ended ended = run(duelOf({"bf", "sap"}, {"--max-seconds", "0.5", "--json", "-"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   const Json json = Json::parse(ended.out, nullptr, false);
   ASSERT_TRUE(json.is_object()) << ended.out;
@@ -64,19 +64,27 @@ TEST_F(Duel, ItsJsonMayGoToStandardOutputAndNothingElseThen) {
 TEST_F(Duel, OfTwoBuildsOfAPlugIn) {
   fs::copy_file(places::faultyPlugin(), file("old.so"));
   fs::copy_file(places::faultyPlugin(), file("new.so"));
-  const Ended ended = run(duelOf({"old.so:faulty", "new.so:faulty"}, {"--seconds", "0.5"}));
+  const Ended ended = run(duelOf({"old.so:faulty", "new.so:faulty"}, {"--max-seconds", "0.5"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("old.so:faulty"));
 }
 
 TEST_F(Duel, OfTwoPrograms) {
-  const Ended ended = run(duelOf({"sap"}, {"--seconds", "0.5", "--with", places::program()}));
+  const Ended ended =
+      run(duelOf({"sap"}, {"--max-seconds", "0.5", "--baseline-program", places::program()}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("sap (" + std::string(places::program()) + ")"));
 }
 
+TEST_F(Duel, TakesOptionsAndParametersByFormerNames) {
+  const Ended ended = run(duelOf({"columns/crowded=7", "sap"}, {"--seconds", "0.1"}));
+  EXPECT_EQ(ended.status, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("'--seconds' is now called '--max-seconds'"));
+  EXPECT_THAT(ended.err, HasSubstr("'crowded' is now called 'split_threshold'"));
+}
+
 TEST_F(Duel, WarnsOfWhatDisturbsTimesAndPins) {
-  const Ended ended = run(duelOf({"sap", "bf-mt/t500"}, {"--seconds", "0.1", "--pin"}));
+  const Ended ended = run(duelOf({"sap", "bf-mt/t500"}, {"--max-seconds", "0.1", "--pin"}));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.warnings, Contains(HasSubstr("500 threads take turns")));
 }
@@ -98,7 +106,7 @@ TEST_F(Duel, BadVariantsAreRefused) {
   expectRefusal(duelOf({"sap", "gone.so:x"}), {"gone.so"});
   expectRefusal(duelOf({"sap", "kd"}, {"--precision", "0"}), {"--precision"});
   expectRefusal(duelOf({"sap", "kd"}, {"--param", "densty=1"}), {"'densty'", "'density'"});
-  expectRefusal(duelOf({"sap"}, {"--with", "gone"}), {"gone"});
+  expectRefusal(duelOf({"sap"}, {"--baseline-program", "gone"}), {"gone"});
   expectRefusal({"duel", "gone.aabbs", "sap", "kd"}, {"gone.aabbs"});
 }
 

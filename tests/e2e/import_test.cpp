@@ -74,7 +74,8 @@ TEST_F(Import, ScenesAndRecordingsCanBeSwept) {
   const Ended described = run({"verify", kept, "--swept", "--describe"});
   EXPECT_EQ(described.status, 0) << described.err;
   EXPECT_THAT(described.out, HasSubstr("Brownian swept Cubes"));
-  const Ended duel = run({"duel", kept, "sap", "bf", "--swept", "--seconds", "0.3", "--json", "-"});
+  const Ended duel =
+      run({"duel", kept, "sap", "bf", "--swept", "--max-seconds", "0.3", "--json", "-"});
   EXPECT_EQ(duel.status, 0) << duel.err;
   EXPECT_THAT(duel.out, HasSubstr("Brownian swept"));
 }

@@ -150,9 +150,9 @@ TEST_F(Interruption, OfARunsFirstSimulationWritesNothing) {
 
 TEST_F(Interruption, OfADuelWritesNothing) {
   const std::string printing = places::unrulyPlugin() + ":unruly/deed=print";
-  const Arguments duel = {"duel",   "freefall", "--objects",   "20",        "--frames",
-                          "20",     "bf",       printing,      "--seconds", "1000",
-                          "--json", "d.json",   "--precision", "1e-9",      "--quiet"};
+  const Arguments duel = {"duel",        "freefall", "--objects",     "20",   "--frames", "20",
+                          "bf",          printing,   "--max-seconds", "1000", "--json",   "d.json",
+                          "--precision", "1e-9",     "--quiet"};
   Program endless(directory_, duel);
   ASSERT_TRUE(endless.waitForText("printed on purpose", 20));
   endless.signal(SIGINT);

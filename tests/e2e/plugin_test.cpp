@@ -101,7 +101,7 @@ TEST_F(EnginePlugin, RunsLiveAuthoredAndInADuel) {
     EXPECT_EQ(ended.status, 0) << source << ended.out << ended.err;
   }
   const Ended duel = run({"duel", "brownian", "sap", "sap-simd", "--plugin", plugin_, "--engine",
-                          "drift", "--objects", "50", "--frames", "5", "--seconds", "0.2"});
+                          "drift", "--objects", "50", "--frames", "5", "--max-seconds", "0.2"});
   EXPECT_EQ(duel.status, 0) << duel.err;
 }
 

@@ -262,6 +262,13 @@ TEST(ResultsJson, ErrorsNameFileAndKey) {
   }
 }
 
+TEST(ResultsJson, ParametersByFormerNamesAreRead) {
+  const Results results =
+      parseResults(spoilt("/cases/0/params", {{"crowded", "7"}, {"cells", "2"}}), "a.json");
+  EXPECT_EQ(results.cases.front().parameters,
+            (ParameterValues{{"split_threshold", "7"}, {"cells", "2"}}));
+}
+
 TEST(ResultsJson, MissingKeysAreNamed) {
   const Json whole = Json::parse(format(everything(), "json"));
   for (const auto& item : whole["cases"][0].items()) {

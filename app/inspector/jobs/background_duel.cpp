@@ -20,26 +20,26 @@ JobStatus DuelReport::status() const {
 }
 
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
-               std::unique_ptr<IndexedFrames> frames, double most_seconds,
+               std::unique_ptr<IndexedFrames> frames, double max_seconds,
                const HostMaker& make_host) {
   if (cases.size() < 2) throw InputError("duel: one algorithm alone: add another one");
   if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
   DuelReport first;
-  first.most_seconds = most_seconds;
+  first.max_seconds = max_seconds;
   std::vector<DuelSide> sides;
   for (const Case& run : cases) {
     sides.push_back({caseName(run), run, make_host});
     first.result.sides.push_back({.name = sides.back().name});
   }
   job.begin(std::move(first), [&job, sides = std::move(sides), frames = std::move(frames),
-                               most_seconds] {
+                               max_seconds] {
     double reported = 0;
     const auto tell = [&](const DuelResult& so_far) {
       if (so_far.seconds < reported + kBetweenReports) return;
       reported = so_far.seconds;
       job.update([&](DuelReport& report) { report.result = so_far; });
     };
-    const DuelOptions options{.most_seconds = most_seconds, .progress = tell, .cancelled = [&job] {
+    const DuelOptions options{.max_seconds = max_seconds, .progress = tell, .cancelled = [&job] {
                                 return job.cancelled();
                               }};
     DuelResult result = runDuel(sides, *frames, options);

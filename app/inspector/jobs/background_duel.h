@@ -15,7 +15,7 @@ struct DuelReport : TaskReport {
   static constexpr const char* kPrefix = "duel";
 
   DuelResult result;  ///< so far: without places until it is done
-  double most_seconds = 0;
+  double max_seconds = 0;
 
   [[nodiscard]] JobStatus status() const;
 };
@@ -25,7 +25,7 @@ using BackgroundDuel = Task<DuelReport>;
 /// Begins; the cases run where `make_host` says. Throws InputError for fewer than two cases, for no
 /// frame, and while another one is running.
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
-               std::unique_ptr<IndexedFrames> frames, double most_seconds,
+               std::unique_ptr<IndexedFrames> frames, double max_seconds,
                const HostMaker& make_host);
 
 }  // namespace broadmark

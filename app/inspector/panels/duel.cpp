@@ -58,15 +58,15 @@ class DuelPanel final : public Panel {
       ImGui::AlignTextToFramePadding();
       ui.faint(fmt::format("{}, {:.0f} of at most {:.0f} s",
                            counted(report.result.rounds(), "round"), report.result.seconds,
-                           report.most_seconds));
+                           report.max_seconds));
       return;
     }
     ImGui::BeginDisabled(session.playback.footage() == nullptr || session.lanes.list.size() < 2);
-    if (ui.button("Start", "Runs the algorithms in turns")) session.startDuel(most_seconds_);
+    if (ui.button("Start", "Runs the algorithms in turns")) session.startDuel(max_seconds_);
     ImGui::EndDisabled();
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
-    ui.entry("seconds", most_seconds_, 1, 3600, "Ends it, whatever is known then");
+    ui.entry("seconds", max_seconds_, 1, 3600, "Ends it, whatever is known then");
     ImGui::SameLine();
     ui.faint("s at most");
     if (report.state == TaskState::idle) return;
@@ -135,7 +135,7 @@ class DuelPanel final : public Panel {
     drawHistogram(ui, result.ratios(side, 0), text, 1);
   }
 
-  double most_seconds_ = 60;
+  double max_seconds_ = 60;
   bool histogram_alone_ = false;
   std::size_t shown_ = 1;  ///< whose ratios are in the histogram
 };

@@ -120,12 +120,12 @@ void Session::exportCase(const Case& run, std::shared_ptr<const Snapshot> snapsh
   });
 }
 
-void Session::startDuel(double most_seconds) {
+void Session::startDuel(double max_seconds) {
   notices.attempt([&] {
     if (!frames_) throw InputError("duel: nothing is open");
     std::vector<Case> cases;
     for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
-    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), most_seconds,
+    broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), max_seconds,
                          jobs.make_host);
   });
 }

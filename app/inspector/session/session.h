@@ -48,7 +48,7 @@ class Session {
   void exportCase(const Case& run, std::shared_ptr<const Snapshot> snapshot,
                   std::filesystem::path file);
   /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
-  void startDuel(double most_seconds);
+  void startDuel(double max_seconds);
 
   Notices notices;
   Playback playback;

@@ -262,7 +262,8 @@ CAMPAIGN_KEYS: dict[str, Callable[[Any], Any]] = {
     "answer": _text,
     "repetitions": _repetitions,
     "precision": _precision,
-    "most_seconds": _number,
+    "max_seconds": _number,
+    "most_seconds": _number,  # its former name
     "order_seed": _whole,
     "warmup": _whole,
     "time_limit": _number,

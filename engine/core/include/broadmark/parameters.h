@@ -40,6 +40,10 @@ class Parametrised {
 /// Values as text by name, as --param KEY=VALUE gives them.
 using ParameterValues = std::map<std::string, std::string>;
 
+/// The present name of an algorithm's parameter, which `name` is or was once. Commands, case names
+/// and results may hold former names.
+std::string_view currentParameterName(std::string_view name);
+
 /// A parameter's value as text; reading it back gives the same value.
 std::string parameterText(const Parameter&);
 /// Its range or choices as text: "1…1000", "on|off", "cubes|spheres", "TEXT".

@@ -1,0 +1,65 @@
+#include "request/former_names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <string_view>
+
+#include "broadmark/parameters.h"
+
+namespace broadmark {
+namespace {
+
+struct FormerOption {
+  std::string_view command;  ///< "": the main command
+  std::string_view former;
+  std::string_view current;
+};
+
+constexpr FormerOption kFormerOptions[] = {
+    {"", "--most-seconds", "--max-seconds"},
+    {"duel", "--seconds", "--max-seconds"},
+    {"duel", "--with", "--baseline-program"},
+};
+
+/// The present name; where it differs, one line says so, once.
+std::string renamed(std::string_view former, std::string_view current) {
+  static std::set<std::string, std::less<>> reported;
+  if (former != current && reported.emplace(former).second) {
+    fmt::print(stderr, "broadmark: '{}' is now called '{}'\n", former, current);
+  }
+  return std::string(current);
+}
+
+std::string currentOption(std::string_view command, std::string_view option) {
+  for (const FormerOption& known : kFormerOptions) {
+    if (known.command == command && known.former == option) return renamed(option, known.current);
+  }
+  return std::string(option);
+}
+
+}  // namespace
+
+std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments) {
+  const std::string command =
+      arguments.empty() || arguments.front() != "duel" ? "" : arguments.front();
+  for (std::string& argument : arguments) {
+    if (argument == "--") break;
+    const std::size_t end = std::min(argument.find('='), argument.size());
+    argument = currentOption(command, argument.substr(0, end)) + argument.substr(end);
+  }
+  return arguments;
+}
+
+std::string currentOption(const std::string& option) { return currentOption("", option); }
+
+std::string currentParameterKey(const std::string& key) {
+  const std::size_t colon = key.rfind(':');
+  const std::size_t begin = colon == key.npos ? 0 : colon + 1;
+  const std::string name = key.substr(begin);
+  return key.substr(0, begin) + renamed(name, currentParameterName(name));
+}
+
+}  // namespace broadmark

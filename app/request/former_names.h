@@ -1,0 +1,19 @@
+// Options and parameters by names that they once had: still accepted, with a line that tells the
+// new one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace broadmark {
+
+/// The arguments of a command line with the present names of options.
+std::vector<std::string> withCurrentOptions(std::vector<std::string> arguments);
+
+/// The present name of an option of the main command ("").
+std::string currentOption(const std::string& option);
+
+/// The key of --param, [ALGORITHM:]NAME, with the present name of the parameter.
+std::string currentParameterKey(const std::string& key);
+
+}  // namespace broadmark
