@@ -68,9 +68,9 @@ void Inspector::drawMenus(const RunProgress& progress) {
     if (ui_.menuItem("Reset layout")) resetLayout();
     ImGui::Separator();
     for (const auto& panel : panels_) {
-      const std::string keys = keysFor(fmt::format("the panel {}", panel->name()));
-      if (ui_.menuItem(panel->name(), keys.c_str()))
-        session_.notices.wanted_panels.push_back(panel->name());
+      const std::string keys = keysFor(fmt::format("the panel {}", panel.name));
+      if (ui_.menuItem(panel.name, keys.c_str()))
+        session_.notices.wanted_panels.push_back(panel.name);
     }
     ImGui::EndMenu();
   }
@@ -87,9 +87,8 @@ void Inspector::drawMenus(const RunProgress& progress) {
 void Inspector::resetLayout() {
   preferences_.resetLayout();
   for (const auto& [place, name] : kPlaces.entries) {
-    const auto first = std::ranges::find_if(
-        panels_, [&, wanted = place](const auto& panel) { return panel->place() == wanted; });
-    if (first != panels_.end()) session_.notices.bringUp((*first)->name());
+    const auto first = std::ranges::find(panels_, place, &PanelTab::place);
+    if (first != panels_.end()) session_.notices.bringUp(first->name);
   }
 }
 

@@ -110,23 +110,23 @@ void addTimeline(Values& values, const Timeline& timeline) {
 }
 
 void addAuthored(Values& values, Session& session) {
-  const AuthorDesk& desk = session.document.desk;
-  const scenes::AuthoredScene& scene = desk.editor.scene();
-  values["author.shown"] = yes(session.document.shown());
-  values["author.at_rest"] = yes(session.document.atRest());
+  const Document& document = session.document;
+  const scenes::AuthoredScene& scene = document.editor.scene();
+  values["author.shown"] = yes(document.shown());
+  values["author.at_rest"] = yes(document.atRest());
   values["author.name"] = scene.name;
   values["author.bodies"] = std::to_string(scene.bodies.size());
-  values["author.selection"] = std::to_string(desk.editor.selection().size());
-  values["author.undo"] = desk.editor.undoName();
-  values["author.redo"] = desk.editor.redoName();
-  values["author.modified"] = yes(desk.isModified());
-  values["author.path"] = desk.path().string();
-  values["author.tool"] = kTools.nameOf(desk.tools.tool);
-  values["author.local"] = yes(desk.tools.local);
-  values["author.leaving"] = yes(session.document.leaving != nullptr);
+  values["author.selection"] = std::to_string(document.editor.selection().size());
+  values["author.undo"] = document.editor.undoName();
+  values["author.redo"] = document.editor.redoName();
+  values["author.modified"] = yes(document.isModified());
+  values["author.path"] = document.path().string();
+  values["author.tool"] = kTools.nameOf(document.tools.tool);
+  values["author.local"] = yes(document.tools.local);
+  values["author.leaving"] = yes(document.leaving != nullptr);
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
-  if (desk.editor.selection().empty()) return;
-  const scenes::AuthoredBody& body = scene.bodies[desk.editor.selection().front()];
+  if (document.editor.selection().empty()) return;
+  const scenes::AuthoredBody& body = scene.bodies[document.editor.selection().front()];
   visitProperties(body, [&](const std::string& key, const auto& value, const auto& /*default*/) {
     values["author.body." + key] = textOf(value);
   });

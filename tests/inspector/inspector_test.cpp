@@ -192,8 +192,8 @@ TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   height = 500;
   Session& session = inspector.session();
   session.document.start({});
-  session.document.add([&] { return session.document.desk.stroke(); });
-  session.document.desk.tools.tool = Tool::brush;
+  session.document.add([&] { return session.document.stroke(); });
+  session.document.tools.tool = Tool::brush;
   colourBy("correctness");  // whose legend has four rows, for which there is no room
   settle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/authored.png")));
@@ -318,13 +318,13 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   inspector.session().lanes.add("grid-bf-mt");
   settle();
   std::set<std::string> pressed;
-  for (const auto& panel : makePanels()) {
-    inspector.session().notices.bringUp(panel->name());
+  for (const auto& panel : inspector.panels()) {
+    inspector.session().notices.bringUp(panel.name);
     settle();
     for (int round = 0; round < 60; ++round) {
       std::string next;
       for (const auto& [name, place] : inspector.ui().places()) {
-        if (place.visible && place.enabled && name.starts_with(panel->name()) &&
+        if (place.visible && place.enabled && name.starts_with(panel.name) &&
             pressed.insert(name).second) {
           next = name;
           break;
@@ -336,7 +336,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       key(GLFW_KEY_ESCAPE);
       settle();
       inspector.session().notices.errors.clear();
-      inspector.session().notices.bringUp(panel->name());
+      inspector.session().notices.bringUp(panel.name);
       settle();
     }
   }
@@ -362,15 +362,15 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
     }
     for (int i = 0; i < 8 && (i < 2 || !input.empty()); ++i) draw();
   };
-  const auto panels = makePanels();
+  const std::vector<PanelTab>& panels = inspector.panels();
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const std::string prefix = std::string(panels[i]->name()) + "/";
+    const std::string prefix = std::string(panels[i].name) + "/";
     std::vector<Key> held = {GLFW_KEY_LEFT_CONTROL};
     if (i >= 10) held.push_back(GLFW_KEY_LEFT_SHIFT);
     press(static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), held);
     draw(3);
-    const std::string where(kPlaces.nameOf(panels[i]->place()));
-    EXPECT_EQ(inspector.preferences().tabs.at(where), panels[i]->name());
+    const std::string where(kPlaces.nameOf(panels[i].place));
+    EXPECT_EQ(inspector.preferences().tabs.at(where), panels[i].name);
     std::set<std::string> unreached;
     for (const auto& [name, place] : inspector.ui().places()) {
       const std::string last = name.substr(name.rfind('/') + 1);
@@ -484,7 +484,7 @@ TEST_P(RandomEvents, DoNoHarm) {
     // Duplicated again and again, bodies in one place only cost the engine hours.
     constexpr std::size_t kMostBodies = 20'000;
     Document& document = inspector.session().document;
-    if (document.desk.editor.scene().bodies.size() > kMostBodies) {
+    if (document.editor.scene().bodies.size() > kMostBodies) {
       document.edit([](scenes::SceneEditor& editor) { editor.undo(); });
     }
   }

@@ -19,16 +19,11 @@ constexpr float kRoomForBoth = 560;   // units: narrower, it is either the one o
 
 class DuelPanel final : public Panel {
  public:
-  DuelPanel()
-      : Panel("Duel", Place::bottom,
-              "Lets the algorithms take turns on what is open, until it is known which is faster") {
-  }
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void draw() override {
     const BackgroundDuel::Report report = session.jobs.get<BackgroundDuel>().report();
-    drawControls(ui, session, report);
+    drawControls(report);
     if (report.state == TaskState::idle) {
       ui.paragraph(
           "Two or more algorithms of the panel Algorithms run the frames that are known so far, in "
@@ -36,7 +31,7 @@ class DuelPanel final : public Panel {
           "played.");
       return;
     }
-    if (!report.result.ok()) return drawFailures(ui, report.result);
+    if (!report.result.ok()) return drawFailures(report.result);
     if (report.result.rounds() == 0) return;
     if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
     const TwoParts parts{.share = kTableShare,
@@ -46,11 +41,11 @@ class DuelPanel final : public Panel {
       ui.toggle("Histogram", histogram_alone_,
                 "How many rounds had which ratio, in place of the table");
     }
-    parts.draw([&] { drawTable(ui, report.result); }, [&] { drawRatios(ui, report.result); });
+    parts.draw([&] { drawTable(report.result); }, [&] { drawRatios(report.result); });
   }
 
  private:
-  void drawControls(Ui& ui, Session& session, const BackgroundDuel::Report& report) {
+  void drawControls(const BackgroundDuel::Report& report) {
     if (report.state == TaskState::running) {
       if (ui.button("Cancel", "Ends it without a verdict"))
         session.jobs.get<BackgroundDuel>().cancel();
@@ -77,7 +72,7 @@ class DuelPanel final : public Panel {
     ui.note("rounds");
   }
 
-  static void drawFailures(Ui& ui, const DuelResult& result) {
+  void drawFailures(const DuelResult& result) {
     for (const DuelResult::Side& side : result.sides) {
       if (side.status == Status::ok) continue;
       ui.coloured(ui.theme.bad,
@@ -86,7 +81,7 @@ class DuelPanel final : public Panel {
   }
 
   /// The ranking, or, until there is one, the algorithms in their own order.
-  void drawTable(Ui& ui, const DuelResult& result) {
+  void drawTable(const DuelResult& result) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
     if (!ImGui::BeginTable("ranking", 6, kFlags, {widthOfWholeColumns("ranking", 2), 0})) return;
@@ -96,12 +91,12 @@ class DuelPanel final : public Panel {
     ImGui::TableHeadersRow();
     for (std::size_t row = 0; row < result.sides.size(); ++row) {
       const DuelPlace* place = result.places.empty() ? nullptr : &result.places[row];
-      drawSide(ui, result, place == nullptr ? row : place->side, place);
+      drawSide(result, place == nullptr ? row : place->side, place);
     }
     ImGui::EndTable();
   }
 
-  void drawSide(Ui& ui, const DuelResult& result, std::size_t side, const DuelPlace* place) {
+  void drawSide(const DuelResult& result, std::size_t side, const DuelPlace* place) {
     const std::vector<double>& seconds = result.sides[side].seconds;
     const double ratio =
         place != nullptr ? place->ratio.value : quantile(result.ratios(side, 0), 0.5);
@@ -127,7 +122,7 @@ class DuelPanel final : public Panel {
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.
-  void drawRatios(Ui& ui, const DuelResult& result) const {
+  void drawRatios(const DuelResult& result) const {
     const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
     ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
                          ImGui::GetContentRegionAvail().x));
@@ -142,6 +137,9 @@ class DuelPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<DuelPanel>(); }
+extern const PanelKind kind = {
+    "Duel", Place::bottom,
+    "Lets the algorithms take turns on what is open, until it is known which is faster",
+    make<DuelPanel>};
 
 }  // namespace broadmark::panels::duel

@@ -7,6 +7,18 @@
 
 namespace broadmark {
 
+std::vector<Rgb> PanelContext::laneColours() const {
+  std::vector<std::string_view> families;
+  for (const LaneReport& lane : progress->lanes) {
+    families.emplace_back(lane.spec.run.algorithm.family);
+  }
+  return curveColours(families, ui.theme);
+}
+
+bool PanelContext::wideButton(const char* label, const char* tooltip, bool enabled) const {
+  return ButtonRow(ui, 1).button(label, tooltip, enabled);
+}
+
 ButtonRow::ButtonRow(Ui& ui, int count) : ui_(ui), count_(count) {
   const float gaps = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(count - 1);
   const float room = ImGui::GetContentRegionAvail().x - gaps;
@@ -21,16 +33,16 @@ bool ButtonRow::button(const char* label, const char* tooltip, bool enabled) {
   return pressed;
 }
 
-#define PANEL(name)                   \
-  namespace panels::name {            \
-  std::unique_ptr<Panel> makePanel(); \
+#define PANEL(name)            \
+  namespace panels::name {     \
+  extern const PanelKind kind; \
   }
 #include "inspector_panels.inc"
 #undef PANEL
 
-std::vector<std::unique_ptr<Panel>> makePanels() {
-  std::vector<std::unique_ptr<Panel>> made;
-#define PANEL(name) made.push_back(panels::name::makePanel());
+std::vector<PanelTab> makePanels(const PanelContext& context) {
+  std::vector<PanelTab> made;
+#define PANEL(name) made.push_back({panels::name::kind, panels::name::kind.make(context)});
 #include "inspector_panels.inc"
 #undef PANEL
   return made;

@@ -23,12 +23,12 @@ double meanTotal(const LaneReport& lane) {
 
 class ResultsPanel final : public Panel {
  public:
-  ResultsPanel() : Panel("Results", Place::bottom, "What each algorithm did in this frame") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
+  void draw() override {
+    const std::vector<LaneReport>& lanes = progress->lanes;
     if (lanes.empty()) {
-      context.ui.paragraph(
+      ui.paragraph(
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
@@ -43,8 +43,8 @@ class ResultsPanel final : public Panel {
     ImGui::TableSetupScrollFreeze(1, 1);
     for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
     ImGui::TableHeadersRow();
-    const std::vector<Rgb> colours = context.laneColours();
-    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], colours[i]);
+    const std::vector<Rgb> colours = laneColours();
+    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(lanes[i], colours[i]);
     ImGui::EndTable();
   }
 
@@ -59,17 +59,16 @@ class ResultsPanel final : public Panel {
     return names;
   }
 
-  static void drawLane(PanelContext& context, const LaneReport& lane, Rgb curve) {
-    Ui& ui = context.ui;
-    const FrameRecord* const record = lane.record(context.session.playback.frame());
+  void drawLane(const LaneReport& lane, Rgb curve) {
+    const FrameRecord* const record = lane.record(session.playback.frame());
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
-    const bool shown = context.session.lanes.shown() == lane.spec.number;
+    const bool shown = session.lanes.shown() == lane.spec.number;
     ImGui::PushStyleColor(ImGuiCol_Text, colour(curve));
     if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
                           ImGuiSelectableFlags_SpanAllColumns)) {
-      context.session.lanes.show(lane.spec.number);
+      session.lanes.show(lane.spec.number);
     }
     ImGui::PopStyleColor();
     ui.note(lane.spec.run.algorithm.id);
@@ -106,6 +105,7 @@ class ResultsPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<ResultsPanel>(); }
+extern const PanelKind kind = {"Results", Place::bottom, "What each algorithm did in this frame",
+                               make<ResultsPanel>};
 
 }  // namespace broadmark::panels::results

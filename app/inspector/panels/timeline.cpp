@@ -25,37 +25,32 @@ constexpr float kRoomForBoth = 600;  // units: narrower, it is either the one or
 
 class TimelinePanel final : public Panel {
  public:
-  TimelinePanel()
-      : Panel("Timeline", Place::bottom,
-              "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
-              "at wrong and disturbed frames") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    if (context.progress.lanes.empty()) {
-      context.ui.faintParagraph(
+  void draw() override {
+    if (progress->lanes.empty()) {
+      ui.faintParagraph(
           "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
     }
-    if (!context.progress.footage) return;
-    drawControls(context);
-    const auto curves = [&] { act(context, drawCurves(context)); };
-    if (!context.session.timeline.span() || context.progress.lanes.empty()) {
+    if (!progress->footage) return;
+    drawControls();
+    const auto curves = [&] { act(drawCurves()); };
+    if (!session.timeline.span() || progress->lanes.empty()) {
       curves();
       return;
     }
-    const TwoParts parts{.share = kPlotShare,
-                         .narrowest = kRoomForBoth * context.ui.scale,
-                         .second_alone = span_alone_};
+    const TwoParts parts{
+        .share = kPlotShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = span_alone_};
     if (!parts.both()) {
-      Ui::besideIfRoom(50 * context.ui.scale);
-      context.ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
+      Ui::besideIfRoom(50 * ui.scale);
+      ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
     }
-    parts.draw(curves, [&] { drawSpan(context); });
+    parts.draw(curves, [&] { drawSpan(); });
   }
 
  private:
-  void drawControls(PanelContext& context) {
-    Ui& ui = context.ui;
-    Timeline& timeline = context.session.timeline;
+  void drawControls() {
+    Timeline& timeline = session.timeline;
     std::vector<std::string> names = {"pairs"};
     for (const std::string& phase : kPhases.names()) names.push_back(phase);
     ui.combo("##quantity", quantity_, names, "What of the algorithms is plotted", 150 * ui.scale);
@@ -64,7 +59,7 @@ class TimelinePanel final : public Panel {
     Ui::besideIfRoom(65 * ui.scale);
     ui.checkbox("pairs", shows_pairs_,
                 "How many pairs overlap, as a thin line whose scale stands at the right");
-    if (context.progress.population.size() > 0) {
+    if (progress->population.size() > 0) {
       Ui::besideIfRoom(75 * ui.scale);
       ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
     }
@@ -73,31 +68,28 @@ class TimelinePanel final : public Panel {
     if (ui.button("All frames", "Undoes zooming with the wheel")) timeline.showAll();
     ImGui::EndDisabled();
     Ui::besideIfRoom(240 * ui.scale);
-    drawBudget(context);
+    drawBudget();
   }
 
-  static void drawBudget(PanelContext& context) {
-    Ui& ui = context.ui;
+  void drawBudget() {
     ImGui::AlignTextToFramePadding();
     ui.faint("budget");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
-    ui.entry("budget", context.session.timeline.budget_ms, 0, 1e5,
+    ui.entry("budget", session.timeline.budget_ms, 0, 1e5,
              "What a frame may take, in milliseconds: a line in the plot; 0: none");
     ImGui::SameLine();
     std::uint64_t over = 0;
-    for (const LaneReport& lane : context.progress.lanes) {
-      if (context.session.timeline.budget_ms > 0)
-        over += framesOver(lane, context.session.timeline.budget_ms);
+    for (const LaneReport& lane : progress->lanes) {
+      if (session.timeline.budget_ms > 0) over += framesOver(lane, session.timeline.budget_ms);
     }
     ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
     ui.note("over");
   }
 
   /// What the algorithms took in the selected span.
-  void drawSpan(PanelContext& context) {
-    Ui& ui = context.ui;
-    Timeline& timeline = context.session.timeline;
+  void drawSpan() {
+    Timeline& timeline = session.timeline;
     if (!timeline.span()) return;  // it was cleared in this picture
     const auto [first, last] = *timeline.span();
     ui.plain(fmt::format("frames {} to {}", first, last));
@@ -105,18 +97,18 @@ class TimelinePanel final : public Panel {
     if (ui.button("Show", "Zooms to the span")) timeline.showSpan();
     ImGui::SameLine();
     if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
-    summarise(context, {first, last});
-    drawStatistics(context);
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
-    const LaneReport* const shown = laneOf(lanes, context.session.lanes.shown());
+    summarise({first, last});
+    drawStatistics();
+    const std::vector<LaneReport>& lanes = progress->lanes;
+    const LaneReport* const shown = laneOf(lanes, session.lanes.shown());
     const std::ptrdiff_t which = shown == nullptr ? 0 : shown - lanes.data();
     drawHistogram(ui, statistics_.at(static_cast<std::size_t>(which)).values,
                   [this](double value) { return valueText(value); });
   }
 
   /// Sorting long spans takes a while: not for each picture.
-  void summarise(const PanelContext& context, FrameSpan span) {
-    const auto& lanes = context.progress.lanes;
+  void summarise(FrameSpan span) {
+    const auto& lanes = progress->lanes;
     const double now = ImGui::GetTime();
     if (summarised_ == span && statistics_.size() == lanes.size() && now < summarise_next_) return;
     summarised_ = span;
@@ -127,10 +119,9 @@ class TimelinePanel final : public Panel {
     }
   }
 
-  void drawStatistics(PanelContext& context) const {
-    Ui& ui = context.ui;
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
-    const std::vector<Rgb> colours = context.laneColours();
+  void drawStatistics() const {
+    const std::vector<LaneReport>& lanes = progress->lanes;
+    const std::vector<Rgb> colours = laneColours();
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
     const float height =
@@ -174,15 +165,14 @@ class TimelinePanel final : public Panel {
     return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
   }
 
-  PlotResult drawCurves(PanelContext& context) const {
-    const RunProgress& progress = context.progress;
-    const Palette& theme = context.ui.theme;
-    const Timeline& timeline = context.session.timeline;
+  PlotResult drawCurves() const {
+    const Palette& theme = ui.theme;
+    const Timeline& timeline = session.timeline;
     std::vector<PlotCurve> curves;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
-    const std::vector<Rgb> colours = context.laneColours();
-    for (const LaneReport& lane : progress.lanes) {
+    const std::vector<Rgb> colours = laneColours();
+    for (const LaneReport& lane : progress->lanes) {
       curves.push_back({.label = caseName(lane.spec.run),
                         .colour = colours[curves.size()],
                         .values = &valuesOf(lane),
@@ -191,9 +181,9 @@ class TimelinePanel final : public Panel {
       wrong.frames.push_back(&lane.curves.mismatches);
       disturbed.frames.push_back(&lane.curves.disturbed);
     }
-    const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress.pairs};
+    const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress->pairs};
     const PlotCurve bodies{
-        .label = "bodies", .colour = theme.faint, .values = &progress.population};
+        .label = "bodies", .colour = theme.faint, .values = &progress->population};
     std::optional<std::array<double, 2>> span;
     if (timeline.span())
       span = {{static_cast<double>(timeline.span()->first),
@@ -203,8 +193,8 @@ class TimelinePanel final : public Panel {
         .unit = quantity_ == 0 ? "" : "s",
         .first = timeline.first(),
         .last = timeline.last(),
-        .playhead = context.session.playback.frame(),
-        .limit = quantity_ == 0 ? 0 : context.session.timeline.budget_ms * 1e-3,
+        .playhead = session.playback.frame(),
+        .limit = quantity_ == 0 ? 0 : session.timeline.budget_ms * 1e-3,
         .limit_colour = theme.warning,
         .span = span,
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
@@ -212,15 +202,15 @@ class TimelinePanel final : public Panel {
         .marks = {wrong, disturbed}};
     const ImVec2 room = ImGui::GetContentRegionAvail();
     const PlotResult done = drawPlot("plot", curves, options, room.x, room.y);
-    context.ui.note("plot");
+    ui.note("plot");
     return done;
   }
 
-  void act(PanelContext& context, const PlotResult& done) {
-    Timeline& timeline = context.session.timeline;
-    if (done.clicked_frame) context.session.playback.goTo(std::llround(*done.clicked_frame));
+  void act(const PlotResult& done) {
+    Timeline& timeline = session.timeline;
+    if (done.clicked_frame) session.playback.goTo(std::llround(*done.clicked_frame));
     if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
-    if (done.toggled) toggle(context.progress.lanes[*done.toggled].spec.number);
+    if (done.toggled) toggle(progress->lanes[*done.toggled].spec.number);
     if (done.zoom != 0) timeline.zoom(done.zoom, done.zoom_at);
     if (done.moved != 0) timeline.move(done.moved);
   }
@@ -242,6 +232,10 @@ class TimelinePanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<TimelinePanel>(); }
+extern const PanelKind kind = {
+    "Timeline", Place::bottom,
+    "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
+    "at wrong and disturbed frames",
+    make<TimelinePanel>};
 
 }  // namespace broadmark::panels::timeline

@@ -142,7 +142,7 @@ float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
       {Tool::turn, "Turns the selected bodies about their common centre (T)"},
       {Tool::scale, "Scales the selected bodies about their common centre (R)"},
       {Tool::brush, "Paints bodies where one clicks and drags (B)"}};
-  Tools& tools = session.document.desk.tools;
+  Tools& tools = session.document.tools;
   const bool brush = tools.tool == Tool::brush;
   const char* hint = "Click or drag to paint; Escape ends it";
   const ImGuiStyle& style = ImGui::GetStyle();
