@@ -116,7 +116,7 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        }},
       {"open", "FILE", 1, 1, "drops a file onto the window",
        [](P& player, const Words& words, Inspector& inspector) {
-         inspector.session().opener.open(words[0]);
+         inspector.session().open(words[0]);
          player.pause();
        }},
       {"wait", "PICTURES or settled", 1, 1, "until everything is computed, or for some pictures",

@@ -64,7 +64,7 @@ void Inspector::makeShortcuts() {
          session_.view.filter.hidden_classes = 0;
        }},
       {GLFW_KEY_V, false, false, "a second view beside the first, or one",
-       [this] { session_.second.show(!session_.second.wish); }},
+       [this] { session_.showSecond(!session_.second); }},
       {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
        [this] { takeTool(Tool::move); }},
       {GLFW_KEY_T, false, false, "likewise: the gizmo that turns",

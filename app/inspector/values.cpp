@@ -78,7 +78,7 @@ void addSnapshot(Values& values, const Snapshot* shown) {
 
 void addSecond(Values& values, const Session& session, const RunProgress& progress) {
   const Snapshot* second = progress.second.get();
-  values["second"] = yes(session.second.wish.has_value());
+  values["second"] = yes(session.second.has_value());
   values["second.frame"] = second ? std::to_string(second->frame) : "";
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";

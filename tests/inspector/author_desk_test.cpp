@@ -130,7 +130,7 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
   EXPECT_EQ(session.document.path(), directory / "three.json");
   EXPECT_FALSE(session.document.isModified());
   session.document.start({});
-  session.opener.open(directory / "three.json");
+  session.open(directory / "three.json");
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.shown());
@@ -143,8 +143,8 @@ TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
   session.document.start(threeBodies());
   settle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
-  session.opener.open(directory / "bad.json");
-  session.opener.open(directory / "missing.json");
+  session.open(directory / "bad.json");
+  session.open(directory / "missing.json");
   EXPECT_FALSE(session.document.save(directory / "no such" / "directory.json"));
   ASSERT_EQ(session.notices.errors.size(), 3U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("bad.json"));
@@ -207,7 +207,7 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
-  session.opener.open(directory / "some.aabbs");
+  session.open(directory / "some.aabbs");
   settle();
   session.playback.seek(4);
   const RunProgress recorded = settle();
@@ -239,7 +239,7 @@ TEST_F(AuthoringTest, BakesTheWholeScene) {
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done);
-  session.opener.open(directory / "three.aabbs");
+  session.open(directory / "three.aabbs");
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.scene.objects, 3U);

@@ -68,7 +68,7 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     EXPECT_EQ(written->scene().objects, report.bodies);
     EXPECT_EQ(written->scene().frames, report.frames);
 
-    session.opener.openExport(session.jobs.get<CaseExport>().report());
+    session.openExport(session.jobs.get<CaseExport>().report());
     const RunProgress opened = settle();
     EXPECT_EQ(opened.scene.objects, report.bodies);
     ASSERT_TRUE(opened.snapshot);
@@ -206,7 +206,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
   }
-  session.opener.open(directory / "r.json");
+  session.open(directory / "r.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(session.results);
   ASSERT_EQ(session.results->rows().size(), 2U);
@@ -214,7 +214,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_EQ(session.results->rows()[1].mismatches, 1U);
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
 
-  session.opener.openCase(directory / "r.json", "some/case");
+  session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = settle();
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_EQ(session.lanes.list.size(), 1U);
@@ -222,7 +222,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));
 
-  session.opener.openCase(directory / "r.json", "other/case");
+  session.openCase(directory / "r.json", "other/case");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("'other/case'"));
 }

@@ -205,7 +205,7 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
   click("Scene/Simulate");
   settle();
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(inspector.ui().find("Scene/objects"), nullptr);
   EXPECT_EQ(value("source"), "recording: vanishing.broadmark");
@@ -231,7 +231,7 @@ TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
 
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
   draw(2);
-  inspector.session().opener.open("/nowhere/at all.aabbs");
+  inspector.session().open("/nowhere/at all.aabbs");
   draw(3);
   EXPECT_THAT(value("error"), testing::HasSubstr("/nowhere/at all.aabbs"));
   click("Error/OK");
@@ -258,7 +258,7 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
 }
 
 TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(value("bodies"), "40");
   key(GLFW_KEY_END);
@@ -280,7 +280,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 }
 
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   inspector.session().notices.bringUp("Bodies");
   inspector.session().selection.select({37});
@@ -296,7 +296,7 @@ TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
 }
 
 TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   key(GLFW_KEY_END);
   settle();

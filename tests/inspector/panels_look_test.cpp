@@ -122,7 +122,7 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
     settled(session);
-    session.second.show(true);
+    session.showSecond(true);
     session.timeline.select(5, 30);
     session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
     settled(session);

@@ -14,10 +14,9 @@ constexpr const char* kLeaving = "Unsaved changes";
 
 void askOpenScene(FileDialog& files, Session& session) {
   files.ask({.title = "Open a scene",
-             .purpose = FileDialog::Purpose::open,
              .extensions = {".json"},
              .suggestion = session.document.path().parent_path(),
-             .chosen = [&session](const fs::path& path) { session.opener.open(path); }});
+             .chosen = [&session](const fs::path& path) { session.open(path); }});
 }
 
 void askSaveScene(FileDialog& files, Session& session, std::function<void()> then) {

@@ -44,10 +44,9 @@ class AlgorithmsPanel final : public Panel {
     drawChoice();
     ui.checkbox("check every answer", session.mismatches.check,
                 "Compares every answer with the oracle's, outside the timed region");
-    ImGui::BeginDisabled(!session.mismatches.check);
     ui.checkbox("stop at a mismatch", session.mismatches.stop_at_mismatch,
-                "Stays at the first frame in which an algorithm is wrong");
-    ImGui::EndDisabled();
+                "Stays at the first frame in which an algorithm is wrong",
+                session.mismatches.check);
     if (session.lanes.list.empty()) {
       ImGui::Spacing();
       ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
@@ -72,10 +71,9 @@ class AlgorithmsPanel final : public Panel {
     ImGui::SetNextItemWidth(kListWidth * ui.scale);
     ImGui::InputTextWithHint("##search", "search", &searched_);
     ui.note("search");
-    ImGui::BeginDisabled(marked_.empty());
-    const bool add = ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
-                               "Adds those that were marked by a click with Ctrl");
-    ImGui::EndDisabled();
+    const bool add =
+        ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
+                  "Adds those that were marked by a click with Ctrl", 0, !marked_.empty());
     std::vector<std::string> chosen;
     if (add) chosen = marked_;
     ImGui::BeginChild("list", {kListWidth * ui.scale, kListHeight * ui.scale}, false,

@@ -141,10 +141,10 @@ class BakeForm : BatchForm {
       ImGui::PushID(item.path.c_str());
       ImGui::BeginDisabled(!there);
       const Rgb rgb = item.outcome == BakeOutcome::failed ? ui.theme.bad : ui.theme.good;
-      if (ui.selectable(
+      if (ui.selectableLine(
               name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
               there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
-        session.opener.open(item.path);
+        session.open(item.path);
       }
       ImGui::EndDisabled();
       ImGui::PopID();
@@ -154,7 +154,7 @@ class BakeForm : BatchForm {
   void drawPreview() const {
     if (!preview_.fault.empty()) {
       ui.heading("To bake");
-      drawFault(preview_.fault);
+      ui.paragraph(preview_.fault, ui.theme.warning);
       return;
     }
     ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),

@@ -44,13 +44,6 @@ class BatchForm : protected PanelContext {
     ui.faintParagraph(left + report.doing);
     return false;
   }
-
-  /// What keeps the work from being started.
-  void drawFault(const std::string& fault) const {
-    ImGui::PushTextWrapPos(0);
-    ui.coloured(ui.theme.warning, fault);
-    ImGui::PopTextWrapPos();
-  }
 };
 
 }  // namespace broadmark

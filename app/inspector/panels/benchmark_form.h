@@ -129,7 +129,7 @@ class BenchmarkForm : BatchForm {
       ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
                                counted(request.sources.size(), "recording")));
     } catch (const InputError& error) {
-      drawFault(error.what());
+      ui.paragraph(error.what(), ui.theme.warning);
     }
   }
 
@@ -138,7 +138,7 @@ class BenchmarkForm : BatchForm {
     const bool any_kept = std::ranges::any_of(report.items, &BenchmarkReport::Item::kept);
     if (report.state != TaskState::running && any_kept &&
         wideButton("Open results", "Lists them in the panel Cases")) {
-      session.opener.open(report.file);
+      session.open(report.file);
     }
     const auto scope = ui.scope("cases");
     clipped(report.items.size(), [&](std::size_t row) {
@@ -147,9 +147,9 @@ class BenchmarkForm : BatchForm {
       ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
       const std::string right =
           ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
-      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
-                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
-        session.opener.openCase(report.file, item.id);
+      if (ui.selectableLine(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                            item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+        session.openCase(report.file, item.id);
       }
       if (row == 0) ui.note("first");
       ImGui::EndDisabled();

@@ -159,7 +159,7 @@ class CasePlots : PanelContext {
                 {point.at.x - kPointPlace, point.at.y - kPointPlace},
                 {point.at.x + kPointPlace, point.at.y + kPointPlace});
     }
-    if (done.clicked) session.opener.openCase(row_of(*done.hovered));
+    if (done.clicked) session.openCase(row_of(*done.hovered));
   }
 
   [[nodiscard]] Phase phase() const { return kPhases.entries.at(phase_).value; }

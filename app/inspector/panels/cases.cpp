@@ -129,15 +129,11 @@ class CasesPanel final : public Panel {
       ImGui::TableSetupColumn(column->shown.heading.c_str());
     drawHeadings();
     sort(results);
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(results.listed().size()));
     const auto curves = plots_.rowColours(ui.theme, results);
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const std::size_t index = results.listed()[static_cast<std::size_t>(i)];
-        drawRow(results, index, curves[index], i == 0);
-      }
-    }
+    clipped(results.listed().size(), [&](std::size_t row) {
+      const std::size_t index = results.listed()[row];
+      drawRow(results, index, curves[index], row == 0);
+    });
     ImGui::EndTable();
   }
 
@@ -194,17 +190,12 @@ class CasesPanel final : public Panel {
     const FootageRequest* open = session.playback.footage().get();
     const bool is_open =
         open != nullptr && open->source == FootageSource::results && open->title == row.result.id;
-    ui.letters.need(row.algorithm);
-    ImGui::PushStyleColor(ImGuiCol_Text, rgb ? colour(*rgb) : ImGui::GetColorU32(ImGuiCol_Text));
-    const bool pressed =
-        ImGui::Selectable(row.algorithm.c_str(), is_open, ImGuiSelectableFlags_SpanAllColumns);
-    ImGui::PopStyleColor();
-    ui.note(row.result.id);
-    if (first) ui.note("first");
     const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
                                                  : "Cannot be opened: " + row.obstacle;
-    ui.tooltip(tip.c_str());
-    if (pressed) session.opener.openCase(row);
+    const std::string label = fmt::format("{}###{}", row.algorithm, row.result.id);
+    const bool pressed = ui.selectable(label.c_str(), is_open, tip.c_str(), rgb);
+    if (first) ui.note("first");
+    if (pressed) session.openCase(row);
   }
 
   /// Nothing: as all text.

@@ -24,12 +24,12 @@ class ComparePanel final : public Panel {
   using Panel::Panel;
 
   void draw() override {
-    if (!session.second.wish) {
+    if (!session.second) {
       ui.paragraph(
           "A second view beside the first one shows another algorithm's answer, another frame or "
           "another recording. Here stands then who finds what, and who is slower where.");
       if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
-        session.second.show(true);
+        session.showSecond(true);
       }
       return;
     }
@@ -69,9 +69,10 @@ class ComparePanel final : public Panel {
     const auto& selected = session.selection.bodies();
     const bool is_selected = selected.size() == 2 && selected[0] == pair.a && selected[1] == pair.b;
     ImGui::PushID(of_first ? 0 : 1);
-    if (ui.selectable(pairName(pair).c_str(), is_selected, of_first ? "first only" : "second only",
-                      of_first ? ui.theme.first_only : ui.theme.second_only,
-                      "Selects both bodies and flies to them")) {
+    if (ui.selectableLine(pairName(pair).c_str(), is_selected,
+                          of_first ? "first only" : "second only",
+                          of_first ? ui.theme.first_only : ui.theme.second_only,
+                          "Selects both bodies and flies to them")) {
       session.selection.visit(pair);
     }
     ImGui::PopID();
@@ -79,8 +80,8 @@ class ComparePanel final : public Panel {
 
   void drawTimes() {
     const LaneReport* const first = laneOf(progress->lanes, session.lanes.shown());
-    const LaneReport* const second = laneOf(progress->lanes, session.second.wish->lane);
-    if (first == nullptr || second == nullptr || first == second || session.second.wish->footage) {
+    const LaneReport* const second = laneOf(progress->lanes, session.second->lane);
+    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
       ui.faintParagraph(
           "Times are compared where the views show two algorithms on the same recording.");
       return;

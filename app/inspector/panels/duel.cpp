@@ -8,7 +8,6 @@
 #include "broadmark/statistics/statistics.h"
 #include "compare/duel_report.h"
 #include "inspector/panels/panel.h"
-#include "inspector/ui/histogram.h"
 #include "support/words.h"
 
 namespace broadmark::panels::duel {
@@ -56,9 +55,10 @@ class DuelPanel final : public Panel {
                            report.most_seconds));
       return;
     }
-    ImGui::BeginDisabled(session.playback.footage() == nullptr || session.lanes.list.size() < 2);
-    if (ui.button("Start", "Runs the algorithms in turns")) session.startDuel(most_seconds_);
-    ImGui::EndDisabled();
+    const bool ready = session.playback.footage() && session.lanes.list.size() >= 2;
+    if (ui.button("Start", "Runs the algorithms in turns", 0, ready)) {
+      session.startDuel(most_seconds_);
+    }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
     ui.entry("seconds", most_seconds_, 1, 3600, "Ends it, whatever is known then");
@@ -82,13 +82,10 @@ class DuelPanel final : public Panel {
 
   /// The ranking, or, until there is one, the algorithms in their own order.
   void drawTable(const DuelResult& result) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
-    if (!ImGui::BeginTable("ranking", 6, kFlags, {widthOfWholeColumns("ranking", 2), 0})) return;
-    for (const char* name : {"", "algorithm", "median", "least", "ratio", "95 % interval"}) {
-      ImGui::TableSetupColumn(name);
+    if (!ui.beginTable("ranking", {"", "algorithm", "median", "least", "ratio", "95 % interval"},
+                       2)) {
+      return;
     }
-    ImGui::TableHeadersRow();
     for (std::size_t row = 0; row < result.sides.size(); ++row) {
       const DuelPlace* place = result.places.empty() ? nullptr : &result.places[row];
       drawSide(result, place == nullptr ? row : place->side, place);
@@ -100,25 +97,19 @@ class DuelPanel final : public Panel {
     const std::vector<double>& seconds = result.sides[side].seconds;
     const double ratio =
         place != nullptr ? place->ratio.value : quantile(result.ratios(side, 0), 0.5);
-    const auto cell = [&](const std::string& text) {
-      ImGui::TableNextColumn();
-      ui.plain(text);
-    };
     ImGui::TableNextRow();
-    cell(place == nullptr ? "" : fmt::format("{}.", place->place));
+    ui.cell(place == nullptr ? "" : fmt::format("{}.", place->place));
     ImGui::TableNextColumn();
     ImGui::PushID(static_cast<int>(side));
-    if (ImGui::Selectable(result.sides[side].name.c_str(), side == shown_,
-                          ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ui.selectable(result.sides[side].name.c_str(), side == shown_,
+                      "Shows its ratios to the first one in the histogram")) {
       shown_ = side;
     }
-    ui.note(result.sides[side].name);
-    ui.tooltip("Shows its ratios to the first one in the histogram");
     ImGui::PopID();
-    cell(durationText(quantile(seconds, 0.5)));
-    cell(durationText(quantile(seconds, 0)));
-    cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
-    cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
+    ui.cell(durationText(quantile(seconds, 0.5)));
+    ui.cell(durationText(quantile(seconds, 0)));
+    ui.cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
+    ui.cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.

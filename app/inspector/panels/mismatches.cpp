@@ -137,14 +137,13 @@ class MismatchesPanel final : public Panel {
       const auto& [kind, pair] = wrong[row];
       const std::string name = fmt::format("{} {}", kind->name, pairName(pair));
       const std::vector<std::uint32_t> bodies = {pair.a, pair.b};
-      ImGui::PushStyleColor(ImGuiCol_Text, colour(ui.theme.*kind->colour));
-      const bool clicked = ImGui::Selectable(name.c_str(), session.selection.bodies() == bodies);
-      ImGui::PopStyleColor();
-      ui.note(name);
+      const bool clicked =
+          ui.selectable(name.c_str(), session.selection.bodies() == bodies,
+                        kind == &kWrongKinds.back()
+                            ? "Reported though apart, within the algorithm's margin: no mismatch"
+                            : "Selects both bodies and flies there",
+                        ui.theme.*kind->colour);
       if (row == 0) ui.note("first pair");
-      ui.tooltip(kind == &kWrongKinds.back()
-                     ? "Reported though apart, within the algorithm's margin: no mismatch"
-                     : "Selects both bodies and flies there");
       if (clicked) session.selection.visit(pair);
     });
     std::uint64_t all = 0;
@@ -206,7 +205,7 @@ class MismatchesPanel final : public Panel {
     }
     ImGui::SameLine();
     if (ui.button("Open it", "Looks at the exported recording instead")) {
-      session.opener.openExport(report);
+      session.openExport(report);
     }
   }
 

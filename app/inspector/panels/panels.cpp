@@ -27,10 +27,7 @@ ButtonRow::ButtonRow(Ui& ui, int count) : ui_(ui), count_(count) {
 
 bool ButtonRow::button(const char* label, const char* tooltip, bool enabled) {
   if (drawn_++ % count_ != 0) ImGui::SameLine();
-  ImGui::BeginDisabled(!enabled);
-  const bool pressed = ui_.button(label, tooltip, width_);
-  ImGui::EndDisabled();
-  return pressed;
+  return ui_.button(label, tooltip, width_, enabled);
 }
 
 #define PANEL(name)            \

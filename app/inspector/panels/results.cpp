@@ -1,5 +1,7 @@
 // What each algorithm did in this frame, side by side.
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
@@ -32,17 +34,7 @@ class ResultsPanel final : public Panel {
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
-                                       ImGuiTableFlags_ScrollY;
-    const std::vector<std::string> columns = columnNames();
-    if (!ImGui::BeginTable("results", static_cast<int>(columns.size()), kFlags,
-                           {widthOfWholeColumns("results", 2), 0})) {
-      return;
-    }
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
-    ImGui::TableHeadersRow();
+    if (!ui.beginTable("results", columnNames(), 2)) return;
     const std::vector<Rgb> colours = laneColours();
     for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(lanes[i], colours[i]);
     ImGui::EndTable();
@@ -65,36 +57,29 @@ class ResultsPanel final : public Panel {
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
     const bool shown = session.lanes.shown() == lane.spec.number;
-    ImGui::PushStyleColor(ImGuiCol_Text, colour(curve));
-    if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
-                          ImGuiSelectableFlags_SpanAllColumns)) {
+    const std::string label =
+        fmt::format("{}###{}", caseName(lane.spec.run), lane.spec.run.algorithm.id);
+    if (ui.selectable(label.c_str(), shown, nullptr, curve)) {
       session.lanes.show(lane.spec.number);
     }
-    ImGui::PopStyleColor();
-    ui.note(lane.spec.run.algorithm.id);
-    const auto cell = [&](const std::string& text, Rgb rgb) {
-      ImGui::TableNextColumn();
-      ui.coloured(rgb, text);
-    };
     const auto time = [&](Phase phase, const char* mark) {
       const bool known = record != nullptr;
-      cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark : "–",
-           ui.theme.text);
+      ui.cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark
+                    : "–");
     };
-    cell(std::string(statusName(lane.status)),
-         lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
+    ui.cell(statusName(lane.status), lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
     ui.tooltip(lane.reason.c_str());
     const bool disturbed = record != nullptr && record->disturbed;
     time(Phase::total, disturbed ? " *" : "");
     if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
     const double mean = meanTotal(lane);
-    cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"), ui.theme.text);
-    cell(record == nullptr ? "–" : std::to_string(record->pairs), ui.theme.text);
+    ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
+    ui.cell(record == nullptr ? "–" : std::to_string(record->pairs));
     for (const auto count : {&FrameRecord::missed_count, &FrameRecord::false_count,
                              &FrameRecord::invalid_count, &FrameRecord::allowed_extra_count}) {
       const bool checked = record != nullptr && record->checked;
       const bool bad = checked && record->*count > 0 && count != &FrameRecord::allowed_extra_count;
-      cell(checked ? std::to_string(record->*count) : "–", bad ? ui.theme.bad : ui.theme.text);
+      ui.cell(checked ? std::to_string(record->*count) : "–", bad ? ui.theme.bad : ui.theme.text);
     }
     for (const auto& [phase, name] : kPhases.entries) {
       if (phase != Phase::total) time(phase, "");

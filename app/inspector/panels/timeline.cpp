@@ -14,7 +14,6 @@
 #include "broadmark/statistics/statistics.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
-#include "inspector/ui/histogram.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {
@@ -64,9 +63,9 @@ class TimelinePanel final : public Panel {
       ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
     }
     Ui::besideIfRoom(90 * ui.scale);
-    ImGui::BeginDisabled(!timeline.zoomed());
-    if (ui.button("All frames", "Undoes zooming with the wheel")) timeline.showAll();
-    ImGui::EndDisabled();
+    if (ui.button("All frames", "Undoes zooming with the wheel", 0, timeline.zoomed())) {
+      timeline.showAll();
+    }
     Ui::besideIfRoom(240 * ui.scale);
     drawBudget();
   }
@@ -122,33 +121,22 @@ class TimelinePanel final : public Panel {
   void drawStatistics() const {
     const std::vector<LaneReport>& lanes = progress->lanes;
     const std::vector<Rgb> colours = laneColours();
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
     const float height =
         ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(lanes.size()) + 1.8F);
-    if (!ImGui::BeginTable("statistics", 8, kFlags,
-                           {widthOfWholeColumns("statistics", 1), height})) {
+    if (!ui.beginTable("statistics",
+                       {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}, 1,
+                       height)) {
       return;
     }
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const char* name :
-         {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}) {
-      ImGui::TableSetupColumn(name);
-    }
-    ImGui::TableHeadersRow();
     for (std::size_t i = 0; i < lanes.size(); ++i) {
       const SpanStatistics& of = statistics_[i];
       ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ui.coloured(colours[i], caseName(lanes[i].spec.run));
+      ui.cell(caseName(lanes[i].spec.run), colours[i]);
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
-        ImGui::TableNextColumn();
-        ui.plain(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
+        ui.cell(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
       }
-      ImGui::TableNextColumn();
-      ui.plain(of.values.empty() ? "–" : valueText(of.total));
-      ImGui::TableNextColumn();
-      ui.plain(std::to_string(of.values.size()));
+      ui.cell(of.values.empty() ? "–" : valueText(of.total));
+      ui.cell(std::to_string(of.values.size()));
       if (of.disturbed > 0) {
         ui.tooltip(fmt::format("and {} left out as disturbed", of.disturbed).c_str());
       }

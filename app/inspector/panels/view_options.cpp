@@ -25,9 +25,7 @@ class ViewPanel final : public Panel {
     ui.checkbox("only what overlaps", look.hide_free, "Hides bodies that are in no pair (H)");
     ui.checkbox("lines between pairs", look.pair_lines,
                 "From middle to middle of two that are reported");
-    ImGui::BeginDisabled(!look.pair_lines);
-    ui.checkbox("of all, not of the selection", look.lines_of_all);
-    ImGui::EndDisabled();
+    ui.checkbox("of all, not of the selection", look.lines_of_all, nullptr, look.pair_lines);
     ui.checkbox("world", look.world_box);
     ui.checkbox("ground", look.ground);
     ui.checkbox("axes", look.axes);
@@ -76,23 +74,21 @@ class ViewPanel final : public Panel {
     }
     ui.checkbox("clip below", filter.clip_below, "Hides what lies below the plane, not above");
     ImGui::EndDisabled();
-    ImGui::BeginDisabled(!filter.hides());
-    if (ui.button("Show all bodies")) filter = {};
-    ImGui::EndDisabled();
+    if (ui.button("Show all bodies", nullptr, 0, filter.hides())) filter = {};
   }
 
   /// What stands beside the view.
   void drawSecond() {
     ui.heading("Beside");
-    bool on = session.second.wish.has_value();
+    bool on = session.second.has_value();
     if (ui.checkbox("second view", on,
                     "Another algorithm's answer, another frame or another recording beside the "
                     "first view (V); selecting a body in one selects it in both")) {
-      session.second.show(on);
+      session.showSecond(on);
     }
-    if (!session.second.wish) return;
+    if (!session.second) return;
     const auto scope = ui.scope("second");
-    SecondWish& second = *session.second.wish;
+    SecondWish& second = *session.second;
     drawSecondAnswer(second);
     bool stays = second.frame.has_value();
     if (ui.checkbox("at frame", stays, "Stays at a frame while the first view plays")) {
@@ -114,7 +110,7 @@ class ViewPanel final : public Panel {
       ui.tooltip(second.footage->recording.string().c_str());
       if (wideButton("The same recording", "As in the first view")) second.footage.reset();
     }
-    ui.checkbox("cameras linked", session.second.linked, "One camera moves both views");
+    ui.checkbox("cameras linked", session.linked, "One camera moves both views");
   }
 
   void drawSecondAnswer(SecondWish& second) {
@@ -135,12 +131,11 @@ class ViewPanel final : public Panel {
 
   void askRecording() {
     files.ask({.title = "A recording for the second view",
-               .purpose = FileDialog::Purpose::open,
                .extensions = recordingExtensions(),
                .suggestion = session.playback.footage() ? session.playback.footage()->recording
                                                         : std::filesystem::path(),
                .chosen = [&session = session](const std::filesystem::path& path) {
-                 session.second.showRecording(path);
+                 session.showBeside(path);
                }});
   }
 
@@ -187,10 +182,9 @@ class ViewPanel final : public Panel {
       ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
                 look.structure_level, -1, deepest);
     }
-    ImGui::BeginDisabled(drawn == nullptr || !tellsPopulations(*drawn));
     ui.checkbox("coloured by population", look.structure_population,
-                "Colours tell how many bodies a cell holds, where the algorithm says so");
-    ImGui::EndDisabled();
+                "Colours tell how many bodies a cell holds, where the algorithm says so",
+                drawn != nullptr && tellsPopulations(*drawn));
     if (drawn != nullptr && drawn->boxes().empty() && drawn->lines().empty()) {
       ui.faint("It has none to show.");
     }

@@ -155,8 +155,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   if (shown.has_hands) hands_.draw(ui, seen, corner_);
   moved_ = camera_ != before;
   const std::string source = sourceText(shown.snapshot->footage.get());
-  answer_.where =
-      session.second.wish ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
+  answer_.where = session.second ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner_, size_);
   const bool tools = shown.has_hands && session.document.shown();
   const float free = tools ? drawTools(ui, session, corner_, size_) : size_.y;
@@ -278,13 +277,13 @@ void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 p
                                      .hint = "Simulate a scene, or drop a recording here",
                                      .lane = session.lanes.shown(),
                                      .has_hands = true}};
-  if (session.second.wish) {
+  if (session.second) {
     const std::string& failure = progress.second_failure;
     shown.push_back({.name = "Second view",
                      .snapshot = progress.second,
                      .hint = failure.empty() ? "Nothing is shown yet" : failure,
-                     .lane = session.second.wish->lane,
-                     .leader = session.second.linked ? &first() : nullptr});
+                     .lane = session.second->lane,
+                     .leader = session.linked ? &first() : nullptr});
   }
   const auto count = static_cast<float>(shown.size());
   const float gap = kSplitterSize * ui.scale;
