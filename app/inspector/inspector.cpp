@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr float kFontSize = 15;       // units
 constexpr float kLargeFontSize = 20;  // units
 constexpr float kNarrowest = 110;     // units: of a place that is shown
-constexpr const char* kStillAtWork = "Still at work";
 
 }  // namespace
 
@@ -246,21 +245,15 @@ void Inspector::drawEnding() {
   if (!ending_ || !session_.notices.errors.empty()) return;
   if (!session_.jobs.running()) return leave();  // it has ended meanwhile
   const auto scope = ui_.scope("Ending");
-  if (!ImGui::IsPopupOpen(kStillAtWork)) ImGui::OpenPopup(kStillAtWork);
-  if (!ui_.beginDialog(kStillAtWork, {420, 0})) return;
+  std::string text;
   for (const Job* const job : session_.jobs.all()) {
-    if (job->running()) ui_.paragraph(job->status().doing);
+    if (job->running()) text += job->status().doing + '\n';
   }
-  ui_.paragraph("What is finished is kept.");
-  ImGui::Spacing();
-  const float width = 84 * ui_.scale;
-  const bool end = ui_.button("End it", "What is not finished is given up", width);
-  ImGui::SameLine();
-  const bool stay = ui_.cancel(width);
-  if (end || stay) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (stay) ending_ = false;
-  if (end) leave();
+  const auto answer = ui_.ask("Still at work", text + "What is finished is kept.",
+                              {{"End it", "What is not finished is given up"}});
+  if (!answer) return;
+  ending_ = false;
+  if (*answer == 0) leave();
 }
 
 }  // namespace broadmark

@@ -28,15 +28,6 @@ std::string textOf(const std::array<float, count>& numbers) {
   return fmt::format(kFormat, fmt::join(numbers, " "));
 }
 
-/// The wrong pairs of a frame or of several, each kind by its name after `prefix`.
-template <class Counts>
-void addCounts(Values& values, const std::string& prefix, const Counts& counts) {
-  values[prefix + "missed"] = std::to_string(counts.missed_count);
-  values[prefix + "false"] = std::to_string(counts.false_count);
-  values[prefix + "allowed_extra"] = std::to_string(counts.allowed_extra_count);
-  values[prefix + "invalid"] = std::to_string(counts.invalid_count);
-}
-
 void addLanes(Values& values, const Session& session, const RunProgress& progress) {
   for (const LaneReport& lane : progress.lanes) {
     const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
@@ -44,16 +35,14 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
     values[name + "reason"] = lane.reason;
     values[name + "frame"] = std::to_string(lane.frame);
     values[name + "over"] = std::to_string(framesOver(lane, session.timeline.budget_ms));
-    FrameRecord sum;
-    for (const FrameRecord& record : lane.frames) {
-      sum.missed_count += record.missed_count;
-      sum.false_count += record.false_count;
-      sum.allowed_extra_count += record.allowed_extra_count;
-      sum.invalid_count += record.invalid_count;
+    for (const FrameCount count : {FrameCount::missed, FrameCount::false_pairs,
+                                   FrameCount::allowed_extra, FrameCount::invalid}) {
+      std::uint64_t sum = 0;
+      for (const FrameRecord& record : lane.frames) sum += record.counts[count];
+      values[name + std::string(kFrameCounts.nameOf(count))] = std::to_string(sum);
     }
-    addCounts(values, name, sum);
     const FrameRecord* record = lane.record(lane.frame);
-    values[name + "pairs"] = record ? std::to_string(record->pairs) : "";
+    values[name + "pairs"] = record ? std::to_string(record->counts[FrameCount::pairs]) : "";
     if (const auto span = session.timeline.span()) {
       const auto of = statisticsOf(lane.curves.pairs, lane.curves.disturbed, *span);
       values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
@@ -68,7 +57,10 @@ void addSnapshot(Values& values, const Snapshot* shown) {
   values["shown_frame"] = shown ? std::to_string(snapshot.frame) : "";
   values["bodies"] = std::to_string(snapshot.present);
   values["pairs"] = std::to_string(snapshot.pairs.size());
-  addCounts(values, "", difference);
+  values["missed"] = std::to_string(difference.missed_count);
+  values["false"] = std::to_string(difference.false_count);
+  values["allowed_extra"] = std::to_string(difference.allowed_extra_count);
+  values["invalid"] = std::to_string(difference.invalid_count);
   values["mismatch_pairs"] =
       std::to_string(difference.missed_count + difference.false_count + difference.invalid_count);
   const RecordedDrawing* structure = snapshot.structure.get();

@@ -25,7 +25,8 @@ class CaseExportTest : public testing::Test {
 
   /// Goes to the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {
-    session.draft.choose("brownian", "kinematic");
+    session.draft.choose("brownian");
+    setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
     session.draft.simulate();
     setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});

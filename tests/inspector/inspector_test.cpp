@@ -180,7 +180,8 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
 }
 
 TEST_F(InspectorTest, LooksAsItDid) {
-  inspector.session().draft.choose("brownian", "kinematic");
+  inspector.session().draft.choose("brownian");
+  setParameters(inspector.session().draft.scene(), {{"engine", "kinematic"}});
   inspector.session().draft.simulate();
   settle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/inspector.png")));

@@ -105,7 +105,8 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     session.document.edit(&SceneEditor::selectAll);
     settled(session);
 
-    session.draft.choose("brownian", "kinematic");
+    session.draft.choose("brownian");
+    setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "100"}, {"frames", "40"}});
     session.draft.simulate();
     session.lanes.add("sap");

@@ -268,8 +268,7 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   const auto layers = [](inputs::Random&, std::uint32_t body) {
     return BodyGroups{.layer = static_cast<std::uint8_t>(body % 2)};
   };
-  session.open(
-      vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
+  session.open(vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
   session.playback.seek(10);
   settle();
   session.playback.seek(10);

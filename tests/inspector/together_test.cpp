@@ -61,7 +61,8 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
   Session session(builtinAlgorithms());
-  session.draft.choose("brownian", "kinematic");
+  session.draft.choose("brownian");
+  setParameters(session.draft.scene(), {{"engine", "kinematic"}});
   setParameters(session.draft.scene(), {{"objects", "150"}, {"frames", "30"}});
   session.draft.simulate();
   const Case faulty{.algorithm = faultyTree()};

@@ -5,12 +5,8 @@
 #include <utility>
 
 namespace broadmark {
-namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kLeaving = "Unsaved changes";
-
-}  // namespace
 
 void askOpenScene(FileDialog& files, Session& session) {
   files.ask({.title = "Open a scene",
@@ -53,23 +49,14 @@ void askBakeScene(FileDialog& files, Session& session) {
 void drawLeaving(Ui& ui, FileDialog& files, Session& session) {
   if (!session.document.leaving || !session.notices.errors.empty() || files.isOpen()) return;
   const auto scope = ui.scope("Unsaved");
-  if (!ImGui::IsPopupOpen(kLeaving)) ImGui::OpenPopup(kLeaving);
-  if (!ui.beginDialog(kLeaving, {420, 0})) return;
-  ui.paragraph(fmt::format("The scene '{}' has unsaved changes.", session.document.title()));
-  ImGui::Spacing();
-  const float width = 84 * ui.scale;
-  const bool save = ui.button("Save", nullptr, width);
-  ImGui::SameLine();
-  const bool discard = ui.button("Discard", "The changes are lost", width);
-  ImGui::SameLine();
-  const bool stay = ui.cancel(width);
-  const bool decided = save || discard || stay;
-  if (decided) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (!decided) return;
+  const auto answer =
+      ui.ask("Unsaved changes",
+             fmt::format("The scene '{}' has unsaved changes.", session.document.title()),
+             {{"Save", nullptr}, {"Discard", "The changes are lost"}});
+  if (!answer) return;
   const auto then = std::exchange(session.document.leaving, {});
-  if (save) saveScene(files, session, then);
-  if (discard) then();
+  if (*answer == 0) saveScene(files, session, then);
+  if (*answer == 1) then();
 }
 
 }  // namespace broadmark

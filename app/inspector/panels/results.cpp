@@ -74,12 +74,13 @@ class ResultsPanel final : public Panel {
     if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
     const double mean = meanTotal(lane);
     ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
-    ui.cell(record == nullptr ? "–" : std::to_string(record->pairs));
-    for (const auto count : {&FrameRecord::missed_count, &FrameRecord::false_count,
-                             &FrameRecord::invalid_count, &FrameRecord::allowed_extra_count}) {
+    ui.cell(record == nullptr ? "–" : std::to_string(record->counts[FrameCount::pairs]));
+    for (const FrameCount which : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
+                                   FrameCount::allowed_extra}) {
       const bool checked = record != nullptr && record->checked;
-      const bool bad = checked && record->*count > 0 && count != &FrameRecord::allowed_extra_count;
-      ui.cell(checked ? std::to_string(record->*count) : "–", bad ? ui.theme.bad : ui.theme.text);
+      const std::uint64_t count = checked ? record->counts[which] : 0;
+      const bool bad = count > 0 && which != FrameCount::allowed_extra;
+      ui.cell(checked ? std::to_string(count) : "–", bad ? ui.theme.bad : ui.theme.text);
     }
     for (const auto& [phase, name] : kPhases.entries) {
       if (phase != Phase::total) time(phase, "");

@@ -389,6 +389,27 @@ bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
   return ImGui::BeginPopupModal(title, keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
 }
 
+std::optional<std::size_t> Ui::ask(
+    const char* title, std::string_view text,
+    std::initializer_list<std::pair<const char*, const char*>> answers) {
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!beginDialog(title, {420, 0})) return {};
+  paragraph(text);
+  ImGui::Spacing();
+  const float width = 84 * scale;
+  std::optional<std::size_t> given;
+  std::size_t number = 0;
+  for (const auto& [answer, tip] : answers) {
+    if (button(answer, tip, width)) given = number;
+    ImGui::SameLine();
+    ++number;
+  }
+  if (cancel(width)) given = number;
+  if (given) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  return given;
+}
+
 bool Ui::cancel(float width) {
   const bool pressed = button("Cancel", nullptr, width);
   return pressed || escaped();

@@ -7,11 +7,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadmark/parameters.h"
@@ -103,6 +105,11 @@ class Ui {
   /// A dialog, placed likewise, whose popup has been opened. Its cross makes `keep` false.
   /// Returns whether it is drawn: then ImGui::EndPopup() follows.
   bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
+  /// A dialog that asks, with a button for each answer and its tooltip, and "Cancel". Returns the
+  /// number of the answer once it is given; Cancel is the last.
+  std::optional<std::size_t> ask(
+      const char* title, std::string_view text,
+      std::initializer_list<std::pair<const char*, const char*>> answers);
   /// A dialog's button "Cancel", which Escape presses, too.
   bool cancel(float width = 0);
 
