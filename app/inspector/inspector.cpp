@@ -112,11 +112,6 @@ std::optional<fs::path> Inspector::takeScreenshotRequest() {
   return path;
 }
 
-const PanelTab* Inspector::panel(const std::string& name) const {
-  const auto found = std::ranges::find(panels_, name, &PanelTab::name);
-  return found == panels_.end() ? nullptr : &*found;
-}
-
 void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   beginAt(id, position, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);

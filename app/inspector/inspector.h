@@ -2,6 +2,7 @@
 // window, or an off-screen picture.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -76,8 +77,9 @@ class Inspector {
   /// an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
   [[nodiscard]] const std::vector<PanelTab>& panels() const { return panels_; }
-  /// Panel by name, or null.
-  [[nodiscard]] const PanelTab* panel(const std::string& name) const;
+  [[nodiscard]] bool hasPanel(std::string_view name) const {
+    return std::ranges::find(panels_, name, &PanelTab::name) != panels_.end();
+  }
 
  private:
   void restyle();

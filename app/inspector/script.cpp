@@ -110,7 +110,8 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        }},
       {"panel", "NAME", 1, 1, "brings a panel to the front",
        [](P& player, const Words& words, Inspector& inspector) {
-         if (!inspector.panel(words[0])) player.fail(fmt::format("unknown panel '{}'", words[0]));
+         if (!inspector.hasPanel(words[0]))
+           player.fail(fmt::format("unknown panel '{}'", words[0]));
          inspector.session().notices.bringUp(words[0]);
          player.pause();
        }},
@@ -233,8 +234,7 @@ void ScriptPlayer::reveal(const std::string& widget) {
     if (found == nullptr) {
       // Perhaps in a panel that is behind another.
       const std::string panel = widget.substr(0, widget.find('/'));
-      if (inspector.panel(panel) != nullptr && pictures < 3)
-        inspector.session().notices.bringUp(panel);
+      if (inspector.hasPanel(panel) && pictures < 3) inspector.session().notices.bringUp(panel);
     } else {
       inspector.ui().reveal(widget);
     }

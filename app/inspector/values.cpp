@@ -243,9 +243,9 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.yaw"] = values["view.yaw"];
   values["camera.pitch"] = fmt::format("{:.4f}", first.camera().pitch);
   values["camera.distance"] = values["view.distance"];
-  values["legend"] = legendText(first.content().legend());
-  values["legend.oracle"] = legendText(first.content().oracleLegend());
-  values["legend.cells"] = legendText(first.content().cellLegend());
+  values["legend"] = legendText(first.content().colouring.legend);
+  values["legend.oracle"] = legendText(first.content().oracle_legend);
+  values["legend.cells"] = legendText(first.content().cell_legend);
   values["view.hands"] = first.hands().text();
   values["hidden"] = std::to_string(first.content().hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());

@@ -59,21 +59,21 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     ASSERT_EQ(report.state, State::done) << report.failure;
     EXPECT_EQ(report.whole_bodies, 200U);
     EXPECT_EQ(report.whole_frames, seen.snapshot->frame);
-    EXPECT_EQ(report.bodies, algorithm == "faulty" ? 3U : 2U);
-    EXPECT_LE(report.frames, 2U);
-    EXPECT_GT(report.trials, 0U);
+    EXPECT_EQ(report.now.bodies, algorithm == "faulty" ? 3U : 2U);
+    EXPECT_LE(report.now.frames, 2U);
+    EXPECT_GT(report.now.trials, 0U);
     EXPECT_THAT(report.command, testing::HasSubstr("--algorithm " + algorithm + " "));
     EXPECT_THAT(report.command, testing::HasSubstr("--param fat_margin=0.5"));
     EXPECT_THAT(session.notices.status.text, testing::HasSubstr("exported"));
     const auto written = openRecordingFile(directory / (algorithm + ".aabbs"));
-    EXPECT_EQ(written->scene().objects, report.bodies);
-    EXPECT_EQ(written->scene().frames, report.frames);
+    EXPECT_EQ(written->scene().objects, report.now.bodies);
+    EXPECT_EQ(written->scene().frames, report.now.frames);
 
     session.openExport(session.jobs.get<CaseExport>().report());
     const RunProgress opened = settle();
-    EXPECT_EQ(opened.scene.objects, report.bodies);
+    EXPECT_EQ(opened.scene.objects, report.now.bodies);
     ASSERT_TRUE(opened.snapshot);
-    EXPECT_EQ(opened.snapshot->frame, report.frames);
+    EXPECT_EQ(opened.snapshot->frame, report.now.frames);
     EXPECT_TRUE(opened.snapshot->difference.isMismatch());
     EXPECT_TRUE(session.notices.errors.empty());
   }

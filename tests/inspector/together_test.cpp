@@ -96,7 +96,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   }
   const CaseExport::Report exported = session.jobs.get<CaseExport>().report();
   EXPECT_EQ(exported.state, TaskState::done) << exported.failure;
-  EXPECT_EQ(exported.bodies, 2U);
+  EXPECT_EQ(exported.now.bodies, 2U);
   ASSERT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done)
       << session.jobs.get<BackgroundBake>().report().failure;
   EXPECT_EQ(openRecordingFile(directory / "together.aabbs")->hash(),

@@ -68,7 +68,7 @@ void Hands::lookAtGizmo(const Seen& seen) {
       body.shape = transformedShape(body, change_);
       body.pose = transformedPose(body, change_);
     }
-    showGhosts(changed);
+    ghosts_ = std::move(changed);
     for (std::size_t axis = 0; axis < 3; ++axis) place_.centre[axis] += change_.move[axis];
   }
   if (tools.local) place_.turn = editor.scene().bodies[editor.selection().front()].pose.rotation;
@@ -115,7 +115,7 @@ void Hands::previewDab(const Seen& seen) {
   const std::optional<Surface> surface = surfaceAt(seen, *seen.mouse);
   if (!surface) return;
   const scenes::Stroke dab = stroke_->dab(*surface, kMostGhosts);
-  showGhosts(dab.bodies);
+  ghosts_ = dab.bodies;
   if (dab.bodies.empty()) text_ = "no room here";
 }
 
@@ -130,7 +130,8 @@ void Hands::paintTo(const Seen& seen, Pixel to) {
   }
   painted_at_ = to;
   const std::vector<scenes::AuthoredBody>& bodies = stroke_->painted().bodies;
-  showGhosts(std::span(bodies).last(std::min(bodies.size(), kMostGhosts)));
+  const std::size_t left_out = bodies.size() - std::min(bodies.size(), kMostGhosts);
+  ghosts_.assign(bodies.begin() + static_cast<std::ptrdiff_t>(left_out), bodies.end());
   text_ = counted(bodies.size(), "body", "bodies");
 }
 
@@ -157,10 +158,6 @@ void Hands::takeBodies(const scenes::SceneEditor& editor) {
     all = merged(all, tightBox(bodies[id].shape, bodies[id].pose));
   }
   taken_.push_back(scenes::bodyIn(all));
-}
-
-void Hands::showGhosts(std::span<const scenes::AuthoredBody> bodies) {
-  ghosts_.assign(bodies.begin(), bodies.end());
 }
 
 bool Hands::press(const Seen& seen) {

@@ -11,7 +11,6 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "broadmark/render/point_plot.h"
 #include "inspector/panels/panel.h"
 
@@ -105,22 +104,9 @@ class CasePlots : PanelContext {
       last = std::max(last, curves[i].seconds.size() - 1);
     }
     zoom_.follow(nullptr, last, 0);
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", plotted,
-                                     {.logarithmic = logarithmic_,
-                                      .unit = "s",
-                                      .first = zoom_.first(),
-                                      .last = zoom_.last(),
-                                      .playhead = is_open ? session.playback.frame() : 0,
-                                      .span = {},
-                                      .marks = {wrong}},
-                                     room.x, room.y);
-    ui.note("plot");
-    if (done.zoom != 0) zoom_.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) zoom_.move(done.moved);
-    if (done.clicked_frame && is_open) {
-      session.playback.goTo(std::llround(*done.clicked_frame));
-    }
+    plotFrames("plot", plotted,
+               {.logarithmic = logarithmic_, .unit = "s", .span = {}, .marks = {wrong}}, zoom_,
+               is_open);
   }
 
   void drawBodies(OpenedResults& results) {

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/case_plots.h"
 #include "inspector/panels/panel.h"
 #include "support/child_program.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
 #include "inspector/session/wrong_pair.h"
@@ -114,24 +113,15 @@ class ComparePanel final : public Panel {
   }
 
   void drawRatios() const {
-    const Timeline& timeline = session.timeline;
     const PlotCurve curve{.label = "ratio", .colour = ui.theme.accent, .values = &ratios_.ratios};
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("ratios", {curve},
-                                     {.logarithmic = true,
-                                      .unit = "",
-                                      .first = timeline.first(),
-                                      .last = timeline.last(),
-                                      .playhead = session.playback.frame(),
-                                      .limit = 1,
-                                      .limit_colour = ui.theme.warning,
-                                      .span = {},
-                                      .marks = {}},
-                                     room.x, room.y);
-    ui.note("ratios");
-    if (done.clicked_frame) session.playback.goTo(std::llround(*done.clicked_frame));
-    if (done.zoom != 0) session.timeline.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) session.timeline.move(done.moved);
+    plotFrames("ratios", {curve},
+               {.logarithmic = true,
+                .unit = "",
+                .limit = 1,
+                .limit_colour = ui.theme.warning,
+                .span = {},
+                .marks = {}},
+               session.timeline);
   }
 
   /// Long recordings take a while: not for each picture.

@@ -175,10 +175,11 @@ class MismatchesPanel final : public Panel {
     ImGui::PushID("export");
     if (report.state == TaskState::running) {
       const double whole = static_cast<double>(report.whole_bodies * report.whole_frames);
-      const double left = static_cast<double>(report.bodies * report.frames);
+      const double left = static_cast<double>(report.now.bodies * report.now.frames);
       ImGui::ProgressBar(
           static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
-          fmt::format("{}, {} runs", extentText(report.bodies, report.frames), report.trials)
+          fmt::format("{}, {} runs", extentText(report.now.bodies, report.now.frames),
+                      report.now.trials)
               .c_str());
       if (ui.button("Cancel", "Nothing is written then")) case_export.cancel();
     } else if (report.state == TaskState::done) {
@@ -192,8 +193,9 @@ class MismatchesPanel final : public Panel {
   }
 
   void drawExported(const CaseExport::Report& report) {
-    ui.coloured(ui.theme.good, fmt::format("{} of {}", extentText(report.bodies, report.frames),
-                                           extentText(report.whole_bodies, report.whole_frames)));
+    ui.coloured(ui.theme.good,
+                fmt::format("{} of {}", extentText(report.now.bodies, report.now.frames),
+                            extentText(report.whole_bodies, report.whole_frames)));
     ui.tooltip(report.file.c_str());
     std::string command = report.command;
     ImGui::SetNextItemWidth(-1);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadmark/names.h"
+#include "broadmark/render/plot.h"
 #include "inspector/session/session.h"
 #include "inspector/ui/file_dialog.h"
 #include "inspector/ui/ui.h"
@@ -29,6 +30,10 @@ struct PanelContext {
 
   /// Of the curves of `progress`'s lanes.
   [[nodiscard]] std::vector<Rgb> laneColours() const;
+  /// Draws the frames that `zoom` shows into the rest of the panel. The mouse moves them, and goes
+  /// to one if `plays` says that they are those of the playback.
+  PlotResult plotFrames(const char* name, const std::vector<PlotCurve>& curves, PlotOptions options,
+                        Timeline& zoom, bool plays = true) const;
   /// A button as wide as the panel.
   bool wideButton(const char* label, const char* tooltip, bool enabled = true) const;
 };

@@ -15,6 +15,20 @@ std::vector<Rgb> PanelContext::laneColours() const {
   return curveColours(families, ui.theme);
 }
 
+PlotResult PanelContext::plotFrames(const char* name, const std::vector<PlotCurve>& curves,
+                                    PlotOptions options, Timeline& zoom, bool plays) const {
+  options.first = zoom.first();
+  options.last = zoom.last();
+  if (plays) options.playhead = session.playback.frame();
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const PlotResult done = drawPlot(name, curves, options, room.x, room.y);
+  ui.note(name);
+  if (done.zoom != 0) zoom.zoom(done.zoom, done.zoom_at);
+  if (done.moved != 0) zoom.move(done.moved);
+  if (done.clicked_frame && plays) session.playback.goTo(std::llround(*done.clicked_frame));
+  return done;
+}
+
 bool PanelContext::wideButton(const char* label, const char* tooltip, bool enabled) const {
   return ButtonRow(ui, 1).button(label, tooltip, enabled);
 }

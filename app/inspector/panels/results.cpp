@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
 
 namespace broadmark::panels::results {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "broadmark/statistics/statistics.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
@@ -33,7 +32,7 @@ class TimelinePanel final : public Panel {
     }
     if (!progress->footage) return;
     drawControls();
-    const auto curves = [&] { act(drawCurves()); };
+    const auto curves = [&] { drawCurves(); };
     if (!session.timeline.span() || progress->lanes.empty()) {
       curves();
       return;
@@ -153,9 +152,9 @@ class TimelinePanel final : public Panel {
     return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
   }
 
-  PlotResult drawCurves() const {
+  void drawCurves() {
     const Palette& theme = ui.theme;
-    const Timeline& timeline = session.timeline;
+    Timeline& timeline = session.timeline;
     std::vector<PlotCurve> curves;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
@@ -179,28 +178,15 @@ class TimelinePanel final : public Panel {
     const PlotOptions options{
         .logarithmic = logarithmic_,
         .unit = quantity_ == 0 ? "" : "s",
-        .first = timeline.first(),
-        .last = timeline.last(),
-        .playhead = session.playback.frame(),
-        .limit = quantity_ == 0 ? 0 : session.timeline.budget_ms * 1e-3,
+        .limit = quantity_ == 0 ? 0 : timeline.budget_ms * 1e-3,
         .limit_colour = theme.warning,
         .span = span,
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
         .thin = shows_pairs_ ? &pairs : nullptr,
         .marks = {wrong, disturbed}};
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", curves, options, room.x, room.y);
-    ui.note("plot");
-    return done;
-  }
-
-  void act(const PlotResult& done) {
-    Timeline& timeline = session.timeline;
-    if (done.clicked_frame) session.playback.goTo(std::llround(*done.clicked_frame));
+    const PlotResult done = plotFrames("plot", curves, options, timeline);
     if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
     if (done.toggled) toggle(progress->lanes[*done.toggled].spec.number);
-    if (done.zoom != 0) timeline.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) timeline.move(done.moved);
   }
 
   void toggle(int lane) {

@@ -52,7 +52,7 @@ class ViewPanel final : public Panel {
   void drawFilter() {
     BodyFilter& filter = session.view.filter;
     ui.heading("Show of the crowd");
-    const auto& legend = view.content().legend();
+    const auto& legend = view.content().colouring.legend;
     for (std::size_t i = 0; i < std::min<std::size_t>(legend.size(), 64); ++i) {
       showBit(legend[i].label, filter.hidden_classes, i);
     }

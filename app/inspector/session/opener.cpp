@@ -115,7 +115,7 @@ void Session::openExport(const ExportReport& report) {
     playback.show(recordingFootage(report.file, {}, playback.swept));
     lanes.clear();
     lanes.add(report.run);
-    playback.seek(static_cast<std::int64_t>(report.frames));
+    playback.seek(static_cast<std::int64_t>(report.now.frames));
     notices.on_file(report.file);
   });
 }

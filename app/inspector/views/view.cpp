@@ -105,7 +105,7 @@ void View::drawEmpty(Ui& ui, const std::string& hint) {
 }
 
 void View::drawScene(const Ui& ui) {
-  SceneViewContent picture = content_.picture();
+  SceneViewContent picture = content_.picture;
   picture.space = space_;
   picture.scale = ui.scale;
   scene_.resize(static_cast<int>(size_.x), static_cast<int>(size_.y));
@@ -142,7 +142,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   ui.note("scene");
   Hands::Seen seen{.session = session,
                    .snapshot = content_.snapshot(),
-                   .visible = content_.picture().visible,
+                   .visible = content_.picture.visible,
                    .sight = Sight(space_, scene_.viewpoint()),
                    .scale = ui.scale,
                    .mouse = {},
@@ -239,7 +239,7 @@ void View::handleKeys() {
 
 void View::click(Session& session, bool fly_there) {
   const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), mouse_.x,
-                               mouse_.y, content_.picture().visible);
+                               mouse_.y, content_.picture.visible);
   if (!picked) {
     if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
@@ -257,7 +257,7 @@ void View::selectWithin(Session& session) {
   session.selection.select(
       withGroups(session, bodiesWithin(*content_.snapshot()->boxes, space_, scene_.viewpoint(),
                                        {{drag_from_.x, drag_from_.y}, {mouse_.x, mouse_.y}},
-                                       content_.picture().visible)));
+                                       content_.picture.visible)));
 }
 
 void View::drawAxisNames(float scale) const {
