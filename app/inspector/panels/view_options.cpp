@@ -110,7 +110,7 @@ class ViewPanel final : public Panel {
       ui.tooltip(second.footage->recording.string().c_str());
       if (wideButton("The same recording", "As in the first view")) second.footage.reset();
     }
-    ui.checkbox("cameras linked", session.linked, "One camera moves both views");
+    ui.checkbox("cameras linked", session.cameras_linked, "One camera moves both views");
   }
 
   void drawSecondAnswer(SecondWish& second) {

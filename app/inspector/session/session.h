@@ -81,7 +81,7 @@ class Session {
   Draft draft{playback};
   ViewOptions view;
   std::optional<SecondWish> second;      ///< nothing: there is no second view
-  bool linked = true;                    ///< one camera moves both views
+  bool cameras_linked = true;            ///< one camera moves both views
   std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
   RunThread runs;
 

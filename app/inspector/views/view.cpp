@@ -283,7 +283,7 @@ void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 p
                      .snapshot = progress.second,
                      .hint = failure.empty() ? "Nothing is shown yet" : failure,
                      .lane = session.second->lane,
-                     .leader = session.linked ? &first() : nullptr});
+                     .leader = session.cameras_linked ? &first() : nullptr});
   }
   const auto count = static_cast<float>(shown.size());
   const float gap = kSplitterSize * ui.scale;
