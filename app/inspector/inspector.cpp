@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr float kFontSize = 15;       // units
 constexpr float kLargeFontSize = 20;  // units
 constexpr float kNarrowest = 110;     // units: of a place that is shown
-constexpr const char* kStillAtWork = "Still at work";
 
 }  // namespace
 
@@ -34,7 +33,7 @@ Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preference
       gl_(&gl),
       session_(std::move(algorithms), std::move(make_host)),
       views_(gl),
-      panels_(makePanels()),
+      panels_(makePanels({ui_, session_, views_.first(), files_})),
       screen_scale_(scale) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -113,13 +112,6 @@ std::optional<fs::path> Inspector::takeScreenshotRequest() {
   return path;
 }
 
-Panel* Inspector::panel(const std::string& name) {
-  for (const auto& panel : panels_) {
-    if (panel->name() == name) return panel.get();
-  }
-  return nullptr;
-}
-
 void Inspector::splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
   beginAt(id, position, size, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoBackground);
@@ -165,18 +157,17 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   const float view_bottom =
       std::max(status_top - (bottom > 0 ? bottom + gap : 0) - transport_height, top + 1);
 
-  PanelContext context{ui_, session_, progress, views_.first(), files_};
   if (left > 0) {
-    drawPlace(Place::left, context, {0, top}, {left, status_top - top});
+    drawPlace(Place::left, progress, {0, top}, {left, status_top - top});
     splitter("left splitter", {left, top}, {gap, status_top - top}, preferences_.left, 1);
   }
   if (right > 0) {
-    drawPlace(Place::right, context, {w - right, top}, {right, status_top - top});
+    drawPlace(Place::right, progress, {w - right, top}, {right, status_top - top});
     splitter("right splitter", {w - right - gap, top}, {gap, status_top - top}, preferences_.right,
              -1);
   }
   if (bottom > 0) {
-    drawPlace(Place::bottom, context, {view_left, status_top - bottom}, {middle, bottom});
+    drawPlace(Place::bottom, progress, {view_left, status_top - bottom}, {middle, bottom});
     splitter("bottom splitter", {view_left, status_top - bottom - gap}, {middle, gap},
              preferences_.bottom, -1);
   }
@@ -199,24 +190,24 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   ImGui::PopStyleVar();
 }
 
-void Inspector::drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size) {
+void Inspector::drawPlace(Place place, const RunProgress& progress, ImVec2 position, ImVec2 size) {
   const std::string name(kPlaces.nameOf(place));
   beginAt(name.c_str(), position, size);
   takeFocus(static_cast<std::size_t>(place));
   if (ImGui::BeginTabBar(name.c_str(), ImGuiTabBarFlags_FittingPolicyScroll)) {
     for (const auto& panel : panels_) {
-      if (panel->place() != place) continue;
-      const bool wanted = std::ranges::find(session_.notices.wanted_panels, panel->name()) !=
+      if (panel.place != place) continue;
+      const bool wanted = std::ranges::find(session_.notices.wanted_panels, panel.name) !=
                           session_.notices.wanted_panels.end();
       const bool open =
-          ImGui::BeginTabItem(panel->name(), nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
-      ui_.note(panel->name());
-      ui_.tooltip(panel->tooltip());
+          ImGui::BeginTabItem(panel.name, nullptr, wanted ? ImGuiTabItemFlags_SetSelected : 0);
+      ui_.note(panel.name);
+      ui_.tooltip(panel.tooltip);
       if (!open) continue;
-      preferences_.tabs[name] = panel->name();
-      const auto scope = ui_.scope(panel->name());
-      ImGui::BeginChild(panel->name(), {0, 0}, false, ImGuiWindowFlags_NavFlattened);
-      panel->draw(context);
+      preferences_.tabs[name] = panel.name;
+      const auto scope = ui_.scope(panel.name);
+      ImGui::BeginChild(panel.name, {0, 0}, false, ImGuiWindowFlags_NavFlattened);
+      panel.panel->drawOf(progress);
       ImGui::EndChild();
       ImGui::EndTabItem();
     }
@@ -249,21 +240,15 @@ void Inspector::drawEnding() {
   if (!ending_ || !session_.notices.errors.empty()) return;
   if (!session_.jobs.running()) return leave();  // it has ended meanwhile
   const auto scope = ui_.scope("Ending");
-  if (!ImGui::IsPopupOpen(kStillAtWork)) ImGui::OpenPopup(kStillAtWork);
-  if (!ui_.beginDialog(kStillAtWork, {420, 0})) return;
+  std::string text;
   for (const Job* const job : session_.jobs.all()) {
-    if (job->running()) ui_.paragraph(job->status().doing);
+    if (job->running()) text += job->status().doing + '\n';
   }
-  ui_.paragraph("What is finished is kept.");
-  ImGui::Spacing();
-  const float width = 84 * ui_.scale;
-  const bool end = ui_.button("End it", "What is not finished is given up", width);
-  ImGui::SameLine();
-  const bool stay = ui_.cancel(width);
-  if (end || stay) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (stay) ending_ = false;
-  if (end) leave();
+  const auto answer = ui_.ask("Still at work", text + "What is finished is kept.",
+                              {{"End it", "What is not finished is given up"}});
+  if (!answer) return;
+  ending_ = false;
+  if (*answer == 0) leave();
 }
 
 }  // namespace broadmark

@@ -2,6 +2,7 @@
 // window, or an off-screen picture.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -75,8 +76,10 @@ class Inspector {
   /// The session's state by name, as text, for scripts and tests: "frame", "pairs", … Nothing for
   /// an unknown name.
   [[nodiscard]] std::optional<std::string> value(const std::string& name);
-  /// Panel by name, or null.
-  [[nodiscard]] Panel* panel(const std::string& name);
+  [[nodiscard]] const std::vector<PanelTab>& panels() const { return panels_; }
+  [[nodiscard]] bool hasPanel(std::string_view name) const {
+    return std::ranges::find(panels_, name, &PanelTab::name) != panels_.end();
+  }
 
  private:
   void restyle();
@@ -85,7 +88,7 @@ class Inspector {
   void drawMenus(const RunProgress& progress);
   void drawScaleMenu();
   void resetLayout();
-  void drawPlace(Place place, PanelContext& context, ImVec2 position, ImVec2 size);
+  void drawPlace(Place place, const RunProgress& progress, ImVec2 position, ImVec2 size);
   [[nodiscard]] float transportHeight(float width) const;
   void drawTransport(const RunProgress& progress);
   void drawButtons();
@@ -106,7 +109,7 @@ class Inspector {
   /// Before a picture: lets keys move among widgets, or not.
   void prepareNavigation();
   void focusPlace(int step);
-  void enterPanel(const Panel& panel);
+  void enterPanel(const PanelTab& panel);
   /// To be called inside the window of a place: gives it the keys if they are to go there.
   void takeFocus(std::size_t place);
   void escape();
@@ -125,7 +128,7 @@ class Inspector {
   FileDialog files_;
   Session session_;
   Views views_;
-  std::vector<std::unique_ptr<Panel>> panels_;
+  std::vector<PanelTab> panels_;
   std::vector<Shortcut> shortcuts_;
   bool help_ = false;
   bool navigates_ = false;               ///< keys move among the widgets

@@ -21,14 +21,12 @@ void Inspector::drawMenus(const RunProgress& progress) {
     const auto scope = ui_.scope("File");
     const std::string save = keysFor(kSave);
     if (ui_.menuItem("Open…", keysFor(kOpenFile).c_str())) askOpen();
-    if (ImGui::BeginMenu("Open recent", !preferences_.recent.empty())) {
+    if (ui_.beginMenu("Open recent", !preferences_.recent.empty())) {
       const auto inside = ui_.scope("Open recent");
       for (const std::string& file : std::vector(preferences_.recent)) {
-        if (ui_.menuItem(file.c_str())) session_.opener.open(file);
+        if (ui_.menuItem(file.c_str())) session_.open(file);
       }
       ImGui::EndMenu();
-    } else {
-      ui_.note("Open recent");
     }
     ImGui::Separator();
     if (ui_.menuItem("Save scene…", session_.document.shown() ? save.c_str() : nullptr)) {
@@ -68,9 +66,9 @@ void Inspector::drawMenus(const RunProgress& progress) {
     if (ui_.menuItem("Reset layout")) resetLayout();
     ImGui::Separator();
     for (const auto& panel : panels_) {
-      const std::string keys = keysFor(fmt::format("the panel {}", panel->name()));
-      if (ui_.menuItem(panel->name(), keys.c_str()))
-        session_.notices.wanted_panels.push_back(panel->name());
+      const std::string keys = keysFor(fmt::format("the panel {}", panel.name));
+      if (ui_.menuItem(panel.name, keys.c_str()))
+        session_.notices.wanted_panels.push_back(panel.name);
     }
     ImGui::EndMenu();
   }
@@ -87,18 +85,13 @@ void Inspector::drawMenus(const RunProgress& progress) {
 void Inspector::resetLayout() {
   preferences_.resetLayout();
   for (const auto& [place, name] : kPlaces.entries) {
-    const auto first = std::ranges::find_if(
-        panels_, [&, wanted = place](const auto& panel) { return panel->place() == wanted; });
-    if (first != panels_.end()) session_.notices.bringUp((*first)->name());
+    const auto first = std::ranges::find(panels_, place, &PanelTab::place);
+    if (first != panels_.end()) session_.notices.bringUp(first->name);
   }
 }
 
 void Inspector::drawScaleMenu() {
-  const bool open = ImGui::BeginMenu("Scale");
-  if (!open) {
-    ui_.note("Scale");
-    return;
-  }
+  if (!ui_.beginMenu("Scale")) return;
   const auto scope = ui_.scope("Scale");
   constexpr double kScales[] = {0, 0.75, 1, 1.25, 1.5, 2, 3};
   for (const double scale : kScales) {
@@ -116,10 +109,9 @@ void Inspector::askOpen() {
   std::vector<std::string> extensions = recordingExtensions();
   for (const char* of_results : {".json", ".jsonl"}) extensions.emplace_back(of_results);
   files_.ask({.title = "Open a recording, a scene or results",
-              .purpose = FileDialog::Purpose::open,
               .extensions = std::move(extensions),
               .suggestion = preferences_.recent.empty() ? "" : preferences_.recent.front(),
-              .chosen = [this](const fs::path& path) { session_.opener.open(path); }});
+              .chosen = [this](const fs::path& path) { session_.open(path); }});
 }
 
 void Inspector::askSaveRecording() {

@@ -101,7 +101,7 @@ void linkClipboard(Window& window) {
 /// Opens the plan's source, and adds its algorithms.
 void begin(Session& session, Plan plan) {
   const std::optional<std::uint32_t> frame = plan.request.frame;
-  session.opener.open(std::move(plan));
+  session.open(std::move(plan));
   if (frame) session.playback.goTo(*frame);
 }
 
@@ -125,7 +125,7 @@ void inspectInWindow(Plan plan, const fs::path& script_file) {
       const double seconds = std::chrono::duration<double>(now - before).count();
       const bool lively = inspector.lively() || script || !window.input().empty();
       window.poll(lively ? std::max(kPictureSeconds - seconds, 1e-4) : kIdleSeconds);
-      for (const fs::path& file : window.takeDrops()) inspector.session().opener.open(file);
+      for (const fs::path& file : window.takeDrops()) inspector.session().open(file);
       if (window.closing()) {
         window.stayOpen();  // until the user has decided about unsaved changes
         inspector.close();

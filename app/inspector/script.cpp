@@ -110,13 +110,14 @@ const std::vector<ScriptVerb>& scriptVerbs() {
        }},
       {"panel", "NAME", 1, 1, "brings a panel to the front",
        [](P& player, const Words& words, Inspector& inspector) {
-         if (!inspector.panel(words[0])) player.fail(fmt::format("unknown panel '{}'", words[0]));
+         if (!inspector.hasPanel(words[0]))
+           player.fail(fmt::format("unknown panel '{}'", words[0]));
          inspector.session().notices.bringUp(words[0]);
          player.pause();
        }},
       {"open", "FILE", 1, 1, "drops a file onto the window",
        [](P& player, const Words& words, Inspector& inspector) {
-         inspector.session().opener.open(words[0]);
+         inspector.session().open(words[0]);
          player.pause();
        }},
       {"wait", "PICTURES or settled", 1, 1, "until everything is computed, or for some pictures",
@@ -233,8 +234,7 @@ void ScriptPlayer::reveal(const std::string& widget) {
     if (found == nullptr) {
       // Perhaps in a panel that is behind another.
       const std::string panel = widget.substr(0, widget.find('/'));
-      if (inspector.panel(panel) != nullptr && pictures < 3)
-        inspector.session().notices.bringUp(panel);
+      if (inspector.hasPanel(panel) && pictures < 3) inspector.session().notices.bringUp(panel);
     } else {
       inspector.ui().reveal(widget);
     }

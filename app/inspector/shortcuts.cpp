@@ -64,7 +64,7 @@ void Inspector::makeShortcuts() {
          session_.view.filter.hidden_classes = 0;
        }},
       {GLFW_KEY_V, false, false, "a second view beside the first, or one",
-       [this] { session_.second.show(!session_.second.wish); }},
+       [this] { session_.showSecond(!session_.second); }},
       {GLFW_KEY_M, false, false, "authored scene: the gizmo that moves, or none",
        [this] { takeTool(Tool::move); }},
       {GLFW_KEY_T, false, false, "likewise: the gizmo that turns",
@@ -72,7 +72,7 @@ void Inspector::makeShortcuts() {
       {GLFW_KEY_R, false, false, "likewise: the gizmo that scales",
        [this] { takeTool(Tool::scale); }},
       {GLFW_KEY_L, false, false, "likewise: the gizmo along the first body's axes, or the world's",
-       [this] { session_.document.desk.tools.local = !session_.document.desk.tools.local; }},
+       [this] { session_.document.tools.local = !session_.document.tools.local; }},
       {GLFW_KEY_B, false, false, "likewise: the brush, or none", [this] { takeTool(Tool::brush); }},
       {GLFW_KEY_ESCAPE, false, false,
        "close a list, a dialog, this page; take a drag back; no brush; no span; no body",
@@ -110,8 +110,8 @@ void Inspector::makeShortcuts() {
   constexpr std::size_t kDigits = 10;
   for (std::size_t i = 0; i < std::min(panels_.size(), 2 * kDigits); ++i) {
     shortcuts_.push_back({static_cast<Key>(GLFW_KEY_0 + (i + 1) % kDigits), true, i >= kDigits,
-                          fmt::format("the panel {}", panels_[i]->name()),
-                          [this, i] { enterPanel(*panels_[i]); }});
+                          fmt::format("the panel {}", panels_[i].name),
+                          [this, i] { enterPanel(panels_[i]); }});
   }
 }
 
@@ -146,10 +146,10 @@ void Inspector::focusPlace(int step) {
   to_focus_ = static_cast<std::size_t>((from + step + count) % count);
 }
 
-void Inspector::enterPanel(const Panel& panel) {
-  session_.notices.bringUp(panel.name());
+void Inspector::enterPanel(const PanelTab& panel) {
+  session_.notices.bringUp(panel.name);
   for (std::size_t i = 0; i < kPlaces.entries.size(); ++i) {
-    if (kPlaces.entries[i].value == panel.place()) to_focus_ = i;
+    if (kPlaces.entries[i].value == panel.place) to_focus_ = i;
   }
 }
 
@@ -170,7 +170,7 @@ void Inspector::escape() {
     navigates_ = false;
     return;
   }
-  Tools& tools = session_.document.desk.tools;
+  Tools& tools = session_.document.tools;
   if (help_) {
     help_ = false;
   } else if (views_.first().hands().cancel()) {
@@ -185,7 +185,7 @@ void Inspector::escape() {
 }
 
 void Inspector::takeTool(Tool tool) {
-  if (session_.document.shown()) session_.document.desk.tools.toggle(tool);
+  if (session_.document.shown()) session_.document.tools.toggle(tool);
 }
 
 void Inspector::editAuthored(const std::function<void(scenes::SceneEditor&)>& change) {

@@ -28,15 +28,6 @@ std::string textOf(const std::array<float, count>& numbers) {
   return fmt::format(kFormat, fmt::join(numbers, " "));
 }
 
-/// The wrong pairs of a frame or of several, each kind by its name after `prefix`.
-template <class Counts>
-void addCounts(Values& values, const std::string& prefix, const Counts& counts) {
-  values[prefix + "missed"] = std::to_string(counts.missed_count);
-  values[prefix + "false"] = std::to_string(counts.false_count);
-  values[prefix + "allowed_extra"] = std::to_string(counts.allowed_extra_count);
-  values[prefix + "invalid"] = std::to_string(counts.invalid_count);
-}
-
 void addLanes(Values& values, const Session& session, const RunProgress& progress) {
   for (const LaneReport& lane : progress.lanes) {
     const std::string name = "lane." + lane.spec.run.algorithm.id + ".";
@@ -44,16 +35,14 @@ void addLanes(Values& values, const Session& session, const RunProgress& progres
     values[name + "reason"] = lane.reason;
     values[name + "frame"] = std::to_string(lane.frame);
     values[name + "over"] = std::to_string(framesOver(lane, session.timeline.budget_ms));
-    FrameRecord sum;
-    for (const FrameRecord& record : lane.frames) {
-      sum.missed_count += record.missed_count;
-      sum.false_count += record.false_count;
-      sum.allowed_extra_count += record.allowed_extra_count;
-      sum.invalid_count += record.invalid_count;
+    for (const FrameCount count : {FrameCount::missed, FrameCount::false_pairs,
+                                   FrameCount::allowed_extra, FrameCount::invalid}) {
+      std::uint64_t sum = 0;
+      for (const FrameRecord& record : lane.frames) sum += record.counts[count];
+      values[name + std::string(kFrameCounts.nameOf(count))] = std::to_string(sum);
     }
-    addCounts(values, name, sum);
     const FrameRecord* record = lane.record(lane.frame);
-    values[name + "pairs"] = record ? std::to_string(record->pairs) : "";
+    values[name + "pairs"] = record ? std::to_string(record->counts[FrameCount::pairs]) : "";
     if (const auto span = session.timeline.span()) {
       const auto of = statisticsOf(lane.curves.pairs, lane.curves.disturbed, *span);
       values[name + "span_frames"] = std::to_string(of.values.size() + of.disturbed);
@@ -68,7 +57,10 @@ void addSnapshot(Values& values, const Snapshot* shown) {
   values["shown_frame"] = shown ? std::to_string(snapshot.frame) : "";
   values["bodies"] = std::to_string(snapshot.present);
   values["pairs"] = std::to_string(snapshot.pairs.size());
-  addCounts(values, "", difference);
+  values["missed"] = std::to_string(difference.missed_count);
+  values["false"] = std::to_string(difference.false_count);
+  values["allowed_extra"] = std::to_string(difference.allowed_extra_count);
+  values["invalid"] = std::to_string(difference.invalid_count);
   values["mismatch_pairs"] =
       std::to_string(difference.missed_count + difference.false_count + difference.invalid_count);
   const RecordedDrawing* structure = snapshot.structure.get();
@@ -78,7 +70,7 @@ void addSnapshot(Values& values, const Snapshot* shown) {
 
 void addSecond(Values& values, const Session& session, const RunProgress& progress) {
   const Snapshot* second = progress.second.get();
-  values["second"] = yes(session.second.wish.has_value());
+  values["second"] = yes(session.second.has_value());
   values["second.frame"] = second ? std::to_string(second->frame) : "";
   values["second.pairs"] = second ? std::to_string(second->pairs.size()) : "";
   values["second.bodies"] = second ? std::to_string(second->present) : "";
@@ -110,23 +102,23 @@ void addTimeline(Values& values, const Timeline& timeline) {
 }
 
 void addAuthored(Values& values, Session& session) {
-  const AuthorDesk& desk = session.document.desk;
-  const scenes::AuthoredScene& scene = desk.editor.scene();
-  values["author.shown"] = yes(session.document.shown());
-  values["author.at_rest"] = yes(session.document.atRest());
+  const Document& document = session.document;
+  const scenes::AuthoredScene& scene = document.editor.scene();
+  values["author.shown"] = yes(document.shown());
+  values["author.at_rest"] = yes(document.atRest());
   values["author.name"] = scene.name;
   values["author.bodies"] = std::to_string(scene.bodies.size());
-  values["author.selection"] = std::to_string(desk.editor.selection().size());
-  values["author.undo"] = desk.editor.undoName();
-  values["author.redo"] = desk.editor.redoName();
-  values["author.modified"] = yes(desk.isModified());
-  values["author.path"] = desk.path().string();
-  values["author.tool"] = kTools.nameOf(desk.tools.tool);
-  values["author.local"] = yes(desk.tools.local);
-  values["author.leaving"] = yes(session.document.leaving != nullptr);
+  values["author.selection"] = std::to_string(document.editor.selection().size());
+  values["author.undo"] = document.editor.undoName();
+  values["author.redo"] = document.editor.redoName();
+  values["author.modified"] = yes(document.isModified());
+  values["author.path"] = document.path().string();
+  values["author.tool"] = kTools.nameOf(document.tools.tool);
+  values["author.local"] = yes(document.tools.local);
+  values["author.leaving"] = yes(document.leaving != nullptr);
   for (const auto& [name, value] : scene.parameters) values["author.parameter." + name] = value;
-  if (desk.editor.selection().empty()) return;
-  const scenes::AuthoredBody& body = scene.bodies[desk.editor.selection().front()];
+  if (document.editor.selection().empty()) return;
+  const scenes::AuthoredBody& body = scene.bodies[document.editor.selection().front()];
   visitProperties(body, [&](const std::string& key, const auto& value, const auto& /*default*/) {
     values["author.body." + key] = textOf(value);
   });
@@ -251,9 +243,9 @@ std::optional<std::string> Inspector::value(const std::string& name) {
   values["camera.yaw"] = values["view.yaw"];
   values["camera.pitch"] = fmt::format("{:.4f}", first.camera().pitch);
   values["camera.distance"] = values["view.distance"];
-  values["legend"] = legendText(first.content().legend());
-  values["legend.oracle"] = legendText(first.content().oracleLegend());
-  values["legend.cells"] = legendText(first.content().cellLegend());
+  values["legend"] = legendText(first.content().colouring.legend);
+  values["legend.oracle"] = legendText(first.content().oracle_legend);
+  values["legend.cells"] = legendText(first.content().cell_legend);
   values["view.hands"] = first.hands().text();
   values["hidden"] = std::to_string(first.content().hiddenBodies());
   values["letters.missing"] = std::to_string(ui_.letters.missing());

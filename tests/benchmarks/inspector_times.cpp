@@ -128,7 +128,7 @@ void showEverything(Session& session) {
   view.structure_near = false;
   view.filter = {.largest = 1e6};
   session.selection.select({0, 1, 2, 3});
-  session.second.show(true);
+  session.showSecond(true);
 }
 
 /// The milliseconds of each picture while draw() is called for some seconds; the first one, which

@@ -25,7 +25,8 @@ class CaseExportTest : public testing::Test {
 
   /// Goes to the first mismatch of an algorithm.
   RunProgress findMismatch(const std::string& algorithm) {
-    session.draft.choose("brownian", "kinematic");
+    session.draft.choose("brownian");
+    setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "200"}, {"frames", "60"}});
     session.draft.simulate();
     setParameters(*session.lanes.add(algorithm).parameters, {{"fat_margin", "0.5"}});
@@ -58,21 +59,21 @@ TEST_F(CaseExportTest, WritesTheSmallestRecordingThatFails) {
     ASSERT_EQ(report.state, State::done) << report.failure;
     EXPECT_EQ(report.whole_bodies, 200U);
     EXPECT_EQ(report.whole_frames, seen.snapshot->frame);
-    EXPECT_EQ(report.bodies, algorithm == "faulty" ? 3U : 2U);
-    EXPECT_LE(report.frames, 2U);
-    EXPECT_GT(report.trials, 0U);
+    EXPECT_EQ(report.now.bodies, algorithm == "faulty" ? 3U : 2U);
+    EXPECT_LE(report.now.frames, 2U);
+    EXPECT_GT(report.now.trials, 0U);
     EXPECT_THAT(report.command, testing::HasSubstr("--algorithm " + algorithm + " "));
     EXPECT_THAT(report.command, testing::HasSubstr("--param fat_margin=0.5"));
     EXPECT_THAT(session.notices.status.text, testing::HasSubstr("exported"));
     const auto written = openRecordingFile(directory / (algorithm + ".aabbs"));
-    EXPECT_EQ(written->scene().objects, report.bodies);
-    EXPECT_EQ(written->scene().frames, report.frames);
+    EXPECT_EQ(written->scene().objects, report.now.bodies);
+    EXPECT_EQ(written->scene().frames, report.now.frames);
 
-    session.opener.openExport(session.jobs.get<CaseExport>().report());
+    session.openExport(session.jobs.get<CaseExport>().report());
     const RunProgress opened = settle();
-    EXPECT_EQ(opened.scene.objects, report.bodies);
+    EXPECT_EQ(opened.scene.objects, report.now.bodies);
     ASSERT_TRUE(opened.snapshot);
-    EXPECT_EQ(opened.snapshot->frame, report.frames);
+    EXPECT_EQ(opened.snapshot->frame, report.now.frames);
     EXPECT_TRUE(opened.snapshot->difference.isMismatch());
     EXPECT_TRUE(session.notices.errors.empty());
   }
@@ -206,7 +207,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   for (const ResultWriter& writer : resultWriters()) {
     if (writer.name == "json") writeTextFile(directory / "r.json", writer.format(results));
   }
-  session.opener.open(directory / "r.json");
+  session.open(directory / "r.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(session.results);
   ASSERT_EQ(session.results->rows().size(), 2U);
@@ -214,7 +215,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_EQ(session.results->rows()[1].mismatches, 1U);
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Cases"));
 
-  session.opener.openCase(directory / "r.json", "some/case");
+  session.openCase(directory / "r.json", "some/case");
   const RunProgress opened = settle();
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_EQ(session.lanes.list.size(), 1U);
@@ -222,7 +223,7 @@ TEST_F(CaseExportTest, AResultsFileListsItsCases) {
   EXPECT_TRUE(opened.snapshot->difference.isMismatch());
   EXPECT_THAT(session.notices.wanted_panels, testing::Contains("Mismatches"));
 
-  session.opener.openCase(directory / "r.json", "other/case");
+  session.openCase(directory / "r.json", "other/case");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("'other/case'"));
 }

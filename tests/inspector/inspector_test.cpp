@@ -180,7 +180,8 @@ TEST_F(InspectorTest, EverySizeCanBeDrawn) {
 }
 
 TEST_F(InspectorTest, LooksAsItDid) {
-  inspector.session().draft.choose("brownian", "kinematic");
+  inspector.session().draft.choose("brownian");
+  setParameters(inspector.session().draft.scene(), {{"engine", "kinematic"}});
   inspector.session().draft.simulate();
   settle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/inspector.png")));
@@ -192,8 +193,8 @@ TEST_F(InspectorTest, AnAuthoredSceneLooksAsItDid) {
   height = 500;
   Session& session = inspector.session();
   session.document.start({});
-  session.document.add([&] { return session.document.desk.stroke(); });
-  session.document.desk.tools.tool = Tool::brush;
+  session.document.add([&] { return session.document.stroke(); });
+  session.document.tools.tool = Tool::brush;
   colourBy("correctness");  // whose legend has four rows, for which there is no room
   settle();
   EXPECT_TRUE(looksLikeGolden(picture(), places::source("tests/inspector/golden/authored.png")));
@@ -205,7 +206,7 @@ TEST_F(InspectorTest, ParametersOfASimulationThatIsNotOpenAreNotShownUnasked) {
   click("Scene/Simulate");
   settle();
   EXPECT_NE(inspector.ui().find("Scene/objects"), nullptr);
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(inspector.ui().find("Scene/objects"), nullptr);
   EXPECT_EQ(value("source"), "recording: vanishing.broadmark");
@@ -231,7 +232,7 @@ TEST_F(InspectorTest, TheLegendCountsByTheOracleBesideAnAlgorithm) {
 
 TEST_F(InspectorTest, ErrorsAreShownUntilAcknowledged) {
   draw(2);
-  inspector.session().opener.open("/nowhere/at all.aabbs");
+  inspector.session().open("/nowhere/at all.aabbs");
   draw(3);
   EXPECT_THAT(value("error"), testing::HasSubstr("/nowhere/at all.aabbs"));
   click("Error/OK");
@@ -258,7 +259,7 @@ TEST_F(InspectorTest, ABodyIsPickedWhereItIsSeen) {
 }
 
 TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   EXPECT_EQ(value("bodies"), "40");
   key(GLFW_KEY_END);
@@ -280,7 +281,7 @@ TEST_F(InspectorTest, AbsentBodiesAreNeitherCountedNorPicked) {
 }
 
 TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   inspector.session().notices.bringUp("Bodies");
   inspector.session().selection.select({37});
@@ -296,7 +297,7 @@ TEST_F(InspectorTest, ASelectedBodyThatVanishesSaysSo) {
 }
 
 TEST_F(InspectorTest, EveryColourModeCountsThoseThatAreThere) {
-  inspector.session().opener.open(vanishingBodies(directory, 40));
+  inspector.session().open(vanishingBodies(directory, 40));
   settle();
   key(GLFW_KEY_END);
   settle();
@@ -318,13 +319,13 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
   inspector.session().lanes.add("grid-bf-mt");
   settle();
   std::set<std::string> pressed;
-  for (const auto& panel : makePanels()) {
-    inspector.session().notices.bringUp(panel->name());
+  for (const auto& panel : inspector.panels()) {
+    inspector.session().notices.bringUp(panel.name);
     settle();
     for (int round = 0; round < 60; ++round) {
       std::string next;
       for (const auto& [name, place] : inspector.ui().places()) {
-        if (place.visible && place.enabled && name.starts_with(panel->name()) &&
+        if (place.visible && place.enabled && name.starts_with(panel.name) &&
             pressed.insert(name).second) {
           next = name;
           break;
@@ -336,7 +337,7 @@ TEST_F(InspectorTest, EveryWidgetCanBePressed) {
       key(GLFW_KEY_ESCAPE);
       settle();
       inspector.session().notices.errors.clear();
-      inspector.session().notices.bringUp(panel->name());
+      inspector.session().notices.bringUp(panel.name);
       settle();
     }
   }
@@ -362,15 +363,15 @@ TEST_F(InspectorTest, EveryWidgetIsReachedByKeys) {
     }
     for (int i = 0; i < 8 && (i < 2 || !input.empty()); ++i) draw();
   };
-  const auto panels = makePanels();
+  const std::vector<PanelTab>& panels = inspector.panels();
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    const std::string prefix = std::string(panels[i]->name()) + "/";
+    const std::string prefix = std::string(panels[i].name) + "/";
     std::vector<Key> held = {GLFW_KEY_LEFT_CONTROL};
     if (i >= 10) held.push_back(GLFW_KEY_LEFT_SHIFT);
     press(static_cast<Key>(GLFW_KEY_0 + (i + 1) % 10), held);
     draw(3);
-    const std::string where(kPlaces.nameOf(panels[i]->place()));
-    EXPECT_EQ(inspector.preferences().tabs.at(where), panels[i]->name());
+    const std::string where(kPlaces.nameOf(panels[i].place));
+    EXPECT_EQ(inspector.preferences().tabs.at(where), panels[i].name);
     std::set<std::string> unreached;
     for (const auto& [name, place] : inspector.ui().places()) {
       const std::string last = name.substr(name.rfind('/') + 1);
@@ -484,7 +485,7 @@ TEST_P(RandomEvents, DoNoHarm) {
     // Duplicated again and again, bodies in one place only cost the engine hours.
     constexpr std::size_t kMostBodies = 20'000;
     Document& document = inspector.session().document;
-    if (document.desk.editor.scene().bodies.size() > kMostBodies) {
+    if (document.editor.scene().bodies.size() > kMostBodies) {
       document.edit([](scenes::SceneEditor& editor) { editor.undo(); });
     }
   }

@@ -99,13 +99,14 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
   void prepare() {
     session.document.start({});
     for (const float x : {0.0F, 3.0F}) {
-      session.document.desk.paint_at = {x, 1, 0};
-      session.document.add([this] { return session.document.desk.stroke(); });
+      session.document.paint_at = {x, 1, 0};
+      session.document.add([this] { return session.document.stroke(); });
     }
     session.document.edit(&SceneEditor::selectAll);
     settled(session);
 
-    session.draft.choose("brownian", "kinematic");
+    session.draft.choose("brownian");
+    setParameters(session.draft.scene(), {{"engine", "kinematic"}});
     setParameters(session.draft.scene(), {{"objects", "100"}, {"frames", "40"}});
     session.draft.simulate();
     session.lanes.add("sap");
@@ -122,26 +123,26 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
     setParameters(*session.lanes.add("faulty").parameters, {{"fat_margin", "0.5"}});
     session.lanes.changed();
     settled(session);
-    session.second.show(true);
+    session.showSecond(true);
     session.timeline.select(5, 30);
     session.results.emplace("results.json", threeCases(), session.lanes.algorithms());
     settled(session);
     session.notices.wanted_panels.clear();
   }
 
-  Picture pictureOf(const Panel& panel) {
+  Picture pictureOf(const PanelTab& panel) {
     const auto [width, height] = std::get<Size>(GetParam());
     const Framebuffer target(gl, width, height, 1);
-    inspector.session().notices.bringUp(panel.name());
+    inspector.session().notices.bringUp(panel.name);
     // A tab comes to the front, and its tables learn how wide they are.
     for (int i = 0; i < 4; ++i) {
       inspector.draw(input, width, height, 1.0 / 60, [&] { target.bind(); });
     }
-    const std::string place(kPlaces.nameOf(panel.place()));
+    const std::string place(kPlaces.nameOf(panel.place));
     const ImRect at = ImGui::FindWindowByName(place.c_str())->Rect();
     Picture whole = target.read();
     for (const std::string name : kVaries) {
-      if (!name.starts_with(panel.name())) continue;
+      if (!name.starts_with(panel.name)) continue;
       const WidgetPlace* const widget = inspector.ui().find(name);
       if (widget != nullptr && widget->visible) blank(whole, *widget, at.Max.x);
     }
@@ -158,13 +159,13 @@ class PanelsLook : public testing::TestWithParam<std::tuple<Size, bool>> {
 TEST_P(PanelsLook, AsTheyDid) {
   prepare();
   const auto& [size, dark] = GetParam();
-  for (const auto& panel : makePanels()) {
+  for (const auto& panel : inspector.panels()) {
     // At the sides it is as wide, but for 3 pixels.
-    if (!dark && panel->place() != Place::bottom) continue;
-    const std::string name = fmt::format("{}-{}x{}-{}.png", panel->name(), size.first, size.second,
+    if (!dark && panel.place != Place::bottom) continue;
+    const std::string name = fmt::format("{}-{}x{}-{}.png", panel.name, size.first, size.second,
                                          dark ? "dark" : "light");
     EXPECT_TRUE(looksLikeGolden(
-        pictureOf(*panel), places::source("tests/inspector/golden/panels/" + name), kMostOfPanel));
+        pictureOf(panel), places::source("tests/inspector/golden/panels/" + name), kMostOfPanel));
   }
 }
 

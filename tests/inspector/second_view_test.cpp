@@ -78,7 +78,7 @@ class SecondViewTest : public testing::Test {
 
 TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   EXPECT_EQ(settled(session).second, nullptr);
-  session.second.show(true);
+  session.showSecond(true);
   const RunProgress seen = settled(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->lane, sap);
@@ -96,14 +96,14 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
   EXPECT_EQ(settled(session).second->frame, 15U);
   session.lanes.remove(sap);
   EXPECT_EQ(settled(session).second->lane, 0);
-  session.second.show(false);
+  session.showSecond(false);
   const RunProgress alone = settled(session);
   EXPECT_EQ(alone.second, nullptr);
   EXPECT_EQ(alone.comparison, nullptr);
 }
 
 TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
-  session.second.wish = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
+  session.second = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
   RunProgress seen = settled(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 5U);
@@ -117,14 +117,14 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
   for (const LaneReport& lane : seen.lanes) EXPECT_EQ(lane.frame, 12U);
 
   // Later than the first view's: it is simulated as far as that.
-  session.second.wish->frame = 18;
+  session.second->frame = 18;
   seen = settled(session);
   EXPECT_EQ(seen.second->frame, 18U);
   EXPECT_EQ(seen.second->lane, sap);
   EXPECT_EQ(seen.snapshot->frame, 12U);
   // Back again, by a fresh instance; and where both are at the same frame.
   for (const std::uint32_t frame : {3U, 12U, 0U, 99U}) {
-    session.second.wish->frame = frame;
+    session.second->frame = frame;
     seen = settled(session);
     EXPECT_EQ(seen.second->frame, std::min(frame, 20U));
     EXPECT_EQ(seen.second->pairs.size(), rightPairs(*seen.second).size());
@@ -134,7 +134,7 @@ TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
 TEST_F(SecondViewTest, AnotherRecording) {
   const std::filesystem::path other = vanishingBodies(directory, 40);
   session.lanes.show(sap);  // it copes with bodies that vanish
-  session.second.showRecording(other);
+  session.showBeside(other);
   RunProgress seen = settled(session);
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   ASSERT_TRUE(seen.second);
@@ -154,13 +154,13 @@ TEST_F(SecondViewTest, AnotherRecording) {
 }
 
 TEST_F(SecondViewTest, WhatCannotBeOpenedSaysWhy) {
-  session.second.showRecording("none.aabbs");
+  session.showBeside("none.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
-  EXPECT_FALSE(session.second.wish);
+  EXPECT_FALSE(session.second);
 
   // It vanishes before it is opened.
   const std::filesystem::path other = vanishingBodies(directory, 40);
-  session.second.showRecording(other);
+  session.showBeside(other);
   std::filesystem::remove(other);
   const RunProgress seen = settled(session);
   EXPECT_EQ(seen.second, nullptr);

@@ -134,7 +134,7 @@ TEST_F(SessionTest, SavedRecordingsHoldWhatWasShown) {
   session.saveRecording(directory / "some.aabbs");
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
-  session.opener.open(directory / "some.aabbs");
+  session.open(directory / "some.aabbs");
   session.playback.seek(4);
   settle();  // now its length is known
   session.playback.seek(4);
@@ -148,7 +148,7 @@ TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
   session.draft.simulate();
   settle();
   const auto before = session.playback.footage();
-  session.opener.open(directory / "missing.aabbs");
+  session.open(directory / "missing.aabbs");
   ASSERT_EQ(session.notices.errors.size(), 1U);
   EXPECT_THAT(session.notices.errors.front(), testing::HasSubstr("missing.aabbs"));
   EXPECT_EQ(session.playback.footage(), before);
@@ -157,7 +157,7 @@ TEST_F(SessionTest, ABadFileIsAnErrorAndChangesNothing) {
 TEST_F(SessionTest, AFileOfSceneParametersBecomesTheDraft) {
   writeTextFile(directory / "scene.json", formatSceneParameters(session.draft.scene()));
   setParameters(session.draft.scene(), {{"objects", "7"}});
-  session.opener.open(directory / "scene.json");
+  session.open(directory / "scene.json");
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(parameterValues(session.draft.scene()).at("objects"), "60");
   EXPECT_EQ(settle().scene.objects, 60U);
@@ -173,7 +173,7 @@ TEST_F(SessionTest, SettingsOfTheOriginalOpenARecordingWithALane) {
       directory / "settings.json",
       R"({"m_inputScene": "some.aabbs", "m_outputLog": "log.json", "m_algorithm": "SAP"})");
   session.lanes.add("bf");
-  session.opener.open(directory / "settings.json");
+  session.open(directory / "settings.json");
   ASSERT_TRUE(session.notices.errors.empty()) << session.notices.errors.front();
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 4U);
@@ -186,7 +186,7 @@ TEST_F(SessionTest, OpensTheFirstEntryOfAPlan) {
   plan.entries = openSource("freefall", {.algorithms = plan.algorithms}).entries;
   const Algorithm& sap = *std::ranges::find(plan.algorithms, "sap", &Algorithm::id);
   plan.entries[0].cases = {Case{.algorithm = sap}};
-  session.opener.open(std::move(plan));
+  session.open(std::move(plan));
   session.playback.seek(2);
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.name, "FreeFall");
@@ -268,8 +268,7 @@ TEST_F(SessionTest, ShowsWorldsThatChange) {
   const auto layers = [](inputs::Random&, std::uint32_t body) {
     return BodyGroups{.layer = static_cast<std::uint8_t>(body % 2)};
   };
-  session.opener.open(
-      vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
+  session.open(vanishingBodies(directory, 60, filterOf(60, LayerMatrix().set(0, 1), layers)));
   session.playback.seek(10);
   settle();
   session.playback.seek(10);

@@ -61,7 +61,8 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   ASSERT_EQ(alone.report().state, TaskState::done) << alone.report().failure;
 
   Session session(builtinAlgorithms());
-  session.draft.choose("brownian", "kinematic");
+  session.draft.choose("brownian");
+  setParameters(session.draft.scene(), {{"engine", "kinematic"}});
   setParameters(session.draft.scene(), {{"objects", "150"}, {"frames", "30"}});
   session.draft.simulate();
   const Case faulty{.algorithm = faultyTree()};
@@ -95,7 +96,7 @@ TEST(Together, LanesAnExportAndABakeShareBulletsTreeMargin) {
   }
   const CaseExport::Report exported = session.jobs.get<CaseExport>().report();
   EXPECT_EQ(exported.state, TaskState::done) << exported.failure;
-  EXPECT_EQ(exported.bodies, 2U);
+  EXPECT_EQ(exported.now.bodies, 2U);
   ASSERT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done)
       << session.jobs.get<BackgroundBake>().report().failure;
   EXPECT_EQ(openRecordingFile(directory / "together.aabbs")->hash(),

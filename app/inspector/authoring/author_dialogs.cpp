@@ -5,37 +5,33 @@
 #include <utility>
 
 namespace broadmark {
-namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kLeaving = "Unsaved changes";
-
-}  // namespace
 
 void askOpenScene(FileDialog& files, Session& session) {
   files.ask({.title = "Open a scene",
-             .purpose = FileDialog::Purpose::open,
              .extensions = {".json"},
-             .suggestion = session.document.desk.path().parent_path(),
-             .chosen = [&session](const fs::path& path) { session.opener.open(path); }});
+             .suggestion = session.document.path().parent_path(),
+             .chosen = [&session](const fs::path& path) { session.open(path); }});
 }
 
 void askSaveScene(FileDialog& files, Session& session, std::function<void()> then) {
-  const AuthorDesk& desk = session.document.desk;
+  const Document& document = session.document;
   files.ask({.title = "Save the scene",
              .purpose = FileDialog::Purpose::save,
              .extensions = {".json"},
-             .suggestion =
-                 desk.path().empty() ? fs::path(desk.editor.scene().name + ".json") : desk.path(),
+             .suggestion = document.path().empty()
+                               ? fs::path(document.editor.scene().name + ".json")
+                               : document.path(),
              .chosen = [&session, then = std::move(then)](const fs::path& path) {
                if (session.document.save(path) && then) then();
              }});
 }
 
 void saveScene(FileDialog& files, Session& session, std::function<void()> then) {
-  if (session.document.desk.path().empty()) {
+  if (session.document.path().empty()) {
     askSaveScene(files, session, std::move(then));
-  } else if (session.document.save(session.document.desk.path()) && then) {
+  } else if (session.document.save(session.document.path()) && then) {
     then();
   }
 }
@@ -45,7 +41,7 @@ void askBakeScene(FileDialog& files, Session& session) {
     files.ask({.title = "Bake all frames into a recording",
                .purpose = FileDialog::Purpose::save,
                .extensions = recordingExtensions(),
-               .suggestion = recordingFileName(session.document.desk.simulation()->scene()),
+               .suggestion = recordingFileName(session.document.simulation()->scene()),
                .chosen = [&session](const fs::path& path) { session.document.bake(path); }});
   });
 }
@@ -53,23 +49,14 @@ void askBakeScene(FileDialog& files, Session& session) {
 void drawLeaving(Ui& ui, FileDialog& files, Session& session) {
   if (!session.document.leaving || !session.notices.errors.empty() || files.isOpen()) return;
   const auto scope = ui.scope("Unsaved");
-  if (!ImGui::IsPopupOpen(kLeaving)) ImGui::OpenPopup(kLeaving);
-  if (!ui.beginDialog(kLeaving, {420, 0})) return;
-  ui.paragraph(fmt::format("The scene '{}' has unsaved changes.", session.document.desk.title()));
-  ImGui::Spacing();
-  const float width = 84 * ui.scale;
-  const bool save = ui.button("Save", nullptr, width);
-  ImGui::SameLine();
-  const bool discard = ui.button("Discard", "The changes are lost", width);
-  ImGui::SameLine();
-  const bool stay = ui.cancel(width);
-  const bool decided = save || discard || stay;
-  if (decided) ImGui::CloseCurrentPopup();
-  ImGui::EndPopup();
-  if (!decided) return;
+  const auto answer =
+      ui.ask("Unsaved changes",
+             fmt::format("The scene '{}' has unsaved changes.", session.document.title()),
+             {{"Save", nullptr}, {"Discard", "The changes are lost"}});
+  if (!answer) return;
   const auto then = std::exchange(session.document.leaving, {});
-  if (save) saveScene(files, session, then);
-  if (discard) then();
+  if (*answer == 0) saveScene(files, session, then);
+  if (*answer == 1) then();
 }
 
 }  // namespace broadmark

@@ -48,21 +48,21 @@ std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& wor
   return floorUnder(world, line);
 }
 
-BrushStroke::BrushStroke(const AuthorDesk& desk)
-    : desk_(&desk), taken_(desk.editor.scene().bodies) {}
+BrushStroke::BrushStroke(const Document& document)
+    : document_(&document), taken_(document.editor.scene().bodies) {}
 
 scenes::Paint BrushStroke::nextPaint() const {
-  scenes::Paint paint = desk_->paint;
+  scenes::Paint paint = document_->paint;
   // No two dabs are alike where the brush scatters.
   paint.seed +=
-      static_cast<std::int64_t>(desk_->editor.scene().bodies.size() + painted_.bodies.size());
+      static_cast<std::int64_t>(document_->editor.scene().bodies.size() + painted_.bodies.size());
   return paint;
 }
 
 Aabb BrushStroke::reach(std::size_t most) const {
   Aabb bounds = kEmptyBox;
   for (const scenes::AuthoredBody& body :
-       scenes::paint(desk_->brush(), nextPaint(), {}, scenes::TakenRoom(), most).bodies) {
+       scenes::paint(document_->brush(), nextPaint(), {}, scenes::TakenRoom(), most).bodies) {
     bounds = merged(bounds, tightBox(body.shape, body.pose));
   }
   return bounds;
@@ -76,7 +76,7 @@ scenes::Stroke BrushStroke::dab(const Surface& surface, std::size_t most) const 
     if (axis == surface.axis) place -= surface.sign > 0 ? bounds.min[axis] : bounds.max[axis];
     at[axis] = static_cast<float>(place);
   }
-  return scenes::paint(desk_->brush(), nextPaint(), at, taken_, most);
+  return scenes::paint(document_->brush(), nextPaint(), at, taken_, most);
 }
 
 void BrushStroke::paint(const Surface& surface) {

@@ -22,13 +22,13 @@ struct Surface {
 std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& world,
                                     const Sight& sight, Pixel pixel, BodyMask visible = {});
 
-/// One stroke of the desk's brush, from press to release: a dab where it begins, and others as far
-/// from each other as they are wide. What is painted keeps clear of the document's bodies and of
-/// the stroke's own. For the document as it is: an edit calls for another one.
+/// One stroke of the document's brush, from press to release: a dab where it begins, and others as
+/// far from each other as they are wide. What is painted keeps clear of the document's bodies and
+/// of the stroke's own. For the document as it is: an edit calls for another one.
 class BrushStroke {
  public:
   /// Takes note of the room that the document's bodies take: O(bodies).
-  explicit BrushStroke(const AuthorDesk& desk);
+  explicit BrushStroke(const Document& document);
 
   /// The bodies of a dab on the surface, standing on it; `most` of them or fewer. Throws
   /// InputError.
@@ -45,7 +45,7 @@ class BrushStroke {
   [[nodiscard]] Aabb reach(std::size_t most) const;
   [[nodiscard]] scenes::Paint nextPaint() const;
 
-  const AuthorDesk* desk_;
+  const Document* document_;
   scenes::TakenRoom taken_;
   scenes::Stroke painted_;
   std::optional<Surface> last_;

@@ -48,8 +48,8 @@ void Hands::look(const Seen& seen) {
 
 void Hands::lookAtGizmo(const Seen& seen) {
   const Document& document = seen.session.document;
-  const Tools& tools = document.desk.tools;
-  const scenes::SceneEditor& editor = document.desk.editor;
+  const Tools& tools = document.tools;
+  const scenes::SceneEditor& editor = document.editor;
   shapes_.clear();
   const bool shown = document.atRest() && !editor.selection().empty() && tools.tool != Tool::none &&
                      tools.tool != Tool::brush;
@@ -68,7 +68,7 @@ void Hands::lookAtGizmo(const Seen& seen) {
       body.shape = transformedShape(body, change_);
       body.pose = transformedPose(body, change_);
     }
-    showGhosts(changed);
+    ghosts_ = std::move(changed);
     for (std::size_t axis = 0; axis < 3; ++axis) place_.centre[axis] += change_.move[axis];
   }
   if (tools.local) place_.turn = editor.scene().bodies[editor.selection().front()].pose.rotation;
@@ -82,7 +82,7 @@ void Hands::lookAtGizmo(const Seen& seen) {
 }
 
 Vec3 Hands::centreOf(const Session& session) {
-  const scenes::SceneEditor& editor = session.document.desk.editor;
+  const scenes::SceneEditor& editor = session.document.editor;
   if (centred_ != editor.selection()) {
     centred_ = editor.selection();
     centre_ = editor.selectionCentre();
@@ -92,13 +92,13 @@ Vec3 Hands::centreOf(const Session& session) {
 
 void Hands::lookAtBrush(const Seen& seen) {
   const Document& document = seen.session.document;
-  if (document.desk.tools.tool != Tool::brush || !document.atRest()) {
+  if (document.tools.tool != Tool::brush || !document.atRest()) {
     painting_ = false;
     stroke_.reset();
     return;
   }
   if (!seen.mouse) return;
-  if (!stroke_) stroke_.emplace(document.desk);
+  if (!stroke_) stroke_.emplace(document);
   try {
     if (painting_) {
       paintTo(seen, *seen.mouse);
@@ -115,7 +115,7 @@ void Hands::previewDab(const Seen& seen) {
   const std::optional<Surface> surface = surfaceAt(seen, *seen.mouse);
   if (!surface) return;
   const scenes::Stroke dab = stroke_->dab(*surface, kMostGhosts);
-  showGhosts(dab.bodies);
+  ghosts_ = dab.bodies;
   if (dab.bodies.empty()) text_ = "no room here";
 }
 
@@ -130,7 +130,8 @@ void Hands::paintTo(const Seen& seen, Pixel to) {
   }
   painted_at_ = to;
   const std::vector<scenes::AuthoredBody>& bodies = stroke_->painted().bodies;
-  showGhosts(std::span(bodies).last(std::min(bodies.size(), kMostGhosts)));
+  const std::size_t left_out = bodies.size() - std::min(bodies.size(), kMostGhosts);
+  ghosts_.assign(bodies.begin() + static_cast<std::ptrdiff_t>(left_out), bodies.end());
   text_ = counted(bodies.size(), "body", "bodies");
 }
 
@@ -139,7 +140,7 @@ std::optional<Surface> Hands::surfaceAt(const Seen& seen, Pixel pixel) {
                     pointed_.viewpoint == seen.sight.viewpoint();
   if (!same) {
     pointed_ = {seen.snapshot, seen.sight.viewpoint(), pixel,
-                surfaceUnder(*seen.snapshot->boxes, seen.session.document.desk.editor.scene().world,
+                surfaceUnder(*seen.snapshot->boxes, seen.session.document.editor.scene().world,
                              seen.sight, pixel, seen.visible)};
   }
   return pointed_.surface;
@@ -159,17 +160,13 @@ void Hands::takeBodies(const scenes::SceneEditor& editor) {
   taken_.push_back(scenes::bodyIn(all));
 }
 
-void Hands::showGhosts(std::span<const scenes::AuthoredBody> bodies) {
-  ghosts_.assign(bodies.begin(), bodies.end());
-}
-
 bool Hands::press(const Seen& seen) {
   if (!seen.mouse) return false;
-  const AuthorDesk& desk = seen.session.document.desk;
+  const Document& document = seen.session.document;
   if (hot_) {
-    takeBodies(desk.editor);
+    takeBodies(document.editor);
     change_ = {};
-    drag_.emplace(desk.tools.tool, *hot_, place_, seen.sight, *seen.mouse);
+    drag_.emplace(document.tools.tool, *hot_, place_, seen.sight, *seen.mouse);
   } else if (stroke_ && surfaceAt(seen, *seen.mouse)) {
     painting_ = true;
     painted_at_ = *seen.mouse;
@@ -182,7 +179,7 @@ void Hands::release(const Seen& seen) {
   if (drag_) {
     drag_.reset();
     document.edit([&](scenes::SceneEditor& editor) {
-      editor.transform(kTools.nameOf(document.desk.tools.tool), change_);
+      editor.transform(kTools.nameOf(document.tools.tool), change_);
     });
   } else if (painting_) {
     painting_ = false;
@@ -204,7 +201,7 @@ bool Hands::cancel() {
 
 void Hands::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
   drawGhosts(ui, seen.sight, corner);
-  const Tool tool = seen.session.document.desk.tools.tool;
+  const Tool tool = seen.session.document.tools.tool;
   for (const HandleShape& shape : shapes_) {
     drawHandle(ui, shape, seen.sight, tool, corner);
     if (const auto grip = seen.sight.pixelOf(shape.grip)) {

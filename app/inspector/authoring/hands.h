@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -55,7 +54,6 @@ class Hands {
   void paintTo(const Seen& seen, Pixel to);
   std::optional<Surface> surfaceAt(const Seen& seen, Pixel pixel);
   void takeBodies(const scenes::SceneEditor& editor);
-  void showGhosts(std::span<const scenes::AuthoredBody> bodies);
   void drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sight, Tool tool,
                   ImVec2 corner) const;
   void drawGhosts(const Ui& ui, const Sight& sight, ImVec2 corner) const;

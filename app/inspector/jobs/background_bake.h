@@ -20,7 +20,7 @@ inline constexpr NameTable kBakeOutcomes{{NamedValue{BakeOutcome::waiting, ""},
                                           {BakeOutcome::failed, "failed"}}};
 
 /// A failure of the task is what kept the batch as a whole from being baked.
-struct BakeReport : WorkReport {
+struct BakeReport : TaskReport {
   static constexpr const char* kName = "baking";
   static constexpr const char* kPrefix = "batch";
 

@@ -14,7 +14,7 @@
 namespace broadmark {
 
 /// A failure of the task is what kept the plan as a whole from being run.
-struct BenchmarkReport : WorkReport {
+struct BenchmarkReport : TaskReport {
   static constexpr const char* kName = "running algorithms";
   static constexpr const char* kPrefix = "benchmark";
 

@@ -1,6 +1,5 @@
 #include "inspector/jobs/case_export.h"
 
-#include "broadmark/fuzz/shrink.h"
 #include "run/export_case.h"
 
 namespace broadmark {
@@ -12,11 +11,7 @@ bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifferenc
                     const HostMaker& make_host) {
   const ExportReport begun = job.report();
   const auto note = [&job](const ShrinkProgress& now) {
-    job.update([&](ExportReport& report) {
-      report.trials = now.trials;
-      report.bodies = now.bodies;
-      report.frames = now.frames;
-    });
+    job.update([&](ExportReport& report) { report.now = now; });
   };
   const ShrunkCase shrunk = shrinkCase(
       begun.run, source, known,
@@ -36,9 +31,9 @@ bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifferenc
 JobStatus ExportReport::status() const {
   return {.doing = "A case is being exported.",
           .outcome = state == TaskState::done ? "exported: " + file.string() : "",
-          .values = {{"trials", std::to_string(trials)},
-                     {"bodies", std::to_string(bodies)},
-                     {"frames", std::to_string(frames)},
+          .values = {{"trials", std::to_string(now.trials)},
+                     {"bodies", std::to_string(now.bodies)},
+                     {"frames", std::to_string(now.frames)},
                      {"file", file.string()},
                      {"command", command}}};
 }
@@ -48,8 +43,8 @@ void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames
   ExportReport first;
   first.run = run;
   first.file = std::move(file);
-  first.whole_bodies = first.bodies = source->scene().objects;
-  first.whole_frames = first.frames = known.frame;
+  first.whole_bodies = first.now.bodies = source->scene().objects;
+  first.whole_frames = first.now.frames = known.frame;
   job.begin(std::move(first),
             [&job, source = std::move(source), known = std::move(known), make_host] {
               return shrinkAndWrite(job, *source, known, make_host);

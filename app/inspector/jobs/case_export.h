@@ -8,13 +8,13 @@
 #include <string>
 
 #include "broadmark/frame.h"
+#include "broadmark/fuzz/shrink.h"
 #include "broadmark/harness/case_host.h"
 #include "broadmark/harness/oracle.h"
 #include "inspector/jobs/job.h"
 
 namespace broadmark {
 
-/// Sizes are those of the smallest part found so far.
 struct ExportReport : TaskReport {
   static constexpr const char* kName = "exporting a case";
   static constexpr const char* kPrefix = "export";
@@ -23,9 +23,7 @@ struct ExportReport : TaskReport {
   std::filesystem::path file;
   std::size_t whole_bodies = 0;
   std::size_t whole_frames = 0;  ///< up to the wrong one
-  std::uint64_t trials = 0;
-  std::size_t bodies = 0;
-  std::size_t frames = 0;
+  ShrinkProgress now;
   std::string command;  ///< once done: what shows the fault, for a shell
 
   [[nodiscard]] JobStatus status() const;

@@ -26,10 +26,7 @@ inline constexpr NameTable kTaskStates{{NamedValue{TaskState::idle, "idle"},
 struct TaskReport {
   TaskState state = TaskState::idle;
   std::string failure = {};  ///< of a failed one
-};
-
-/// Of work that knows how far it is.
-struct WorkReport : TaskReport {
+  // Of work that knows how far it is:
   float fraction = 0;       ///< of the work
   double seconds_left = 0;  ///< 0: not known
   std::string doing = {};   ///< at present, in words

@@ -37,34 +37,30 @@ std::vector<Family> familiesOf(const std::vector<Algorithm>& algorithms) {
 
 class AlgorithmsPanel final : public Panel {
  public:
-  AlgorithmsPanel()
-      : Panel("Algorithms", Place::left, "Which algorithms run, and with which parameters") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    Session& session = context.session;
-    if (wideButton(ui, "Add…##add", "Adds an algorithm")) ImGui::OpenPopup("add");
-    drawChoice(ui, session);
+  void draw() override {
+    if (wideButton("Add…##add", "Adds an algorithm")) ImGui::OpenPopup("add");
+    drawChoice();
     ui.checkbox("check every answer", session.mismatches.check,
                 "Compares every answer with the oracle's, outside the timed region");
-    ImGui::BeginDisabled(!session.mismatches.check);
     ui.checkbox("stop at a mismatch", session.mismatches.stop_at_mismatch,
-                "Stays at the first frame in which an algorithm is wrong");
-    ImGui::EndDisabled();
+                "Stays at the first frame in which an algorithm is wrong",
+                session.mismatches.check);
     if (session.lanes.list.empty()) {
       ImGui::Spacing();
       ui.paragraph("No algorithm is chosen: overlaps are the oracle's.");
     }
     int removed = 0;
     for (LaneEdit& lane : session.lanes.list) {
-      if (!drawLane(ui, session, lane)) removed = lane.number;
+      if (!drawLane(lane)) removed = lane.number;
     }
     if (removed != 0) session.lanes.remove(removed);
   }
 
  private:
   /// A click takes one; with Ctrl several are marked, and then added at once.
-  void drawChoice(Ui& ui, Session& session) {
+  void drawChoice() {
     if (!ImGui::BeginPopup("add")) return;
     const auto scope = ui.scope("add");
     if (ImGui::IsWindowAppearing()) {
@@ -75,16 +71,15 @@ class AlgorithmsPanel final : public Panel {
     ImGui::SetNextItemWidth(kListWidth * ui.scale);
     ImGui::InputTextWithHint("##search", "search", &searched_);
     ui.note("search");
-    ImGui::BeginDisabled(marked_.empty());
-    const bool add = ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
-                               "Adds those that were marked by a click with Ctrl");
-    ImGui::EndDisabled();
+    const bool add =
+        ui.button(fmt::format("Add {}###Add marked", marked_.size()).c_str(),
+                  "Adds those that were marked by a click with Ctrl", 0, !marked_.empty());
     std::vector<std::string> chosen;
     if (add) chosen = marked_;
     ImGui::BeginChild("list", {kListWidth * ui.scale, kListHeight * ui.scale}, false,
                       ImGuiWindowFlags_NavFlattened);
     for (const Family& family : familiesOf(session.lanes.algorithms())) {
-      drawFamily(ui, family, chosen);
+      drawFamily(family, chosen);
     }
     ImGui::EndChild();
     for (const std::string& id : chosen) session.lanes.add(id);
@@ -92,7 +87,7 @@ class AlgorithmsPanel final : public Panel {
     ImGui::EndPopup();
   }
 
-  void drawFamily(Ui& ui, const Family& family, std::vector<std::string>& chosen) {
+  void drawFamily(const Family& family, std::vector<std::string>& chosen) {
     bool headed = false;
     for (const Algorithm* algorithm : family.members) {
       const std::string& id = algorithm->id;
@@ -115,7 +110,7 @@ class AlgorithmsPanel final : public Panel {
   }
 
   /// Returns whether it is to be kept.
-  static bool drawLane(Ui& ui, Session& session, LaneEdit& lane) {
+  bool drawLane(LaneEdit& lane) {
     const std::string& id = lane.run.algorithm.id;
     const auto scope = ui.scope(id);
     ImGui::PushID(lane.number);
@@ -129,7 +124,7 @@ class AlgorithmsPanel final : public Panel {
       if (ui.checkbox("show its answer", shown, "The view shows what this algorithm reports")) {
         session.lanes.show(shown ? lane.number : 0);
       }
-      changed |= drawExecution(ui, lane.run);
+      changed |= drawExecution(lane.run);
       changed |= ui.parameters(*lane.parameters);
       if (changed) session.lanes.changed();
       if (ui.button("Remove")) keep = false;
@@ -138,7 +133,7 @@ class AlgorithmsPanel final : public Panel {
     return keep;
   }
 
-  static bool drawExecution(Ui& ui, Case& run) {
+  bool drawExecution(Case& run) {
     bool changed = false;
     if (run.algorithm.traits.vectorised) {
       const std::vector<Isa> isas = supportedIsas();
@@ -166,6 +161,8 @@ class AlgorithmsPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<AlgorithmsPanel>(); }
+extern const PanelKind kind = {"Algorithms", Place::left,
+                               "Which algorithms run, and with which parameters",
+                               make<AlgorithmsPanel>};
 
 }  // namespace broadmark::panels::algorithms

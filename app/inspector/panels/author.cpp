@@ -45,43 +45,41 @@ struct Inputs {
 
 class AuthorPanel final : public Panel {
  public:
-  AuthorPanel() : Panel("Author", Place::left, "Putting a scene together, body by body") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Session& session = context.session;
-    reload(session);
-    drawFile(context);
-    drawState(context.ui, session);
-    drawBrush(context.ui, session);
-    drawSelection(context.ui, session);
-    drawSteps(context.ui, session.document.desk.tools);
-    drawScene(context.ui, session.document);
+  void draw() override {
+    reload();
+    drawFile();
+    drawState();
+    drawBrush();
+    drawSelection();
+    drawSteps();
+    drawScene();
   }
 
  private:
   /// Changes the document if a button was `pressed` or a value entered. What is refused does not
   /// stay in the inputs.
-  void edit(Document& document, bool pressed, const std::function<void(SceneEditor&)>& change) {
+  void edit(bool pressed, const std::function<void(SceneEditor&)>& change) {
     if (!pressed) return;
-    document.edit(change);
+    document_.edit(change);
     known_ = false;
   }
 
   template <class Value>
-  void set(Document& document, bool entered, const char* verb, Value AuthoredBody::*property,
-           const Value& value) {
-    edit(document, entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
+  void set(bool entered, const char* verb, Value AuthoredBody::*property, const Value& value) {
+    edit(entered, [&](SceneEditor& editor) { editor.set(verb, property, value); });
   }
 
   /// Takes over what the document says, if that has changed.
-  void reload(const Session& session) {
-    const SceneEditor& editor = session.document.desk.editor;
-    const bool same = known_ && revision_ == editor.revision() &&
-                      name_ == session.document.desk.title() && selection_ == editor.selection();
+  void reload() {
+    const SceneEditor& editor = document_.editor;
+    const bool same = known_ && revision_ == editor.revision() && name_ == document_.title() &&
+                      selection_ == editor.selection();
     if (same) return;
     known_ = true;
     revision_ = editor.revision();
-    name_ = session.document.desk.title();
+    name_ = document_.title();
     selection_ = editor.selection();
     const scenes::AuthoredScene& scene = editor.scene();
     inputs_ = {.name = scene.name,
@@ -101,39 +99,35 @@ class AuthorPanel final : public Panel {
     inputs_.vanishes = body.vanishes == scenes::kNever ? 0 : body.vanishes;
   }
 
-  void drawFile(PanelContext& context) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void drawFile() {
     ButtonRow first(ui, 2);
     if (first.button("New", "An empty scene")) {
-      session.document.leave([&session] { session.document.start({}); });
+      document_.leave([this] { document_.start({}); });
     }
     if (first.button("From this frame", "Makes a scene of the frame that is shown",
-                     session.playback.footage() && !session.document.atRest())) {
-      session.document.leave([&session] { session.document.startFromFrame(); });
+                     session.playback.footage() && !document_.atRest())) {
+      document_.leave([this] { document_.startFromFrame(); });
     }
     ButtonRow second(ui, 3);
-    if (second.button("Open…", "Opens a scene (.json)")) askOpenScene(context.files, session);
-    if (second.button("Save", "Saves the scene (Ctrl+S)")) saveScene(context.files, session);
+    if (second.button("Open…", "Opens a scene (.json)")) askOpenScene(files, session);
+    if (second.button("Save", "Saves the scene (Ctrl+S)")) saveScene(files, session);
     if (second.button("Save as…", "Saves the scene in another file")) {
-      askSaveScene(context.files, session);
+      askSaveScene(files, session);
     }
-    const SceneEditor& editor = session.document.desk.editor;
+    const SceneEditor& editor = document_.editor;
     ButtonRow third(ui, 2);
     const auto tip = [](const char* key, const std::string& name) {
       return name.empty() ? std::string(key) : fmt::format("{} ({})", name, key);
     };
-    edit(session.document,
-         third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo()),
+    edit(third.button("Undo", tip("Ctrl+Z", editor.undoName()).c_str(), editor.canUndo()),
          &SceneEditor::undo);
-    edit(session.document,
-         third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo()),
+    edit(third.button("Redo", tip("Ctrl+Shift+Z", editor.redoName()).c_str(), editor.canRedo()),
          &SceneEditor::redo);
     ButtonRow fourth(ui, 2);
     const bool bodies = !editor.scene().bodies.empty();
     if (fourth.button("Simulate", "Moves the scene on, frame by frame as it is watched (Space)",
                       bodies)) {
-      session.document.simulate();
+      document_.simulate();
       session.play(true);
     }
     BackgroundBake& bake = session.jobs.get<BackgroundBake>();
@@ -143,58 +137,53 @@ class AuthorPanel final : public Panel {
       if (fourth.button(label.c_str(), "Leaves no recording behind")) bake.cancel();
     } else if (fourth.button("Bake…", "Writes all frames into a recording, in the background",
                              bodies)) {
-      askBakeScene(context.files, session);
+      askBakeScene(files, session);
     }
   }
 
-  static void drawState(Ui& ui, Session& session) {
-    const AuthorDesk& desk = session.document.desk;
+  void drawState() {
     ImGui::Spacing();
-    ui.fact("scene", desk.title() + (desk.isModified() ? " *" : ""));
-    ui.fact("bodies", fmt::format("{}, {} selected", desk.editor.scene().bodies.size(),
-                                  desk.editor.selection().size()));
-    if (wideButton(ui,
-                   session.document.shown() ? "Back to the start###show" : "Show the scene###show",
-                   "Shows the bodies where they start", !session.document.atRest())) {
-      session.document.show();
+    ui.fact("scene", document_.title() + (document_.isModified() ? " *" : ""));
+    ui.fact("bodies", fmt::format("{}, {} selected", document_.editor.scene().bodies.size(),
+                                  document_.editor.selection().size()));
+    if (wideButton(document_.shown() ? "Back to the start###show" : "Show the scene###show",
+                   "Shows the bodies where they start", !document_.atRest())) {
+      document_.show();
     }
   }
 
-  static void drawBrush(Ui& ui, Session& session) {
+  void drawBrush() {
     if (!ImGui::CollapsingHeader("Brush", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto scope = ui.scope("Brush");
     ImGui::PushID("brush");
-    AuthorDesk& desk = session.document.desk;
     std::vector<std::string> ids;
-    for (const scenes::BrushEntry& entry : desk.brushes) ids.push_back(entry.listing.id);
-    std::size_t chosen = desk.chosenBrush();
-    if (ui.combo("brush", chosen, ids, desk.brushes[chosen].listing.summary.c_str())) {
-      desk.chooseBrush(chosen);
+    for (const scenes::BrushEntry& entry : document_.brushes) ids.push_back(entry.listing.id);
+    std::size_t chosen = document_.chosenBrush();
+    if (ui.combo("brush", chosen, ids, document_.brushes[chosen].listing.summary.c_str())) {
+      document_.chooseBrush(chosen);
     }
-    ui.parameters(desk.brush());
-    Numbers at = numbers(desk.paint_at);
+    ui.parameters(document_.brush());
+    Numbers at = numbers(document_.paint_at);
     ui.vector("at", at, -kFar, kFar, "The point that is painted at, in world units");
-    desk.paint_at = vec(at);
-    ui.parameters(desk.paint);
-    if (wideButton(ui, "Add", "Paints once, and selects what was added")) {
-      session.document.add([&desk] { return desk.stroke(); });
+    document_.paint_at = vec(at);
+    ui.parameters(document_.paint);
+    if (wideButton("Add", "Paints once, and selects what was added")) {
+      document_.add([this] { return document_.stroke(); });
     }
     ImGui::PopID();
   }
 
-  void drawSelection(Ui& ui, Session& session) {
+  void drawSelection() {
     if (!ImGui::CollapsingHeader("Selection", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto scope = ui.scope("Selection");
     ImGui::PushID("selection");
     const bool any = !selection_.empty();
-    Document& document = session.document;
     ButtonRow choose(ui, 2);
-    edit(document, choose.button("All", "Selects all bodies (Ctrl+A)"), &SceneEditor::selectAll);
-    edit(document, choose.button("None", "Selects nothing (Escape)", any),
-         &SceneEditor::selectNone);
+    edit(choose.button("All", "Selects all bodies (Ctrl+A)"), &SceneEditor::selectAll);
+    edit(choose.button("None", "Selects nothing (Escape)", any), &SceneEditor::selectNone);
     if (any) {
-      drawPlaces(ui, session);
-      drawProperties(ui, document);
+      drawPlaces();
+      drawProperties();
     } else {
       ui.faintParagraph(
           "Click a body in the view to select it; drag with Shift to select several.");
@@ -202,38 +191,34 @@ class AuthorPanel final : public Panel {
     ImGui::PopID();
   }
 
-  void drawPlaces(Ui& ui, Session& session) {
+  void drawPlaces() {
     ui.vector("by", by_, -kFar, kFar, "How far Move and Duplicate go, in world units");
     ui.number("factor", factor_, 1e-6, 1e6, "Of Scale: on sizes and distances to the centre");
     ButtonRow row(ui, 2);
-    Document& document = session.document;
-    edit(document, row.button("Move", "Moves the selected bodies"),
+    edit(row.button("Move", "Moves the selected bodies"),
          [&](SceneEditor& editor) { editor.move(vec(by_)); });
-    edit(document, row.button("Scale", "Scales places and sizes about the common centre"),
+    edit(row.button("Scale", "Scales places and sizes about the common centre"),
          [&](SceneEditor& editor) { editor.scale(static_cast<float>(factor_)); });
-    edit(document, row.button("Duplicate", "Copies the selected bodies, moved"),
+    edit(row.button("Duplicate", "Copies the selected bodies, moved"),
          [&](SceneEditor& editor) { editor.duplicate(vec(by_)); });
-    edit(document, row.button("Delete", "Deletes the selected bodies (Delete)"),
-         &SceneEditor::erase);
+    edit(row.button("Delete", "Deletes the selected bodies (Delete)"), &SceneEditor::erase);
     const bool several = selection_.size() > 1;
-    edit(document,
-         row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
+    edit(row.button("Group", "A click on one selects all of them, with Alt only the one (Ctrl+G)",
                     several),
          &SceneEditor::group);
-    edit(document,
-         row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped),
+    edit(row.button("Ungroup", "Each is selected for itself (Ctrl+Shift+G)", inputs_.grouped),
          &SceneEditor::ungroup);
     if (row.button("Fly there", "Looks at the selected bodies (F)")) {
       session.selection.flyThere();
     }
     if (row.button("Paint here", "The brush paints at the centre of the selection")) {
-      document.desk.paint_at = document.desk.editor.selectionCentre();
+      document_.paint_at = document_.editor.selectionCentre();
     }
-    if (several) drawAlignments(ui, document);
+    if (several) drawAlignments();
   }
 
   /// A row for each axis.
-  void drawAlignments(Ui& ui, Document& document) {
+  void drawAlignments() {
     using Alignment = SceneEditor::Alignment;
     constexpr std::pair<Alignment, const char*> kAlignments[] = {
         {Alignment::low, "low"}, {Alignment::middle, "middle"}, {Alignment::high, "high"}};
@@ -242,75 +227,69 @@ class AuthorPanel final : public Panel {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const auto& [alignment, name] : kAlignments) {
         const std::string label = fmt::format("{} {}", "xyz"[axis], name);
-        edit(document,
-             row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes"),
+        edit(row.button(label.c_str(), "Lines the selected bodies up, by their tight boxes"),
              [&, to = alignment](SceneEditor& editor) { editor.align(axis, to); });
       }
     }
   }
 
-  void drawProperties(Ui& ui, Document& document) {
+  void drawProperties() {
     const std::uint32_t first = selection_.front();
     ui.heading(selection_.size() == 1
                    ? fmt::format("Body {}", first).c_str()
                    : fmt::format("{} bodies; values of body {}", selection_.size(), first).c_str());
     std::size_t shape = inputs_.body.shape.index();
-    edit(document, ui.combo("shape", shape, {"box", "sphere"}),
+    edit(ui.combo("shape", shape, {"box", "sphere"}),
          [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
-    edit(document,
-         ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
+    edit(ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
                    "Edges, in world units; of a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
-    set(document, ui.number("mass", inputs_.body.mass, 1e-6, 1e9), "set the mass of",
-        &AuthoredBody::mass, inputs_.body.mass);
-    set(document, ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
+    set(ui.number("mass", inputs_.body.mass, 1e-6, 1e9), "set the mass of", &AuthoredBody::mass,
+        inputs_.body.mass);
+    set(ui.checkbox("frozen", inputs_.body.frozen, "An immovable obstacle"),
         inputs_.body.frozen ? "freeze" : "unfreeze", &AuthoredBody::frozen, inputs_.body.frozen);
-    set(document, ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
+    set(ui.vector("velocity", inputs_.velocity, -kFast, kFast, "World units per second"),
         "set the velocity of", &AuthoredBody::linear_velocity, vec(inputs_.velocity));
-    set(document,
-        ui.vector("spin", inputs_.spin, -kFast, kFast,
+    set(ui.vector("spin", inputs_.spin, -kFast, kFast,
                   "Angular velocity about each axis, in radians per second"),
         "set the spin of", &AuthoredBody::angular_velocity, vec(inputs_.spin));
-    set(document,
-        ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
+    set(ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
                   "Which layers collide is in the scene's file"),
         "set the layer of", &AuthoredBody::layer, static_cast<std::uint8_t>(inputs_.layer));
-    set(document,
-        ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
+    set(ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
         "set the first frame of", &AuthoredBody::appears,
         static_cast<std::uint32_t>(inputs_.appears));
     const bool vanishes = ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
                                     "The first frame after that which it is not in; 0: it stays");
     const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
-    set(document, vanishes, "set the last frame of", &AuthoredBody::vanishes,
+    set(vanishes, "set the last frame of", &AuthoredBody::vanishes,
         frame == 0 ? scenes::kNever : frame);
   }
 
-  static void drawSteps(Ui& ui, Tools& tools) {
+  void drawSteps() {
     if (!ImGui::CollapsingHeader("Steps")) return;
     const auto scope = ui.scope("Steps");
     ImGui::PushID("steps");
-    ui.number("move by", tools.move_step, 1e-6, 1e6,
+    ui.number("move by", document_.tools.move_step, 1e-6, 1e6,
               "Step of the gizmo when it snaps, in world units");
-    ui.number("turn by", tools.turn_step, 0.1, 180, "Likewise, in degrees");
-    ui.number("scale by", tools.scale_step, 0.01, 10, "Likewise, of the factor");
+    ui.number("turn by", document_.tools.turn_step, 0.1, 180, "Likewise, in degrees");
+    ui.number("scale by", document_.tools.scale_step, 0.01, 10, "Likewise, of the factor");
     ImGui::PopID();
   }
 
-  void drawScene(Ui& ui, Document& document) {
+  void drawScene() {
     if (!ImGui::CollapsingHeader("Whole scene", ImGuiTreeNodeFlags_DefaultOpen)) return;
     const auto scope = ui.scope("Whole scene");
     ImGui::PushID("scene");
-    edit(document, ui.text("name", inputs_.name),
-         [&](SceneEditor& editor) { editor.setName(inputs_.name); });
+    edit(ui.text("name", inputs_.name), [&](SceneEditor& editor) { editor.setName(inputs_.name); });
     const bool low = ui.vector("world min", inputs_.world_min, -kFar, kFar, "Walls stand there");
     const bool high = ui.vector("world max", inputs_.world_max, -kFar, kFar, "Walls stand there");
-    edit(document, low || high, [&](SceneEditor& editor) {
+    edit(low || high, [&](SceneEditor& editor) {
       const Vec3 min = vec(inputs_.world_min);
       const Vec3 max = vec(inputs_.world_max);
       editor.setWorld({{min[0], min[1], min[2], 0}, {max[0], max[1], max[2], 0}});
     });
-    edit(document, ui.parameters(inputs_.parameters), [&](SceneEditor& editor) {
+    edit(ui.parameters(inputs_.parameters), [&](SceneEditor& editor) {
       scenes::AuthoredParameters before(editor.scene().parameters);
       ParameterValues changed = changedValues(inputs_.parameters.values(), before);
       // Another engine comes with parameters of its own, which keep their defaults.
@@ -320,6 +299,7 @@ class AuthorPanel final : public Panel {
     ImGui::PopID();
   }
 
+  Document& document_ = session.document;
   bool known_ = false;  ///< whether the inputs are those of:
   std::uint64_t revision_ = 0;
   std::string name_;
@@ -331,6 +311,7 @@ class AuthorPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<AuthorPanel>(); }
+extern const PanelKind kind = {"Author", Place::left, "Putting a scene together, body by body",
+                               make<AuthorPanel>};
 
 }  // namespace broadmark::panels::author

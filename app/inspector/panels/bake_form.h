@@ -18,9 +18,9 @@
 
 namespace broadmark {
 
-class BakeForm {
+class BakeForm : BatchForm {
  public:
-  BakeForm() {
+  explicit BakeForm(const PanelContext& context) : BatchForm(context) {
     for (const SceneListing& scene : builtinScenes()) scenes_.push_back(scene.id);
     for (const RecorderListing& recorder : builtinRecorders()) recorders_.push_back(recorder.id);
     options_.sources = {scenes_.front()};
@@ -28,13 +28,11 @@ class BakeForm {
     options_.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()) - 1);
   }
 
-  void draw(PanelContext& context) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void draw() {
     BackgroundBake& bake = session.jobs.get<BackgroundBake>();
     const BakeReport report = bake.report();
     const bool running = bake.running();
-    if (drawStart(ui, bake, "Bakes in the background; what is there already is kept",
+    if (drawStart(bake, "Bakes in the background; what is there already is kept",
                   "Keeps what is finished")) {
       update();
       begun_ = session.notices.attempt([&] {
@@ -43,13 +41,13 @@ class BakeForm {
       });
     }
     ImGui::BeginDisabled(running);
-    drawOptions(context);
+    drawOptions();
     ImGui::EndDisabled();
     if (stale_) update();
     // What has just been baked is listed as that.
     const bool listed = begun_ && report.state == TaskState::done;
-    if (report.state != TaskState::idle) drawItems(ui, session, report);
-    if (!running && !listed) drawPreview(ui);
+    if (report.state != TaskState::idle) drawItems(report);
+    if (!running && !listed) drawPreview();
   }
 
  private:
@@ -72,7 +70,7 @@ class BakeForm {
   }
 
   /// A checkbox for each of `all`; the marked ones are `chosen`.
-  void chooseSome(Ui& ui, const char* name, const std::vector<std::string>& all,
+  void chooseSome(const char* name, const std::vector<std::string>& all,
                   std::vector<std::string>& chosen) {
     ui.heading(name);
     const auto scope = ui.scope(name);
@@ -91,11 +89,10 @@ class BakeForm {
     }
   }
 
-  void drawOptions(PanelContext& context) {
-    Ui& ui = context.ui;
-    chooseSome(ui, "scenes", scenes_, options_.sources);
-    chooseSome(ui, "object types", types_, options_.scene.object_types);
-    chooseSome(ui, "recorders", recorders_, options_.scene.recorders);
+  void drawOptions() {
+    chooseSome("scenes", scenes_, options_.sources);
+    chooseSome("object types", types_, options_.scene.object_types);
+    chooseSome("recorders", recorders_, options_.scene.recorders);
     ui.heading("Each of them");
     stale_ |= ui.text("objects", counts_, "1000, 8000");
     ui.tooltip("How many bodies: one recording for each number");
@@ -105,7 +102,7 @@ class BakeForm {
     if (ui.integer("threads", threads, 1, 256, "Recordings that are baked at the same time")) {
       options_.threads = static_cast<int>(threads);
     }
-    drawFolder(context, "output", "Directory for recordings", directory_, stale_);
+    drawFolder("output", "Directory for recordings", directory_, stale_);
   }
 
   /// Takes over the inputs and makes the preview.
@@ -135,7 +132,7 @@ class BakeForm {
     }
   }
 
-  static void drawItems(Ui& ui, Session& session, const BakeReport& report) {
+  void drawItems(const BakeReport& report) {
     ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
     const auto scope = ui.scope("recordings");
     for (const BakeReport::Item& item : report.items) {
@@ -144,20 +141,20 @@ class BakeForm {
       ImGui::PushID(item.path.c_str());
       ImGui::BeginDisabled(!there);
       const Rgb rgb = item.outcome == BakeOutcome::failed ? ui.theme.bad : ui.theme.good;
-      if (ui.selectable(
+      if (ui.selectableLine(
               name.c_str(), false, kBakeOutcomes.nameOf(item.outcome), rgb,
               there || item.failure.empty() ? "Opens the recording" : item.failure.c_str())) {
-        session.opener.open(item.path);
+        session.open(item.path);
       }
       ImGui::EndDisabled();
       ImGui::PopID();
     }
   }
 
-  void drawPreview(Ui& ui) const {
+  void drawPreview() const {
     if (!preview_.fault.empty()) {
       ui.heading("To bake");
-      drawFault(ui, preview_.fault);
+      ui.paragraph(preview_.fault, ui.theme.warning);
       return;
     }
     ui.heading(fmt::format("To bake: {}, {}", counted(preview_.recordings.size(), "recording"),

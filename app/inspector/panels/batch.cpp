@@ -9,25 +9,26 @@ namespace {
 
 class BatchPanel final : public Panel {
  public:
-  BatchPanel() : Panel("Batch", Place::left, "Baking many recordings, running many cases") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    context.ui.combo("task", task_, {"bake recordings", "run algorithms"});
+  void draw() override {
+    ui.combo("task", task_, {"bake recordings", "run algorithms"});
     if (task_ == 0) {
-      bake_.draw(context);
+      bake_.draw();
     } else {
-      benchmark_.draw(context);
+      benchmark_.draw();
     }
   }
 
  private:
   std::size_t task_ = 0;
-  BakeForm bake_;
-  BenchmarkForm benchmark_;
+  BakeForm bake_{*this};
+  BenchmarkForm benchmark_{*this};
 };
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<BatchPanel>(); }
+extern const PanelKind kind = {"Batch", Place::left, "Baking many recordings, running many cases",
+                               make<BatchPanel>};
 
 }  // namespace broadmark::panels::batch

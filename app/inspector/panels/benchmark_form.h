@@ -17,27 +17,27 @@
 
 namespace broadmark {
 
-class BenchmarkForm {
+class BenchmarkForm : BatchForm {
  public:
-  void draw(PanelContext& context) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  explicit BenchmarkForm(const PanelContext& context) : BatchForm(context) {}
+
+  void draw() {
     BackgroundBenchmark& benchmark = session.jobs.get<BackgroundBenchmark>();
     const BackgroundBenchmark::Report report = benchmark.report();
     const bool running = benchmark.running();
-    if (drawStart(ui, benchmark, "Runs in the background; best while nothing is played",
+    if (drawStart(benchmark, "Runs in the background; best while nothing is played",
                   "Keeps the cases that are finished")) {
       session.notices.attempt([&] {
         startBenchmark(benchmark, request(), session.lanes.algorithms(), session.jobs.make_host);
       });
     }
     ImGui::BeginDisabled(running);
-    drawOptions(context);
+    drawOptions();
     ImGui::EndDisabled();
     if (report.state == TaskState::idle) {
-      drawPreview(ui, session);
+      drawPreview();
     } else {
-      drawItems(ui, session, report);
+      drawItems(report);
     }
   }
 
@@ -59,18 +59,17 @@ class BenchmarkForm {
     return found;
   }
 
-  void drawOptions(PanelContext& context) {
-    Ui& ui = context.ui;
+  void drawOptions() {
     ui.heading("Recordings");
-    drawFolder(context, "folder", "Folder of recordings", directory_, stale_);
+    drawFolder("folder", "Folder of recordings", directory_, stale_);
     if (stale_ || ImGui::IsWindowAppearing()) findRecordings();
-    drawRecordings(ui);
+    drawRecordings();
     ui.heading("How they are run");
     ui.text("algorithms", algorithms_, "sap*, kd, all");
     ui.tooltip("Ids, families, patterns, or all, as --algorithm takes them");
-    if (wideButton(ui, "Those in Algorithms", "Takes what the panel Algorithms holds")) {
+    if (wideButton("Those in Algorithms", "Takes what the panel Algorithms holds")) {
       algorithms_.clear();
-      for (const LaneEdit& lane : context.session.lanes.list) {
+      for (const LaneEdit& lane : session.lanes.list) {
         algorithms_ += (algorithms_.empty() ? "" : ", ") + lane.run.algorithm.id;
       }
     }
@@ -91,7 +90,7 @@ class BenchmarkForm {
     }
   }
 
-  void drawRecordings(Ui& ui) {
+  void drawRecordings() {
     if (recordings_.empty()) {
       ui.faintParagraph("There are none in this folder: bake some, or choose another one.");
       return;
@@ -122,7 +121,7 @@ class BenchmarkForm {
   }
 
   /// What would be run, or why nothing would.
-  void drawPreview(Ui& ui, const Session& session) const {
+  void drawPreview() const {
     ui.heading("To run");
     try {
       const RunRequest request = this->request();
@@ -130,16 +129,16 @@ class BenchmarkForm {
       ui.paragraph(fmt::format("{} on {}", counted(cases.size(), "case"),
                                counted(request.sources.size(), "recording")));
     } catch (const InputError& error) {
-      drawFault(ui, error.what());
+      ui.paragraph(error.what(), ui.theme.warning);
     }
   }
 
-  static void drawItems(Ui& ui, Session& session, const BenchmarkReport& report) {
+  void drawItems(const BenchmarkReport& report) {
     ui.heading(fmt::format("{}: {}", kTaskStates.nameOf(report.state), report.text()).c_str());
     const bool any_kept = std::ranges::any_of(report.items, &BenchmarkReport::Item::kept);
     if (report.state != TaskState::running && any_kept &&
-        wideButton(ui, "Open results", "Lists them in the panel Cases")) {
-      session.opener.open(report.file);
+        wideButton("Open results", "Lists them in the panel Cases")) {
+      session.open(report.file);
     }
     const auto scope = ui.scope("cases");
     clipped(report.items.size(), [&](std::size_t row) {
@@ -148,9 +147,9 @@ class BenchmarkForm {
       ImGui::BeginDisabled(!item.kept && report.state == TaskState::running);
       const std::string right =
           ok ? durationText(item.median_seconds) : std::string(statusName(item.status));
-      if (ui.selectable(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
-                        item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
-        session.opener.openCase(report.file, item.id);
+      if (ui.selectableLine(item.name.c_str(), false, right, ok ? ui.theme.good : ui.theme.bad,
+                            item.reason.empty() ? "Opens the case" : item.reason.c_str())) {
+        session.openCase(report.file, item.id);
       }
       if (row == 0) ui.note("first");
       ImGui::EndDisabled();

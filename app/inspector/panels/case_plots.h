@@ -11,18 +11,19 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "broadmark/render/point_plot.h"
 #include "inspector/panels/panel.h"
 
 namespace broadmark {
 
-class CasePlots {
+class CasePlots : PanelContext {
  public:
+  explicit CasePlots(const PanelContext& context) : PanelContext(context) {}
+
   /// The choices, and below them the plot.
-  void draw(PanelContext& context, OpenedResults& results) {
-    drawChoices(context.ui);
-    overBodies() ? drawBodies(context, results) : drawFrames(context, results);
+  void draw(OpenedResults& results) {
+    drawChoices();
+    overBodies() ? drawBodies(results) : drawFrames(results);
   }
 
   /// By row: the colour of the curve that the case has or belongs to.
@@ -58,8 +59,7 @@ class CasePlots {
 
   /// As many as are plotted; says so where these are not all.
   template <class Curve>
-  static std::span<const Curve> firstOf(Ui& ui, const std::vector<Curve>& curves,
-                                        const char* which) {
+  std::span<const Curve> firstOf(const std::vector<Curve>& curves, const char* which) {
     if (curves.size() > kMostCurves) {
       ImGui::SameLine();
       ui.faint(fmt::format("the first {} of {} {}", kMostCurves, curves.size(), which));
@@ -67,7 +67,7 @@ class CasePlots {
     return std::span(curves).first(std::min(kMostCurves, curves.size()));
   }
 
-  void drawChoices(Ui& ui) {
+  void drawChoices() {
     ui.combo("##phase", phase_, kPhases.names(), "Which time is plotted", 140 * ui.scale);
     ImGui::SameLine();
     ui.combo("##over", over_, {"over frames", "over bodies"},
@@ -77,14 +77,14 @@ class CasePlots {
     ui.checkbox("logarithmic", logarithmic_);
   }
 
-  void drawFrames(PanelContext& context, OpenedResults& results) {
+  void drawFrames(OpenedResults& results) {
     if (results.curves(phase()).empty()) {
-      context.ui.faintParagraph("Mark cases in the table to see their times over the frames.");
+      ui.faintParagraph("Mark cases in the table to see their times over the frames.");
       return;
     }
-    const auto curves = firstOf(context.ui, results.curves(phase()), "marked");
-    const Palette& theme = context.ui.theme;
-    const FootageRequest* open = context.session.playback.footage().get();
+    const auto curves = firstOf(results.curves(phase()), "marked");
+    const Palette& theme = ui.theme;
+    const FootageRequest* open = session.playback.footage().get();
     const bool is_open = open != nullptr && open->source == FootageSource::results;
     std::vector<PlotCurve> plotted;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
@@ -104,26 +104,12 @@ class CasePlots {
       last = std::max(last, curves[i].seconds.size() - 1);
     }
     zoom_.follow(nullptr, last, 0);
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", plotted,
-                                     {.logarithmic = logarithmic_,
-                                      .unit = "s",
-                                      .first = zoom_.first(),
-                                      .last = zoom_.last(),
-                                      .playhead = is_open ? context.session.playback.frame() : 0,
-                                      .span = {},
-                                      .marks = {wrong}},
-                                     room.x, room.y);
-    context.ui.note("plot");
-    if (done.zoom != 0) zoom_.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) zoom_.move(done.moved);
-    if (done.clicked_frame && is_open) {
-      context.session.playback.goTo(std::llround(*done.clicked_frame));
-    }
+    plotFrames("plot", plotted,
+               {.logarithmic = logarithmic_, .unit = "s", .span = {}, .marks = {wrong}}, zoom_,
+               is_open);
   }
 
-  void drawBodies(PanelContext& context, OpenedResults& results) const {
-    Ui& ui = context.ui;
+  void drawBodies(OpenedResults& results) {
     if (results.scaling(phase()).empty()) {
       ui.faintParagraph(
           "Open results of a scene in several numbers of bodies (--objects 1000,2000,4000) to see "
@@ -133,7 +119,7 @@ class CasePlots {
           "right.");
       return;
     }
-    const auto curves = firstOf(ui, results.scaling(phase()), "curves");
+    const auto curves = firstOf(results.scaling(phase()), "curves");
     const auto colours = rowColours(ui.theme, results);
     std::vector<PointCurve> plotted;
     for (std::size_t i = 0; i < curves.size(); ++i) {
@@ -159,7 +145,7 @@ class CasePlots {
                 {point.at.x - kPointPlace, point.at.y - kPointPlace},
                 {point.at.x + kPointPlace, point.at.y + kPointPlace});
     }
-    if (done.clicked) context.session.opener.openCase(row_of(*done.hovered));
+    if (done.clicked) session.openCase(row_of(*done.hovered));
   }
 
   [[nodiscard]] Phase phase() const { return kPhases.entries.at(phase_).value; }

@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/case_plots.h"
 #include "inspector/panels/panel.h"
 #include "support/child_program.h"
@@ -34,28 +33,24 @@ std::string textOf(const Row& row, const CaseColumn& column) {
 
 class CasesPanel final : public Panel {
  public:
-  CasesPanel()
-      : Panel("Cases", Place::bottom,
-              "The cases of a results file: their times, and each of them again") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    if (!context.session.results) {
+  void draw() override {
+    if (!session.results) {
       ui.paragraph(
           "Open or drop a results file (.json or .jsonl, whole or not yet complete) to see its "
           "cases, plot their times, and open each of them on what it ran on.");
       return;
     }
-    OpenedResults& results = *context.session.results;
+    OpenedResults& results = *session.results;
     const TwoParts parts{
         .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
-    drawControls(context, results, parts.both());
-    parts.draw([&] { drawTable(context, results); }, [&] { plots_.draw(context, results); });
+    drawControls(results, parts.both());
+    parts.draw([&] { drawTable(results); }, [&] { plots_.draw(results); });
   }
 
  private:
-  void drawControls(PanelContext& context, OpenedResults& results, bool both) {
-    Ui& ui = context.ui;
+  void drawControls(OpenedResults& results, bool both) {
     const std::string what = summaryText(results);
     ui.faint(fittingText(what, ImGui::GetContentRegionAvail().x));
     ui.tooltip(fmt::format("{}: {}", results.file().string(), what).c_str());
@@ -71,13 +66,11 @@ class CasesPanel final : public Panel {
       ui.toggle("Plot", plot_alone_, "The plot in place of the table");
     }
     Ui::besideIfRoom(105 * ui.scale);
-    drawReport(context, results);
+    drawReport(results);
   }
 
   /// Writes the report page of all cases, and opens it.
-  static void drawReport(PanelContext& context, const OpenedResults& results) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void drawReport(const OpenedResults& results) {
     BackgroundReport& work = session.jobs.get<BackgroundReport>();
     const BackgroundReport::Report report = work.report();
     if (report.state == TaskState::running) {
@@ -87,7 +80,7 @@ class CasesPanel final : public Panel {
     if (ui.button("Report page…",
                   "Writes all cases as an HTML page, as python3 -m broadmark "
                   "report does")) {
-      askPage(context, results);
+      askPage(results);
     }
     static const bool opens = isProgramThere("xdg-open");
     if (report.state != TaskState::done || !opens) return;
@@ -97,18 +90,17 @@ class CasesPanel final : public Panel {
     }
   }
 
-  static void askPage(PanelContext& context, const OpenedResults& results) {
+  void askPage(const OpenedResults& results) {
     std::filesystem::path page = results.file();
-    context.files.ask({.title = "Write the report page",
-                       .purpose = FileDialog::Purpose::save,
-                       .extensions = {".html"},
-                       .suggestion = page.replace_extension(".html"),
-                       .chosen = [&session = context.session,
-                                  file = results.file()](const std::filesystem::path& chosen) {
-                         session.notices.attempt([&] {
-                           startReport(session.jobs.get<BackgroundReport>(), file, chosen);
-                         });
-                       }});
+    files.ask({.title = "Write the report page",
+               .purpose = FileDialog::Purpose::save,
+               .extensions = {".html"},
+               .suggestion = page.replace_extension(".html"),
+               .chosen = [&session = session,
+                          file = results.file()](const std::filesystem::path& chosen) {
+                 session.notices.attempt(
+                     [&] { startReport(session.jobs.get<BackgroundReport>(), file, chosen); });
+               }});
   }
 
   static std::string summaryText(const OpenedResults& results) {
@@ -118,14 +110,14 @@ class CasesPanel final : public Panel {
     return text + (results.complete() ? "" : ", not complete");
   }
 
-  void drawTable(PanelContext& context, OpenedResults& results) const {
+  void drawTable(OpenedResults& results) {
     constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
                                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
                                        ImGuiTableFlags_ScrollY | ImGuiTableFlags_Sortable |
                                        ImGuiTableFlags_SortTristate;
     if (results.listed().empty()) {
-      context.ui.faintParagraph(results.rows().empty() ? "The file has no cases."
-                                                       : "No case is like that.");
+      ui.faintParagraph(results.rows().empty() ? "The file has no cases."
+                                               : "No case is like that.");
       return;
     }
     const auto columns = static_cast<int>(columns_.size()) + 1;
@@ -134,21 +126,17 @@ class CasesPanel final : public Panel {
     ImGui::TableSetupColumn("##mark", ImGuiTableColumnFlags_NoSort);
     for (const CaseColumn* column : columns_)
       ImGui::TableSetupColumn(column->shown.heading.c_str());
-    drawHeadings(context.ui);
+    drawHeadings();
     sort(results);
-    ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(results.listed().size()));
-    const auto curves = plots_.rowColours(context.ui.theme, results);
-    while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        const std::size_t index = results.listed()[static_cast<std::size_t>(i)];
-        drawRow(context, results, index, curves[index], i == 0);
-      }
-    }
+    const auto curves = plots_.rowColours(ui.theme, results);
+    clipped(results.listed().size(), [&](std::size_t row) {
+      const std::size_t index = results.listed()[row];
+      drawRow(results, index, curves[index], row == 0);
+    });
     ImGui::EndTable();
   }
 
-  static void drawHeadings(Ui& ui) {
+  void drawHeadings() {
     const auto scope = ui.scope("by");
     ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
     for (int i = 0; i < ImGui::TableGetColumnCount(); ++i) {
@@ -171,9 +159,7 @@ class CasesPanel final : public Panel {
                  by.SortDirection == ImGuiSortDirection_Descending);
   }
 
-  void drawRow(PanelContext& context, OpenedResults& results, std::size_t index,
-               std::optional<Rgb> curve, bool first) const {
-    Ui& ui = context.ui;
+  void drawRow(OpenedResults& results, std::size_t index, std::optional<Rgb> curve, bool first) {
     Row& row = results.rows()[index];
     ImGui::PushID(static_cast<int>(index));
     ImGui::TableNextRow();
@@ -187,9 +173,9 @@ class CasesPanel final : public Panel {
     ImGui::PopStyleVar();
     for (const CaseColumn* column : columns_) {
       ImGui::TableNextColumn();
-      const std::optional<Rgb> rgb = colourOf(ui, row, column->key);
+      const std::optional<Rgb> rgb = colourOf(row, column->key);
       if (column == columns_.front()) {
-        drawOpener(context, row, curve ? curve : rgb, first);
+        drawOpener(row, curve ? curve : rgb, first);
       } else {
         rgb ? ui.coloured(*rgb, textOf(row, *column)) : ui.plain(textOf(row, *column));
         if (column->key == kStatus) ui.tooltip(row.result.reason.c_str());
@@ -199,26 +185,20 @@ class CasesPanel final : public Panel {
   }
 
   /// The cell that opens the case, across the whole row.
-  static void drawOpener(PanelContext& context, Row& row, std::optional<Rgb> rgb, bool first) {
-    Ui& ui = context.ui;
-    const FootageRequest* open = context.session.playback.footage().get();
+  void drawOpener(Row& row, std::optional<Rgb> rgb, bool first) {
+    const FootageRequest* open = session.playback.footage().get();
     const bool is_open =
         open != nullptr && open->source == FootageSource::results && open->title == row.result.id;
-    ui.letters.need(row.algorithm);
-    ImGui::PushStyleColor(ImGuiCol_Text, rgb ? colour(*rgb) : ImGui::GetColorU32(ImGuiCol_Text));
-    const bool pressed =
-        ImGui::Selectable(row.algorithm.c_str(), is_open, ImGuiSelectableFlags_SpanAllColumns);
-    ImGui::PopStyleColor();
-    ui.note(row.result.id);
-    if (first) ui.note("first");
     const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id
                                                  : "Cannot be opened: " + row.obstacle;
-    ui.tooltip(tip.c_str());
-    if (pressed) context.session.opener.openCase(row);
+    const std::string label = fmt::format("{}###{}", row.algorithm, row.result.id);
+    const bool pressed = ui.selectable(label.c_str(), is_open, tip.c_str(), rgb);
+    if (first) ui.note("first");
+    if (pressed) session.openCase(row);
   }
 
   /// Nothing: as all text.
-  static std::optional<Rgb> colourOf(const Ui& ui, const Row& row, std::string_view column) {
+  std::optional<Rgb> colourOf(const Row& row, std::string_view column) {
     if (column == kStatus) {
       return row.result.status == Status::ok ? ui.theme.good : ui.theme.bad;
     }
@@ -230,12 +210,14 @@ class CasesPanel final : public Panel {
   std::string searched_;
   bool only_wrong_ = false;
   bool plot_alone_ = false;
-  CasePlots plots_;
+  CasePlots plots_{*this};
   const std::vector<const CaseColumn*> columns_ = caseColumns(&ColumnShown::inspector);
 };
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<CasesPanel>(); }
+extern const PanelKind kind = {"Cases", Place::bottom,
+                               "The cases of a results file: their times, and each of them again",
+                               make<CasesPanel>};
 
 }  // namespace broadmark::panels::cases

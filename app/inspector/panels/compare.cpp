@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
 #include "inspector/session/wrong_pair.h"
@@ -21,18 +20,15 @@ constexpr double kBetweenSummaries = 0.25;  // seconds
 
 class ComparePanel final : public Panel {
  public:
-  ComparePanel()
-      : Panel("Compare", Place::bottom,
-              "The two views: which pairs only one of them shows, and who is slower where") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    if (!context.session.second.wish) {
+  void draw() override {
+    if (!session.second) {
       ui.paragraph(
           "A second view beside the first one shows another algorithm's answer, another frame or "
           "another recording. Here stands then who finds what, and who is slower where.");
       if (ui.button("Second view", "As the switch of the same name in Look (V)")) {
-        context.session.second.show(true);
+        session.showSecond(true);
       }
       return;
     }
@@ -41,13 +37,12 @@ class ComparePanel final : public Panel {
     if (!parts.both()) {
       ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");
     }
-    parts.draw([&] { drawPairs(context); }, [&] { drawTimes(context); });
+    parts.draw([&] { drawPairs(); }, [&] { drawTimes(); });
   }
 
  private:
-  static void drawPairs(PanelContext& context) {
-    Ui& ui = context.ui;
-    const PairComparison* const comparison = context.progress.comparison.get();
+  void drawPairs() {
+    const PairComparison* const comparison = progress->comparison.get();
     if (comparison == nullptr) {
       ui.faintParagraph("There are not two answers yet.");
       return;
@@ -62,33 +57,30 @@ class ComparePanel final : public Panel {
     const std::size_t firsts = comparison->first_only.size();
     clipped(firsts + comparison->second_only.size(), [&](std::size_t row) {
       const bool of_first = row < firsts;
-      drawPair(context,
-               of_first ? comparison->first_only[row] : comparison->second_only[row - firsts],
+      drawPair(of_first ? comparison->first_only[row] : comparison->second_only[row - firsts],
                of_first);
       if (row == 0) ui.note("first pair");
     });
     ImGui::EndChild();
   }
 
-  static void drawPair(PanelContext& context, Pair pair, bool of_first) {
-    Ui& ui = context.ui;
-    const auto& selected = context.session.selection.bodies();
+  void drawPair(Pair pair, bool of_first) {
+    const auto& selected = session.selection.bodies();
     const bool is_selected = selected.size() == 2 && selected[0] == pair.a && selected[1] == pair.b;
     ImGui::PushID(of_first ? 0 : 1);
-    if (ui.selectable(pairName(pair).c_str(), is_selected, of_first ? "first only" : "second only",
-                      of_first ? ui.theme.first_only : ui.theme.second_only,
-                      "Selects both bodies and flies to them")) {
-      context.session.selection.visit(pair);
+    if (ui.selectableLine(pairName(pair).c_str(), is_selected,
+                          of_first ? "first only" : "second only",
+                          of_first ? ui.theme.first_only : ui.theme.second_only,
+                          "Selects both bodies and flies to them")) {
+      session.selection.visit(pair);
     }
     ImGui::PopID();
   }
 
-  void drawTimes(PanelContext& context) {
-    Ui& ui = context.ui;
-    const Session& session = context.session;
-    const LaneReport* const first = laneOf(context.progress.lanes, session.lanes.shown());
-    const LaneReport* const second = laneOf(context.progress.lanes, session.second.wish->lane);
-    if (first == nullptr || second == nullptr || first == second || session.second.wish->footage) {
+  void drawTimes() {
+    const LaneReport* const first = laneOf(progress->lanes, session.lanes.shown());
+    const LaneReport* const second = laneOf(progress->lanes, session.second->lane);
+    if (first == nullptr || second == nullptr || first == second || session.second->footage) {
       ui.faintParagraph(
           "Times are compared where the views show two algorithms on the same recording.");
       return;
@@ -105,41 +97,31 @@ class ComparePanel final : public Panel {
                                 counted(ratios_.first_slower + ratios_.second_slower, "frame")),
                     ImGui::GetContentRegionAvail().x));
     ui.note("median");
-    drawExtreme(context, "most", *ratios_.highest);
+    drawExtreme("most", *ratios_.highest);
     Ui::besideIfRoom(150 * ui.scale);
-    drawExtreme(context, "least", *ratios_.lowest);
-    drawRatios(context);
+    drawExtreme("least", *ratios_.lowest);
+    drawRatios();
   }
 
   /// A button that goes to the frame.
-  static void drawExtreme(PanelContext& context, const char* name, TimeRatios::Extreme of) {
+  void drawExtreme(const char* name, TimeRatios::Extreme of) {
     const std::string label =
         fmt::format("{} {:.3g} in frame {}###{}", name, of.ratio, of.frame, name);
-    if (context.ui.button(label.c_str(), "Goes to this frame")) {
-      context.session.playback.goTo(of.frame);
+    if (ui.button(label.c_str(), "Goes to this frame")) {
+      session.playback.goTo(of.frame);
     }
   }
 
-  void drawRatios(PanelContext& context) const {
-    const Timeline& timeline = context.session.timeline;
-    const PlotCurve curve{
-        .label = "ratio", .colour = context.ui.theme.accent, .values = &ratios_.ratios};
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("ratios", {curve},
-                                     {.logarithmic = true,
-                                      .unit = "",
-                                      .first = timeline.first(),
-                                      .last = timeline.last(),
-                                      .playhead = context.session.playback.frame(),
-                                      .limit = 1,
-                                      .limit_colour = context.ui.theme.warning,
-                                      .span = {},
-                                      .marks = {}},
-                                     room.x, room.y);
-    context.ui.note("ratios");
-    if (done.clicked_frame) context.session.playback.goTo(std::llround(*done.clicked_frame));
-    if (done.zoom != 0) context.session.timeline.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) context.session.timeline.move(done.moved);
+  void drawRatios() const {
+    const PlotCurve curve{.label = "ratio", .colour = ui.theme.accent, .values = &ratios_.ratios};
+    plotFrames("ratios", {curve},
+               {.logarithmic = true,
+                .unit = "",
+                .limit = 1,
+                .limit_colour = ui.theme.warning,
+                .span = {},
+                .marks = {}},
+               session.timeline);
   }
 
   /// Long recordings take a while: not for each picture.
@@ -160,6 +142,9 @@ class ComparePanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<ComparePanel>(); }
+extern const PanelKind kind = {
+    "Compare", Place::bottom,
+    "The two views: which pairs only one of them shows, and who is slower where",
+    make<ComparePanel>};
 
 }  // namespace broadmark::panels::compare

@@ -8,7 +8,6 @@
 #include "broadmark/statistics/statistics.h"
 #include "compare/duel_report.h"
 #include "inspector/panels/panel.h"
-#include "inspector/ui/histogram.h"
 #include "support/words.h"
 
 namespace broadmark::panels::duel {
@@ -19,16 +18,11 @@ constexpr float kRoomForBoth = 560;   // units: narrower, it is either the one o
 
 class DuelPanel final : public Panel {
  public:
-  DuelPanel()
-      : Panel("Duel", Place::bottom,
-              "Lets the algorithms take turns on what is open, until it is known which is faster") {
-  }
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void draw() override {
     const BackgroundDuel::Report report = session.jobs.get<BackgroundDuel>().report();
-    drawControls(ui, session, report);
+    drawControls(report);
     if (report.state == TaskState::idle) {
       ui.paragraph(
           "Two or more algorithms of the panel Algorithms run the frames that are known so far, in "
@@ -36,7 +30,7 @@ class DuelPanel final : public Panel {
           "played.");
       return;
     }
-    if (!report.result.ok()) return drawFailures(ui, report.result);
+    if (!report.result.ok()) return drawFailures(report.result);
     if (report.result.rounds() == 0) return;
     if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
     const TwoParts parts{.share = kTableShare,
@@ -46,11 +40,11 @@ class DuelPanel final : public Panel {
       ui.toggle("Histogram", histogram_alone_,
                 "How many rounds had which ratio, in place of the table");
     }
-    parts.draw([&] { drawTable(ui, report.result); }, [&] { drawRatios(ui, report.result); });
+    parts.draw([&] { drawTable(report.result); }, [&] { drawRatios(report.result); });
   }
 
  private:
-  void drawControls(Ui& ui, Session& session, const BackgroundDuel::Report& report) {
+  void drawControls(const BackgroundDuel::Report& report) {
     if (report.state == TaskState::running) {
       if (ui.button("Cancel", "Ends it without a verdict"))
         session.jobs.get<BackgroundDuel>().cancel();
@@ -61,9 +55,10 @@ class DuelPanel final : public Panel {
                            report.max_seconds));
       return;
     }
-    ImGui::BeginDisabled(session.playback.footage() == nullptr || session.lanes.list.size() < 2);
-    if (ui.button("Start", "Runs the algorithms in turns")) session.startDuel(max_seconds_);
-    ImGui::EndDisabled();
+    const bool ready = session.playback.footage() && session.lanes.list.size() >= 2;
+    if (ui.button("Start", "Runs the algorithms in turns", 0, ready)) {
+      session.startDuel(max_seconds_);
+    }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
     ui.entry("seconds", max_seconds_, 1, 3600, "Ends it, whatever is known then");
@@ -77,7 +72,7 @@ class DuelPanel final : public Panel {
     ui.note("rounds");
   }
 
-  static void drawFailures(Ui& ui, const DuelResult& result) {
+  void drawFailures(const DuelResult& result) {
     for (const DuelResult::Side& side : result.sides) {
       if (side.status == Status::ok) continue;
       ui.coloured(ui.theme.bad,
@@ -86,48 +81,39 @@ class DuelPanel final : public Panel {
   }
 
   /// The ranking, or, until there is one, the algorithms in their own order.
-  void drawTable(Ui& ui, const DuelResult& result) {
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
-    if (!ImGui::BeginTable("ranking", 6, kFlags, {widthOfWholeColumns("ranking", 2), 0})) return;
-    for (const char* name : {"", "algorithm", "median", "least", "ratio", "95 % interval"}) {
-      ImGui::TableSetupColumn(name);
+  void drawTable(const DuelResult& result) {
+    if (!ui.beginTable("ranking", {"", "algorithm", "median", "least", "ratio", "95 % interval"},
+                       2)) {
+      return;
     }
-    ImGui::TableHeadersRow();
     for (std::size_t row = 0; row < result.sides.size(); ++row) {
       const DuelPlace* place = result.places.empty() ? nullptr : &result.places[row];
-      drawSide(ui, result, place == nullptr ? row : place->side, place);
+      drawSide(result, place == nullptr ? row : place->side, place);
     }
     ImGui::EndTable();
   }
 
-  void drawSide(Ui& ui, const DuelResult& result, std::size_t side, const DuelPlace* place) {
+  void drawSide(const DuelResult& result, std::size_t side, const DuelPlace* place) {
     const std::vector<double>& seconds = result.sides[side].seconds;
     const double ratio =
         place != nullptr ? place->ratio.value : quantile(result.ratios(side, 0), 0.5);
-    const auto cell = [&](const std::string& text) {
-      ImGui::TableNextColumn();
-      ui.plain(text);
-    };
     ImGui::TableNextRow();
-    cell(place == nullptr ? "" : fmt::format("{}.", place->place));
+    ui.cell(place == nullptr ? "" : fmt::format("{}.", place->place));
     ImGui::TableNextColumn();
     ImGui::PushID(static_cast<int>(side));
-    if (ImGui::Selectable(result.sides[side].name.c_str(), side == shown_,
-                          ImGuiSelectableFlags_SpanAllColumns)) {
+    if (ui.selectable(result.sides[side].name.c_str(), side == shown_,
+                      "Shows its ratios to the first one in the histogram")) {
       shown_ = side;
     }
-    ui.note(result.sides[side].name);
-    ui.tooltip("Shows its ratios to the first one in the histogram");
     ImGui::PopID();
-    cell(durationText(quantile(seconds, 0.5)));
-    cell(durationText(quantile(seconds, 0)));
-    cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
-    cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
+    ui.cell(durationText(quantile(seconds, 0.5)));
+    ui.cell(durationText(quantile(seconds, 0)));
+    ui.cell(side == 0 ? "1" : fmt::format("{:.3f}", ratio));
+    ui.cell(side == 0 || place == nullptr ? "" : intervalText(place->ratio.ci95, 3));
   }
 
   /// Of how many rounds had which ratio; a line where both are as fast.
-  void drawRatios(Ui& ui, const DuelResult& result) const {
+  void drawRatios(const DuelResult& result) const {
     const std::size_t side = shown_ > 0 && shown_ < result.sides.size() ? shown_ : 1;
     ui.faint(fittingText(fmt::format("rounds by ratio of {}", result.sides[side].name),
                          ImGui::GetContentRegionAvail().x));
@@ -142,6 +128,9 @@ class DuelPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<DuelPanel>(); }
+extern const PanelKind kind = {
+    "Duel", Place::bottom,
+    "Lets the algorithms take turns on what is open, until it is known which is faster",
+    make<DuelPanel>};
 
 }  // namespace broadmark::panels::duel

@@ -23,55 +23,53 @@ constexpr float kListRows = 4.6F;
 
 class MismatchesPanel final : public Panel {
  public:
-  MismatchesPanel()
-      : Panel("Mismatches", Place::right, "Pairs that are missed, false or invalid, and why") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    if (context.progress.lanes.empty()) {
-      context.ui.paragraph(
+  void draw() override {
+    if (progress->lanes.empty()) {
+      ui.paragraph(
           "Add an algorithm: its answers are compared with the right ones here, frame by frame.");
     } else {
-      const LaneReport& lane = chooseLane(context);
-      drawVerdict(context, lane);
-      drawSearch(context);
-      drawLists(context, lane);
-      drawCase(context, lane);
+      const LaneReport& lane = chooseLane();
+      drawVerdict(lane);
+      drawSearch();
+      drawLists(lane);
+      drawCase(lane);
     }
-    drawExport(context);
-    drawPair(context);
-    if (!context.progress.lanes.empty()) drawStructure(context);
+    drawExport();
+    drawPair();
+    if (!progress->lanes.empty()) drawStructure();
   }
 
  private:
   /// The lane whose answer is shown, or else the first.
-  static const LaneReport& chooseLane(PanelContext& context) {
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
+  const LaneReport& chooseLane() {
+    const std::vector<LaneReport>& lanes = progress->lanes;
     std::vector<std::string> names;
     std::size_t chosen = 0;
     for (const LaneReport& lane : lanes) {
-      if (lane.spec.number == context.session.lanes.shown()) chosen = names.size();
+      if (lane.spec.number == session.lanes.shown()) chosen = names.size();
       names.push_back(caseName(lane.spec.run));
     }
-    if (context.ui.combo("##algorithm", chosen, names, "Whose answers are looked at",
-                         ImGui::GetContentRegionAvail().x)) {
-      context.session.lanes.show(lanes[chosen].spec.number);
+    if (ui.combo("##algorithm", chosen, names, "Whose answers are looked at",
+                 ImGui::GetContentRegionAvail().x)) {
+      session.lanes.show(lanes[chosen].spec.number);
     }
     return lanes[chosen];
   }
 
   /// Whether the snapshot is this lane's answer, compared with the right one.
-  static bool showsAnswerOf(const PanelContext& context, const LaneReport& lane) {
-    const auto& seen = context.progress.snapshot;
+  bool showsAnswerOf(const LaneReport& lane) {
+    const auto& seen = progress->snapshot;
     return seen && seen->checked && seen->lane == lane.spec.number;
   }
 
-  static void drawVerdict(PanelContext& context, const LaneReport& lane) {
-    Ui& ui = context.ui;
-    if (!context.session.mismatches.check) {
+  void drawVerdict(const LaneReport& lane) {
+    if (!session.mismatches.check) {
       ui.coloured(ui.theme.warning, "answers are not checked");
       ImGui::SameLine();
       if (ui.button("Check them", "Compares every answer with the oracle's")) {
-        context.session.mismatches.check = true;
+        session.mismatches.check = true;
       }
       return;
     }
@@ -79,12 +77,11 @@ class MismatchesPanel final : public Panel {
       ui.faint("it reports no pairs by design");
       return;
     }
-    if (!showsAnswerOf(context, lane)) {
-      ui.faint(context.progress.doing.empty() ? "no answer for this frame"
-                                              : context.progress.doing.c_str());
+    if (!showsAnswerOf(lane)) {
+      ui.faint(progress->doing.empty() ? "no answer for this frame" : progress->doing.c_str());
       return;
     }
-    const Snapshot& seen = *context.progress.snapshot;
+    const Snapshot& seen = *progress->snapshot;
     const FrameDifference& difference = seen.difference;
     if (!difference.isMismatch()) {
       ui.coloured(ui.theme.good, fmt::format("right in frame {}", seen.frame));
@@ -93,66 +90,61 @@ class MismatchesPanel final : public Panel {
     ui.coloured(ui.theme.bad, fmt::format("frame {}: {}", seen.frame, mismatchText(difference)));
   }
 
-  static void drawSearch(PanelContext& context) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void drawSearch() {
     if (session.mismatches.searching()) {
-      if (wideButton(ui, "Stop here", "Stays at the frame that has been reached")) {
-        session.mismatches.endSearch(context.progress);
+      if (wideButton("Stop here", "Stays at the frame that has been reached")) {
+        session.mismatches.endSearch(*progress);
       }
-    } else if (wideButton(ui, "Next mismatch", "Goes on to the next frame with a mismatch")) {
-      session.mismatches.goToNext(context.progress);
+    } else if (wideButton("Next mismatch", "Goes on to the next frame with a mismatch")) {
+      session.mismatches.goToNext(*progress);
     }
   }
 
-  static void drawLists(PanelContext& context, const LaneReport& lane) {
+  void drawLists(const LaneReport& lane) {
     const float height = kListRows * ImGui::GetTextLineHeightWithSpacing();
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::BeginChild("frames", {0.38F * width, height}, true, ImGuiWindowFlags_NavFlattened);
-    drawFrames(context, lane);
+    drawFrames(lane);
     ImGui::EndChild();
     ImGui::SameLine();
     ImGui::BeginChild("pairs", {0, height}, true, ImGuiWindowFlags_NavFlattened);
-    drawPairs(context, lane);
+    drawPairs(lane);
     ImGui::EndChild();
   }
 
-  static void drawFrames(PanelContext& context, const LaneReport& lane) {
+  void drawFrames(const LaneReport& lane) {
     std::vector<std::uint32_t> wrong;
     const FrameValues& marks = lane.curves.mismatches;
     for (auto frame = marks.firstKnown(0, marks.size()); frame;
          frame = marks.firstKnown(*frame + 1, marks.size())) {
       wrong.push_back(*frame);
     }
-    if (wrong.empty()) context.ui.faintParagraph("no wrong frame so far");
+    if (wrong.empty()) ui.faintParagraph("no wrong frame so far");
     clipped(wrong.size(), [&](std::size_t row) {
       const std::string name = fmt::format("frame {}", wrong[row]);
-      if (context.ui.selectable(name.c_str(), wrong[row] == context.session.playback.frame())) {
-        context.session.playback.goTo(wrong[row]);
+      if (ui.selectable(name.c_str(), wrong[row] == session.playback.frame())) {
+        session.playback.goTo(wrong[row]);
       }
     });
   }
 
-  static void drawPairs(PanelContext& context, const LaneReport& lane) {
-    Ui& ui = context.ui;
-    if (!showsAnswerOf(context, lane)) return;
-    const Snapshot& seen = *context.progress.snapshot;
+  void drawPairs(const LaneReport& lane) {
+    if (!showsAnswerOf(lane)) return;
+    const Snapshot& seen = *progress->snapshot;
     const std::vector<WrongPair> wrong = wrongPairs(seen.difference);
     if (wrong.empty()) ui.faint("no wrong pairs");
     clipped(wrong.size(), [&](std::size_t row) {
       const auto& [kind, pair] = wrong[row];
       const std::string name = fmt::format("{} {}", kind->name, pairName(pair));
       const std::vector<std::uint32_t> bodies = {pair.a, pair.b};
-      ImGui::PushStyleColor(ImGuiCol_Text, colour(ui.theme.*kind->colour));
       const bool clicked =
-          ImGui::Selectable(name.c_str(), context.session.selection.bodies() == bodies);
-      ImGui::PopStyleColor();
-      ui.note(name);
+          ui.selectable(name.c_str(), session.selection.bodies() == bodies,
+                        kind == &kWrongKinds.back()
+                            ? "Reported though apart, within the algorithm's margin: no mismatch"
+                            : "Selects both bodies and flies there",
+                        ui.theme.*kind->colour);
       if (row == 0) ui.note("first pair");
-      ui.tooltip(kind == &kWrongKinds.back()
-                     ? "Reported though apart, within the algorithm's margin: no mismatch"
-                     : "Selects both bodies and flies there");
-      if (clicked) context.session.selection.visit(pair);
+      if (clicked) session.selection.visit(pair);
     });
     std::uint64_t all = 0;
     for (const WrongKind& kind : kWrongKinds) all += seen.difference.*kind.count;
@@ -160,41 +152,38 @@ class MismatchesPanel final : public Panel {
   }
 
   /// The button that begins an export.
-  static void drawCase(PanelContext& context, const LaneReport& lane) {
-    Session& session = context.session;
-    const bool wrong = showsAnswerOf(context, lane) &&
-                       context.progress.snapshot->difference.isMismatch() &&
+  void drawCase(const LaneReport& lane) {
+    const bool wrong = showsAnswerOf(lane) && progress->snapshot->difference.isMismatch() &&
                        !session.jobs.get<CaseExport>().running();
-    if (wideButton(context.ui, "Export case…",
+    if (wideButton("Export case…",
                    "Writes the smallest recording on which the algorithm is still wrong", wrong)) {
-      context.files.ask(
-          {.title = "Export the smallest recording that fails",
-           .purpose = FileDialog::Purpose::save,
-           .extensions = boxRecordingExtensions(),
-           .suggestion = fmt::format("{}{}", partName(context.progress.scene),
-                                     recordingExtension(context.progress.scene)),
-           .chosen = [&session, run = lane.spec.run, seen = context.progress.snapshot](
-                         const auto& file) { session.exportCase(run, seen, file); }});
+      files.ask({.title = "Export the smallest recording that fails",
+                 .purpose = FileDialog::Purpose::save,
+                 .extensions = boxRecordingExtensions(),
+                 .suggestion = fmt::format("{}{}", partName(progress->scene),
+                                           recordingExtension(progress->scene)),
+                 .chosen = [this, run = lane.spec.run, seen = progress->snapshot](
+                               const auto& file) { session.exportCase(run, seen, file); }});
     }
   }
 
-  static void drawExport(PanelContext& context) {
-    Ui& ui = context.ui;
-    CaseExport& case_export = context.session.jobs.get<CaseExport>();
+  void drawExport() {
+    CaseExport& case_export = session.jobs.get<CaseExport>();
     const CaseExport::Report report = case_export.report();
     if (report.state == TaskState::idle) return;
     const auto scope = ui.scope("export");
     ImGui::PushID("export");
     if (report.state == TaskState::running) {
       const double whole = static_cast<double>(report.whole_bodies * report.whole_frames);
-      const double left = static_cast<double>(report.bodies * report.frames);
+      const double left = static_cast<double>(report.now.bodies * report.now.frames);
       ImGui::ProgressBar(
           static_cast<float>(whole > 0 ? 1 - left / whole : 1), {-1, 0},
-          fmt::format("{}, {} runs", extentText(report.bodies, report.frames), report.trials)
+          fmt::format("{}, {} runs", extentText(report.now.bodies, report.now.frames),
+                      report.now.trials)
               .c_str());
       if (ui.button("Cancel", "Nothing is written then")) case_export.cancel();
     } else if (report.state == TaskState::done) {
-      drawExported(context, report);
+      drawExported(report);
     } else {
       const bool failed = report.state == TaskState::failed;
       ui.coloured(failed ? ui.theme.bad : ui.theme.faint,
@@ -203,10 +192,10 @@ class MismatchesPanel final : public Panel {
     ImGui::PopID();
   }
 
-  static void drawExported(PanelContext& context, const CaseExport::Report& report) {
-    Ui& ui = context.ui;
-    ui.coloured(ui.theme.good, fmt::format("{} of {}", extentText(report.bodies, report.frames),
-                                           extentText(report.whole_bodies, report.whole_frames)));
+  void drawExported(const CaseExport::Report& report) {
+    ui.coloured(ui.theme.good,
+                fmt::format("{} of {}", extentText(report.now.bodies, report.now.frames),
+                            extentText(report.whole_bodies, report.whole_frames)));
     ui.tooltip(report.file.c_str());
     std::string command = report.command;
     ImGui::SetNextItemWidth(-1);
@@ -218,14 +207,13 @@ class MismatchesPanel final : public Panel {
     }
     ImGui::SameLine();
     if (ui.button("Open it", "Looks at the exported recording instead")) {
-      context.session.opener.openExport(report);
+      session.openExport(report);
     }
   }
 
-  static void drawPair(PanelContext& context) {
-    Ui& ui = context.ui;
-    const auto& bodies = context.session.selection.bodies();
-    const auto& seen = context.progress.snapshot;
+  void drawPair() {
+    const auto& bodies = session.selection.bodies();
+    const auto& seen = progress->snapshot;
     ui.heading("Pair");
     if (bodies.size() != 2 || !seen || bodies[1] >= seen->boxes->size()) {
       ui.paragraph("Click a pair above, or select two bodies.");
@@ -233,7 +221,7 @@ class MismatchesPanel final : public Panel {
     }
     const BoxPair pair{
         {bodies[0], bodies[1]}, (*seen->boxes)[bodies[0]], (*seen->boxes)[bodies[1]]};
-    ui.paragraph(context.view.answer().pair);
+    ui.paragraph(view.answer().pair);
     const std::string unwanted = unwantedText(seen->scene.filter, pair.bodies);
     if (!unwanted.empty()) ui.coloured(ui.theme.warning, unwanted);
     if (isEmpty(pair.a) || isEmpty(pair.b)) {
@@ -246,7 +234,7 @@ class MismatchesPanel final : public Panel {
     ui.coloured(overlaps(pair.a, pair.b) ? ui.theme.good : ui.theme.bad, sentenceOn(pair));
     drawPairTable(ui, pair);
     drawIntervals(ui, pair);
-    drawHistory(context, pair);
+    drawHistory(pair);
   }
 
   /// "they overlap, least on y".
@@ -260,9 +248,8 @@ class MismatchesPanel final : public Panel {
     return fmt::format("{} {}", kSentences.nameOf(relation.kind), kAxes[axis]);
   }
 
-  static void drawHistory(PanelContext& context, const BoxPair& pair) {
-    Ui& ui = context.ui;
-    const std::vector<Track>& tracks = context.progress.snapshot->tracks;
+  void drawHistory(const BoxPair& pair) {
+    const std::vector<Track>& tracks = progress->snapshot->tracks;
     if (tracks.size() != 2 || tracks[0].body != pair.bodies.a || tracks[1].body != pair.bodies.b) {
       return;
     }
@@ -278,19 +265,18 @@ class MismatchesPanel final : public Panel {
       ui.faint(fmt::format("overlapping since frame {}", *began));
     }
     if (const auto clicked = drawPairHistory(ui, track)) {
-      context.session.playback.goTo(*clicked);
+      session.playback.goTo(*clicked);
     }
   }
 
-  static void drawStructure(PanelContext& context) {
-    Ui& ui = context.ui;
+  void drawStructure() {
     ui.heading("Inside the algorithm");
-    ui.toggle("Show structure", context.session.view.structure,
+    ui.toggle("Show structure", session.view.structure,
               "Draws its cells, nodes or planes in the view, around the pair");
-    for (const LaneReport& lane : context.progress.lanes) {
-      if (lane.spec.number != context.session.lanes.shown()) continue;
+    for (const LaneReport& lane : progress->lanes) {
+      if (lane.spec.number != session.lanes.shown()) continue;
       if (lane.margin > 0) ui.fact("margin", fmt::format("{}", lane.margin));
-      const auto& seen = context.progress.snapshot;
+      const auto& seen = progress->snapshot;
       const Counts none;
       const bool is_its = seen && seen->lane == lane.spec.number;
       for (const auto* counts : {&lane.setup, is_its ? &seen->counters : &none}) {
@@ -302,6 +288,8 @@ class MismatchesPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<MismatchesPanel>(); }
+extern const PanelKind kind = {"Mismatches", Place::right,
+                               "Pairs that are missed, false or invalid, and why",
+                               make<MismatchesPanel>};
 
 }  // namespace broadmark::panels::mismatches

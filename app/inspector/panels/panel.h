@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "broadmark/names.h"
+#include "broadmark/render/plot.h"
 #include "inspector/session/session.h"
 #include "inspector/ui/file_dialog.h"
 #include "inspector/ui/ui.h"
@@ -19,22 +20,22 @@ enum class Place { left, right, bottom };
 inline constexpr NameTable kPlaces{
     {NamedValue{Place::left, "left"}, {Place::right, "right"}, {Place::bottom, "bottom"}}};
 
-/// What a panel draws with and works on, lent for a call.
+/// What a panel draws with and works on, which outlives it.
 struct PanelContext {
   Ui& ui;
   Session& session;
-  const RunProgress& progress;
   View& view;
-  FileDialog& files;  ///< to ask for a file
+  FileDialog& files;                      ///< to ask for a file
+  const RunProgress* progress = nullptr;  ///< of the picture being drawn
 
   /// Of the curves of `progress`'s lanes.
-  [[nodiscard]] std::vector<Rgb> laneColours() const {
-    std::vector<std::string_view> families;
-    for (const LaneReport& lane : progress.lanes) {
-      families.emplace_back(lane.spec.run.algorithm.family);
-    }
-    return curveColours(families, ui.theme);
-  }
+  [[nodiscard]] std::vector<Rgb> laneColours() const;
+  /// Draws the frames that `zoom` shows into the rest of the panel. The mouse moves them, and goes
+  /// to one if `plays` says that they are those of the playback.
+  PlotResult plotFrames(const char* name, const std::vector<PlotCurve>& curves, PlotOptions options,
+                        Timeline& zoom, bool plays = true) const;
+  /// A button as wide as the panel.
+  bool wideButton(const char* label, const char* tooltip, bool enabled = true) const;
 };
 
 /// Several buttons side by side that share the width.
@@ -50,32 +51,38 @@ class ButtonRow {
   float width_;
 };
 
-/// A button as wide as the panel.
-inline bool wideButton(Ui& ui, const char* label, const char* tooltip, bool enabled = true) {
-  return ButtonRow(ui, 1).button(label, tooltip, enabled);
-}
-
 /// One implementation per file, listed in CMakeLists.txt. Keeps what only it needs between two
 /// pictures.
-class Panel {
+class Panel : protected PanelContext {
  public:
-  Panel(const char* name, Place place, const char* tooltip)
-      : name_(name), tooltip_(tooltip), place_(place) {}
+  explicit Panel(const PanelContext& context) : PanelContext(context) {}
   virtual ~Panel() = default;
 
-  [[nodiscard]] const char* name() const { return name_; }
-  [[nodiscard]] const char* tooltip() const { return tooltip_; }
-  [[nodiscard]] Place place() const { return place_; }
-
-  virtual void draw(PanelContext& context) = 0;
+  void drawOf(const RunProgress& seen) {
+    progress = &seen;
+    draw();
+  }
 
  private:
-  const char* name_;
-  const char* tooltip_;
-  Place place_;
+  virtual void draw() = 0;
 };
 
+/// What stands on a panel's tab, and how the panel is made.
+struct PanelKind {
+  const char* name;
+  Place place;
+  const char* tooltip;
+  std::unique_ptr<Panel> (*make)(const PanelContext& context);
+};
+template <class Kind>
+std::unique_ptr<Panel> make(const PanelContext& context) {
+  return std::make_unique<Kind>(context);
+}
+
+struct PanelTab : PanelKind {
+  std::unique_ptr<Panel> panel;
+};
 /// All of them, in the order of the list in CMakeLists.txt.
-std::vector<std::unique_ptr<Panel>> makePanels();
+std::vector<PanelTab> makePanels(const PanelContext& context);
 
 }  // namespace broadmark

@@ -1,9 +1,10 @@
 // What each algorithm did in this frame, side by side.
 
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "inspector/panels/panel.h"
 
 namespace broadmark::panels::results {
@@ -23,28 +24,18 @@ double meanTotal(const LaneReport& lane) {
 
 class ResultsPanel final : public Panel {
  public:
-  ResultsPanel() : Panel("Results", Place::bottom, "What each algorithm did in this frame") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
+  void draw() override {
+    const std::vector<LaneReport>& lanes = progress->lanes;
     if (lanes.empty()) {
-      context.ui.paragraph(
+      ui.paragraph(
           "Add algorithms in the panel Algorithms to see their times and answers side by side.");
       return;
     }
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
-                                       ImGuiTableFlags_ScrollY;
-    const std::vector<std::string> columns = columnNames();
-    if (!ImGui::BeginTable("results", static_cast<int>(columns.size()), kFlags,
-                           {widthOfWholeColumns("results", 2), 0})) {
-      return;
-    }
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
-    ImGui::TableHeadersRow();
-    const std::vector<Rgb> colours = context.laneColours();
-    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(context, lanes[i], colours[i]);
+    if (!ui.beginTable("results", columnNames(), 2)) return;
+    const std::vector<Rgb> colours = laneColours();
+    for (std::size_t i = 0; i < lanes.size(); ++i) drawLane(lanes[i], colours[i]);
     ImGui::EndTable();
   }
 
@@ -59,43 +50,36 @@ class ResultsPanel final : public Panel {
     return names;
   }
 
-  static void drawLane(PanelContext& context, const LaneReport& lane, Rgb curve) {
-    Ui& ui = context.ui;
-    const FrameRecord* const record = lane.record(context.session.playback.frame());
+  void drawLane(const LaneReport& lane, Rgb curve) {
+    const FrameRecord* const record = lane.record(session.playback.frame());
     ImGui::TableNextRow();
     ImGui::PushID(lane.spec.number);
     ImGui::TableNextColumn();
-    const bool shown = context.session.lanes.shown() == lane.spec.number;
-    ImGui::PushStyleColor(ImGuiCol_Text, colour(curve));
-    if (ImGui::Selectable(caseName(lane.spec.run).c_str(), shown,
-                          ImGuiSelectableFlags_SpanAllColumns)) {
-      context.session.lanes.show(lane.spec.number);
+    const bool shown = session.lanes.shown() == lane.spec.number;
+    const std::string label =
+        fmt::format("{}###{}", caseName(lane.spec.run), lane.spec.run.algorithm.id);
+    if (ui.selectable(label.c_str(), shown, nullptr, curve)) {
+      session.lanes.show(lane.spec.number);
     }
-    ImGui::PopStyleColor();
-    ui.note(lane.spec.run.algorithm.id);
-    const auto cell = [&](const std::string& text, Rgb rgb) {
-      ImGui::TableNextColumn();
-      ui.coloured(rgb, text);
-    };
     const auto time = [&](Phase phase, const char* mark) {
       const bool known = record != nullptr;
-      cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark : "–",
-           ui.theme.text);
+      ui.cell(known ? withPrefix(static_cast<double>(record->times[phase]) * 1e-9, "s") + mark
+                    : "–");
     };
-    cell(std::string(statusName(lane.status)),
-         lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
+    ui.cell(statusName(lane.status), lane.status == Status::ok ? ui.theme.good : ui.theme.bad);
     ui.tooltip(lane.reason.c_str());
     const bool disturbed = record != nullptr && record->disturbed;
     time(Phase::total, disturbed ? " *" : "");
     if (disturbed) ui.tooltip("*: disturbed: the window was drawn while this frame was timed");
     const double mean = meanTotal(lane);
-    cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"), ui.theme.text);
-    cell(record == nullptr ? "–" : std::to_string(record->pairs), ui.theme.text);
-    for (const auto count : {&FrameRecord::missed_count, &FrameRecord::false_count,
-                             &FrameRecord::invalid_count, &FrameRecord::allowed_extra_count}) {
+    ui.cell(mean < 0 ? "–" : withPrefix(mean * 1e-9, "s"));
+    ui.cell(record == nullptr ? "–" : std::to_string(record->counts[FrameCount::pairs]));
+    for (const FrameCount which : {FrameCount::missed, FrameCount::false_pairs, FrameCount::invalid,
+                                   FrameCount::allowed_extra}) {
       const bool checked = record != nullptr && record->checked;
-      const bool bad = checked && record->*count > 0 && count != &FrameRecord::allowed_extra_count;
-      cell(checked ? std::to_string(record->*count) : "–", bad ? ui.theme.bad : ui.theme.text);
+      const std::uint64_t count = checked ? record->counts[which] : 0;
+      const bool bad = count > 0 && which != FrameCount::allowed_extra;
+      ui.cell(checked ? std::to_string(count) : "–", bad ? ui.theme.bad : ui.theme.text);
     }
     for (const auto& [phase, name] : kPhases.entries) {
       if (phase != Phase::total) time(phase, "");
@@ -106,6 +90,7 @@ class ResultsPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<ResultsPanel>(); }
+extern const PanelKind kind = {"Results", Place::bottom, "What each algorithm did in this frame",
+                               make<ResultsPanel>};
 
 }  // namespace broadmark::panels::results

@@ -12,17 +12,14 @@ namespace {
 
 class ScenePanel final : public Panel {
  public:
-  ScenePanel()
-      : Panel("Scene", Place::left, "What is open; built-in scenes: choose, adjust, simulate") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void draw() override {
     const bool draft_is_open = session.draft.isOpen();
     const bool anew = seen_ != session.playback.footage();
     seen_ = session.playback.footage();
     if (anew) parameters_ = sceneParametersOf(session.playback.footage().get());
-    if (seen_) drawOpen(context, draft_is_open);
+    if (seen_) drawOpen(draft_is_open);
     // The parameters of a simulation that might be are not to be taken for those of what is open.
     if (anew) {
       ImGui::SetNextItemOpen(!seen_ || draft_is_open || seen_->source == FootageSource::simulation);
@@ -32,12 +29,11 @@ class ScenePanel final : public Panel {
                                 ImGuiTreeNodeFlags_DefaultOpen);
     ui.note("draft");
     if (!open) return;
-    drawDraft(ui, session);
+    drawDraft();
   }
 
  private:
-  void drawOpen(PanelContext& context, bool draft_is_open) const {
-    Ui& ui = context.ui;
+  void drawOpen(bool draft_is_open) const {
     ui.heading("Open");
     ui.paragraph(sourceText(seen_.get()));
     ui.note("open");
@@ -49,10 +45,10 @@ class ScenePanel final : public Panel {
                           : "With which parameters it was made is not known.");
   }
 
-  static void drawDraft(Ui& ui, Session& session) {
-    chooseScene(ui, session);
+  void drawDraft() {
+    chooseScene();
     ImGui::Spacing();
-    if (wideButton(ui, "Simulate",
+    if (wideButton("Simulate",
                    "Starts the scene anew with these parameters; frames are simulated as they are "
                    "watched")) {
       session.notices.attempt([&] { session.draft.simulate(); });
@@ -61,7 +57,7 @@ class ScenePanel final : public Panel {
     session.notices.attempt([&] { ui.parameters(session.draft.scene()); });
   }
 
-  static void chooseScene(Ui& ui, Session& session) {
+  void chooseScene() {
     const std::vector<SceneListing> scenes = builtinScenes();
     std::vector<std::string> ids;
     for (const SceneListing& scene : scenes) ids.push_back(scene.id);
@@ -81,6 +77,8 @@ class ScenePanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<ScenePanel>(); }
+extern const PanelKind kind = {"Scene", Place::left,
+                               "What is open; built-in scenes: choose, adjust, simulate",
+                               make<ScenePanel>};
 
 }  // namespace broadmark::panels::scene

@@ -18,44 +18,40 @@ constexpr std::size_t kListedPartners = 200;
 
 class SelectionPanel final : public Panel {
  public:
-  SelectionPanel()
-      : Panel("Bodies", Place::right, "The selected bodies, and the scene as a whole") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    const Snapshot* snapshot = context.progress.snapshot.get();
+  void draw() override {
+    const Snapshot* snapshot = progress->snapshot.get();
     if (snapshot == nullptr) {
-      context.ui.faintParagraph(
+      ui.faintParagraph(
           "Nothing is open: press Simulate in the panel Scene, or open or drop a file.");
       return;
     }
-    goTo(context);
-    if (context.session.selection.bodies().empty()) {
-      drawScene(context.ui, context.progress.snapshot);
-    } else if (context.session.selection.bodies().size() == 1) {
-      drawBody(context, *snapshot, context.session.selection.bodies().front());
+    goTo();
+    if (session.selection.bodies().empty()) {
+      drawScene(progress->snapshot);
+    } else if (session.selection.bodies().size() == 1) {
+      drawBody(*snapshot, session.selection.bodies().front());
     } else {
-      drawBodies(context, *snapshot);
+      drawBodies(*snapshot);
     }
   }
 
  private:
-  void goTo(PanelContext& context) {
-    if (context.progress.scene.objects == 0) return;
-    Ui& ui = context.ui;
+  void goTo() {
+    if (progress->scene.objects == 0) return;
     if (!ui.text("body", wanted_, "17, 40-50")) return;
-    Session& session = context.session;
     session.notices.attempt([&] {
-      session.selection.select(parseIds(wanted_, "body", context.progress.scene.objects - 1));
+      session.selection.select(parseIds(wanted_, "body", progress->scene.objects - 1));
       session.selection.flyThere();
     });
   }
 
-  static void drawBody(PanelContext& context, const Snapshot& snapshot, std::uint32_t body) {
-    Ui& ui = context.ui;
+  void drawBody(const Snapshot& snapshot, std::uint32_t body) {
     if (body >= snapshot.boxes->size()) return;
     const Aabb& box = (*snapshot.boxes)[body];
     ui.heading(fmt::format("Body {}", body).c_str());
-    drawGroups(ui, snapshot.scene.filter, body);
+    drawGroups(snapshot.scene.filter, body);
     if (isEmpty(box)) {
       const auto track = std::ranges::find(snapshot.tracks, body, &Track::body);
       ui.paragraph(track != snapshot.tracks.end() ? absenceText(*track) : "absent");
@@ -77,13 +73,12 @@ class SelectionPanel final : public Panel {
       if (pair.a != body && pair.b != body) continue;
       if (listed++ == kListedPartners) break;
       const std::uint32_t other = pair.a == body ? pair.b : pair.a;
-      if (ui.selectable(fmt::format("{}", other).c_str(), false))
-        context.session.selection.visit(pair);
+      if (ui.selectable(fmt::format("{}", other).c_str(), false)) session.selection.visit(pair);
     }
     ImGui::EndChild();
   }
 
-  static void drawGroups(Ui& ui, const CollisionFilter& filter, std::uint32_t body) {
+  void drawGroups(const CollisionFilter& filter, std::uint32_t body) {
     const BodyGroups groups = filter.groupsOf(body);
     if (!filter.layers().empty()) ui.fact("layer", std::to_string(groups.layer));
     if (!filter.worlds().empty()) ui.fact("world", std::to_string(groups.world));
@@ -95,11 +90,10 @@ class SelectionPanel final : public Panel {
     ui.fact("tags", tags);
   }
 
-  static void drawBodies(PanelContext& context, const Snapshot& snapshot) {
-    Ui& ui = context.ui;
-    const std::vector<std::uint32_t> bodies = context.session.selection.bodies();
+  void drawBodies(const Snapshot& snapshot) {
+    const std::vector<std::uint32_t> bodies = session.selection.bodies();
     ui.heading(counted(bodies.size(), "body", "bodies").c_str());
-    if (ui.button("Fly there", "(F)")) context.session.selection.fly_to = bodies;
+    if (ui.button("Fly there", "(F)")) session.selection.fly_to = bodies;
     ImGui::BeginChild("bodies", {0, 0}, false, ImGuiWindowFlags_NavFlattened);
     for (std::size_t i = 0; i < std::min(bodies.size(), kListedBodies); ++i) {
       if (bodies[i] >= snapshot.boxes->size()) continue;
@@ -107,14 +101,14 @@ class SelectionPanel final : public Panel {
                                     ? fmt::format("{}    absent", bodies[i])
                                     : fmt::format("{}    {}", bodies[i],
                                                   counted(snapshot.overlaps[bodies[i]], "overlap"));
-      if (ui.selectable(label.c_str(), false)) context.session.selection.select({bodies[i]});
+      if (ui.selectable(label.c_str(), false)) session.selection.select({bodies[i]});
     }
     if (bodies.size() > kListedBodies) ui.faint("…");
     ImGui::EndChild();
   }
 
   /// Statistics take a pass over all boxes: once per frame, and not for what is in motion.
-  void drawScene(Ui& ui, const std::shared_ptr<const Snapshot>& snapshot) {
+  void drawScene(const std::shared_ptr<const Snapshot>& snapshot) {
     ui.heading("Scene");
     ui.fact("name", snapshot->scene.name);
     ui.fact("object type", snapshot->scene.object_type);
@@ -150,6 +144,7 @@ class SelectionPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<SelectionPanel>(); }
+extern const PanelKind kind = {
+    "Bodies", Place::right, "The selected bodies, and the scene as a whole", make<SelectionPanel>};
 
 }  // namespace broadmark::panels::selection

@@ -10,11 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/render/plot.h"
 #include "broadmark/statistics/statistics.h"
 #include "inspector/panels/panel.h"
 #include "inspector/session/lane_statistics.h"
-#include "inspector/ui/histogram.h"
 #include "support/words.h"
 
 namespace broadmark::panels::timeline {
@@ -25,37 +23,32 @@ constexpr float kRoomForBoth = 600;  // units: narrower, it is either the one or
 
 class TimelinePanel final : public Panel {
  public:
-  TimelinePanel()
-      : Panel("Timeline", Place::bottom,
-              "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
-              "at wrong and disturbed frames") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    if (context.progress.lanes.empty()) {
-      context.ui.faintParagraph(
+  void draw() override {
+    if (progress->lanes.empty()) {
+      ui.faintParagraph(
           "Add algorithms in the panel Algorithms to see the times of their frames as curves.");
     }
-    if (!context.progress.footage) return;
-    drawControls(context);
-    const auto curves = [&] { act(context, drawCurves(context)); };
-    if (!context.session.timeline.span() || context.progress.lanes.empty()) {
+    if (!progress->footage) return;
+    drawControls();
+    const auto curves = [&] { drawCurves(); };
+    if (!session.timeline.span() || progress->lanes.empty()) {
       curves();
       return;
     }
-    const TwoParts parts{.share = kPlotShare,
-                         .narrowest = kRoomForBoth * context.ui.scale,
-                         .second_alone = span_alone_};
+    const TwoParts parts{
+        .share = kPlotShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = span_alone_};
     if (!parts.both()) {
-      Ui::besideIfRoom(50 * context.ui.scale);
-      context.ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
+      Ui::besideIfRoom(50 * ui.scale);
+      ui.toggle("Span", span_alone_, "What the span took, in place of the curves");
     }
-    parts.draw(curves, [&] { drawSpan(context); });
+    parts.draw(curves, [&] { drawSpan(); });
   }
 
  private:
-  void drawControls(PanelContext& context) {
-    Ui& ui = context.ui;
-    Timeline& timeline = context.session.timeline;
+  void drawControls() {
+    Timeline& timeline = session.timeline;
     std::vector<std::string> names = {"pairs"};
     for (const std::string& phase : kPhases.names()) names.push_back(phase);
     ui.combo("##quantity", quantity_, names, "What of the algorithms is plotted", 150 * ui.scale);
@@ -64,40 +57,37 @@ class TimelinePanel final : public Panel {
     Ui::besideIfRoom(65 * ui.scale);
     ui.checkbox("pairs", shows_pairs_,
                 "How many pairs overlap, as a thin line whose scale stands at the right");
-    if (context.progress.population.size() > 0) {
+    if (progress->population.size() > 0) {
       Ui::besideIfRoom(75 * ui.scale);
       ui.checkbox("bodies", shows_bodies_, "How many bodies are present, as an area");
     }
     Ui::besideIfRoom(90 * ui.scale);
-    ImGui::BeginDisabled(!timeline.zoomed());
-    if (ui.button("All frames", "Undoes zooming with the wheel")) timeline.showAll();
-    ImGui::EndDisabled();
+    if (ui.button("All frames", "Undoes zooming with the wheel", 0, timeline.zoomed())) {
+      timeline.showAll();
+    }
     Ui::besideIfRoom(240 * ui.scale);
-    drawBudget(context);
+    drawBudget();
   }
 
-  static void drawBudget(PanelContext& context) {
-    Ui& ui = context.ui;
+  void drawBudget() {
     ImGui::AlignTextToFramePadding();
     ui.faint("budget");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
-    ui.entry("budget", context.session.timeline.budget_ms, 0, 1e5,
+    ui.entry("budget", session.timeline.budget_ms, 0, 1e5,
              "What a frame may take, in milliseconds: a line in the plot; 0: none");
     ImGui::SameLine();
     std::uint64_t over = 0;
-    for (const LaneReport& lane : context.progress.lanes) {
-      if (context.session.timeline.budget_ms > 0)
-        over += framesOver(lane, context.session.timeline.budget_ms);
+    for (const LaneReport& lane : progress->lanes) {
+      if (session.timeline.budget_ms > 0) over += framesOver(lane, session.timeline.budget_ms);
     }
     ui.faint(fmt::format("ms: {} over", counted(over, "frame")));
     ui.note("over");
   }
 
   /// What the algorithms took in the selected span.
-  void drawSpan(PanelContext& context) {
-    Ui& ui = context.ui;
-    Timeline& timeline = context.session.timeline;
+  void drawSpan() {
+    Timeline& timeline = session.timeline;
     if (!timeline.span()) return;  // it was cleared in this picture
     const auto [first, last] = *timeline.span();
     ui.plain(fmt::format("frames {} to {}", first, last));
@@ -105,18 +95,18 @@ class TimelinePanel final : public Panel {
     if (ui.button("Show", "Zooms to the span")) timeline.showSpan();
     ImGui::SameLine();
     if (ui.button("Clear", "Selects no span (Escape)")) timeline.clearSpan();
-    summarise(context, {first, last});
-    drawStatistics(context);
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
-    const LaneReport* const shown = laneOf(lanes, context.session.lanes.shown());
+    summarise({first, last});
+    drawStatistics();
+    const std::vector<LaneReport>& lanes = progress->lanes;
+    const LaneReport* const shown = laneOf(lanes, session.lanes.shown());
     const std::ptrdiff_t which = shown == nullptr ? 0 : shown - lanes.data();
     drawHistogram(ui, statistics_.at(static_cast<std::size_t>(which)).values,
                   [this](double value) { return valueText(value); });
   }
 
   /// Sorting long spans takes a while: not for each picture.
-  void summarise(const PanelContext& context, FrameSpan span) {
-    const auto& lanes = context.progress.lanes;
+  void summarise(FrameSpan span) {
+    const auto& lanes = progress->lanes;
     const double now = ImGui::GetTime();
     if (summarised_ == span && statistics_.size() == lanes.size() && now < summarise_next_) return;
     summarised_ = span;
@@ -127,37 +117,25 @@ class TimelinePanel final : public Panel {
     }
   }
 
-  void drawStatistics(PanelContext& context) const {
-    Ui& ui = context.ui;
-    const std::vector<LaneReport>& lanes = context.progress.lanes;
-    const std::vector<Rgb> colours = context.laneColours();
-    constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
-                                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX;
+  void drawStatistics() const {
+    const std::vector<LaneReport>& lanes = progress->lanes;
+    const std::vector<Rgb> colours = laneColours();
     const float height =
         ImGui::GetTextLineHeightWithSpacing() * 1.3F * (static_cast<float>(lanes.size()) + 1.8F);
-    if (!ImGui::BeginTable("statistics", 8, kFlags,
-                           {widthOfWholeColumns("statistics", 1), height})) {
+    if (!ui.beginTable("statistics",
+                       {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}, 1,
+                       height)) {
       return;
     }
-    ImGui::TableSetupScrollFreeze(1, 1);
-    for (const char* name :
-         {"algorithm", "median", "5 %", "95 %", "99 %", "most", "sum", "frames"}) {
-      ImGui::TableSetupColumn(name);
-    }
-    ImGui::TableHeadersRow();
     for (std::size_t i = 0; i < lanes.size(); ++i) {
       const SpanStatistics& of = statistics_[i];
       ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ui.coloured(colours[i], caseName(lanes[i].spec.run));
+      ui.cell(caseName(lanes[i].spec.run), colours[i]);
       for (const double share : {0.5, 0.05, 0.95, 0.99, 1.0}) {
-        ImGui::TableNextColumn();
-        ui.plain(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
+        ui.cell(of.values.empty() ? "–" : valueText(quantile(of.values, share)));
       }
-      ImGui::TableNextColumn();
-      ui.plain(of.values.empty() ? "–" : valueText(of.total));
-      ImGui::TableNextColumn();
-      ui.plain(std::to_string(of.values.size()));
+      ui.cell(of.values.empty() ? "–" : valueText(of.total));
+      ui.cell(std::to_string(of.values.size()));
       if (of.disturbed > 0) {
         ui.tooltip(fmt::format("and {} left out as disturbed", of.disturbed).c_str());
       }
@@ -174,15 +152,14 @@ class TimelinePanel final : public Panel {
     return quantity_ == 0 ? lane.curves.pairs : lane.curves.seconds[quantity_ - 1];
   }
 
-  PlotResult drawCurves(PanelContext& context) const {
-    const RunProgress& progress = context.progress;
-    const Palette& theme = context.ui.theme;
-    const Timeline& timeline = context.session.timeline;
+  void drawCurves() {
+    const Palette& theme = ui.theme;
+    Timeline& timeline = session.timeline;
     std::vector<PlotCurve> curves;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};
     PlotMarks disturbed{.label = "disturbed", .colour = theme.warning, .frames = {}};
-    const std::vector<Rgb> colours = context.laneColours();
-    for (const LaneReport& lane : progress.lanes) {
+    const std::vector<Rgb> colours = laneColours();
+    for (const LaneReport& lane : progress->lanes) {
       curves.push_back({.label = caseName(lane.spec.run),
                         .colour = colours[curves.size()],
                         .values = &valuesOf(lane),
@@ -191,9 +168,9 @@ class TimelinePanel final : public Panel {
       wrong.frames.push_back(&lane.curves.mismatches);
       disturbed.frames.push_back(&lane.curves.disturbed);
     }
-    const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress.pairs};
+    const PlotCurve pairs{.label = "pairs", .colour = theme.text, .values = &progress->pairs};
     const PlotCurve bodies{
-        .label = "bodies", .colour = theme.faint, .values = &progress.population};
+        .label = "bodies", .colour = theme.faint, .values = &progress->population};
     std::optional<std::array<double, 2>> span;
     if (timeline.span())
       span = {{static_cast<double>(timeline.span()->first),
@@ -201,28 +178,15 @@ class TimelinePanel final : public Panel {
     const PlotOptions options{
         .logarithmic = logarithmic_,
         .unit = quantity_ == 0 ? "" : "s",
-        .first = timeline.first(),
-        .last = timeline.last(),
-        .playhead = context.session.playback.frame(),
-        .limit = quantity_ == 0 ? 0 : context.session.timeline.budget_ms * 1e-3,
+        .limit = quantity_ == 0 ? 0 : timeline.budget_ms * 1e-3,
         .limit_colour = theme.warning,
         .span = span,
         .area = shows_bodies_ && bodies.values->size() > 0 ? &bodies : nullptr,
         .thin = shows_pairs_ ? &pairs : nullptr,
         .marks = {wrong, disturbed}};
-    const ImVec2 room = ImGui::GetContentRegionAvail();
-    const PlotResult done = drawPlot("plot", curves, options, room.x, room.y);
-    context.ui.note("plot");
-    return done;
-  }
-
-  void act(PanelContext& context, const PlotResult& done) {
-    Timeline& timeline = context.session.timeline;
-    if (done.clicked_frame) context.session.playback.goTo(std::llround(*done.clicked_frame));
+    const PlotResult done = plotFrames("plot", curves, options, timeline);
     if (done.dragged) timeline.select((*done.dragged)[0], (*done.dragged)[1]);
-    if (done.toggled) toggle(context.progress.lanes[*done.toggled].spec.number);
-    if (done.zoom != 0) timeline.zoom(done.zoom, done.zoom_at);
-    if (done.moved != 0) timeline.move(done.moved);
+    if (done.toggled) toggle(progress->lanes[*done.toggled].spec.number);
   }
 
   void toggle(int lane) {
@@ -242,6 +206,10 @@ class TimelinePanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<TimelinePanel>(); }
+extern const PanelKind kind = {
+    "Timeline", Place::bottom,
+    "The whole recording: times of all algorithms as curves, pairs and bodies, and marks "
+    "at wrong and disturbed frames",
+    make<TimelinePanel>};
 
 }  // namespace broadmark::panels::timeline

@@ -16,34 +16,31 @@ constexpr double kLargestSize = 1e9;
 
 class ViewPanel final : public Panel {
  public:
-  ViewPanel() : Panel("Look", Place::right, "Colours, and what is drawn besides the bodies") {}
+  using Panel::Panel;
 
-  void draw(PanelContext& context) override {
-    Ui& ui = context.ui;
-    ViewOptions& view = context.session.view;
-    drawColours(context);
+  void draw() override {
+    ViewOptions& look = session.view;
+    drawColours();
     ui.heading("Show");
-    ui.checkbox("only what overlaps", view.hide_free, "Hides bodies that are in no pair (H)");
-    ui.checkbox("lines between pairs", view.pair_lines,
+    ui.checkbox("only what overlaps", look.hide_free, "Hides bodies that are in no pair (H)");
+    ui.checkbox("lines between pairs", look.pair_lines,
                 "From middle to middle of two that are reported");
-    ImGui::BeginDisabled(!view.pair_lines);
-    ui.checkbox("of all, not of the selection", view.lines_of_all);
-    ImGui::EndDisabled();
-    ui.checkbox("world", view.world_box);
-    ui.checkbox("ground", view.ground);
-    ui.checkbox("axes", view.axes);
-    ui.checkbox("selection through others", view.xray,
+    ui.checkbox("of all, not of the selection", look.lines_of_all, nullptr, look.pair_lines);
+    ui.checkbox("world", look.world_box);
+    ui.checkbox("ground", look.ground);
+    ui.checkbox("axes", look.axes);
+    ui.checkbox("selection through others", look.xray,
                 "Outlines the selected bodies over what stands before them");
-    drawSecond(context);
-    drawFilter(context);
-    drawStructure(context);
-    drawDirections(context);
+    drawSecond();
+    drawFilter();
+    drawStructure();
+    drawDirections();
   }
 
  private:
   /// A checkbox that shows or hides what a bit stands for.
   template <class Bits>
-  static void showBit(Ui& ui, const std::string& label, Bits& hidden, std::size_t bit) {
+  void showBit(const std::string& label, Bits& hidden, std::size_t bit) {
     bool shown = ((hidden >> bit) & 1U) == 0;
     ImGui::PushID(static_cast<int>(bit));  // two may be called alike
     if (ui.checkbox(label.c_str(), shown, "Whether these bodies are drawn")) {
@@ -52,15 +49,14 @@ class ViewPanel final : public Panel {
     ImGui::PopID();
   }
 
-  static void drawFilter(PanelContext& context) {
-    Ui& ui = context.ui;
-    BodyFilter& filter = context.session.view.filter;
+  void drawFilter() {
+    BodyFilter& filter = session.view.filter;
     ui.heading("Show of the crowd");
-    const auto& legend = context.view.content().legend();
+    const auto& legend = view.content().colouring.legend;
     for (std::size_t i = 0; i < std::min<std::size_t>(legend.size(), 64); ++i) {
-      showBit(ui, legend[i].label, filter.hidden_classes, i);
+      showBit(legend[i].label, filter.hidden_classes, i);
     }
-    drawLayers(context);
+    drawLayers();
     ui.number("smallest", filter.smallest, 0, kLargestSize,
               "Bodies whose longest edge is shorter are hidden, in world units");
     ui.number("largest", filter.largest, 0, kLargestSize,
@@ -78,26 +74,22 @@ class ViewPanel final : public Panel {
     }
     ui.checkbox("clip below", filter.clip_below, "Hides what lies below the plane, not above");
     ImGui::EndDisabled();
-    ImGui::BeginDisabled(!filter.hides());
-    if (ui.button("Show all bodies")) filter = {};
-    ImGui::EndDisabled();
+    if (ui.button("Show all bodies", nullptr, 0, filter.hides())) filter = {};
   }
 
   /// What stands beside the view.
-  static void drawSecond(PanelContext& context) {
-    Ui& ui = context.ui;
-    Session& session = context.session;
+  void drawSecond() {
     ui.heading("Beside");
-    bool on = session.second.wish.has_value();
+    bool on = session.second.has_value();
     if (ui.checkbox("second view", on,
                     "Another algorithm's answer, another frame or another recording beside the "
                     "first view (V); selecting a body in one selects it in both")) {
-      session.second.show(on);
+      session.showSecond(on);
     }
-    if (!session.second.wish) return;
+    if (!session.second) return;
     const auto scope = ui.scope("second");
-    SecondWish& second = *session.second.wish;
-    drawSecondAnswer(ui, session, second);
+    SecondWish& second = *session.second;
+    drawSecondAnswer(second);
     bool stays = second.frame.has_value();
     if (ui.checkbox("at frame", stays, "Stays at a frame while the first view plays")) {
       second.frame.reset();
@@ -105,23 +97,23 @@ class ViewPanel final : public Panel {
     }
     if (second.frame) {
       std::int64_t frame = *second.frame;
-      if (ui.integer("frame", frame, 0, lastFrameOf(context), "That the second view shows")) {
+      if (ui.integer("frame", frame, 0, lastFrameOf(), "That the second view shows")) {
         second.frame = static_cast<std::uint32_t>(frame);
       }
     }
     if (!second.footage) {
-      if (wideButton(ui, "Another recording…", "Opens it in the second view")) {
-        askRecording(context);
+      if (wideButton("Another recording…", "Opens it in the second view")) {
+        askRecording();
       }
     } else {
       ui.faint(fittingText(second.footage->title, ImGui::GetContentRegionAvail().x));
       ui.tooltip(second.footage->recording.string().c_str());
-      if (wideButton(ui, "The same recording", "As in the first view")) second.footage.reset();
+      if (wideButton("The same recording", "As in the first view")) second.footage.reset();
     }
-    ui.checkbox("cameras linked", session.second.linked, "One camera moves both views");
+    ui.checkbox("cameras linked", session.cameras_linked, "One camera moves both views");
   }
 
-  static void drawSecondAnswer(Ui& ui, Session& session, SecondWish& second) {
+  void drawSecondAnswer(SecondWish& second) {
     std::vector<std::string> names = {"oracle"};
     std::size_t chosen = 0;
     for (const LaneEdit& lane : session.lanes.list) {
@@ -132,93 +124,88 @@ class ViewPanel final : public Panel {
     second.lane = chosen == 0 ? 0 : session.lanes.list[chosen - 1].number;
   }
 
-  static std::int64_t lastFrameOf(const PanelContext& context) {
-    const auto& shown = context.progress.second;
-    return shown ? shown->scene.frames : context.session.playback.lastFrame();
+  std::int64_t lastFrameOf() {
+    const auto& shown = progress->second;
+    return shown ? shown->scene.frames : session.playback.lastFrame();
   }
 
-  static void askRecording(PanelContext& context) {
-    context.files.ask({.title = "A recording for the second view",
-                       .purpose = FileDialog::Purpose::open,
-                       .extensions = recordingExtensions(),
-                       .suggestion = context.session.playback.footage()
-                                         ? context.session.playback.footage()->recording
-                                         : std::filesystem::path(),
-                       .chosen = [&session = context.session](const std::filesystem::path& path) {
-                         session.second.showRecording(path);
-                       }});
+  void askRecording() {
+    files.ask({.title = "A recording for the second view",
+               .extensions = recordingExtensions(),
+               .suggestion = session.playback.footage() ? session.playback.footage()->recording
+                                                        : std::filesystem::path(),
+               .chosen = [&session = session](const std::filesystem::path& path) {
+                 session.showBeside(path);
+               }});
   }
 
-  static void drawLayers(PanelContext& context) {
-    if (!context.progress.snapshot) return;
+  void drawLayers() {
+    if (!progress->snapshot) return;
     std::uint32_t used = 0;
-    for (const std::uint8_t layer : context.progress.snapshot->scene.filter.layers()) {
+    for (const std::uint8_t layer : progress->snapshot->scene.filter.layers()) {
       used |= 1U << layer;
     }
     for (std::size_t layer = 0; layer < 32; ++layer) {
       if (((used >> layer) & 1U) == 0) continue;
-      showBit(context.ui, fmt::format("layer {}", layer), context.session.view.filter.hidden_layers,
-              layer);
+      showBit(fmt::format("layer {}", layer), session.view.filter.hidden_layers, layer);
     }
   }
 
-  static void drawColours(PanelContext& context) {
-    Ui& ui = context.ui;
-    ViewOptions& view = context.session.view;
-    const std::size_t before = view.colouring;
+  void drawColours() {
+    ViewOptions& look = session.view;
+    const std::size_t before = look.colouring;
     std::vector<std::string> titles;
     for (const ColourMode& mode : colourModes()) titles.emplace_back(mode.title);
-    view.colouring %= titles.size();
-    ui.combo("colours", view.colouring, titles, "What the bodies' colours tell (C: the next)");
-    if (view.colouring != before) view.filter.hidden_classes = 0;  // they are of the other colours
-    ui.faintParagraph(view.colourMode().help);
-    const Snapshot* snapshot = context.progress.snapshot.get();
-    if (view.colourMode().of_tests && snapshot != nullptr &&
+    look.colouring %= titles.size();
+    ui.combo("colours", look.colouring, titles, "What the bodies' colours tell (C: the next)");
+    if (look.colouring != before) look.filter.hidden_classes = 0;  // they are of the other colours
+    ui.faintParagraph(look.colourMode().help);
+    const Snapshot* snapshot = progress->snapshot.get();
+    if (look.colourMode().of_tests && snapshot != nullptr &&
         (!snapshot->structure || snapshot->structure->tests().empty())) {
       ui.faintParagraph("The shown algorithm does not tell its tests of this frame.");
     }
   }
 
-  static void drawStructure(PanelContext& context) {
-    Ui& ui = context.ui;
-    ViewOptions& view = context.session.view;
+  void drawStructure() {
+    ViewOptions& look = session.view;
     ui.heading("Structure of the shown algorithm");
-    ui.checkbox("cells, nodes, planes", view.structure,
+    ui.checkbox("cells, nodes, planes", look.structure,
                 "What the algorithm draws of its own structure");
-    if (!view.structure) return;
-    ui.checkbox("only around the selection", view.structure_near);
-    const Snapshot* const snapshot = context.progress.snapshot.get();
+    if (!look.structure) return;
+    ui.checkbox("only around the selection", look.structure_near);
+    const Snapshot* const snapshot = progress->snapshot.get();
     const RecordedDrawing* const drawn = snapshot != nullptr ? snapshot->structure.get() : nullptr;
     if (const int deepest = drawn != nullptr ? deepestLevel(*drawn) : 0; deepest > 0) {
       ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.52F);
-      const int level = view.structure_level;
+      const int level = look.structure_level;
       ui.slider(fmt::format("depth {}###depth", level < 0 ? "all" : std::to_string(level)).c_str(),
-                view.structure_level, -1, deepest);
+                look.structure_level, -1, deepest);
     }
-    ImGui::BeginDisabled(drawn == nullptr || !tellsPopulations(*drawn));
-    ui.checkbox("coloured by population", view.structure_population,
-                "Colours tell how many bodies a cell holds, where the algorithm says so");
-    ImGui::EndDisabled();
+    ui.checkbox("coloured by population", look.structure_population,
+                "Colours tell how many bodies a cell holds, where the algorithm says so",
+                drawn != nullptr && tellsPopulations(*drawn));
     if (drawn != nullptr && drawn->boxes().empty() && drawn->lines().empty()) {
       ui.faint("It has none to show.");
     }
   }
 
-  static void drawDirections(PanelContext& context) {
-    context.ui.heading("Look from");
+  void drawDirections() {
+    ui.heading("Look from");
     int column = 0;
     for (const auto& [direction, name] : kDirections.entries) {
       if (column++ % 4 != 0) ImGui::SameLine();
-      if (context.ui.button(std::string(name).c_str())) context.view.lookFrom(direction);
+      if (ui.button(std::string(name).c_str())) view.lookFrom(direction);
     }
-    if (context.ui.button("all of it", "Brings everything into the picture")) {
-      context.view.lookAtAll();
+    if (ui.button("all of it", "Brings everything into the picture")) {
+      view.lookAtAll();
     }
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Panel> makePanel() { return std::make_unique<ViewPanel>(); }
+extern const PanelKind kind = {"Look", Place::right,
+                               "Colours, and what is drawn besides the bodies", make<ViewPanel>};
 
 }  // namespace broadmark::panels::view_options

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "broadmark/harness/runner.h"
-#include "broadmark/results/frame_table.h"
 
 namespace broadmark {
 namespace {
@@ -19,7 +18,7 @@ void LaneCurves::set(std::uint32_t frame, const FrameRecord& record) {
     seconds[phase].set(frame,
                        static_cast<float>(1e-9 * static_cast<double>(record.times.values[phase])));
   }
-  pairs.set(frame, static_cast<float>(record.pairs));
+  pairs.set(frame, static_cast<float>(record.counts[FrameCount::pairs]));
   disturbed.set(frame, record.disturbed ? 1 : FrameValues::kUnknown);
   mismatches.set(frame, record.mismatch ? 1 : FrameValues::kUnknown);
 }
@@ -75,8 +74,9 @@ void Lane::advance(const Frame& frame, DrawGate& gate) {
   record.disturbed = gate.endTiming();
   if (!run_->answered()) return;
   record.run = true;
+  record.frame = frame.index;
   record.times = run_->times();
-  record.pairs = run_->pairs();
+  record.counts[FrameCount::pairs] = run_->pairs();
   recordOf(frame.index) = record;
   report_.curves.set(frame.index, record);
   report_.frame = frame.index;
@@ -89,10 +89,10 @@ std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
   if (!difference) return difference;
   FrameRecord& record = recordOf(frame.index);
   record.checked = true;
-  record.missed_count = difference->missed_count;
-  record.false_count = difference->false_count;
-  record.allowed_extra_count = difference->allowed_extra_count;
-  record.invalid_count = difference->invalid_count;
+  record.counts[FrameCount::missed] = difference->missed_count;
+  record.counts[FrameCount::false_pairs] = difference->false_count;
+  record.counts[FrameCount::allowed_extra] = difference->allowed_extra_count;
+  record.counts[FrameCount::invalid] = difference->invalid_count;
   record.mismatch = difference->isMismatch();
   report_.curves.set(frame.index, record);
   return difference;
@@ -124,19 +124,8 @@ std::string formatFrameTable(const SceneInfo& scene, const std::vector<LaneRepor
   FrameTable table;
   for (const LaneReport& lane : lanes) {
     table.begin(beginCase(lane.spec.run, {.scene = scene}));
-    for (std::uint32_t frame = 1; frame <= lane.frames.size(); ++frame) {
-      const FrameRecord* record = lane.record(frame);
-      if (record == nullptr) continue;
-      FrameRow row{.frame = frame,
-                   .times = record->times,
-                   .checked = record->checked,
-                   .disturbed = record->disturbed};
-      row.counts[FrameCount::pairs] = record->pairs;
-      row.counts[FrameCount::missed] = record->missed_count;
-      row.counts[FrameCount::false_pairs] = record->false_count;
-      row.counts[FrameCount::allowed_extra] = record->allowed_extra_count;
-      row.counts[FrameCount::invalid] = record->invalid_count;
-      table.add(row);
+    for (const FrameRecord& record : lane.frames) {
+      if (record.run) table.add(record);
     }
   }
   return table.text();

@@ -11,22 +11,14 @@
 
 #include "broadmark/harness/case_run.h"
 #include "broadmark/render/frame_values.h"
+#include "broadmark/results/frame_table.h"
 #include "inspector/run/draw_gate.h"
 
 namespace broadmark {
 
 /// What one frame gave.
-struct FrameRecord {
-  FrameTimes times;
-  std::uint64_t pairs = 0;
-  // Wrong pairs, as in FrameDifference; 0 unless checked.
-  std::uint64_t missed_count = 0;
-  std::uint64_t false_count = 0;
-  std::uint64_t allowed_extra_count = 0;
-  std::uint64_t invalid_count = 0;
-  bool run = false;        ///< false: nothing is known of this frame
-  bool disturbed = false;  ///< something was drawn while it was timed
-  bool checked = false;
+struct FrameRecord : FrameRow {
+  bool run = false;  ///< false: nothing is known of this frame
   bool mismatch = false;
 };
 

@@ -20,8 +20,9 @@ bool showSame(const Wish& a, const Wish& b) {
 
 /// How many pairs overlap, by what an algorithm reported and how wrong that was.
 std::uint64_t rightPairs(const FrameRecord& record) {
-  return record.pairs + record.missed_count - record.false_count - record.allowed_extra_count -
-         record.invalid_count;
+  const FrameCounts& counts = record.counts;
+  return counts[FrameCount::pairs] + counts[FrameCount::missed] - counts[FrameCount::false_pairs] -
+         counts[FrameCount::allowed_extra] - counts[FrameCount::invalid];
 }
 
 float fractionOf(std::uint32_t part, std::uint32_t whole) {

@@ -22,12 +22,12 @@ class BodySelection {
 
   /// Ascending. While the document is shown, those that its editor works on.
   [[nodiscard]] const Bodies& bodies() const {
-    return document_.shown() ? document_.desk.editor.selection() : bodies_;
+    return document_.shown() ? document_.editor.selection() : bodies_;
   }
 
   /// Selects these, given in any order; those that do not exist are left out.
   void select(Bodies bodies) {
-    scenes::SceneEditor& editor = document_.desk.editor;
+    scenes::SceneEditor& editor = document_.editor;
     const bool of_document = document_.shown();
     const std::size_t count =
         of_document ? editor.scene().bodies.size() : playback_.scene().objects;
@@ -54,7 +54,7 @@ class BodySelection {
 
   /// These and all that are selected with them.
   [[nodiscard]] Bodies whole(Bodies bodies) const {
-    return document_.shown() ? document_.desk.editor.withGroups(std::move(bodies)) : bodies;
+    return document_.shown() ? document_.editor.withGroups(std::move(bodies)) : bodies;
   }
 
   /// Selects the two bodies of a pair and flies there.

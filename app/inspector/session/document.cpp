@@ -27,14 +27,14 @@ FootageOpener stillOf(const scenes::AuthoredScene& scene) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> AuthorDesk::simulation() const {
+std::unique_ptr<Simulation> Document::simulation() const {
   return scenes::makeAuthoredSimulation(editor.scene(), path_);
 }
 
 void Document::start(scenes::AuthoredScene scene, fs::path path, bool unsaved) {
-  desk.editor = scenes::SceneEditor(std::move(scene));
-  desk.path_ = std::move(path);
-  desk.unsaved_ = unsaved;
+  editor = scenes::SceneEditor(std::move(scene));
+  path_ = std::move(path);
+  unsaved_ = unsaved;
   scene_ = 0;
   show();
   notices_.bringUp("Author");
@@ -71,19 +71,19 @@ void Document::advance(const RunProgress& progress) {
 }
 
 void Document::edit(const std::function<void(scenes::SceneEditor&)>& change) {
-  const std::uint64_t before = desk.editor.revision();
-  notices_.attempt([&] { change(desk.editor); });
-  if (desk.editor.revision() != before || !shown()) show();
+  const std::uint64_t before = editor.revision();
+  notices_.attempt([&] { change(editor); });
+  if (editor.revision() != before || !shown()) show();
 }
 
 void Document::add(const std::function<scenes::Stroke()>& painted) {
   std::optional<std::size_t> added;
   std::size_t left_out = 0;
-  edit([&](scenes::SceneEditor& editor) {
+  edit([&](scenes::SceneEditor& edited) {
     scenes::Stroke stroke = painted();
     left_out = stroke.left_out;
     const std::size_t count = stroke.bodies.size();
-    editor.add(std::move(stroke.bodies));
+    edited.add(std::move(stroke.bodies));
     added = count;
   });
   if (added && left_out == 0) {
@@ -96,24 +96,24 @@ void Document::add(const std::function<scenes::Stroke()>& painted) {
 
 void Document::showAs(FootageOpener open, bool moves) {
   // Another world is looked at from anew.
-  const Aabb& world = desk.editor.scene().world;
+  const Aabb& world = editor.scene().world;
   if (scene_ == 0 || world != world_) scene_ = ++last_scene_;
   world_ = world;
   playback_.pause();
   playback_.show({.open = std::move(open),
                   .source = FootageSource::authored,
-                  .title = desk.title() + (moves ? ", simulated" : ", at its start"),
+                  .title = title() + (moves ? ", simulated" : ", at its start"),
                   .scene = scene_});
   footage_ = playback_.footage();
   moves_ = moves;
 }
 
-void Document::show() { showAs(stillOf(desk.editor.scene()), false); }
+void Document::show() { showAs(stillOf(editor.scene()), false); }
 
 void Document::simulate() {
-  const auto scene = std::make_shared<const scenes::AuthoredScene>(desk.editor.scene());
+  const auto scene = std::make_shared<const scenes::AuthoredScene>(editor.scene());
   showAs(
-      [scene, path = desk.path()] {
+      [scene, path = path()] {
         return std::make_unique<Footage>(scenes::makeAuthoredSimulation(*scene, path));
       },
       true);
@@ -122,22 +122,22 @@ void Document::simulate() {
 bool Document::save(fs::path path) {
   if (!path.has_extension()) path += ".json";
   return notices_.attempt([&] {
-    writeTextFile(path, scenes::formatAuthoredScene(desk.editor.scene()));
-    desk.editor.markSaved();
-    desk.path_ = path;
-    desk.unsaved_ = false;
+    writeTextFile(path, scenes::formatAuthoredScene(editor.scene()));
+    editor.markSaved();
+    path_ = path;
+    unsaved_ = false;
     notices_.say(fmt::format("saved: {}", path.string()));
     notices_.on_file(path);
   });
 }
 
 void Document::bake(fs::path path) {
-  if (!path.has_extension()) path += recordingExtension(desk.simulation()->scene());
-  notices_.attempt([&] { startBake(bake_, desk.simulation(), std::move(path)); });
+  if (!path.has_extension()) path += recordingExtension(simulation()->scene());
+  notices_.attempt([&] { startBake(bake_, simulation(), std::move(path)); });
 }
 
 void Document::leave(std::function<void()> then) {
-  if (desk.isModified()) {
+  if (isModified()) {
     leaving = std::move(then);
   } else {
     then();

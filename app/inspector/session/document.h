@@ -40,15 +40,18 @@ struct Tools {
   void toggle(Tool which) { tool = tool == which ? Tool::none : which; }
 };
 
-/// What a scene is put together on: the document with its history, its file, the brush, the tools.
-/// At first the document is empty.
-class AuthorDesk {
+/// The scene with its history, its file, the brush, and the tools. At first it is empty.
+class Document {
  public:
-  AuthorDesk() { chooseBrush(0); }
+  /// The parts it acts on outlive it.
+  Document(Playback& playback, Notices& notices, BackgroundBake& bake)
+      : playback_(playback), notices_(notices), bake_(bake) {
+    chooseBrush(0);
+  }
 
-  /// The document's file; "": none yet.
+  /// Its file; "": none yet.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// The document's name for people: that of the file, or of the scene.
+  /// Its name for people: that of the file, or of the scene.
   [[nodiscard]] std::string title() const {
     return path_.empty() ? editor.scene().name : path_.filename().string();
   }
@@ -68,27 +71,6 @@ class AuthorDesk {
   [[nodiscard]] scenes::Stroke stroke() const {
     return scenes::paint(*brush_, paint, paint_at, editor.scene().bodies);
   }
-
-  scenes::SceneEditor editor;
-  const std::vector<scenes::BrushEntry> brushes = scenes::brushEntries();
-  scenes::Paint paint;
-  Vec3 paint_at{};  ///< where stroke() paints
-  Tools tools;
-
- private:
-  friend class Document;
-
-  std::filesystem::path path_;
-  bool unsaved_ = false;  ///< no file holds it as it was handed in
-  std::size_t chosen_brush_ = 0;
-  std::unique_ptr<scenes::Brush> brush_;
-};
-
-class Document {
- public:
-  /// The parts it acts on outlive it.
-  Document(Playback& playback, Notices& notices, BackgroundBake& bake)
-      : playback_(playback), notices_(notices), bake_(bake) {}
 
   /// Whether it is what is played.
   [[nodiscard]] bool shown() const { return footage_ && footage_ == playback_.footage(); }
@@ -120,7 +102,11 @@ class Document {
   /// the user to decide.
   void leave(std::function<void()> then);
 
-  AuthorDesk desk;                ///< its selection is the session's, while shown()
+  scenes::SceneEditor editor;  ///< its selection is the session's, while shown()
+  const std::vector<scenes::BrushEntry> brushes = scenes::brushEntries();
+  scenes::Paint paint;
+  Vec3 paint_at{};  ///< where stroke() paints
+  Tools tools;
   std::function<void()> leaving;  ///< waits for unsaved changes to be saved or given up
 
  private:
@@ -137,6 +123,10 @@ class Document {
   Playback& playback_;
   Notices& notices_;
   BackgroundBake& bake_;
+  std::filesystem::path path_;
+  bool unsaved_ = false;  ///< no file holds it as it was handed in
+  std::size_t chosen_brush_ = 0;
+  std::unique_ptr<scenes::Brush> brush_;
   std::shared_ptr<const FootageRequest> footage_;  ///< that shows the document last
   bool moves_ = false;
   std::uint64_t scene_ = 0;  ///< see FootageRequest; 0: not shown yet

@@ -80,15 +80,14 @@ ParameterValues sceneParametersOf(const FootageRequest* footage) {
   return values;
 }
 
-void Draft::choose(const std::string& id, const std::string& engine) {
+void Draft::choose(const std::string& id) {
   ParameterValues values = parameterValues(*scene_);
-  scene_ = makeSimulation(id, engine);
+  scene_ = makeSimulation(id);
   // What the user has probably chosen.
   for (const char* shared : {"objects", "frames", "object_type", "seed", "engine"}) {
     const auto value = values.find(shared);
     const ParameterValues there = parameterValues(*scene_);
     if (value == values.end() || !there.contains(shared)) continue;
-    if (std::string(shared) == "engine" && !engine.empty()) continue;
     setParameters(*scene_, {*value});
   }
 }

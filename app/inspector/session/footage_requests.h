@@ -35,7 +35,7 @@ class Draft {
 
   [[nodiscard]] Simulation& scene() const { return *scene_; }
   /// Replaces it by another built-in scene, with the parameters that both have in common.
-  void choose(const std::string& id, const std::string& engine = {});
+  void choose(const std::string& id);
   void take(std::unique_ptr<Simulation> scene) { scene_ = std::move(scene); }
 
   /// Shows a live simulation with the present parameters.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "broadmark/error.h"
@@ -23,7 +24,7 @@ Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
   playback.on_show = [this] {
     selection.reset();
     mismatches.reset();
-    if (second.wish) second.wish->frame.reset();
+    if (second) second->frame.reset();
     noticed_failure_.clear();
     notices.status = {};  // it told of what was open before
   };
@@ -56,7 +57,7 @@ Wish Session::wish() const {
             .shown_lane = lanes.shown(),
             .structure = view.structure || view.colourMode().of_tests,
             .tracked = selection.bodies(),
-            .second = second.wish};
+            .second = second};
   if (wish.tracked.size() > kMostTracked) wish.tracked.clear();
   return wish;
 }
@@ -127,6 +128,26 @@ void Session::startDuel(double max_seconds) {
     for (const LaneSpec& lane : lanes.specs()) cases.push_back(lane.run);
     broadmark::startDuel(jobs.get<BackgroundDuel>(), cases, frames_(known_frames_), max_seconds,
                          jobs.make_host);
+  });
+}
+
+void Session::showSecond(bool on) {
+  second.reset();
+  if (!on) return;
+  second.emplace();
+  const auto other = std::ranges::find_if(
+      lanes.list, [this](const LaneEdit& lane) { return lane.number != lanes.shown(); });
+  if (other != lanes.list.end()) second->lane = other->number;
+  // Without another algorithm's answer it is the same one's, and stays where it is.
+  if (other == lanes.list.end() && lanes.shown() == 0) second->frame = playback.frame();
+}
+
+void Session::showBeside(const fs::path& recording) {
+  notices.attempt([&] {
+    FootageRequest footage = recordingFootage(recording, {}, playback.swept);
+    second = SecondWish{.footage = std::make_shared<const FootageRequest>(std::move(footage)),
+                        .frame = {},
+                        .lane = lanes.shown()};
   });
 }
 

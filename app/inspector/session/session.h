@@ -16,11 +16,10 @@
 #include "inspector/session/mismatches.h"
 #include "inspector/session/notices.h"
 #include "inspector/session/opened_results.h"
-#include "inspector/session/opener.h"
 #include "inspector/session/playback.h"
-#include "inspector/session/second_view.h"
 #include "inspector/session/timeline.h"
 #include "inspector/session/view_options.h"
+#include "run/plan.h"
 
 namespace broadmark {
 
@@ -50,6 +49,27 @@ class Session {
   /// Begins a duel of the lanes on the frames that are known, for so many seconds at most.
   void startDuel(double max_seconds);
 
+  // Opening: see opener.cpp.
+  /// Opens a file of any kind that openSource() knows. A bad one becomes an error. Of a results
+  /// file all cases are listed; of a file that names a case, that becomes the only lane.
+  void open(const std::filesystem::path& path);
+  /// Opens the first entry with its cases as lanes, or lists those of results; without either
+  /// there are only lanes. Throws InputError.
+  void open(Plan plan);
+  /// Opens a case of a results file at the first frame in which it is wrong. A bad one becomes an
+  /// error.
+  void openCase(const std::filesystem::path& file, const std::string& id);
+  /// Opens a row of the listed results in the same way. Why it cannot be opened is kept there, and
+  /// said.
+  void openCase(OpenedResults::Row& row);
+  /// Opens what has been exported, at the wrong frame.
+  void openExport(const ExportReport& report);
+
+  /// Shows another algorithm's answer in the second view if there is one, or closes that view.
+  void showSecond(bool on);
+  /// Shows a recording in the second view. A bad one becomes an error.
+  void showBeside(const std::filesystem::path& recording);
+
   Notices notices;
   Playback playback;
   Timeline timeline;
@@ -60,12 +80,18 @@ class Session {
   Mismatches mismatches{playback, lanes, selection, notices};
   Draft draft{playback};
   ViewOptions view;
-  SecondView second{notices, playback, lanes};
+  std::optional<SecondWish> second;      ///< nothing: there is no second view
+  bool cameras_linked = true;            ///< one camera moves both views
   std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
-  Opener opener{*this};
   RunThread runs;
 
  private:
+  /// How an authored scene is shown first.
+  enum class Opened { at_rest, in_motion };
+  void openEntry(PlanEntry entry, Opened document_is);
+  void enter(PlanEntry& entry, Opened document_is);
+  void enterSource(PlanEntry& entry, Opened document_is);
+  void listCases(const std::filesystem::path& file, Results listed);
   [[nodiscard]] Wish wish() const;
   void noticeFailure(const RunProgress& progress);
   void noticeJobs();

@@ -103,9 +103,10 @@ void FileDialog::drawEntries(Ui& ui) {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry entry = entries_[i];  // entering a directory replaces them
     const std::string label = entry.is_directory ? entry.name + "/" : entry.name;
-    const bool pressed = entry.is_directory ? ui.selectable(label.c_str(), false)
-                                            : ui.selectable(label.c_str(), entry.name == name_,
-                                                            bytesText(entry.bytes), ui.theme.faint);
+    const bool pressed = entry.is_directory
+                             ? ui.selectable(label.c_str(), false)
+                             : ui.selectableLine(label.c_str(), entry.name == name_,
+                                                 bytesText(entry.bytes), ui.theme.faint);
     if (!pressed) continue;
     if (entry.is_directory) {
       enter(directory_ / entry.name);

@@ -47,7 +47,13 @@ int rankOf(const fs::path& font) {
   return static_cast<int>(kFirst.size());
 }
 
-std::vector<fs::path> fontsIn(const std::vector<fs::path>& directories) {
+/// Those of the system that may have letters which the own font lacks.
+std::vector<fs::path> systemFonts() {
+  std::vector<fs::path> directories = {"/usr/share/fonts", "/usr/local/share/fonts"};
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
+    directories.push_back(fs::path(home) / ".local/share/fonts");
+    directories.push_back(fs::path(home) / ".fonts");
+  }
   std::vector<std::pair<int, fs::path>> found;
   for (const fs::path& directory : directories) {
     std::error_code error;
@@ -67,17 +73,6 @@ std::vector<fs::path> fontsIn(const std::vector<fs::path>& directories) {
 }
 
 }  // namespace
-
-Letters::Letters(std::vector<fs::path> directories) : directories_(std::move(directories)) {}
-
-std::vector<fs::path> Letters::systemFontDirectories() {
-  std::vector<fs::path> directories = {"/usr/share/fonts", "/usr/local/share/fonts"};
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
-    directories.push_back(fs::path(home) / ".local/share/fonts");
-    directories.push_back(fs::path(home) / ".fonts");
-  }
-  return directories;
-}
 
 void Letters::need(std::string_view text) {
   const char* at = text.data();
@@ -140,7 +135,7 @@ ImFont* Letters::load(ImFontAtlas& atlas, float size, float large_size) {
   ImFont* large = build(atlas, size, large_size);
   if (missingFrom(*atlas.Fonts[0]) == missing_ || !anew) return large;
   missing_ = missingFrom(*atlas.Fonts[0]);
-  for (const fs::path& font : fontsIn(directories_)) {
+  for (const fs::path& font : systemFonts()) {
     if (missing_ == 0) break;
     if (std::ranges::find(fallbacks_, font) != fallbacks_.end()) continue;
     fallbacks_.push_back(font);

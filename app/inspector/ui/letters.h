@@ -15,9 +15,6 @@ namespace broadmark {
 
 class Letters {
  public:
-  /// `directories`: where fonts may lie, for letters that the own font lacks.
-  explicit Letters(std::vector<std::filesystem::path> directories = systemFontDirectories());
-
   /// Takes note of the letters of a text in UTF-8.
   void need(std::string_view text);
   /// Whether some have turned up since they were loaded.
@@ -28,13 +25,10 @@ class Letters {
   /// How many letters no font has.
   [[nodiscard]] std::size_t missing() const { return missing_; }
 
-  static std::vector<std::filesystem::path> systemFontDirectories();
-
  private:
   ImFont* build(ImFontAtlas& atlas, float size, float large_size) const;
   [[nodiscard]] std::size_t missingFrom(const ImFont& font) const;
 
-  std::vector<std::filesystem::path> directories_;
   std::set<ImWchar> needed_;  ///< beyond Latin
   std::vector<std::filesystem::path> fallbacks_;
   std::size_t missing_ = 0;

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "broadmark/statistics/statistics.h"
+
 namespace broadmark {
 namespace {
 
@@ -15,6 +17,7 @@ namespace {
 constexpr float kInputShare = 0.52F;
 constexpr float kVectorShare = 0.7F;    // likewise of three numbers in a row
 constexpr float kTooltipDelay = 0.45F;  // seconds
+constexpr std::size_t kBins = 48;       // of a histogram
 
 /// The name in a label: of "Add##popup" it is "Add", of "##speed" "speed"; of a label that changes,
 /// "Pause###Play", what stays the same, "Play".
@@ -159,8 +162,11 @@ bool Ui::noted(bool acted, const char* label, const char* tip) {
   return acted;
 }
 
-bool Ui::button(const char* label, const char* tip, float width) {
-  return noted(ImGui::Button(label, {width, 0}), label, tip);
+bool Ui::button(const char* label, const char* tip, float width, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = noted(ImGui::Button(label, {width, 0}), label, tip);
+  ImGui::EndDisabled();
+  return pressed;
 }
 
 bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
@@ -176,8 +182,11 @@ bool Ui::toggle(const char* label, bool& on, const char* tip, float width) {
   return pressed;
 }
 
-bool Ui::checkbox(const char* label, bool& value, const char* tip) {
-  return noted(ImGui::Checkbox(label, &value), label, tip);
+bool Ui::checkbox(const char* label, bool& value, const char* tip, bool enabled) {
+  ImGui::BeginDisabled(!enabled);
+  const bool pressed = noted(ImGui::Checkbox(label, &value), label, tip);
+  ImGui::EndDisabled();
+  return pressed;
 }
 
 bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
@@ -208,12 +217,17 @@ bool Ui::combo(const char* label, std::size_t& chosen, const std::vector<std::st
   return changed;
 }
 
-bool Ui::selectable(const char* label, bool selected, const char* tip) {
-  return noted(ImGui::Selectable(label, selected), label, tip);
+bool Ui::selectable(const char* label, bool selected, const char* tip, std::optional<Rgb> rgb) {
+  const bool in_table = GImGui->CurrentTable != nullptr;
+  ImGui::PushStyleColor(ImGuiCol_Text, colourVector(rgb.value_or(theme.text)));
+  const bool pressed =
+      ImGui::Selectable(label, selected, in_table ? ImGuiSelectableFlags_SpanAllColumns : 0);
+  ImGui::PopStyleColor();
+  return noted(pressed, label, tip);
 }
 
-bool Ui::selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
-                    const char* tip) {
+bool Ui::selectableLine(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                        const char* tip) {
   const std::string shown = fittingText(label, roomBefore(right));
   ImGui::PushID(label);
   const bool pressed = ImGui::Selectable(fmt::format("{}##row", shown).c_str(), selected,
@@ -309,8 +323,8 @@ bool Ui::menuItem(const char* label, const char* shortcut, bool selected, bool e
   return noted(ImGui::MenuItem(label, shortcut, selected, enabled), label);
 }
 
-bool Ui::beginMenu(const char* label) {
-  const bool open = ImGui::BeginMenu(label);
+bool Ui::beginMenu(const char* label, bool enabled) {
+  const bool open = ImGui::BeginMenu(label, enabled);
   // Inside the menu the last item is not its title any more.
   if (!open) note(label);
   return open;
@@ -375,6 +389,27 @@ bool Ui::beginDialog(const char* title, ImVec2 size, bool* keep) {
   return ImGui::BeginPopupModal(title, keep, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove);
 }
 
+std::optional<std::size_t> Ui::ask(
+    const char* title, std::string_view text,
+    std::initializer_list<std::pair<const char*, const char*>> answers) {
+  if (!ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
+  if (!beginDialog(title, {420, 0})) return {};
+  paragraph(text);
+  ImGui::Spacing();
+  const float width = 84 * scale;
+  std::optional<std::size_t> given;
+  std::size_t number = 0;
+  for (const auto& [answer, tip] : answers) {
+    if (button(answer, tip, width)) given = number;
+    ImGui::SameLine();
+    ++number;
+  }
+  if (cancel(width)) given = number;
+  if (given) ImGui::CloseCurrentPopup();
+  ImGui::EndPopup();
+  return given;
+}
+
 bool Ui::cancel(float width) {
   const bool pressed = button("Cancel", nullptr, width);
   return pressed || escaped();
@@ -406,6 +441,28 @@ void Ui::line(std::string_view left, std::string_view right, Rgb right_colour) {
   atRightEnd(right, right_colour);
 }
 
+bool Ui::beginTable(const char* name, const std::vector<std::string>& columns, int always,
+                    float height) {
+  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_RowBg | ImGuiTableFlags_BordersInnerH |
+                                     ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_ScrollX |
+                                     ImGuiTableFlags_ScrollY;
+  if (!ImGui::BeginTable(name, static_cast<int>(columns.size()), kFlags,
+                         {widthOfWholeColumns(name, always), height})) {
+    return false;
+  }
+  ImGui::TableSetupScrollFreeze(1, 1);
+  for (const std::string& column : columns) ImGui::TableSetupColumn(column.c_str());
+  ImGui::TableHeadersRow();
+  return true;
+}
+
+void Ui::cell(std::string_view words) { cell(words, theme.text); }
+
+void Ui::cell(std::string_view words, Rgb rgb) {
+  ImGui::TableNextColumn();
+  coloured(rgb, words);
+}
+
 void Ui::fact(const char* name, std::string_view value) {
   faint(name);
   ImGui::SameLine(ImGui::GetContentRegionMax().x * 0.45F);
@@ -431,16 +488,48 @@ void Ui::heading(const char* words) {
   ImGui::Separator();
 }
 
-void Ui::paragraph(std::string_view words) {
+void Ui::paragraph(std::string_view words, Rgb rgb) {
   ImGui::PushTextWrapPos(0);
-  plain(words);
+  coloured(rgb, words);
   ImGui::PopTextWrapPos();
 }
 
-void Ui::faintParagraph(std::string_view words) {
-  ImGui::PushTextWrapPos(0);
-  faint(words);
-  ImGui::PopTextWrapPos();
+void drawHistogram(Ui& ui, std::span<const double> values,
+                   const std::function<std::string(double)>& text, std::optional<double> line) {
+  if (values.empty()) return;
+  const Histogram histogram = histogramOf(values, kBins);
+  if (histogram.counts.empty()) return;
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const float letters = ImGui::GetTextLineHeight();
+  const ImVec2 size = {ImGui::GetContentRegionAvail().x,
+                       std::max(ImGui::GetContentRegionAvail().y - letters, letters)};
+  const float bottom = corner.y + size.y;
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const auto most = static_cast<float>(*std::ranges::max_element(histogram.counts));
+  const float width = size.x / static_cast<float>(kBins);
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    const float left = corner.x + width * static_cast<float>(bin);
+    const float height = size.y * static_cast<float>(histogram.counts[bin]) / most;
+    draw.AddRectFilled({left, bottom - height}, {left + width - 1, bottom},
+                       colour(ui.theme.accent));
+  }
+  if (line && histogram.low < *line && *line < histogram.high) {
+    const double share = (*line - histogram.low) / (histogram.high - histogram.low);
+    const float x = corner.x + size.x * static_cast<float>(share);
+    draw.AddLine({x, corner.y}, {x, bottom}, colour(ui.theme.warning), 2 * ui.scale);
+  }
+  const auto label = [&](double value, float share) {
+    const std::string number = text(value);
+    const float extent = ImGui::CalcTextSize(number.c_str()).x;
+    draw.AddText({corner.x + share * (size.x - extent), bottom}, colour(ui.theme.faint),
+                 number.c_str());
+    return extent;
+  };
+  const float ends = label(histogram.low, 0) + label(histogram.high, 1);
+  const bool room = size.x > 2 * ends;
+  if (room) label((histogram.low + histogram.high) / 2, 0.5F);
+  ImGui::Dummy(size);
+  ui.note("histogram");
 }
 
 void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flags) {

@@ -7,10 +7,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "broadmark/parameters.h"
@@ -61,17 +64,20 @@ class Ui {
   /// Likewise Enter, which text being typed does not take.
   [[nodiscard]] static bool entered();
 
-  bool button(const char* label, const char* tooltip = nullptr, float width = 0);
+  bool button(const char* label, const char* tooltip = nullptr, float width = 0,
+              bool enabled = true);
   /// A button that stays pressed while `on`.
   bool toggle(const char* label, bool& on, const char* tooltip = nullptr, float width = 0);
-  bool checkbox(const char* label, bool& value, const char* tooltip = nullptr);
+  bool checkbox(const char* label, bool& value, const char* tooltip = nullptr, bool enabled = true);
   /// Chooses one of `options`; returns whether it changed.
   bool combo(const char* label, std::size_t& chosen, const std::vector<std::string>& options,
              const char* tooltip = nullptr, float width = 0);
-  bool selectable(const char* label, bool selected, const char* tooltip = nullptr);
+  /// In a table it is as wide as the row.
+  bool selectable(const char* label, bool selected, const char* tooltip = nullptr,
+                  std::optional<Rgb> rgb = {});
   /// The same with words at the right end of its line; what does not fit of the label is cut.
-  bool selectable(const char* label, bool selected, std::string_view right, Rgb right_colour,
-                  const char* tooltip = nullptr);
+  bool selectableLine(const char* label, bool selected, std::string_view right, Rgb right_colour,
+                      const char* tooltip = nullptr);
   bool text(const char* label, std::string& value, const char* hint = "");
   /// Numbers count when they are entered (Enter, Tab, or a click elsewhere), within their range.
   bool integer(const char* label, std::int64_t& value, std::int64_t min, std::int64_t max,
@@ -87,7 +93,7 @@ class Ui {
   bool slider(const char* label, int& value, int min, int max);
   bool menuItem(const char* label, const char* shortcut = nullptr, bool selected = false,
                 bool enabled = true);
-  bool beginMenu(const char* label);
+  bool beginMenu(const char* label, bool enabled = true);
   /// The widget that suits a parameter, its explanation as a tooltip.
   bool parameter(const Parameter& parameter);
   /// All parameters of an object. Returns whether one changed.
@@ -99,6 +105,11 @@ class Ui {
   /// A dialog, placed likewise, whose popup has been opened. Its cross makes `keep` false.
   /// Returns whether it is drawn: then ImGui::EndPopup() follows.
   bool beginDialog(const char* title, ImVec2 size, bool* keep = nullptr);
+  /// A dialog that asks, with a button for each answer and its tooltip, and "Cancel". Returns the
+  /// number of the answer once it is given; Cancel is the last.
+  std::optional<std::size_t> ask(
+      const char* title, std::string_view text,
+      std::initializer_list<std::pair<const char*, const char*>> answers);
   /// A dialog's button "Cancel", which Escape presses, too.
   bool cancel(float width = 0);
 
@@ -110,6 +121,13 @@ class Ui {
   [[nodiscard]] static float roomBefore(std::string_view right);
   /// Writes at the right end of the line that an item has begun.
   void atRightEnd(std::string_view words, Rgb rgb);
+  /// Begins a table below a row of its columns' names, no wider than widthOfWholeColumns(). Returns
+  /// whether it is drawn: then ImGui::EndTable() follows.
+  static bool beginTable(const char* name, const std::vector<std::string>& columns, int always,
+                         float height = 0);
+  /// The next cell of a table.
+  void cell(std::string_view text);
+  void cell(std::string_view text, Rgb rgb);
   /// A table row "name: value" in two columns.
   void fact(const char* name, std::string_view value);
   void plain(std::string_view text);
@@ -117,8 +135,9 @@ class Ui {
   void coloured(Rgb rgb, std::string_view text);
   void heading(const char* text);
   // Wrapped text.
-  void paragraph(std::string_view text);
-  void faintParagraph(std::string_view text);
+  void paragraph(std::string_view text) { paragraph(text, theme.text); }
+  void paragraph(std::string_view text, Rgb rgb);
+  void faintParagraph(std::string_view text) { paragraph(text, theme.faint); }
   void tooltip(const char* text);
 
   /// Notes the item drawn last under a name of its own.
@@ -166,6 +185,12 @@ std::string fittingText(std::string text, float room, ImFont* font = nullptr);
 /// in sight is seen wholly: half a number would be a wrong one. The first `always` are shown
 /// anyhow.
 float widthOfWholeColumns(const char* table, int always);
+
+/// Fills what is left of the window with the histogram of the values, without their tails, and
+/// writes a few of them below, as `text` has them. `line`: a value that is marked. Without values,
+/// or where all are the same, it draws nothing.
+void drawHistogram(Ui& ui, std::span<const double> values,
+                   const std::function<std::string(double)>& text, std::optional<double> line = {});
 
 /// A panel of two parts: beside each other, or, where there is no room for that, one of them.
 struct TwoParts {

@@ -105,7 +105,7 @@ void View::drawEmpty(Ui& ui, const std::string& hint) {
 }
 
 void View::drawScene(const Ui& ui) {
-  SceneViewContent picture = content_.picture();
+  SceneViewContent picture = content_.picture;
   picture.space = space_;
   picture.scale = ui.scale;
   scene_.resize(static_cast<int>(size_.x), static_cast<int>(size_.y));
@@ -142,7 +142,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   ui.note("scene");
   Hands::Seen seen{.session = session,
                    .snapshot = content_.snapshot(),
-                   .visible = content_.picture().visible,
+                   .visible = content_.picture.visible,
                    .sight = Sight(space_, scene_.viewpoint()),
                    .scale = ui.scale,
                    .mouse = {},
@@ -155,8 +155,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   if (shown.has_hands) hands_.draw(ui, seen, corner_);
   moved_ = camera_ != before;
   const std::string source = sourceText(shown.snapshot->footage.get());
-  answer_.where =
-      session.second.wish ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
+  answer_.where = session.second ? fmt::format("frame {}, {}", shown.snapshot->frame, source) : "";
   const ImVec2 taken = drawAnswer(ui, answer_, corner_, size_);
   const bool tools = shown.has_hands && session.document.shown();
   const float free = tools ? drawTools(ui, session, corner_, size_) : size_.y;
@@ -240,7 +239,7 @@ void View::handleKeys() {
 
 void View::click(Session& session, bool fly_there) {
   const auto picked = pickBody(*content_.snapshot()->boxes, space_, scene_.viewpoint(), mouse_.x,
-                               mouse_.y, content_.picture().visible);
+                               mouse_.y, content_.picture.visible);
   if (!picked) {
     if (!ImGui::GetIO().KeyCtrl) session.selection.select({});
     return;
@@ -258,7 +257,7 @@ void View::selectWithin(Session& session) {
   session.selection.select(
       withGroups(session, bodiesWithin(*content_.snapshot()->boxes, space_, scene_.viewpoint(),
                                        {{drag_from_.x, drag_from_.y}, {mouse_.x, mouse_.y}},
-                                       content_.picture().visible)));
+                                       content_.picture.visible)));
 }
 
 void View::drawAxisNames(float scale) const {
@@ -278,13 +277,13 @@ void Views::draw(Ui& ui, Session& session, const RunProgress& progress, ImVec2 p
                                      .hint = "Simulate a scene, or drop a recording here",
                                      .lane = session.lanes.shown(),
                                      .has_hands = true}};
-  if (session.second.wish) {
+  if (session.second) {
     const std::string& failure = progress.second_failure;
     shown.push_back({.name = "Second view",
                      .snapshot = progress.second,
                      .hint = failure.empty() ? "Nothing is shown yet" : failure,
-                     .lane = session.second.wish->lane,
-                     .leader = session.second.linked ? &first() : nullptr});
+                     .lane = session.second->lane,
+                     .leader = session.cameras_linked ? &first() : nullptr});
   }
   const auto count = static_cast<float>(shown.size());
   const float gap = kSplitterSize * ui.scale;

@@ -27,15 +27,15 @@ bool ViewContent::update(const std::shared_ptr<const Snapshot>& snapshot,
   Shown shown{snapshot, comparison, std::move(selection), session.view, dark};
   if (shown == shown_) return false;
   shown_ = std::move(shown);
-  picture_.world = snapshot->scene.world;
-  picture_.shows_world = session.view.world_box;
-  picture_.shows_grid = session.view.ground;
-  picture_.shows_axes = session.view.axes;
-  picture_.theme = paletteOf(dark);
+  picture.world = snapshot->scene.world;
+  picture.shows_world = session.view.world_box;
+  picture.shows_grid = session.view.ground;
+  picture.shows_axes = session.view.axes;
+  picture.theme = paletteOf(dark);
   ++revision_;
   updateBodies();
   updateVisible();
-  picture_.visible = visible_;
+  picture.visible = visible_;
   updateLines();
   return true;
 }
@@ -60,18 +60,18 @@ void ViewContent::updateBodies() {
     comparison = {shown_.comparison->first_only, shown_.comparison->second_only};
     input.comparison = &comparison;
   }
-  oracle_legend_.clear();
+  oracle_legend.clear();
   if (mode.of_answer && snapshot.checked) {
     input.overlaps = snapshot.right_overlaps;
-    mode.colour(input, colouring_);
-    oracle_legend_ = std::move(colouring_.legend);
+    mode.colour(input, colouring);
+    oracle_legend = std::move(colouring.legend);
     input.overlaps = snapshot.overlaps;
   }
-  mode.colour(input, colouring_);
-  picture_.boxes = *snapshot.boxes;
-  picture_.colours = colouring_.colours;
-  picture_.selected = shown_.selection;
-  picture_.bodies_revision = revision_;
+  mode.colour(input, colouring);
+  picture.boxes = *snapshot.boxes;
+  picture.colours = colouring.colours;
+  picture.selected = shown_.selection;
+  picture.bodies_revision = revision_;
 }
 
 void ViewContent::updateVisible() {
@@ -92,7 +92,7 @@ void ViewContent::updateVisible() {
   hideBodies(options.filter,
              {.boxes = *snapshot.boxes,
               .layers = snapshot.scene.filter.layers(),
-              .classes = colouring_.classes,
+              .classes = colouring.classes,
               .world = snapshot.scene.world},
              visible_);
   for (const std::uint32_t body : shown_.selection) visible_[body] = 1;
@@ -102,7 +102,7 @@ void ViewContent::addXray() {
   for (const std::uint32_t body :
        std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
     wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
-                           .colour = picture_.theme.selected,
+                           .colour = picture.theme.selected,
                            .width = 2.5F,
                            .behind = Behind::shown});
   }
@@ -111,8 +111,8 @@ void ViewContent::addXray() {
 void ViewContent::add(Overlay overlay) {
   lines_.insert(lines_.end(), overlay.lines.begin(), overlay.lines.end());
   wire_boxes_.insert(wire_boxes_.end(), overlay.boxes.begin(), overlay.boxes.end());
-  left_out_ += overlay.left_out;
-  if (!overlay.legend.empty()) cell_legend_ = std::move(overlay.legend);
+  left_out += overlay.left_out;
+  if (!overlay.legend.empty()) cell_legend = std::move(overlay.legend);
 }
 
 void ViewContent::addTracks(std::span<const Track> tracks) {
@@ -128,7 +128,7 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
       };
       lines_.push_back({.from = middle(track.boxes[i - 1]),
                         .to = middle(track.boxes[i]),
-                        .colour = picture_.theme.selected,
+                        .colour = picture.theme.selected,
                         .behind = Behind::faint});
     }
   }
@@ -140,18 +140,18 @@ void ViewContent::updateLines() {
   const ViewOptions& options = shown_.options;
   lines_.clear();
   wire_boxes_.clear();
-  left_out_ = 0;
-  cell_legend_.clear();
+  left_out = 0;
+  cell_legend.clear();
   const std::optional<std::span<const std::uint32_t>> selected =
       options.lines_of_all ? std::nullopt
                            : std::optional<std::span<const std::uint32_t>>(shown_.selection);
   if (options.pair_lines) {
     const PairRun run = snapshot.pairs;
-    add(pairLines(boxes, {&run, 1}, {.colour = picture_.theme.pair}, selected));
+    add(pairLines(boxes, {&run, 1}, {.colour = picture.theme.pair}, selected));
   }
   if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
     add(pairLines(boxes, {&missed, 1},
-                  {.colour = picture_.theme.missed, .width = 2.5F, .behind = Behind::shown}));
+                  {.colour = picture.theme.missed, .width = 2.5F, .behind = Behind::shown}));
   }
   if (snapshot.structure && options.structure) {
     StructureLook look{.by_population = options.structure_population, .dark = shown_.dark};
@@ -166,11 +166,11 @@ void ViewContent::updateLines() {
   if (options.xray) addXray();
   if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
     wire_boxes_.push_back(
-        {.box = *plane, .colour = picture_.theme.world, .width = 2, .behind = Behind::faint});
+        {.box = *plane, .colour = picture.theme.world, .width = 2, .behind = Behind::faint});
   }
-  picture_.lines = lines_;
-  picture_.wire_boxes = wire_boxes_;
-  picture_.lines_revision = revision_;
+  picture.lines = lines_;
+  picture.wire_boxes = wire_boxes_;
+  picture.lines_revision = revision_;
 }
 
 }  // namespace broadmark

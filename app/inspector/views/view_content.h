@@ -29,22 +29,20 @@ class ViewContent {
   /// Null before the first update(); all that follows is only there after it.
   [[nodiscard]] const std::shared_ptr<const Snapshot>& snapshot() const { return shown_.snapshot; }
   [[nodiscard]] const std::vector<std::uint32_t>& selection() const { return shown_.selection; }
-  /// To be drawn, once it is said in which space and at what scale.
-  [[nodiscard]] const SceneViewContent& picture() const { return picture_; }
-  /// What the colours mean.
-  [[nodiscard]] const std::vector<LegendEntry>& legend() const { return colouring_.legend; }
-  /// The same of the oracle's answer, where the colours tell of another one.
-  [[nodiscard]] const std::vector<LegendEntry>& oracleLegend() const { return oracle_legend_; }
-  /// What the colours of the shown structure mean, and how many of its cells have each.
-  [[nodiscard]] const std::vector<LegendEntry>& cellLegend() const { return cell_legend_; }
-  /// Lines and boxes that were too many.
-  [[nodiscard]] std::size_t leftOut() const { return left_out_; }
   /// How many bodies are not drawn because the user does not want to see them.
   [[nodiscard]] std::size_t hiddenBodies() const {
     return static_cast<std::size_t>(std::ranges::count(visible_, 0));
   }
   /// Of those that are present; empty if there are none.
   [[nodiscard]] Aabb boundsOf(std::span<const std::uint32_t> bodies) const;
+
+  SceneViewContent picture;  ///< to be drawn, once it is said in which space and at what scale
+  Colouring colouring;
+  /// Like the colouring's legend, of the oracle's answer where the colours tell of another one.
+  std::vector<LegendEntry> oracle_legend;
+  /// What the colours of the shown structure mean, and how many of its cells have each.
+  std::vector<LegendEntry> cell_legend;
+  std::size_t left_out = 0;  ///< lines and boxes that were too many
 
  private:
   /// What all was made from.
@@ -66,14 +64,9 @@ class ViewContent {
   void addXray();
 
   Shown shown_;
-  SceneViewContent picture_;  ///< of what follows
-  Colouring colouring_;
-  std::vector<LegendEntry> oracle_legend_;
-  std::vector<LegendEntry> cell_legend_;
   std::vector<std::uint8_t> visible_;
   std::vector<SceneLine> lines_;
   std::vector<SceneWireBox> wire_boxes_;
-  std::size_t left_out_ = 0;
   std::uint64_t revision_ = 0;
 };
 

@@ -26,15 +26,15 @@ struct LegendRow {
 
 std::vector<LegendRow> legendRows(const ViewContent& content, const std::string& owner) {
   std::vector<LegendRow> rows;
-  if (!content.oracleLegend().empty()) rows.push_back({{}, {"", owner, "oracle"}});
-  for (std::size_t i = 0; i < content.legend().size(); ++i) {
-    const LegendEntry& entry = content.legend()[i];
+  if (!content.oracle_legend.empty()) rows.push_back({{}, {"", owner, "oracle"}});
+  for (std::size_t i = 0; i < content.colouring.legend.size(); ++i) {
+    const LegendEntry& entry = content.colouring.legend[i];
     rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
-    if (!content.oracleLegend().empty())
-      rows.back().texts[2] = std::to_string(content.oracleLegend()[i].count);
+    if (!content.oracle_legend.empty())
+      rows.back().texts[2] = std::to_string(content.oracle_legend[i].count);
   }
-  if (!content.cellLegend().empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
-  for (const LegendEntry& entry : content.cellLegend()) {
+  if (!content.cell_legend.empty()) rows.push_back({{}, {"bodies in a cell", "cells"}});
+  for (const LegendEntry& entry : content.cell_legend) {
     rows.push_back({entry.swatch, {entry.label, std::to_string(entry.count)}});
   }
   return rows;
@@ -96,7 +96,7 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
   const float pad = 0.5F * line;
   const std::vector<LegendRow> rows = legendRows(content, owner);
   std::array<float, 3> widths{};
-  const std::size_t columns = content.oracleLegend().empty() ? 2 : widths.size();
+  const std::size_t columns = content.oracle_legend.empty() ? 2 : widths.size();
   float width = line;
   for (std::size_t column = 0; column < columns; ++column) {
     for (const LegendRow& row : rows) {
@@ -105,7 +105,7 @@ void drawLegend(const Ui& ui, const ViewContent& content, const std::string& own
     width += widths[column] + pad;
   }
   const std::string left_out =
-      content.leftOut() > 0 ? fmt::format("{} lines left out", content.leftOut()) : "";
+      content.left_out > 0 ? fmt::format("{} lines left out", content.left_out) : "";
   const auto height = static_cast<float>(rows.size() + (left_out.empty() ? 0 : 1)) * line;
   const float left = corner.x + size.x - width - 2 * pad;
   const float top = left > taken.x + pad ? corner.y : taken.y;
@@ -142,7 +142,7 @@ float drawTools(Ui& ui, Session& session, ImVec2 corner, ImVec2 size) {
       {Tool::turn, "Turns the selected bodies about their common centre (T)"},
       {Tool::scale, "Scales the selected bodies about their common centre (R)"},
       {Tool::brush, "Paints bodies where one clicks and drags (B)"}};
-  Tools& tools = session.document.desk.tools;
+  Tools& tools = session.document.tools;
   const bool brush = tools.tool == Tool::brush;
   const char* hint = "Click or drag to paint; Escape ends it";
   const ImGuiStyle& style = ImGui::GetStyle();

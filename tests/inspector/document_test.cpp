@@ -46,7 +46,7 @@ TEST_F(AuthoringTest, AnEmptySceneIsShownAndRunByEveryAlgorithm) {
   ASSERT_TRUE(seen.snapshot);
   EXPECT_TRUE(seen.snapshot->boxes->empty());
   EXPECT_TRUE(session.document.atRest());
-  EXPECT_FALSE(session.document.desk.isModified());
+  EXPECT_FALSE(session.document.isModified());
   EXPECT_TRUE(session.notices.errors.empty());
 }
 
@@ -60,24 +60,24 @@ TEST_F(AuthoringTest, EveryEditIsShownAndUndoneAndTheSceneStaysTheSame) {
   session.document.edit([](SceneEditor& editor) { editor.duplicate({0, 5, 0}); });
   RunProgress seen = settle();
   EXPECT_EQ(seen.footage->scene, scene);
-  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
   EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{3});
-  EXPECT_TRUE(session.document.desk.isModified());
+  EXPECT_TRUE(session.document.isModified());
   session.document.edit(&SceneEditor::undo);
   seen = settle();
   EXPECT_EQ(*seen.snapshot->boxes, *first.snapshot->boxes);
   EXPECT_EQ(session.selection.bodies(), std::vector<std::uint32_t>{1});
-  EXPECT_FALSE(session.document.desk.isModified());
+  EXPECT_FALSE(session.document.isModified());
 }
 
 TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   session.document.start(threeBodies());
   settle();
   session.selection.select({2, 0, 7});
-  EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(0, 2));
+  EXPECT_THAT(session.document.editor.selection(), testing::ElementsAre(0, 2));
   session.selection.toggle({1});
   session.selection.toggle({0});
-  EXPECT_THAT(session.document.desk.editor.selection(), testing::ElementsAre(1, 2));
+  EXPECT_THAT(session.document.editor.selection(), testing::ElementsAre(1, 2));
   session.selection.toggle({0, 1});
   EXPECT_THAT(session.selection.bodies(), testing::ElementsAre(0, 1, 2)) << "not all of them were";
   session.selection.toggle({0, 1});
@@ -89,7 +89,7 @@ TEST_F(AuthoringTest, SelectionOfViewAndEditorAreTheSame) {
   session.draft.simulate();
   settle();
   session.selection.select({30});
-  EXPECT_EQ(session.document.desk.editor.selection().size(), 3U);
+  EXPECT_EQ(session.document.editor.selection().size(), 3U);
 }
 
 TEST_F(AuthoringTest, GroupsOfTheDocumentAreSelectedAsOne) {
@@ -116,7 +116,7 @@ TEST_F(AuthoringTest, ABadEditIsAnErrorAndChangesNothing) {
   settle();
   session.document.edit([](SceneEditor& editor) { editor.setName("a/b"); });
   EXPECT_EQ(session.notices.errors.size(), 1U);
-  EXPECT_EQ(session.document.desk.editor.scene(), threeBodies());
+  EXPECT_EQ(session.document.editor.scene(), threeBodies());
 }
 
 TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
@@ -125,16 +125,16 @@ TEST_F(AuthoringTest, SavedAndOpenedAgainItIsTheSame) {
     editor.selectAll();
     editor.transform("turn", {.centre = editor.selectionCentre(), .turn = {0, 0.6F, 0, 0.8F}});
   });
-  const AuthoredScene scene = session.document.desk.editor.scene();
+  const AuthoredScene scene = session.document.editor.scene();
   EXPECT_TRUE(session.document.save(directory / "three"));  // gets its extension
-  EXPECT_EQ(session.document.desk.path(), directory / "three.json");
-  EXPECT_FALSE(session.document.desk.isModified());
+  EXPECT_EQ(session.document.path(), directory / "three.json");
+  EXPECT_FALSE(session.document.isModified());
   session.document.start({});
-  session.opener.open(directory / "three.json");
+  session.open(directory / "three.json");
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.shown());
-  EXPECT_EQ(session.document.desk.editor.scene(), scene);
+  EXPECT_EQ(session.document.editor.scene(), scene);
   EXPECT_TRUE(session.document.save(directory / "again.json"));
   EXPECT_EQ(readTextFile(directory / "again.json"), readTextFile(directory / "three.json"));
 }
@@ -143,14 +143,14 @@ TEST_F(AuthoringTest, BadFilesAreErrorsAndTheDocumentStays) {
   session.document.start(threeBodies());
   settle();
   writeTextFile(directory / "bad.json", R"({"schema": "broadmark-scene/1", "bodies": 3})");
-  session.opener.open(directory / "bad.json");
-  session.opener.open(directory / "missing.json");
+  session.open(directory / "bad.json");
+  session.open(directory / "missing.json");
   EXPECT_FALSE(session.document.save(directory / "no such" / "directory.json"));
   ASSERT_EQ(session.notices.errors.size(), 3U);
   EXPECT_THAT(session.notices.errors[0], testing::HasSubstr("bad.json"));
   EXPECT_THAT(session.notices.errors[1], testing::HasSubstr("missing.json"));
   EXPECT_THAT(session.notices.errors[2], testing::HasSubstr("no such"));
-  EXPECT_EQ(session.document.desk.editor.scene(), threeBodies());
+  EXPECT_EQ(session.document.editor.scene(), threeBodies());
 }
 
 TEST_F(AuthoringTest, UnsavedChangesWaitForADecision) {
@@ -176,11 +176,11 @@ TEST_F(AuthoringTest, PlayingSimulatesAndAnEditReturnsToTheStart) {
   RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.snapshot->frame, 12U);
-  EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
+  EXPECT_NE(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
   session.document.edit([](SceneEditor& editor) { editor.setName("Other"); });
   seen = settle();
   EXPECT_TRUE(session.document.atRest());
-  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.desk.editor.scene()));
+  EXPECT_EQ(*seen.snapshot->boxes, boxesOf(session.document.editor.scene()));
 }
 
 TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
@@ -192,9 +192,9 @@ TEST_F(AuthoringTest, AFrameOfASimulationBecomesADocumentWithVelocities) {
   const RunProgress seen = settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_TRUE(session.document.atRest());
-  EXPECT_TRUE(session.document.desk.isModified());
+  EXPECT_TRUE(session.document.isModified());
   EXPECT_EQ(*seen.snapshot->boxes, *live.snapshot->boxes);
-  const auto& bodies = session.document.desk.editor.scene().bodies;
+  const auto& bodies = session.document.editor.scene().bodies;
   ASSERT_EQ(bodies.size(), 30U);
   EXPECT_TRUE(std::ranges::any_of(
       bodies, [](const AuthoredBody& body) { return body.linear_velocity[1] < 0; }));
@@ -207,7 +207,7 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
   settle();
   session.saveRecording(directory / "some.aabbs");
   settle();
-  session.opener.open(directory / "some.aabbs");
+  session.open(directory / "some.aabbs");
   settle();
   session.playback.seek(4);
   const RunProgress recorded = settle();
@@ -220,16 +220,16 @@ TEST_F(AuthoringTest, AFrameOfARecordingBecomesADocument) {
 
 TEST_F(AuthoringTest, BrushesPaintWhereTheyAreTold) {
   session.document.start({});
-  AuthorDesk& desk = session.document.desk;
-  for (std::size_t brush = 0; brush < desk.brushes.size(); ++brush) {
-    desk.chooseBrush(brush);
-    desk.paint_at = {100.0F * static_cast<float>(brush), 0, 0};
-    const std::size_t before = desk.editor.scene().bodies.size();
-    session.document.add([&] { return desk.stroke(); });
-    EXPECT_GT(desk.editor.scene().bodies.size(), before) << desk.brushes[brush].listing.id;
-    EXPECT_NEAR(desk.editor.selectionCentre()[0], desk.paint_at[0], 12);
+  Document& document = session.document;
+  for (std::size_t brush = 0; brush < document.brushes.size(); ++brush) {
+    document.chooseBrush(brush);
+    document.paint_at = {100.0F * static_cast<float>(brush), 0, 0};
+    const std::size_t before = document.editor.scene().bodies.size();
+    document.add([&] { return document.stroke(); });
+    EXPECT_GT(document.editor.scene().bodies.size(), before) << document.brushes[brush].listing.id;
+    EXPECT_NEAR(document.editor.selectionCentre()[0], document.paint_at[0], 12);
   }
-  EXPECT_EQ(settle().snapshot->boxes->size(), desk.editor.scene().bodies.size());
+  EXPECT_EQ(settle().snapshot->boxes->size(), document.editor.scene().bodies.size());
 }
 
 TEST_F(AuthoringTest, BakesTheWholeScene) {
@@ -239,7 +239,7 @@ TEST_F(AuthoringTest, BakesTheWholeScene) {
   settle();
   EXPECT_TRUE(session.notices.errors.empty());
   EXPECT_EQ(session.jobs.get<BackgroundBake>().report().state, TaskState::done);
-  session.opener.open(directory / "three.aabbs");
+  session.open(directory / "three.aabbs");
   const RunProgress seen = settle();
   EXPECT_EQ(seen.scene.frames, 12U);
   EXPECT_EQ(seen.scene.objects, 3U);
