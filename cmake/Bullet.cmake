@@ -1,7 +1,7 @@
-# Finds Bullet: the targets broadmark::bullet_collision and broadmark::bullet_dynamics. Installed
-# too, as programs that link the algorithms link Bullet's collision library.
+# Finds Bullet: the targets broadmark::bullet_collision and broadmark::bullet_dynamics. Installed,
+# because programs that link the algorithms also link Bullet's collision library.
 #
-# CMake's FindBullet gives variables only. Debian's main libraries are single precision and need no
+# CMake's FindBullet only sets variables. Debian's libraries are single precision and need no
 # definitions.
 find_package(Bullet REQUIRED)
 

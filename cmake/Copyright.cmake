@@ -1,10 +1,10 @@
-# The file "copyright": our licence, and those of the code that becomes part of what is installed, as
-# the Debian packages that it comes from state them.
+# The file "copyright": our licence, and those of linked-in code, copied from its Debian
+# packages.
 file(READ LICENSE copyright)
 if(BROADMARK_CGAL)
   string(APPEND copyright "
-The algorithm \"cgal\" is CGAL's box intersection, whose headers are under the GPL-3: therefore this
-program as a whole, and the library broadmark::algorithms, are under the GPL-3, too
+The algorithm \"cgal\" is CGAL's box intersection, with headers under the GPL-3: therefore this
+program as a whole, and the library broadmark::algorithms, are also under the GPL-3
 (/usr/share/common-licenses/GPL-3). Broadmark configured with BROADMARK_CGAL=OFF is not.
 ")
 endif()

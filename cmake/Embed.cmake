@@ -1,8 +1,8 @@
-# Files that become part of the program, so that it needs none at run time.
+# Embeds files into the program.
 #
 # broadmark_embed(target header file...): `#include "header.h"` then gives, for every file, a
 # function std::string_view broadmark::header::NAME(), NAME being its file name with '_' for every
-# character that cannot stand in one.
+# character that is invalid in an identifier.
 function(broadmark_embed target header)
   set(declarations "")
   set(definitions "")
@@ -13,8 +13,7 @@ function(broadmark_embed target header)
     list(APPEND paths ${path})
     string(APPEND declarations
       "std::string_view ${name}();  // NOLINT(readability-identifier-naming): the file's name\n")
-    # The assembler takes a file of any kind and size at once; a C++ literal is slow to compile and
-    # limited in length.
+    # .incbin takes files of any size; a C++ literal is slow to compile and limited in length.
     string(APPEND definitions "
 asm(R\"(.pushsection .rodata
 ${header}_${name}_begin: .incbin \"${path}\"

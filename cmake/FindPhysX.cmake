@@ -1,5 +1,5 @@
-# Finds NVIDIA's PhysX SDK, built as static libraries: the target PhysX::PhysX. It comes without a
-# package file of its own; its install step lays libraries out by platform and build type.
+# Finds NVIDIA's PhysX SDK, built as static libraries: the target PhysX::PhysX. It has no
+# CMake package file; its install step sorts libraries by platform and build type.
 find_path(PhysX_INCLUDE_DIR PxPhysicsAPI.h PATH_SUFFIXES include physx)
 set(PhysX_LIBRARIES "")
 foreach(name IN ITEMS PhysXExtensions PhysX PhysXPvdSDK PhysXCooking PhysXCommon PhysXFoundation)
@@ -15,7 +15,7 @@ if(PhysX_FOUND AND NOT TARGET PhysX::PhysX)
   find_package(Threads REQUIRED)
   add_library(PhysX::PhysX INTERFACE IMPORTED)
   target_include_directories(PhysX::PhysX INTERFACE ${PhysX_INCLUDE_DIR})
-  # Its headers insist on one of the two.
+  # Its headers require one of the two.
   target_compile_definitions(PhysX::PhysX INTERFACE PX_PHYSX_STATIC_LIB
     $<IF:$<CONFIG:Debug>,_DEBUG,NDEBUG>)
   target_link_libraries(PhysX::PhysX INTERFACE ${PhysX_LIBRARIES} Threads::Threads ${CMAKE_DL_LIBS})

@@ -1,5 +1,5 @@
-# Which public headers these are: what a plug-in must share with the program, to the byte. When all
-# rooms have named theirs, core gets one more: broadmark/headers_hash.h.
+# A hash of the public headers, which must be identical in a plug-in and the program. Once all rooms
+# have declared theirs, it is added to core as broadmark/headers_hash.h.
 set(headers "")
 foreach(target IN LISTS broadmark_plugin_rooms)
   get_target_property(of_target ${target} HEADER_SET)

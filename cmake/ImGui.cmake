@@ -1,4 +1,4 @@
-# Dear ImGui as Debian packages it (libimgui-dev), which brings no CMake files: imgui::imgui.
+# Debian's Dear ImGui (libimgui-dev), which has no CMake files: imgui::imgui.
 find_path(IMGUI_INCLUDE imgui.h PATH_SUFFIXES imgui REQUIRED)
 find_library(IMGUI_LIBRARY imgui REQUIRED)
 add_library(imgui::imgui STATIC IMPORTED GLOBAL)

@@ -1,6 +1,6 @@
-# Installs the program and the libraries, and exports them as a package: find_package(broadmark)
-# gives broadmark::engine, broadmark::algorithms and broadmark::scenes, and the program for plug-ins
-# to link to.
+# Installs and exports the program and the libraries: find_package(broadmark) provides
+# broadmark::engine, broadmark::algorithms and broadmark::scenes, and the program for plug-ins to link
+# to.
 include(CMakePackageConfigHelpers)
 
 set(installed broadmark_engine broadmark_core broadmark_statistics broadmark_recordings broadmark_harness
@@ -13,7 +13,7 @@ install(TARGETS ${installed} EXPORT broadmark_targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-# What finds the libraries that ours link to.
+# Find modules of the libraries' dependencies.
 set(dependencies Library Bullet)
 if(BROADMARK_EMBREE)
   list(APPEND dependencies Embree)
@@ -40,8 +40,8 @@ install(FILES ${PROJECT_BINARY_DIR}/broadmarkConfig.cmake
 list(TRANSFORM dependencies PREPEND cmake/ OUTPUT_VARIABLE finders)
 install(FILES ${finders} cmake/Plugin.cmake DESTINATION ${package_dir})
 
-# Manual page and completion scripts: the program prints them, when it is installed. (A program for
-# another kind of machine cannot.)
+# Manual page and completion scripts, printed by the program at install time (not when
+# cross-compiling).
 if(BROADMARK_APP AND NOT CMAKE_CROSSCOMPILING)
   set(printed ${PROJECT_BINARY_DIR}/printed)
   function(broadmark_install_printed directory file)
@@ -58,7 +58,7 @@ if(BROADMARK_APP AND NOT CMAKE_CROSSCOMPILING)
   broadmark_install_printed(${data}/fish/vendor_completions.d broadmark.fish completion fish)
 endif()
 
-# Documents, with the example scenes that they mention, laid out as their links expect.
+# Documents and their example scenes, in folders that match their links.
 include(cmake/Copyright.cmake)
 file(GLOB documents CONFIGURE_DEPENDS docs/*.md)
 install(FILES ${PROJECT_BINARY_DIR}/copyright README.md CONTRIBUTING.md

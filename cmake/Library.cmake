@@ -1,5 +1,5 @@
-# Finds a library that has no package of CMake's, or one that asks for more than we use: the target
-# broadmark::NAME. Installed, too, as programs that link our libraries link those that these use.
+# Finds a library without a CMake package, or with one that requires more than we use: the target
+# broadmark::NAME. Installed, because programs that link our libraries also link their dependencies.
 #
 # broadmark_library(name header library)
 function(broadmark_library name header library)

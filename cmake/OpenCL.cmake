@@ -1,5 +1,5 @@
 # Finds OpenCL, and Bullet's algorithms on it: the targets OpenCL::OpenCL and broadmark::bullet_opencl.
-# Installed, too, as programs that link the algorithms link these.
+# Installed, because programs that link the algorithms also link these.
 find_package(OpenCL REQUIRED)
 find_path(BROADMARK_BULLET3_INCLUDE_DIR Bullet3OpenCL/Initialize/b3OpenCLUtils.h
   PATH_SUFFIXES bullet REQUIRED)

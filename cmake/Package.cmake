@@ -1,4 +1,4 @@
-# `cpack` in the build folder makes a Debian package of what is installed.
+# `cpack` in the build folder makes a Debian package of the installed files.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -8,14 +8,14 @@ set(CPACK_PACKAGE_CONTACT "Broadmark developers <broadmark@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION "\
 Broadmark generates physics scenes, records them, runs broad-phase algorithms
 on exactly the same boxes, checks every answer and measures every phase. The
-package holds the program, and libraries with which to measure a broad phase
-of one's own.")
+package contains the program, and libraries for measuring your own broad
+phase.")
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # what the program links to
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # linked libraries
 
-# What it loads at run time, if there; and what others need to build with the libraries, to have an
-# OpenCL device without a GPU, or to use the Python package.
+# Recommended: libraries loaded at run time, if present. Suggested: dependencies for building with the
+# libraries, an OpenCL device without a GPU, the Python package.
 set(recommended "")
 set(suggested cmake g++ make libbullet-dev libfmt-dev)
 if(BROADMARK_RENDER)

@@ -1,4 +1,4 @@
-# Makes broadmark/render/palette.h of assets/palette.txt.
+# Generates broadmark/render/palette.h from assets/palette.txt.
 set(palette ${PROJECT_SOURCE_DIR}/assets/palette.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${palette})
 file(STRINGS ${palette} lines REGEX "^[a-z]")

@@ -1,13 +1,13 @@
-# A plug-in (broadmark/plugin.h) made of these files:
+# Builds a plug-in (broadmark/plugin.h) from these files:
 #   broadmark_add_plugin(NAME FILE...)
-# Without a build type it is optimised nevertheless, as it is there to be measured. Results name the
-# flags that it was built with.
+# It is optimised even without a build type, because it will be measured. Results record its compiler
+# flags.
 function(broadmark_add_plugin name)
   add_library(${name} MODULE ${ARGN})
   target_link_libraries(${name} PRIVATE broadmark::broadmark)
   get_property(several_types GLOBAL PROPERTY GENERATOR_IS_MULTI_CONFIG)
   if(several_types)
-    return()  # only the build tells which
+    return()  # the build type is unknown at configure time
   endif()
   set(type RELEASE)
   if(CMAKE_BUILD_TYPE)

@@ -13,8 +13,8 @@
 
 namespace broadmark::tide {
 
-/// What things take, in nanoseconds on the machine of docs/records.md: only how they compare
-/// matters (there, "Where `tide` changes over").
+/// Costs in nanoseconds on the machine of docs/columns-and-tide.md ("When `tide` falls back to a
+/// full search"). Only their ratios matter.
 struct Costs {
   // In the grid.
   double build = 100;  ///< for each body there is

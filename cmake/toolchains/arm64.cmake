@@ -2,5 +2,5 @@
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
-set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)  # no notes on what GCC 10 has changed
+set(CMAKE_CXX_FLAGS_INIT -Wno-psabi)  # no notes about ABI changes in GCC 10
 set(CMAKE_CROSSCOMPILING_EMULATOR qemu-aarch64)
