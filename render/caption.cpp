@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "broadmark/render/fonts.h"
+#include "render_assets.h"
 
 namespace broadmark {
 namespace {
@@ -138,6 +139,8 @@ void drawRow(Picture& picture, const Typeface& face, const Row& row, float left,
 }
 
 }  // namespace
+
+std::string_view interfaceFont() { return render_assets::Inter_Regular_otf(); }
 
 void drawCaption(Picture& picture, const std::vector<Row>& rows, Rgb background) {
   float size =

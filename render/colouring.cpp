@@ -178,18 +178,13 @@ void colourByLayer(const ColouringInput& input, Colouring& colouring) {
                 [&](std::size_t body) { return entries[input.layers[body]]; });
 }
 
-/// The longest edge.
-float sizeOf(const Aabb& box) {
-  return std::max({box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]});
-}
-
 void colourBySize(const ColouringInput& input, Colouring& colouring) {
   const Palette& palette = paletteOf(input.dark);
   constexpr float kMost = std::numeric_limits<float>::max();
   float smallest = kMost;
   float largest = 0;
   for (const Aabb& box : input.boxes) {
-    const float size = sizeOf(box);  // below 0: absent
+    const auto size = static_cast<float>(longestEdge(box));  // 0: a point, or absent
     if (size > 0) smallest = std::min(smallest, size);
     largest = std::max(largest, std::min(size, kMost));
   }
@@ -211,7 +206,7 @@ void colourBySize(const ColouringInput& input, Colouring& colouring) {
         {fmt::format("{:.3g} to {:.3g}", border(step), border(step + 1)), palette.size[step]});
   }
   colourByClass(input.boxes, std::move(legend), colouring, [&](std::size_t body) {
-    const float size = sizeOf(input.boxes[body]);
+    const auto size = static_cast<float>(longestEdge(input.boxes[body]));
     std::size_t step = 0;
     for (std::size_t i = 1; i < steps; ++i) step += size >= begins[i] ? 1 : 0;
     return step;

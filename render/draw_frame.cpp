@@ -1,5 +1,4 @@
 // A picture of one frame, as in the paper's figures.
-#include "draw_frame.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +7,7 @@
 #include "broadmark/render/camera.h"
 #include "broadmark/render/framebuffer.h"
 #include "broadmark/render/palette.h"
+#include "broadmark/render/picture.h"
 #include "broadmark/render/scene_view.h"
 #include "caption.h"
 
@@ -60,7 +60,7 @@ void drawLegend(Picture& picture, const SceneInfo& scene, const Frame& frame,
 }  // namespace
 
 Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame& frame,
-                  PairRuns overlaps, int width, int height, std::size_t max_batch) {
+                  PairRuns overlaps, int width, int height) {
   for (const int side : {width, height}) {
     if (side < 1 || side > kLargestPicture) {
       throw RenderError(fmt::format("a picture of {} x {} cannot be drawn: 1 to {} pixels a side",
@@ -86,7 +86,6 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   options.technique = Technique::gl;
   options.samples = Framebuffer::kSamples;
   options.threads = 1;
-  options.max_batch = max_batch;
   SceneView view(gl, options);
   view.resize(width, height);
   view.draw(content,
@@ -94,12 +93,6 @@ Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame
   Picture picture = view.read();
   drawLegend(picture, scene, frame, overlapping, pairCount(overlaps));
   return picture;
-}
-
-Picture drawFrame(OffscreenContext& context, const SceneInfo& scene, const Frame& frame,
-                  PairRuns overlaps, int width, int height) {
-  return drawFrame(context, scene, frame, overlaps, width, height,
-                   std::numeric_limits<std::size_t>::max());
 }
 
 }  // namespace broadmark

@@ -124,9 +124,43 @@ class SceneView::Painter {
         lines_(lineRenderer(gl)) {}
 
   /// Takes over what has changed in the content. Whether anything has.
-  bool update(const SceneViewContent& content);
+  bool update(const SceneViewContent& content) {
+    const Drawn wanted{content.bodies_revision, content.lines_revision, content.space,
+                       content.world,           content.theme,          content.shows_world,
+                       content.shows_grid,      content.shows_axes,     content.scale};
+    if (drawn_ == wanted) return false;
+    const bool all = !drawn_ || drawn_->space != wanted.space;
+    const bool bodies = all || drawn_->bodies_revision != wanted.bodies_revision ||
+                        drawn_->theme != wanted.theme || drawn_->scale != wanted.scale;
+    const bool lines =
+        all || drawn_->lines_revision != wanted.lines_revision || drawn_->scale != wanted.scale;
+    if (bodies) {
+      setBodies(scene_, content, team_);
+      setOutlines(scene_, content);
+    }
+    if (lines) setLines(scene_, content);
+    setSurroundings(scene_, content);
+    bounds_ = boundsOf(scene_.boxes, content.space.toView(content.world));
+    if (!splatter_) upload(bodies, lines);
+    drawn_ = wanted;
+    return true;
+  }
+
   /// Draws what was last taken over, and leaves `target` bound.
-  void draw(const Viewpoint& viewpoint, const Framebuffer& target);
+  void draw(const Viewpoint& viewpoint, const Framebuffer& target) {
+    gl_->Disable(GL_SCISSOR_TEST);
+    gl_->Disable(GL_CULL_FACE);
+    gl_->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    if (splatter_) {
+      splatter_->draw(scene_, viewpoint);
+      target.write(splatter_->colours());
+      target.bind();
+    } else {
+      target.bind();
+      drawByGl(viewpoint);
+    }
+    if (drawn_->shows_axes) drawAxes(viewpoint);
+  }
 
   /// Bounds of bodies and world, in view space.
   [[nodiscard]] const Aabb& bounds() const { return bounds_; }
@@ -153,10 +187,72 @@ class SceneView::Painter {
     PrimitiveBuffer floor;
     std::array<PrimitiveBuffer, ScenePrimitives::layers> lines;
   };
-  void upload(bool bodies, bool lines);
-  void drawByGl(const Viewpoint& viewpoint) const;
-  void drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const;
-  void drawAxes(const Viewpoint& viewpoint) const;
+  void upload(bool bodies, bool lines) {
+    const auto upload_layers = [&](std::initializer_list<ScenePrimitives::Layer> layers) {
+      for (const ScenePrimitives::Layer layer : layers) {
+        uploaded_.lines[layer] = lines_.upload(scene_.lines[layer].lines);
+      }
+    };
+    if (bodies) {
+      uploaded_.boxes = boxes_.upload(scene_.boxes);
+      upload_layers({ScenePrimitives::outlines});
+    }
+    if (lines) {
+      upload_layers({ScenePrimitives::hidden, ScenePrimitives::faint, ScenePrimitives::shown});
+    }
+    uploaded_.floor = boxes_.upload(scene_.floor);
+    upload_layers({ScenePrimitives::grid, ScenePrimitives::world});
+  }
+
+  void drawByGl(const Viewpoint& viewpoint) const {
+    gl_->Enable(GL_DEPTH_TEST);
+    gl_->DepthFunc(GL_LEQUAL);
+    gl_->Disable(GL_BLEND);
+    setClearColour(*gl_, viewpoint.haze);
+    gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    boxes_.draw(uploaded_.boxes, viewpoint);
+
+    gl_->DepthMask(GL_FALSE);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // the picture stays opaque
+    // At the far end of the depth range: everything drawn so far is in front of it.
+    gl_->DepthRange(1, 1);
+    boxes_.draw(uploaded_.floor, viewpoint);
+    gl_->DepthRange(0, 1);
+    gl_->Enable(GL_BLEND);
+    for (int layer = 0; layer < ScenePrimitives::layers; ++layer) {
+      drawLines(static_cast<ScenePrimitives::Layer>(layer), viewpoint);
+    }
+    gl_->Disable(GL_BLEND);
+    gl_->Disable(GL_DEPTH_TEST);
+    gl_->DepthMask(GL_TRUE);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
+
+  void drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const {
+    const LineLayer& how = scene_.lines[layer];
+    const PrimitiveBuffer& lines = uploaded_.lines[layer];
+    if (how.opacity_behind > 0) {
+      gl_->DepthFunc(GL_GREATER);
+      lines_.draw(lines, viewpoint, how.opacity_behind);
+      gl_->DepthFunc(GL_LEQUAL);
+    }
+    if (how.where_no_box_is) gl_->DepthRange(1, 1);
+    lines_.draw(lines, viewpoint);
+    gl_->DepthRange(0, 1);
+  }
+
+  void drawAxes(const Viewpoint& viewpoint) const {
+    const float scale = drawn_->scale;
+    const Viewpoint corner = axesViewpoint(viewpoint, scale);
+    const auto margin = static_cast<int>(kAxesMargin * scale);
+    gl_->Viewport(margin, margin, corner.width, corner.height);
+    gl_->Disable(GL_DEPTH_TEST);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
+    gl_->Enable(GL_BLEND);
+    lines_.draw(lines_.upload(axesCross(viewpoint.camera, drawn_->theme, scale)), corner);
+    gl_->Disable(GL_BLEND);
+    gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  }
 
   const Gl* gl_;
   ThreadTeam team_;
@@ -169,110 +265,6 @@ class SceneView::Painter {
   Uploaded uploaded_;  ///< empty if the splatter draws
   Aabb bounds_;
 };
-
-bool SceneView::Painter::update(const SceneViewContent& content) {
-  const Drawn wanted{content.bodies_revision, content.lines_revision, content.space,
-                     content.world,           content.theme,          content.shows_world,
-                     content.shows_grid,      content.shows_axes,     content.scale};
-  if (drawn_ == wanted) return false;
-  const bool all = !drawn_ || drawn_->space != wanted.space;
-  const bool bodies = all || drawn_->bodies_revision != wanted.bodies_revision ||
-                      drawn_->theme != wanted.theme || drawn_->scale != wanted.scale;
-  const bool lines =
-      all || drawn_->lines_revision != wanted.lines_revision || drawn_->scale != wanted.scale;
-  if (bodies) {
-    setBodies(scene_, content, team_);
-    setOutlines(scene_, content);
-  }
-  if (lines) setLines(scene_, content);
-  setSurroundings(scene_, content);
-  bounds_ = boundsOf(scene_.boxes, content.space.toView(content.world));
-  if (!splatter_) upload(bodies, lines);
-  drawn_ = wanted;
-  return true;
-}
-
-void SceneView::Painter::upload(bool bodies, bool lines) {
-  const auto upload_layers = [&](std::initializer_list<ScenePrimitives::Layer> layers) {
-    for (const ScenePrimitives::Layer layer : layers) {
-      uploaded_.lines[layer] = lines_.upload(scene_.lines[layer].lines);
-    }
-  };
-  if (bodies) {
-    uploaded_.boxes = boxes_.upload(scene_.boxes);
-    upload_layers({ScenePrimitives::outlines});
-  }
-  if (lines) {
-    upload_layers({ScenePrimitives::hidden, ScenePrimitives::faint, ScenePrimitives::shown});
-  }
-  uploaded_.floor = boxes_.upload(scene_.floor);
-  upload_layers({ScenePrimitives::grid, ScenePrimitives::world});
-}
-
-void SceneView::Painter::draw(const Viewpoint& viewpoint, const Framebuffer& target) {
-  gl_->Disable(GL_SCISSOR_TEST);
-  gl_->Disable(GL_CULL_FACE);
-  gl_->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
-  if (splatter_) {
-    splatter_->draw(scene_, viewpoint);
-    target.write(splatter_->colours());
-    target.bind();
-  } else {
-    target.bind();
-    drawByGl(viewpoint);
-  }
-  if (drawn_->shows_axes) drawAxes(viewpoint);
-}
-
-void SceneView::Painter::drawByGl(const Viewpoint& viewpoint) const {
-  gl_->Enable(GL_DEPTH_TEST);
-  gl_->DepthFunc(GL_LEQUAL);
-  gl_->Disable(GL_BLEND);
-  setClearColour(*gl_, viewpoint.haze);
-  gl_->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  boxes_.draw(uploaded_.boxes, viewpoint);
-
-  gl_->DepthMask(GL_FALSE);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);  // the picture stays opaque
-  // At the far end of the depth range: everything drawn so far is in front of it.
-  gl_->DepthRange(1, 1);
-  boxes_.draw(uploaded_.floor, viewpoint);
-  gl_->DepthRange(0, 1);
-  gl_->Enable(GL_BLEND);
-  for (int layer = 0; layer < ScenePrimitives::layers; ++layer) {
-    drawLines(static_cast<ScenePrimitives::Layer>(layer), viewpoint);
-  }
-  gl_->Disable(GL_BLEND);
-  gl_->Disable(GL_DEPTH_TEST);
-  gl_->DepthMask(GL_TRUE);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
-
-void SceneView::Painter::drawLines(ScenePrimitives::Layer layer, const Viewpoint& viewpoint) const {
-  const LineLayer& how = scene_.lines[layer];
-  const PrimitiveBuffer& lines = uploaded_.lines[layer];
-  if (how.opacity_behind > 0) {
-    gl_->DepthFunc(GL_GREATER);
-    lines_.draw(lines, viewpoint, how.opacity_behind);
-    gl_->DepthFunc(GL_LEQUAL);
-  }
-  if (how.where_no_box_is) gl_->DepthRange(1, 1);
-  lines_.draw(lines, viewpoint);
-  gl_->DepthRange(0, 1);
-}
-
-void SceneView::Painter::drawAxes(const Viewpoint& viewpoint) const {
-  const float scale = drawn_->scale;
-  const Viewpoint corner = axesViewpoint(viewpoint, scale);
-  const auto margin = static_cast<int>(kAxesMargin * scale);
-  gl_->Viewport(margin, margin, corner.width, corner.height);
-  gl_->Disable(GL_DEPTH_TEST);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-  gl_->Enable(GL_BLEND);
-  lines_.draw(lines_.upload(axesCross(viewpoint.camera, drawn_->theme, scale)), corner);
-  gl_->Disable(GL_BLEND);
-  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
 
 SceneView::SceneView(const Gl& gl, const SceneViewOptions& options)
     : gl_(&gl),

@@ -2,18 +2,68 @@
 // an OpenGL that runs on the processor.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "band_lists.h"
 #include "broadmark/execution.h"
+#include "broadmark/range.h"
 #include "scene_primitives.h"
 #include "splat_kernels.h"
 
 namespace broadmark {
+
+/// Sorts what is drawn into bands of rows, so that workers can draw bands at the same time: for
+/// each band the positions of the items that touch it, ascending for any number of workers.
+class BandLists {
+ public:
+  /// Small enough that a band stays in a core's cache, large enough that few items lie in two.
+  static constexpr int kRows = 32;
+
+  void reset(std::size_t items, int bands, int workers) {
+    rectangles_.resize(items);
+    lists_.resize(static_cast<std::size_t>(workers));
+    for (auto& by_band : lists_) {
+      by_band.resize(static_cast<std::size_t>(bands));
+      for (std::vector<std::uint32_t>& list : by_band) list.clear();
+    }
+  }
+
+  /// A worker's share of the items: project(first, last, rectangles) fills their rectangles.
+  template <class Project>
+  void fill(int worker, const Project& project) {
+    auto& by_band = lists_[static_cast<std::size_t>(worker)];
+    const auto [begin, end] = share(rectangles_.size(), static_cast<int>(lists_.size()), worker);
+    // In pieces: the rectangles are still in the cache when they are sorted into bands.
+    constexpr std::size_t kPiece = 1024;
+    for (std::size_t first = begin; first < end; first += kPiece) {
+      const std::size_t last = std::min(first + kPiece, end);
+      project(first, last, rectangles_.data());
+      for (std::size_t item = first; item < last; ++item) {
+        const PixelRectangle& rectangle = rectangles_[item];
+        if (rectangle.left > rectangle.right) continue;
+        for (int band = rectangle.bottom / kRows; band <= rectangle.top / kRows; ++band) {
+          by_band[static_cast<std::size_t>(band)].push_back(static_cast<std::uint32_t>(item));
+        }
+      }
+    }
+  }
+
+  /// Calls draw(items, rectangles) for some of a band's items after the others.
+  template <class Draw>
+  void forEach(int band, const Draw& draw) const {
+    for (const auto& by_band : lists_) {
+      draw(std::span(by_band[static_cast<std::size_t>(band)]), rectangles_.data());
+    }
+  }
+
+ private:
+  std::vector<PixelRectangle> rectangles_;
+  std::vector<std::vector<std::vector<std::uint32_t>>> lists_;  ///< by worker and band
+};
 
 /// Draws a scene on the processor; it looks as if OpenGL had drawn it. The picture stays until the
 /// next draw(). It is the same for every number of threads and every instruction set.
@@ -22,13 +72,11 @@ class Splatter {
   /// `team` does the drawing and must outlive this.
   explicit Splatter(ThreadTeam& team, Isa isa = bestIsa());
 
-  /// On a background of the viewpoint's haze. Each side of the picture: 1 to kLargestSplat pixels.
+  /// On a background of the viewpoint's haze. Each side of the picture: 1 to 16384 pixels.
   void draw(const ScenePrimitives& scene, const Viewpoint& viewpoint);
 
   /// RGBA8 in memory order, rows from bottom to top as in OpenGL.
   [[nodiscard]] std::span<const std::uint32_t> colours() const { return colours_; }
-
-  static constexpr int kLargestSplat = 16384;
 
  private:
   struct BoxLayer {

@@ -10,17 +10,35 @@
 
 namespace broadmark::scenes {
 
-#define LIST "scene_list.inc"
-#define ENTRY_TYPE SceneEntry
-#define ENTRIES sceneEntries
-#include "entries.inl"
+#define ENTRY(name)   \
+  namespace name {    \
+  SceneEntry entry(); \
+  }
+#include "scene_list.inc"
+#undef ENTRY
 
-#define LIST "engine_list.inc"
-#define ENTRY_TYPE EngineEntry
-#define ENTRIES builtinEngineEntries
-#include "entries.inl"
+#define ENTRY(name)    \
+  namespace name {     \
+  EngineEntry entry(); \
+  }
+#include "engine_list.inc"
+#undef ENTRY
+
+#define ENTRY(name) name::entry(),
+
+std::vector<SceneEntry> sceneEntries() {
+  return {
+#include "scene_list.inc"
+  };
+}
 
 namespace {
+
+std::vector<EngineEntry> builtinEngineEntries() {
+  return {
+#include "engine_list.inc"
+  };
+}
 
 /// The engines that were added to the built-in ones.
 std::vector<EngineEntry>& addedEngines() {

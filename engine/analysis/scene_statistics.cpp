@@ -41,35 +41,6 @@ Changes meanOf(std::span<const Changes> frames) {
   return {sum.appeared / count, sum.vanished / count, sum.changed / count};
 }
 
-FrameStatistics statisticsOf(const SceneInfo& scene, const Frame& frame,
-                             std::span<const Aabb> before, std::size_t pairs) {
-  FrameStatistics figures{.frame = frame.index};
-  std::vector<double> extents;
-  double filled = 0;
-  for (const Aabb& box : frame.boxes) {
-    if (isEmpty(box)) continue;
-    extents.push_back(longestEdge(box));
-    filled += volume(box);
-    if (!holdsCentre(scene.world, box)) ++figures.outside;
-  }
-  figures.bodies = static_cast<std::uint32_t>(extents.size());
-  if (!before.empty()) {
-    const Changes changes = changesBetween(before, frame.boxes);
-    figures.changes = changes;
-    const double stayed = figures.bodies - changes.appeared;
-    const double moved = changes.changed - changes.appeared - changes.vanished;
-    if (stayed > 0) figures.moving_share = moved / stayed;
-  }
-  if (extents.empty()) return figures;
-  figures.density = ratio(filled, volume(scene.world));
-  const auto [min, max] = std::ranges::minmax(extents);
-  figures.min_extent = min;
-  figures.median_extent = quantile(extents, 0.5);
-  figures.max_extent = max;
-  figures.pairs_per_body = static_cast<double>(pairs) / figures.bodies;
-  return figures;
-}
-
 /// Bodies and pairs by layer, added up over frames.
 class FilterTally {
  public:
@@ -78,10 +49,10 @@ class FilterTally {
   void add(const Frame& frame, std::span<const Pair> pairs) {
     ++frames_;
     for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
-      bodies_[layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
+      bodies_[filter_.layerOf(body)] += isEmpty(frame.boxes[body]) ? 0 : 1;
     }
     for (const Pair pair : pairs) {
-      const auto [a, b] = std::minmax({layerOf(pair.a), layerOf(pair.b)});
+      const auto [a, b] = std::minmax({filter_.layerOf(pair.a), filter_.layerOf(pair.b)});
       pairs_[a][b] += 1;
     }
   }
@@ -91,7 +62,7 @@ class FilterTally {
     std::array<bool, LayerMatrix::kLayers> is_used{};
     std::map<std::uint32_t, std::uint32_t> worlds;
     for (std::uint32_t body = 0; body < objects; ++body) {
-      is_used[layerOf(body)] = true;
+      is_used[filter_.layerOf(body)] = true;
       const BodyGroups groups = filter_.groupsOf(body);
       figures.largest_world = std::max(figures.largest_world, ++worlds[groups.world]);
       figures.tagged += groups.tags == BodyGroups::kNoTags ? 0 : 1;
@@ -112,10 +83,6 @@ class FilterTally {
  private:
   template <class T>
   using ByLayer = std::array<T, LayerMatrix::kLayers>;
-
-  [[nodiscard]] std::size_t layerOf(std::uint32_t body) const {
-    return filter_.layers().empty() ? 0 : filter_.layers()[body];
-  }
 
   CollisionFilter filter_;
   double frames_ = 0;
@@ -176,8 +143,32 @@ Changes changesBetween(std::span<const Aabb> before, std::span<const Aabb> boxes
 }
 
 FrameStatistics frameStatistics(const SceneInfo& scene, const Frame& frame,
-                                std::span<const Aabb> before) {
-  return statisticsOf(scene, frame, before, sweptPairs(frame.boxes, scene.filter).size());
+                                std::span<const Aabb> before, std::size_t pairs) {
+  FrameStatistics figures{.frame = frame.index};
+  std::vector<double> extents;
+  double filled = 0;
+  for (const Aabb& box : frame.boxes) {
+    if (isEmpty(box)) continue;
+    extents.push_back(longestEdge(box));
+    filled += volume(box);
+    if (!holdsCentre(scene.world, box)) ++figures.outside;
+  }
+  figures.bodies = static_cast<std::uint32_t>(extents.size());
+  if (!before.empty()) {
+    const Changes changes = changesBetween(before, frame.boxes);
+    figures.changes = changes;
+    const double stayed = figures.bodies - changes.appeared;
+    const double moved = changes.changed - changes.appeared - changes.vanished;
+    if (stayed > 0) figures.moving_share = moved / stayed;
+  }
+  if (extents.empty()) return figures;
+  figures.density = ratio(filled, volume(scene.world));
+  const auto [min, max] = std::ranges::minmax(extents);
+  figures.min_extent = min;
+  figures.median_extent = quantile(extents, 0.5);
+  figures.max_extent = max;
+  figures.pairs_per_body = static_cast<double>(pairs) / figures.bodies;
+  return figures;
 }
 
 std::optional<double> RangeStatistics::sizeRatio() const {
@@ -219,15 +210,15 @@ std::optional<SceneDescription> describe(FrameSource& source, int parts,
   std::vector<FrameStatistics> frames;
   std::vector<Aabb> before;
   FilterTally tally(scene.filter);
-  for (std::optional<Frame> frame = source.rewind(); frame; frame = source.next()) {
-    const std::vector<Pair> pairs = sweptPairs(frame->boxes, scene.filter);
-    frames.push_back(statisticsOf(scene, *frame, before, pairs.size()));
-    if (!scene.filter.wantsAll() && (frame->index > 0 || scene.frames == 0)) {
-      tally.add(*frame, pairs);
+  const auto take = [&](const Frame& frame) {
+    const std::vector<Pair> pairs = sweptPairs(frame.boxes, scene.filter);
+    frames.push_back(frameStatistics(scene, frame, before, pairs.size()));
+    if (!scene.filter.wantsAll() && (frame.index > 0 || scene.frames == 0)) {
+      tally.add(frame, pairs);
     }
-    before.assign(frame->boxes.begin(), frame->boxes.end());
-    if (progress && !progress(frame->index)) return std::nullopt;
-  }
+    before.assign(frame.boxes.begin(), frame.boxes.end());
+  };
+  if (!recordAll(source, take, progress)) return std::nullopt;
   const std::span all(frames);
   SceneDescription description{
       .initial = rangeStatistics(all.first(1)), .parts = {}, .overall = {}};

@@ -68,7 +68,7 @@ std::span<const Aabb> PosrotReader::readBoxes(std::uint32_t index) {
 }
 
 PosrotWriter::PosrotWriter(const std::filesystem::path& path, const SceneInfo& scene)
-    : file_(std::make_unique<RecordingFile>(path, scene)) {}
+    : file_(std::make_unique<OriginalRecordingFile>(path, scene)) {}
 
 PosrotWriter::~PosrotWriter() = default;
 

@@ -20,37 +20,23 @@
 namespace broadmark {
 namespace {
 
-class AabbsFile final : public BoxRecordingFile {
- public:
-  AabbsFile(const std::filesystem::path& path, const SceneInfo& scene) : file_(path, scene) {}
-
-  void write(const Frame& frame) override { file_.append(frame.boxes, "box"); }
-  std::string finish() override { return file_.finish(); }
-  std::unique_ptr<Recording> finishTemporary() override {
-    return std::make_unique<RecordingReader>(file_.finishTemporary(), file_.name());
-  }
-
- private:
-  RecordingFile file_;
-};
-
-std::unique_ptr<BoxRecordingFile> makeAabbsFile(const std::filesystem::path& path,
-                                                const SceneInfo& scene, const RecordingOrigin&) {
-  return std::make_unique<AabbsFile>(path, scene);
+std::unique_ptr<RecordingFile> makeAabbsFile(const std::filesystem::path& path,
+                                             const SceneInfo& scene, const RecordingOrigin&) {
+  return std::make_unique<OriginalRecordingFile>(path, scene);
 }
 
 template <class Reader>
-std::unique_ptr<Recording> open(const std::filesystem::path& path) {
-  return std::make_unique<Reader>(path);
+std::unique_ptr<Recording> open(FileDescriptor file, std::string name) {
+  return std::make_unique<Reader>(std::move(file), std::move(name));
 }
 
 /// A kind of recording.
 struct Kind {
   std::string_view extension;
-  std::unique_ptr<Recording> (*open)(const std::filesystem::path&);
+  std::unique_ptr<Recording> (*open)(FileDescriptor, std::string name);
   /// Null: does not hold boxes. Without a path: an unnamed file.
-  std::unique_ptr<BoxRecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
-                                             const RecordingOrigin&);
+  std::unique_ptr<RecordingFile> (*write)(const std::filesystem::path&, const SceneInfo&,
+                                          const RecordingOrigin&);
 };
 
 constexpr Kind kKinds[] = {
@@ -163,7 +149,7 @@ const std::string& Recording::hash() {
 }
 
 std::unique_ptr<Recording> openRecordingFile(const std::filesystem::path& path) {
-  return kindOf(path.extension()).open(path);
+  return kindOf(path.extension()).open(openForReading(path), path.string());
 }
 
 OriginalRecording::OriginalRecording(FileDescriptor file, std::string name)
@@ -222,7 +208,10 @@ void RecordingWriter::write(const Frame& frame) { file_->write(frame); }
 
 std::string RecordingWriter::finish() { return file_->finish(); }
 
-std::unique_ptr<Recording> RecordingWriter::finishTemporary() { return file_->finishTemporary(); }
+std::unique_ptr<Recording> RecordingWriter::finishTemporary() {
+  const Kind& kind = kindOf(recordingExtension(file_->scene()));
+  return kind.open(file_->finishTemporary(), file_->name());
+}
 
 bool recordAll(FrameSource& source, const FrameSink& sink, const FrameProgress& progress) {
   std::optional<Frame> frame = source.rewind();

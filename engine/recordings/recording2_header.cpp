@@ -130,6 +130,7 @@ std::string recordingFault(const Aabb& box, bool all_present) {
 }
 
 std::vector<std::byte> recording2Header(const SceneInfo& scene, const RecordingOrigin& origin) {
+  requireNames(scene);
   Json json;
   json["schema"] = kSchema;
   json["name"] = scene.name;

@@ -87,7 +87,7 @@ void appendBytes(std::vector<std::byte>& bytes, std::span<const T> values) {
   std::memcpy(bytes.data() + begin, values.data(), values.size_bytes());
 }
 
-/// All bytes before the first frame.
+/// All bytes before the first frame. Throws InputError if the scene cannot be recorded (names).
 std::vector<std::byte> recording2Header(const SceneInfo&, const RecordingOrigin&);
 
 /// The JSON of a header. All functions throw InputError naming the key and what would be right.

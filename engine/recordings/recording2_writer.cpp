@@ -16,28 +16,25 @@ namespace {
 
 /// Most frames from one key frame to the next: a frame in which little changed takes its time, too.
 constexpr std::uint32_t kMostBetweenKeys = 256;
-class Recording2File final : public BoxRecordingFile {
+
+class Recording2File final : public RecordingFile {
  public:
   Recording2File(const std::filesystem::path& path, const SceneInfo& scene,
-                 const RecordingOrigin& origin)
-      : scene_(scene) {
-    requireNames(scene);
-    block_ = recording2Header(scene, origin);
-    file_ = growingFile(path, scene);
-    hasher_.add(block_);
-    appendBlock();
+                 const std::vector<std::byte>& header)
+      : RecordingFile(path, scene, header) {
+    hasher_.add(header);
   }
 
   void write(const Frame& given) override {
     const std::span<const Aabb> boxes = given.boxes;
-    requireBodies(boxes.size(), scene_, file_->name());
+    requireBodies(boxes.size());
     const auto index = static_cast<std::uint32_t>(index_.size());
     const Frame frame = changes_.complete({index, boxes, given.changed});
     requireRecordable(frame);
     const auto ids = frame.changed.value_or(std::span<const std::uint32_t>());
     const std::uint32_t key = keyOf(frame.index, ids.size());
     const bool whole = key == frame.index;
-    const FrameLayout layout(static_cast<std::uint32_t>(ids.size()), whole, scene_.objects);
+    const FrameLayout layout(static_cast<std::uint32_t>(ids.size()), whole, scene().objects);
 
     block_.clear();
     appendBytes(block_, ids.first(layout.ids));
@@ -47,26 +44,17 @@ class Recording2File final : public BoxRecordingFile {
       const PackedBox box = packed(boxes[whole ? row : ids[row]]);
       std::memcpy(place, box.data(), sizeof box);
     }
-    index_.push_back({offset_, static_cast<std::uint32_t>(ids.size()), key, hashOf(block_)});
-    appendBlock();
-  }
-
-  std::string finish() override {
-    complete();
-    return file_->finish();
-  }
-  std::unique_ptr<Recording> finishTemporary() override {
-    complete();
-    return std::make_unique<Recording2Reader>(file_->finishTemporary(), file_->name());
+    index_.push_back({size(), static_cast<std::uint32_t>(ids.size()), key, hashOf(block_)});
+    append(block_);
   }
 
  private:
   /// Looks at what has changed since the frame before, which was recordable.
   void requireRecordable(const Frame& frame) const {
     const auto require = [&](std::size_t body) {
-      if (isRecordable(frame.boxes[body], scene_.all_present)) return;
-      throw InputError(fmt::format("{}: frame {}, body {}: the box {}", file_->name(), frame.index,
-                                   body, recordingFault(frame.boxes[body], scene_.all_present)));
+      if (isRecordable(frame.boxes[body], scene().all_present)) return;
+      throw InputError(fmt::format("{}: frame {}, body {}: the box {}", name(), frame.index, body,
+                                   recordingFault(frame.boxes[body], scene().all_present)));
     };
     if (frame.index == 0) {
       for (std::size_t body = 0; body < frame.boxes.size(); ++body) require(body);
@@ -78,45 +66,37 @@ class Recording2File final : public BoxRecordingFile {
   /// The key frame of the next frame, in which so many bodies changed.
   std::uint32_t keyOf(std::uint32_t index, std::uint64_t changed) {
     since_key_ += changed * (sizeof(std::uint32_t) + sizeof(PackedBox));
-    const std::uint64_t whole = sizeof(PackedBox) * std::uint64_t{scene_.objects};
+    const std::uint64_t whole = sizeof(PackedBox) * std::uint64_t{scene().objects};
     const std::uint32_t last = index == 0 ? 0 : index_.back().key;
     if (index > 0 && since_key_ < whole && index - last < kMostBetweenKeys) return last;
     since_key_ = 0;
     return index;
   }
 
-  void appendBlock() {
-    offset_ += block_.size();
-    file_->append(block_);
-  }
-
   /// Writes index and end.
-  void complete() {
-    requireWhole(index_.size(), scene_, file_->name());
+  void complete() override {
+    requireWhole(index_.size());
     block_.clear();
     appendBytes(block_, std::span<const RecordedFrame>(index_));
     hasher_.add(block_);
-    const RecordingEnd end{.index_offset = offset_, .hash = hasher_.value()};
+    const RecordingEnd end{.index_offset = size(), .hash = hasher_.value()};
     appendBytes(block_, std::span(&end, 1));
-    appendBlock();
+    append(block_);
   }
 
-  SceneInfo scene_;
-  std::unique_ptr<GrowingFile> file_;
   ChangedBodies changes_;
   std::vector<RecordedFrame> index_;
   std::vector<std::byte> block_;  ///< what is written next
-  std::uint64_t offset_ = 0;      ///< where that begins
   std::uint64_t since_key_ = 0;   ///< bytes of what changed since the last key frame
   Hasher hasher_;                 ///< of all but the frames
 };
 
 }  // namespace
 
-std::unique_ptr<BoxRecordingFile> makeRecording2File(const std::filesystem::path& path,
-                                                     const SceneInfo& scene,
-                                                     const RecordingOrigin& origin) {
-  return std::make_unique<Recording2File>(path, scene, origin);
+std::unique_ptr<RecordingFile> makeRecording2File(const std::filesystem::path& path,
+                                                  const SceneInfo& scene,
+                                                  const RecordingOrigin& origin) {
+  return std::make_unique<Recording2File>(path, scene, recording2Header(scene, origin));
 }
 
 }  // namespace broadmark

@@ -42,7 +42,7 @@ std::uint32_t headerCount(std::int32_t value, std::string_view what, std::size_t
   return static_cast<std::uint32_t>(value);
 }
 
-RecordingHeader makeHeader(const SceneInfo& scene) {
+std::vector<std::byte> makeHeader(const SceneInfo& scene) {
   constexpr auto kMost = static_cast<std::uint32_t>(std::numeric_limits<std::int32_t>::max());
   requireNames(scene);
   if (scene.objects > kMost || scene.frames > kMost) {
@@ -59,7 +59,8 @@ RecordingHeader makeHeader(const SceneInfo& scene) {
   header.objects = static_cast<std::int32_t>(scene.objects);
   header.frames = static_cast<std::int32_t>(scene.frames);
   header.world = scene.world;
-  return header;
+  const auto bytes = std::as_bytes(std::span(&header, 1));
+  return {bytes.begin(), bytes.end()};
 }
 
 }  // namespace
@@ -126,31 +127,47 @@ std::string fault(const Pose& pose) {
   return fmt::format("has a quaternion of length {:.6g} (1 is right)", std::sqrt(squared));
 }
 
-void GrowingFile::append(std::vector<std::byte>& block) {
-  settle();
-  std::swap(block, handed_);
-  constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
-  if (handed_.size() < kLarge) return write(handed_);
-  // Deferred, that is in settle(), where the system grants no more threads.
-  writing_ = std::async(std::launch::async | std::launch::deferred, [this] { write(handed_); });
+RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene,
+                             std::vector<std::byte> header)
+    : scene_(scene) {
+  if (path.empty()) {
+    name_ = recordingFileName(scene) + " (temporary)";
+    unnamed_ = unnamedFile();
+  } else {
+    name_ = path.string();
+    named_ = std::make_unique<AtomicFile>(path);
+  }
+  append(header);
 }
 
-std::string GrowingFile::finish() {
+void RecordingFile::append(std::vector<std::byte>& block) {
+  settle();
+  size_ += block.size();
+  std::swap(block, handed_);
+  constexpr std::size_t kLarge = 1 << 20;  // takes longer than starting a thread
+  if (handed_.size() < kLarge) return store(handed_);
+  // Deferred, that is in settle(), where the system grants no more threads.
+  writing_ = std::async(std::launch::async | std::launch::deferred, [this] { store(handed_); });
+}
+
+std::string RecordingFile::finish() {
+  complete();
   settle();
   named_->commit();
   return hasher_.hex();
 }
 
-FileDescriptor GrowingFile::finishTemporary() {
+FileDescriptor RecordingFile::finishTemporary() {
+  complete();
   settle();
   return std::move(unnamed_);
 }
 
-void GrowingFile::settle() {
+void RecordingFile::settle() {
   if (writing_.valid()) writing_.get();
 }
 
-void GrowingFile::write(std::span<const std::byte> bytes) {
+void RecordingFile::store(std::span<const std::byte> bytes) {
   // In pieces, so that what was hashed is still in the cache when it is written.
   constexpr std::size_t kPiece = 1 << 18;
   for (std::size_t start = 0; start < bytes.size(); start += kPiece) {
@@ -164,41 +181,20 @@ void GrowingFile::write(std::span<const std::byte> bytes) {
   }
 }
 
-std::unique_ptr<GrowingFile> growingFile(const std::filesystem::path& path,
-                                         const SceneInfo& scene) {
-  if (!path.empty()) return std::make_unique<GrowingFile>(path);
-  return std::make_unique<GrowingFile>(recordingFileName(scene) + " (temporary)");
-}
-
-void requireBodies(std::size_t bodies, const SceneInfo& scene, const std::string& name) {
-  if (bodies == scene.objects) return;
+void RecordingFile::requireBodies(std::size_t bodies) const {
+  if (bodies == scene_.objects) return;
   throw std::logic_error(
-      fmt::format("{}: a set of {} bodies instead of {}", name, bodies, scene.objects));
+      fmt::format("{}: a set of {} bodies instead of {}", name_, bodies, scene_.objects));
 }
 
-void requireWhole(std::uint64_t sets, const SceneInfo& scene, const std::string& name) {
-  if (sets == std::uint64_t{1} + scene.frames) return;
+void RecordingFile::requireWhole(std::uint64_t sets) const {
+  if (sets == std::uint64_t{1} + scene_.frames) return;
   throw std::logic_error(
-      fmt::format("{}: {} sets written instead of 1 + {}", name, sets, scene.frames));
+      fmt::format("{}: {} sets written instead of 1 + {}", name_, sets, scene_.frames));
 }
 
-RecordingFile::RecordingFile(const std::filesystem::path& path, const SceneInfo& scene)
-    : scene_(scene) {
-  const RecordingHeader header = makeHeader(scene);
-  file_ = growingFile(path, scene);
-  const auto bytes = std::as_bytes(std::span(&header, 1));
-  filling_.assign(bytes.begin(), bytes.end());
-  file_->append(filling_);
-}
-
-std::string RecordingFile::finish() {
-  requireWhole(sets_, scene_, name());
-  return file_->finish();
-}
-
-FileDescriptor RecordingFile::finishTemporary() {
-  requireWhole(sets_, scene_, name());
-  return file_->finishTemporary();
-}
+OriginalRecordingFile::OriginalRecordingFile(const std::filesystem::path& path,
+                                             const SceneInfo& scene)
+    : RecordingFile(path, scene, makeHeader(scene)) {}
 
 }  // namespace broadmark

@@ -97,103 +97,92 @@ void requireSound(std::span<const Record> records, std::uint64_t set, const Scen
                                setOffset(scene, set) + body * kRecordBytes, what, fault(*broken)));
 }
 
-/// A file while it is written: hashed as it grows, there only after finish(). A large block is
+/// A recording while it is written: hashed as it grows, there only after finish(). A large block is
 /// hashed and written while the caller makes the next one.
-class GrowingFile {
+class RecordingFile {
  public:
-  /// Throws InputError if the path cannot be written.
-  explicit GrowingFile(const std::filesystem::path& path)
-      : name_(path.string()), named_(std::make_unique<AtomicFile>(path)) {}
-  /// An unnamed file in the temporary directory; `name` stands for it in messages.
-  explicit GrowingFile(std::string name) : name_(std::move(name)), unnamed_(unnamedFile()) {}
-  GrowingFile(const GrowingFile&) = delete;  // a block on its way refers to this
-  GrowingFile& operator=(const GrowingFile&) = delete;
+  /// Writes to `path`, or for an empty one to an unnamed file in the temporary directory; `header`
+  /// comes first. Throws InputError if the path cannot be written.
+  RecordingFile(const std::filesystem::path& path, const SceneInfo&, std::vector<std::byte> header);
+  RecordingFile(const RecordingFile&) = delete;  // a block on its way refers to this
+  RecordingFile& operator=(const RecordingFile&) = delete;
+  virtual ~RecordingFile() = default;
 
-  /// Appends a block, which is swapped for another buffer. Throws InputError when the disc was
-  /// full, at the latest in finish().
-  void append(std::vector<std::byte>& block);
-  /// Gives the file its name. Returns its hash.
+  /// Appends the boxes of the next frame, whatever its index. Throws InputError when one is broken,
+  /// or when the disc was full, at the latest in finish().
+  virtual void write(const Frame&) = 0;
+  /// Completes the recording and gives the file its name. Returns its hash.
   std::string finish();
-  /// Hands over the unnamed file.
+  /// Completes the recording and hands over the unnamed file.
   FileDescriptor finishTemporary();
+  [[nodiscard]] const SceneInfo& scene() const { return scene_; }
   [[nodiscard]] const std::string& name() const { return name_; }
+
+ protected:
+  /// Appends a block, which is swapped for another buffer.
+  void append(std::vector<std::byte>& block);
+  /// Bytes so far.
+  [[nodiscard]] std::uint64_t size() const { return size_; }
+  /// Checks that all frames were written, and appends what follows them.
+  virtual void complete() = 0;
+  /// Throws std::logic_error unless as many sets as the scene has frames were written.
+  void requireWhole(std::uint64_t sets) const;
+  /// Throws std::logic_error unless a set has as many bodies as the scene.
+  void requireBodies(std::size_t bodies) const;
 
  private:
   /// Waits until the last block is written. Throws InputError when that failed.
   void settle();
-  void write(std::span<const std::byte> bytes);
+  void store(std::span<const std::byte> bytes);
 
+  SceneInfo scene_;
   std::string name_;
   std::unique_ptr<AtomicFile> named_;
   FileDescriptor unnamed_;
   Hasher hasher_;
+  std::uint64_t size_ = 0;
   std::vector<std::byte> handed_;  ///< the last block, perhaps being written
   std::future<void> writing_;      ///< last: its thread uses all of the above
 };
 
-/// Writes to `path`, or for an empty one to an unnamed file.
-std::unique_ptr<GrowingFile> growingFile(const std::filesystem::path& path, const SceneInfo&);
+/// A .broadmark recording.
+std::unique_ptr<RecordingFile> makeRecording2File(const std::filesystem::path& path,
+                                                  const SceneInfo&, const RecordingOrigin&);
 
-/// A recording of boxes while it is written; see RecordingWriter.
-class BoxRecordingFile {
- public:
-  virtual ~BoxRecordingFile() = default;
-
-  /// The next frame, whatever its index.
-  virtual void write(const Frame&) = 0;
-  virtual std::string finish() = 0;
-  virtual std::unique_ptr<Recording> finishTemporary() = 0;
-};
-
-/// A .broadmark recording; `path` may be empty: then it is a temporary one.
-std::unique_ptr<BoxRecordingFile> makeRecording2File(const std::filesystem::path& path,
-                                                     const SceneInfo&, const RecordingOrigin&);
-
-/// Throws std::logic_error unless as many sets as the scene has frames were written.
-void requireWhole(std::uint64_t sets, const SceneInfo&, const std::string& name);
-/// Throws std::logic_error unless a set has as many bodies as the scene.
-void requireBodies(std::size_t bodies, const SceneInfo&, const std::string& name);
-
-/// A recording laid out as the original's while it is written.
-class RecordingFile {
+/// A recording laid out as the original's: .aabbs, or .posrot by append().
+class OriginalRecordingFile final : public RecordingFile {
  public:
   /// Throws InputError if the scene cannot be recorded (names, counts) or the path not be written.
-  /// Without a path: to an unnamed file.
-  RecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
+  OriginalRecordingFile(const std::filesystem::path& path, const SceneInfo& scene);
 
-  /// Appends a set. Throws InputError when one of its records is broken, and then it is not
-  /// written, or when the disc was full, at the latest in finish().
+  void write(const Frame& frame) override { append(frame.boxes, "box"); }
+
+  /// Appends a set. One with a broken record is not written.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what) {
     append(records, what, std::as_bytes(records));
   }
-  /// The same for records that lie differently in the file.
+  /// Appends a set whose records lie differently in the file.
   template <class Record>
   void append(std::span<const Record> records, std::string_view what,
               std::span<const std::byte> bytes) {
-    requireBodies(bytes.size() / kRecordBytes, scene_, name());
+    requireBodies(bytes.size() / kRecordBytes);
     filling_.resize(bytes.size());
     // In pieces, so that what was checked is still in the cache when it is copied.
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
-      requireSound(piece, sets_, scene_, name(), what, first);
+      requireSound(piece, sets_, scene(), name(), what, first);
       std::ranges::copy(bytes.subspan(first * kRecordBytes, piece.size() * kRecordBytes),
                         filling_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
     }
-    file_->append(filling_);
+    RecordingFile::append(filling_);
     ++sets_;
   }
 
-  /// Gives the file its name, once all sets are written. Returns the hash.
-  std::string finish();
-  /// Hands over the unnamed file, once all sets are written.
-  FileDescriptor finishTemporary();
-  [[nodiscard]] const std::string& name() const { return file_->name(); }
-
  private:
-  SceneInfo scene_;
-  std::unique_ptr<GrowingFile> file_;
+  void complete() override { requireWhole(sets_); }
+
   std::uint64_t sets_ = 0;
   std::vector<std::byte> filling_;  ///< the set that is being appended
 };

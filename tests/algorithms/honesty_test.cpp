@@ -98,7 +98,7 @@ TEST(SelfChecks, TimeValidatorTakesItsTime) {
   std::int64_t sum = 0;
   for (const Phase phase : {Phase::update_objects, Phase::clean_cache, Phase::update_structures,
                             Phase::search_overlaps}) {
-    EXPECT_GE(run.times()[phase], 2'000'000) << phaseName(phase);
+    EXPECT_GE(run.times()[phase], 2'000'000) << kPhases.nameOf(phase);
     sum += run.times()[phase];
   }
   EXPECT_GE(run.times()[Phase::total], sum);

@@ -1,7 +1,5 @@
 // What an algorithm that knows only boxes gets to see of a world that changes: as little as can be.
 
-#include "adapters/compacted_world.h"
-
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "adapters/near_grid.h"
+#include "broadmark/adapters.h"
 #include "broadmark/harness/oracle.h"
 #include "support/changing_worlds.h"
 
@@ -44,7 +43,7 @@ class Watched {
       : boxes_(first), filter_(filter) {
     auto witness = std::make_unique<Witness>();
     witness_ = witness.get();
-    world_ = std::make_unique<CompactedWorld>(std::move(witness));
+    world_ = compacted(std::move(witness));
     SceneInfo scene;
     scene.objects = static_cast<std::uint32_t>(first.size());
     scene.world = bounds;
@@ -81,7 +80,7 @@ class Watched {
   CollisionFilter filter_;
   Execution execution_{1, Isa::scalar};
   Witness* witness_ = nullptr;
-  std::unique_ptr<CompactedWorld> world_;
+  std::unique_ptr<BroadPhase> world_;
   std::uint32_t index_ = 0;
 };
 

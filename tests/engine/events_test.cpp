@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "adapters/events_from_pairs.h"
+#include "broadmark/adapters.h"
 #include "broadmark/changed_bodies.h"
 #include "broadmark/harness/followed_pairs.h"
 #include "engine/spoilt_cases.h"
@@ -57,20 +57,20 @@ class FromPairs {
   FromPairs(int threads, Pairs first)
       : answer_(std::move(first)),
         execution_(threads, Isa::scalar),
-        events_(std::make_unique<Told>(answer_)) {
-    events_.initialize({.objects = kWanderers}, {0, boxes_, std::span<const std::uint32_t>()},
-                       execution_);
+        events_(withEvents(std::make_unique<Told>(answer_))) {
+    events_->initialize({.objects = kWanderers}, {0, boxes_, std::span<const std::uint32_t>()},
+                        execution_);
   }
 
   [[nodiscard]] std::pair<Pairs, Pairs> events() const {
-    return {sortedPairs(events_.events().began), sortedPairs(events_.events().ended)};
+    return {sortedPairs(events_->events().began), sortedPairs(events_->events().ended)};
   }
   [[nodiscard]] std::pair<Pairs, Pairs> eventsOf(Pairs answer) {
     answer_ = std::move(answer);
-    events_.updateObjects({1, boxes_, std::span<const std::uint32_t>()});
-    events_.cleanCache();
-    events_.updateStructures();
-    events_.searchOverlaps();
+    events_->updateObjects({1, boxes_, std::span<const std::uint32_t>()});
+    events_->cleanCache();
+    events_->updateStructures();
+    events_->searchOverlaps();
     return events();
   }
 
@@ -78,7 +78,7 @@ class FromPairs {
   std::vector<Aabb> boxes_ = std::vector<Aabb>(kWanderers);
   Pairs answer_;
   Execution execution_;
-  EventsFromPairs events_;
+  std::unique_ptr<BroadPhase> events_;
 };
 
 Pairs without(const std::set<Pair>& some, const std::set<Pair>& others) {

@@ -20,6 +20,12 @@ SceneInfo smallScene(std::uint32_t objects, std::uint32_t frames) {
   return {"Small", "Boxes", objects, frames, {{-5, -5, -5, 0}, {5, 5, 5, 0}}};
 }
 
+/// Of `frame`, `before` being the boxes of the frame before it.
+FrameStatistics statisticsOf(const SceneInfo& scene, const Frame& frame,
+                             std::span<const Aabb> before = {}) {
+  return frameStatistics(scene, frame, before, sweptPairs(frame.boxes, scene.filter).size());
+}
+
 /// Edges 1×1×1, 2×1×1 and 4×4×4; the first two touch, the third is alone.
 std::vector<Aabb> threeBoxes() {
   return {{{0, 0, 0, 0}, {1, 1, 1, 0}},
@@ -29,7 +35,7 @@ std::vector<Aabb> threeBoxes() {
 
 TEST(FrameStatistics, KnownAnswers) {
   const std::vector<Aabb> boxes = threeBoxes();
-  const FrameStatistics figures = frameStatistics(smallScene(3, 1), {7, boxes});
+  const FrameStatistics figures = statisticsOf(smallScene(3, 1), {7, boxes});
   EXPECT_EQ(figures.frame, 7U);
   EXPECT_DOUBLE_EQ(figures.density, (1 + 2 + 64) / 1000.0);
   EXPECT_DOUBLE_EQ(figures.pairs_per_body, 1 / 3.0);
@@ -44,7 +50,7 @@ TEST(FrameStatistics, MovingIsWhatChangedAtAll) {
   const std::vector<Aabb> before = threeBoxes();
   std::vector<Aabb> boxes = before;
   const auto share = [&] {
-    return frameStatistics(smallScene(3, 1), {1, boxes}, before).moving_share;
+    return statisticsOf(smallScene(3, 1), {1, boxes}, before).moving_share;
   };
   EXPECT_THAT(share(), Optional(DoubleEq(0)));
   boxes[1].max[2] = std::nextafter(boxes[1].max[2], 9.0F);
@@ -56,20 +62,20 @@ TEST(FrameStatistics, MovingIsWhatChangedAtAll) {
 TEST(FrameStatistics, OutsideGoesByTheCentre) {
   // Half of it out, its centre on the wall: inside. A little further: outside.
   std::vector<Aabb> boxes = {{{4, 0, 0, 0}, {6, 1, 1, 0}}, {{0, -6.5F, 0, 0}, {1, -4, 1, 0}}};
-  EXPECT_EQ(frameStatistics(smallScene(2, 0), {0, boxes}).outside, 1U);
+  EXPECT_EQ(statisticsOf(smallScene(2, 0), {0, boxes}).outside, 1U);
   boxes[0].max[0] = 6.01F;
-  EXPECT_EQ(frameStatistics(smallScene(2, 0), {0, boxes}).outside, 2U);
+  EXPECT_EQ(statisticsOf(smallScene(2, 0), {0, boxes}).outside, 2U);
 }
 
 TEST(FrameStatistics, NothingAndPoints) {
-  const FrameStatistics none = frameStatistics(smallScene(0, 1), {0, {}});
+  const FrameStatistics none = statisticsOf(smallScene(0, 1), {0, {}});
   EXPECT_EQ(none.density, 0);
   EXPECT_EQ(none.pairs_per_body, 0);
   EXPECT_EQ(none.max_extent, 0);
   const std::vector<Aabb> points(4);
   SceneInfo flat = smallScene(4, 1);
   flat.world = {};
-  const FrameStatistics figures = frameStatistics(flat, {0, points});
+  const FrameStatistics figures = statisticsOf(flat, {0, points});
   EXPECT_EQ(figures.density, 0) << "a world of no volume";
   EXPECT_EQ(figures.pairs_per_body, 1.5) << "6 pairs of 4 bodies";
   EXPECT_FALSE(rangeStatistics({&figures, 1}).sizeRatio());
@@ -77,11 +83,11 @@ TEST(FrameStatistics, NothingAndPoints) {
 
 TEST(FrameStatistics, AbsentBodiesCountNowhere) {
   const std::vector<Aabb> some = threeBoxes();
-  const FrameStatistics expected = frameStatistics(smallScene(3, 1), {7, some});
+  const FrameStatistics expected = statisticsOf(smallScene(3, 1), {7, some});
   std::vector<Aabb> boxes = {kEmptyBox, some[0], some[1], kEmptyBox, some[2]};
   SceneInfo scene = smallScene(5, 1);
   scene.all_present = false;
-  const FrameStatistics figures = frameStatistics(scene, {7, boxes});
+  const FrameStatistics figures = statisticsOf(scene, {7, boxes});
   EXPECT_EQ(figures.bodies, 3U);
   EXPECT_EQ(figures.density, expected.density);
   EXPECT_EQ(figures.pairs_per_body, expected.pairs_per_body);
@@ -92,7 +98,7 @@ TEST(FrameStatistics, AbsentBodiesCountNowhere) {
   EXPECT_FALSE(figures.changes);
 
   const std::vector<Aabb> nobody(5, kEmptyBox);
-  const FrameStatistics none = frameStatistics(scene, {8, nobody}, boxes);
+  const FrameStatistics none = statisticsOf(scene, {8, nobody}, boxes);
   EXPECT_EQ(none.bodies, 0U);
   EXPECT_EQ(none.density, 0);
   EXPECT_EQ(none.max_extent, 0);
@@ -107,7 +113,7 @@ TEST(FrameStatistics, WhatComesAndGoes) {
   const std::vector<Aabb> boxes = {some[0], some[2], kEmptyBox, some[1], some[0], kEmptyBox};
   SceneInfo scene = smallScene(6, 1);
   scene.all_present = false;
-  const FrameStatistics figures = frameStatistics(scene, {1, boxes}, before);
+  const FrameStatistics figures = statisticsOf(scene, {1, boxes}, before);
   EXPECT_EQ(figures.bodies, 4U);
   EXPECT_EQ(figures.changes->appeared, 2);
   EXPECT_EQ(figures.changes->vanished, 1);

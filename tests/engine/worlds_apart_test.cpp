@@ -1,7 +1,6 @@
 // Several worlds at one place, an instance for each: what each gets to see, and what becomes of
 // their answers.
 
-#include "adapters/worlds_apart.h"
 #include "broadmark/adapters.h"
 
 #include <gmock/gmock.h>
@@ -145,7 +144,7 @@ class Watched {
     scene.objects = static_cast<std::uint32_t>(first.size());
     scene.all_present = false;
     scene.filter = filter;
-    worlds_ = std::make_unique<WorldsApart>(
+    worlds_ = perWorld(
         scene,
         [this](const SceneInfo&) {
           auto witness = std::make_unique<Witness>(options_.nonsense);
@@ -165,7 +164,7 @@ class Watched {
     worlds_->searchOverlaps();
   }
 
-  WorldsApart& all() { return *worlds_; }
+  BroadPhase& all() { return *worlds_; }
   Witness& of(std::size_t world) { return *witnesses_[world]; }
   [[nodiscard]] std::size_t count() const { return witnesses_.size(); }
 
@@ -181,7 +180,7 @@ class Watched {
   Options options_;
   Execution execution_;
   std::vector<Witness*> witnesses_;
-  std::unique_ptr<WorldsApart> worlds_;
+  std::unique_ptr<BroadPhase> worlds_;
   ChangedBodies changes_;
   Boxes boxes_;
   std::uint32_t index_ = 0;
@@ -364,7 +363,7 @@ TEST(WorldsApart, TellAndDrawWhatAllInstancesDo) {
   watched.step(boxes);
   boxes[0] = boxes[2] = boxes[3] = unitAt(1);
   watched.step(boxes);
-  const WorldsApart& all = watched.all();
+  const BroadPhase& all = watched.all();
   using Counts = std::map<std::string, std::uint64_t>;
   EXPECT_EQ(countersOf([&](const auto& visit) { all.visitCounters(visit); }),
             (Counts{{"worlds with changes", 2}, {"changed", 3}, {"bodies", 5}}));

@@ -1,5 +1,3 @@
-#include "draw_frame.h"
-
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,6 +10,8 @@
 #include "broadmark/render/camera.h"
 #include "broadmark/render/gl.h"
 #include "broadmark/render/offscreen_context.h"
+#include "broadmark/render/picture.h"
+#include "broadmark/render/scene_view.h"
 #include "support/drawing.h"
 #include "support/pictures.h"
 #include "support/places.h"
@@ -43,10 +43,10 @@ struct TestScene {
       }
     }
   }
-  Picture draw(OffscreenContext& context, std::size_t max_batch = 1U << 30U) const {
+  Picture draw(OffscreenContext& context) const {
     const PairRun run = pairs;
     return drawFrame(context, sceneWithSide(boxes.size(), 10), {60, boxes}, {&run, 1},
-                     kPictureWidth, kPictureHeight, max_batch);
+                     kPictureWidth, kPictureHeight);
   }
 
   std::vector<Aabb> boxes;
@@ -148,10 +148,26 @@ TEST_P(EachSource, DrawsTheNearerBoxInFront) {
 
 TEST_P(EachSource, BatchesDoNotShow) {
   const TestScene scene(120);
-  const Picture whole = scene.draw(context());
+  const std::vector<Rgb> colours(scene.boxes.size(), kLightPalette.free);
+  const Aabb world = sceneWithSide(scene.boxes.size(), 10).world;
+  SceneViewContent content;
+  content.space = viewSpaceOf(world);
+  content.world = world;
+  content.boxes = scene.boxes;
+  content.colours = colours;
+  const Gl gl(context());
+  const auto draw = [&](SceneViewOptions options) {
+    options.technique = Technique::gl;
+    SceneView view(gl, options);
+    view.resize(kPictureWidth, kPictureHeight);
+    const double aspect = static_cast<double>(kPictureWidth) / kPictureHeight;
+    view.draw(content, figureCamera(content.space.toView(world), aspect));
+    return view.read();
+  };
+  const Picture whole = draw({});
   for (const std::size_t batch :
        {std::size_t{1}, std::size_t{7}, std::size_t{119}, std::size_t{120}}) {
-    EXPECT_EQ(scene.draw(context(), batch).rgba, whole.rgba) << "batches of " << batch;
+    EXPECT_EQ(draw({.max_batch = batch}).rgba, whole.rgba) << "batches of " << batch;
   }
 }
 

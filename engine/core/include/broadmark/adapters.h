@@ -21,13 +21,13 @@ std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm);
 /// In how many worlds the scene's bodies are.
 std::size_t worldCount(const SceneInfo& scene);
 
+/// Makes an instance for a scene that is one world, with the case's parameters.
+using InstanceMaker = std::function<std::unique_ptr<BroadPhase>(const SceneInfo& world)>;
+
 /// Several worlds at one place, for an algorithm that would mix their bodies up in one structure:
-/// an instance for each world, which `make` makes for a scene that is one world. With `concurrent`,
-/// several may be called at once.
-std::unique_ptr<BroadPhase> perWorld(
-    const SceneInfo& scene,
-    const std::function<std::unique_ptr<BroadPhase>(const SceneInfo& world)>& make,
-    bool concurrent);
+/// an instance for each world. With `concurrent`, several may be called at once.
+std::unique_ptr<BroadPhase> perWorld(const SceneInfo& scene, const InstanceMaker& make,
+                                     bool concurrent);
 
 /// For an algorithm that knows only the pairs of each frame: answers with events, too.
 std::unique_ptr<BroadPhase> withEvents(std::unique_ptr<BroadPhase> algorithm);

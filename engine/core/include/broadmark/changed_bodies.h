@@ -14,7 +14,20 @@ class ChangedBodies {
  public:
   /// The frame, with what changed since the last call for a frame of this source, or nothing for
   /// its frame 0. Valid until the next call.
-  Frame complete(const Frame& frame);
+  Frame complete(const Frame& frame) {
+    if (frame.changed) return frame;
+    changed_.clear();
+    if (frame.index == 0) {
+      before_.assign(frame.boxes.begin(), frame.boxes.end());
+      changed_.reserve(before_.size());
+    }
+    for (std::uint32_t body = 0; body < before_.size(); ++body) {
+      if (sameBits(frame.boxes[body], before_[body])) continue;
+      before_[body] = frame.boxes[body];
+      changed_.push_back(body);
+    }
+    return {frame.index, frame.boxes, changed_};
+  }
 
  private:
   std::vector<Aabb> before_;

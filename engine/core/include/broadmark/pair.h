@@ -51,7 +51,17 @@ constexpr std::uint64_t eventCount(const PairEvents& events) {
 
 /// For each of `bodies` bodies, in how many of the pairs it is. Bodies that do not exist count for
 /// nothing.
-std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pairs);
+inline std::vector<std::uint32_t> overlapCounts(std::size_t bodies, PairRuns pairs) {
+  std::vector<std::uint32_t> counts(bodies, 0);
+  for (const PairRun run : pairs) {
+    for (const Pair pair : run) {
+      if (pair.a >= bodies || pair.b >= bodies) continue;
+      ++counts[pair.a];
+      ++counts[pair.b];
+    }
+  }
+  return counts;
+}
 
 /// A growing array of pairs that keeps its capacity when cleared. Unlike std::vector it hands out
 /// uninitialised room, so that SIMD kernels can write first and count afterwards.

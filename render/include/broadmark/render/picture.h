@@ -42,6 +42,8 @@ class OffscreenContext {
 /// Throws RenderError naming every source that was tried and why each failed.
 std::unique_ptr<OffscreenContext> makeOffscreenContext(GlSource);
 
+inline constexpr int kLargestPicture = 16384;  ///< pixels, either side
+
 /// Draws one frame: all boxes, those in a pair of `overlaps` in a colour of their own, the world
 /// and its floor, seen by figureCamera(). Throws RenderError.
 Picture drawFrame(OffscreenContext&, const SceneInfo&, const Frame&, PairRuns overlaps, int width,

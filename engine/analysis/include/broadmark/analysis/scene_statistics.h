@@ -40,9 +40,10 @@ struct FrameStatistics {
   double max_extent = 0;
 };
 
-/// Of `frame`, `before` being the boxes of the frame before it (as many; or none).
-FrameStatistics frameStatistics(const SceneInfo&, const Frame& frame,
-                                std::span<const Aabb> before = {});
+/// Of a frame with that many pairs, `before` being the boxes of the frame before it (as many; or
+/// none).
+FrameStatistics frameStatistics(const SceneInfo&, const Frame& frame, std::span<const Aabb> before,
+                                std::size_t pairs);
 
 /// Figures of successive frames together: means over the frames, unless stated otherwise.
 struct RangeStatistics {

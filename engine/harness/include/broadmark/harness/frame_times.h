@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string_view>
 
 #include "broadmark/names.h"
 
@@ -28,7 +27,6 @@ inline constexpr NameTable kPhases{{NamedValue{Phase::update_objects, "update_ob
                                     {Phase::upload, "upload"},
                                     {Phase::download, "download"},
                                     {Phase::total, "total"}}};
-constexpr std::string_view phaseName(Phase phase) { return kPhases.nameOf(phase); }
 
 /// Durations of one frame's phases in nanoseconds of a steady clock.
 using FrameTimes = ValueOfEach<Phase, std::int64_t, kPhases.entries.size()>;

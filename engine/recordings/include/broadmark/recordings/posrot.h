@@ -17,7 +17,7 @@
 
 namespace broadmark {
 
-class RecordingFile;  // a recording laid out as the original's while it is written
+class OriginalRecordingFile;  // a recording laid out as the original's while it is written
 
 /// How far the squared length of a recorded quaternion may be from 1.
 inline constexpr float kRotationTolerance = 1e-3F;
@@ -77,7 +77,7 @@ class PosrotWriter {
   std::string finish();
 
  private:
-  std::unique_ptr<RecordingFile> file_;
+  std::unique_ptr<OriginalRecordingFile> file_;
   std::vector<std::array<float, 8>> records_;  ///< poses as they lie in the file
 };
 

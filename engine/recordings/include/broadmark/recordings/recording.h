@@ -125,7 +125,7 @@ class RecordingReader final : public OriginalRecording {
   LargeVector<Aabb> boxes_;
 };
 
-class BoxRecordingFile;  // a recording of some kind while it is written
+class RecordingFile;  // a recording of some kind while it is written
 
 /// Writes a recording of boxes, frame by frame, to a temporary neighbour of `path` that takes its
 /// name only in finish(): a writer that is destroyed or killed before leaves nothing that looks
@@ -155,7 +155,7 @@ class RecordingWriter {
   std::unique_ptr<Recording> finishTemporary();
 
  private:
-  std::unique_ptr<BoxRecordingFile> file_;
+  std::unique_ptr<RecordingFile> file_;
 };
 
 /// Told after each frame; returning false stops.
