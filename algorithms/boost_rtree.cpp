@@ -122,14 +122,14 @@ std::vector<Algorithm> variants() {
           .time = "O(n log n + k)",
           .space = "O(n + k)",
           .source = "Boost.Geometry, index::rtree; Guttman 1984; Leutenegger et al. 1997"}};
-  const auto packed = [] { return std::make_unique<RTree>(/*incremental=*/false); };
-  const auto incremental = [] { return std::make_unique<RTree>(/*incremental=*/true); };
   std::vector<Algorithm> all = {
-      variantOf(family, packed, "boost-rtree-packed",
-                "Boost.Geometry's R-tree, packed from scratch every frame"),
-      variantOf(
-          family, incremental, "boost-rtree",
-          "Boost.Geometry's R-tree, from which the bodies that moved are taken and put back")};
+      variantOf<RTree>(family, "boost-rtree-packed",
+                       "Boost.Geometry's R-tree, packed from scratch every frame", {},
+                       /*incremental=*/false),
+      variantOf<RTree>(
+          family, "boost-rtree",
+          "Boost.Geometry's R-tree, from which the bodies that moved are taken and put back", {},
+          /*incremental=*/true)};
   all[0].description.optimisations = "packed at once";
   all[1].traits.incremental = true;
   all[1].description.optimisations = "tree kept from frame to frame";

@@ -33,11 +33,9 @@ Range rowsOf(int worker, int workers, std::size_t count) {
 
 class BruteForce final : public SimdBroadPhase {
  public:
-  explicit BruteForce(bool vectorised) : vectorised_(vectorised) {}
-
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     SimdBroadPhase::initialize(scene, first, execution);
-    kernels_ = &overlapKernels(vectorised_ ? execution.isa() : Isa::scalar);
+    kernels_ = &overlapKernels(execution.isa());
   }
 
   /// Every body was tested against every other.
@@ -59,7 +57,6 @@ class BruteForce final : public SimdBroadPhase {
     });
   }
 
-  bool vectorised_;
   const OverlapKernels* kernels_ = nullptr;
 };
 
@@ -74,14 +71,13 @@ std::vector<Algorithm> variants() {
           .time = "O(n²)",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019; Ericson 2005, Real-Time Collision Detection, 7"}};
-  const auto plain = [] { return std::make_unique<BruteForce>(/*vectorised=*/false); };
-  const auto simd = [] { return std::make_unique<BruteForce>(/*vectorised=*/true); };
-  return {variantOf(family, plain, "bf", "tests every box against every other"),
-          variantOf(family, simd, "bf-simd", "brute force, one box against a vector of boxes",
-                    {.vectorised = true}),
-          variantOf(family, plain, "bf-mt", "brute force, on several threads", {.parallel = true}),
-          variantOf(family, simd, "bf-simd-mt", "brute force, vectorised and on several threads",
-                    {.parallel = true, .vectorised = true})};
+  return {
+      variantOf<BruteForce>(family, "bf", "tests every box against every other"),
+      variantOf<BruteForce>(family, "bf-simd", "brute force, one box against a vector of boxes",
+                            {.vectorised = true}),
+      variantOf<BruteForce>(family, "bf-mt", "brute force, on several threads", {.parallel = true}),
+      variantOf<BruteForce>(family, "bf-simd-mt", "brute force, vectorised and on several threads",
+                            {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::brute_force

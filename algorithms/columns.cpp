@@ -404,11 +404,11 @@ std::vector<Algorithm> variants() {
                       .time = "O(n + w), w pairs that share a column and overlap along it",
                       .space = "O(n + k)",
                       .source = "Broadmark; Ericson 2005, 7.1 and 7.5"}};
-  return {variantOf(family, create, "columns", "columns chosen by a sample, a sweep in each",
-                    {.vectorised = true}),
-          variantOf(family, create, "columns-mt",
-                    "columns chosen by a sample, a sweep in each, on several threads",
-                    {.parallel = true, .vectorised = true})};
+  return {variantOf<Columns>(family, "columns", "columns chosen by a sample, a sweep in each",
+                             {.vectorised = true}),
+          variantOf<Columns>(family, "columns-mt",
+                             "columns chosen by a sample, a sweep in each, on several threads",
+                             {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::columns

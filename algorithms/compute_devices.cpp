@@ -5,20 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
+#include <cstring>
 
 #include "broadmark/error.h"
 
 namespace broadmark {
 namespace {
-
-bool containsAnyCase(std::string_view text, std::string_view part) {
-  const auto equal = [](unsigned char a, unsigned char b) {
-    return std::tolower(a) == std::tolower(b);
-  };
-  return std::ranges::search(text, part, equal).begin() != text.end();
-}
 
 std::string listOf(const std::vector<ComputeDevice>& devices) {
   if (devices.empty()) return "there is none";
@@ -44,8 +37,10 @@ std::size_t chooseDevice(const std::vector<ComputeDevice>& devices, std::string_
   const char* const end = wanted.data() + wanted.size();
   const auto number = std::from_chars(wanted.data(), end, position);
   if (number.ec == std::errc() && number.ptr == end && position < devices.size()) return position;
+  const std::string part(wanted);
   const auto found = std::ranges::find_if(devices, [&](const ComputeDevice& device) {
-    return containsAnyCase(device.name, wanted) || containsAnyCase(device.platform, wanted);
+    return ::strcasestr(device.name.c_str(), part.c_str()) != nullptr ||
+           ::strcasestr(device.platform.c_str(), part.c_str()) != nullptr;
   });
   if (found == devices.end()) {
     throw InputError(fmt::format("no compute device '{}': {}", wanted, listOf(devices)));

@@ -83,7 +83,6 @@ class Dbvt final : public BulletBroadPhase {
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
-    all_present_ = scene.all_present;
     filterPairs(*tree_.m_paircache);
     if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
@@ -100,7 +99,7 @@ class Dbvt final : public BulletBroadPhase {
     const MarginInForce in_force(static_cast<float>(margin_));
     const unsigned updates_before = tree_.m_updates_done;
     reinsertions_ = 0;
-    if (!all_present_) destroyVanished();
+    destroyVanished();
     for (const std::uint32_t body : moved()) {
       if (isEmpty(boxes()[body])) continue;
       if (proxies_[body] == nullptr) {
@@ -241,7 +240,6 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   double margin_ = 0.05;  ///< Bullet's default
-  bool all_present_ = true;
   Changes changes_;
   Tree tree_;
   std::vector<btDbvtProxy*> proxies_;  ///< by body; owned; null: absent
@@ -265,12 +263,12 @@ std::vector<Algorithm> variants() {
                       .time = "O(m log n + k), m bodies that move",
                       .space = "O(n + k)",
                       .source = "Bullet, btDbvtBroadphase; van den Bergen 1997"}};
-  const auto forward = [] { return std::make_unique<Dbvt>(/*deferred=*/false); };
-  const auto deferred = [] { return std::make_unique<Dbvt>(/*deferred=*/true); };
-  return {variantOf(family, forward, "dbvt-f",
-                    "Bullet's dynamic AABB trees, each body looked up as it moves (forward)"),
-          variantOf(family, deferred, "dbvt-d",
-                    "Bullet's dynamic AABB trees, descended once a frame (deferred)")};
+  return {variantOf<Dbvt>(family, "dbvt-f",
+                          "Bullet's dynamic AABB trees, each body looked up as it moves (forward)",
+                          {}, /*deferred=*/false),
+          variantOf<Dbvt>(family, "dbvt-d",
+                          "Bullet's dynamic AABB trees, descended once a frame (deferred)", {},
+                          /*deferred=*/true)};
 }
 
 }  // namespace broadmark::dbvt

@@ -169,15 +169,14 @@ std::vector<Algorithm> variants() {
                       .time = "O(n log n + k)",
                       .space = "O(n + k)",
                       .source = "Embree, rtcCollide; Wald et al. 2014"}};
-  const auto morton = [] { return std::make_unique<Embree>(RTC_BUILD_QUALITY_LOW); };
-  const auto sah = [] { return std::make_unique<Embree>(RTC_BUILD_QUALITY_MEDIUM); };
-  return {
-      variantOf(family, morton, "embree-morton",
-                "Embree's bounding volume hierarchy along a Morton curve, from scratch every frame",
-                {.parallel = true}),
-      variantOf(family, sah, "embree-sah",
-                "Embree's bounding volume hierarchy by surface area, from scratch every frame",
-                {.parallel = true})};
+  return {variantOf<Embree>(
+              family, "embree-morton",
+              "Embree's bounding volume hierarchy along a Morton curve, from scratch every frame",
+              {.parallel = true}, RTC_BUILD_QUALITY_LOW),
+          variantOf<Embree>(
+              family, "embree-sah",
+              "Embree's bounding volume hierarchy by surface area, from scratch every frame",
+              {.parallel = true}, RTC_BUILD_QUALITY_MEDIUM)};
 }
 
 }  // namespace broadmark::embree

@@ -190,13 +190,11 @@ std::vector<Algorithm> variants() {
                       .time = "O(m log n + n + k), m bodies that move",
                       .space = "O(n + k)",
                       .source = "FCL, DynamicAABBTreeCollisionManager; Pan et al. 2012"}};
-  Algorithm array = variantOf(
-      family, [] { return std::make_unique<Fcl<Array>>(); }, "fcl-array",
-      "FCL's dynamic tree of boxes, its nodes in an array");
+  Algorithm array = variantOf<Fcl<Array>>(family, "fcl-array",
+                                          "FCL's dynamic tree of boxes, its nodes in an array");
   array.traits.library_leaks = true;
-  return {variantOf(
-              family, [] { return std::make_unique<Fcl<Nodes>>(); }, "fcl",
-              "FCL's dynamic tree of boxes, of nodes that point to each other"),
+  return {variantOf<Fcl<Nodes>>(family, "fcl",
+                                "FCL's dynamic tree of boxes, of nodes that point to each other"),
           array};
 }
 

@@ -371,11 +371,11 @@ std::vector<Algorithm> variants() {
           .time = "O(m log n + w), m bodies moved, w pairs tested",
           .space = "O(n + k)",
           .source = "Serpa and Rodrigues 2019, Flexible Use of Temporal and Spatial Reasoning"}};
-  const auto create = [] { return std::make_unique<Kd>(); };
-  return {variantOf(family, create, "kd",
+  return {
+      variantOf<Kd>(family, "kd",
                     "keeps bodies in an adaptive KD tree, and the pairs of those that keep still",
                     {.vectorised = true}),
-          variantOf(family, create, "kd-mt", "adaptive KD tree, on several threads",
+      variantOf<Kd>(family, "kd-mt", "adaptive KD tree, on several threads",
                     {.parallel = true, .vectorised = true})};
 }
 

@@ -162,18 +162,16 @@ std::vector<Algorithm> variants() {
                             .traits = {.library_allocates = true,
                                        .changing_worlds = ChangingWorlds::compacted,
                                        .instance_per_world = true}};
-  Algorithm hash = variantOf(
-      family, [] { return std::make_unique<Hash>(); }, "ode-hash",
-      "ODE's hash space, grids of several resolutions");
+  Algorithm hash =
+      variantOf<Hash>(family, "ode-hash", "ODE's hash space, grids of several resolutions");
   hash.traits.max_objects = kMaxHashedObjects;
   hash.description = {.principle = "grid",
                       .optimisations = "several resolutions in a hash table",
                       .time = "O(n² + k), n² for clearing bits",
                       .space = "O(n² + k)",
                       .source = "ODE, dHashSpace"};
-  Algorithm sap = variantOf(
-      family, [] { return std::make_unique<Sap>(); }, "ode-sap",
-      "ODE's sweep-and-prune space, sorted by radix every frame");
+  Algorithm sap =
+      variantOf<Sap>(family, "ode-sap", "ODE's sweep-and-prune space, sorted by radix every frame");
   sap.description = {.principle = "sorting",
                      .optimisations = "radix sort",
                      .time = "O(n² + k), O(n^5/3 + k) if spread evenly",

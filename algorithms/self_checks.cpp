@@ -50,11 +50,9 @@ std::vector<Algorithm> variants() {
                                             .time = "O(1)",
                                             .space = "O(1)",
                                             .source = "the original Broadmark"}};
-  const auto none = [] { return std::make_unique<None>(); };
-  const auto validator = [] { return std::make_unique<TimeValidator>(); };
-  return {variantOf(family, none, "none", "does nothing: shows the overhead of the harness"),
-          variantOf(family, validator, "time-validator",
-                    "waits a known time in each phase: checks the clock")};
+  return {variantOf<None>(family, "none", "does nothing: shows the overhead of the harness"),
+          variantOf<TimeValidator>(family, "time-validator",
+                                   "waits a known time in each phase: checks the clock")};
 }
 
 }  // namespace broadmark::self_checks

@@ -30,12 +30,10 @@ namespace {
 /// Every step is shared out over the team; one thread is a team of one.
 class SweepAndPrune final : public BoxBroadPhase {
  public:
-  explicit SweepAndPrune(bool vectorised) : vectorised_(vectorised) {}
-
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
-    kernels_ = &overlapKernels(vectorised_ ? execution.isa() : Isa::scalar);
+    kernels_ = &overlapKernels(execution.isa());
     moments_.resize(static_cast<std::size_t>(team().size()));
     updateStructures();
   }
@@ -93,7 +91,6 @@ class SweepAndPrune final : public BoxBroadPhase {
     axes_ = all.axes(static_cast<double>(boxes().size()));
   }
 
-  bool vectorised_;
   const OverlapKernels* kernels_ = nullptr;
   Aabb world_;
   std::vector<Moments> moments_;  ///< one per worker
@@ -117,16 +114,16 @@ std::vector<Algorithm> variants() {
   Algorithm plain_family = family;
   // Side by side, bodies share the sort axis with those of other worlds.
   plain_family.traits.side_by_side_below = 40;
-  const auto plain = [] { return std::make_unique<SweepAndPrune>(/*vectorised=*/false); };
-  const auto simd = [] { return std::make_unique<SweepAndPrune>(/*vectorised=*/true); };
-  return {
-      variantOf(plain_family, plain, "sap", "sorts along the axis of largest variance and sweeps"),
-      variantOf(family, simd, "sap-simd", "sweep and prune, one box against a vector of boxes",
-                {.vectorised = true}),
-      variantOf(plain_family, plain, "sap-mt", "sweep and prune, on several threads",
-                {.parallel = true}),
-      variantOf(family, simd, "sap-simd-mt", "sweep and prune, vectorised and on several threads",
-                {.parallel = true, .vectorised = true})};
+  return {variantOf<SweepAndPrune>(plain_family, "sap",
+                                   "sorts along the axis of largest variance and sweeps"),
+          variantOf<SweepAndPrune>(family, "sap-simd",
+                                   "sweep and prune, one box against a vector of boxes",
+                                   {.vectorised = true}),
+          variantOf<SweepAndPrune>(plain_family, "sap-mt", "sweep and prune, on several threads",
+                                   {.parallel = true}),
+          variantOf<SweepAndPrune>(family, "sap-simd-mt",
+                                   "sweep and prune, vectorised and on several threads",
+                                   {.parallel = true, .vectorised = true})};
 }
 
 }  // namespace broadmark::sweep_and_prune

@@ -269,9 +269,9 @@ std::vector<Algorithm> variants() {
                       .time = "O(m · k), m bodies that move, k around each; O(n) if many move",
                       .space = "O(n)",
                       .source = "Broadmark; Ulrich 2000, Ericson 2005, 7.2"}};
-  return {variantOf(family, [] { return std::make_unique<Tide>(); }, "tide",
-                    "those that move in a loose grid, from scratch when many do",
-                    {.vectorised = true})};
+  return {variantOf<Tide>(family, "tide",
+                          "those that move in a loose grid, from scratch when many do",
+                          {.vectorised = true})};
 }
 
 }  // namespace broadmark::tide

@@ -432,11 +432,10 @@ std::vector<Algorithm> variants() {
                                             .time = "O(n + s), s swaps of endpoints",
                                             .space = "O(n + k)",
                                             .source = "Tracy, Buss and Woods 2009"}};
-  const auto create = [] { return std::make_unique<Tracy>(); };
-  return {
-      variantOf(family, create, "tracy", "incremental sweep and prune in the cells of a grid"),
-      variantOf(family, create, "tracy-mt",
-                "incremental sweep and prune in a grid, on several threads", {.parallel = true})};
+  return {variantOf<Tracy>(family, "tracy", "incremental sweep and prune in the cells of a grid"),
+          variantOf<Tracy>(family, "tracy-mt",
+                           "incremental sweep and prune in a grid, on several threads",
+                           {.parallel = true})};
 }
 
 }  // namespace broadmark::tracy

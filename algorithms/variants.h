@@ -1,7 +1,6 @@
 // Listing the variants of a family, which have most of their entry in common.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -16,14 +15,15 @@ struct Ways {
   bool vectorised = false;
 };
 
-/// The entry of a variant; `family` has what all variants share.
-inline Algorithm variantOf(Algorithm family, std::function<std::unique_ptr<BroadPhase>()> create,
-                           std::string id, std::string summary, Ways ways = {}) {
+/// The entry of a variant, made from `arguments`; `family` has what all variants share.
+template <class Phase, class... Arguments>
+Algorithm variantOf(Algorithm family, std::string id, std::string summary, Ways ways = {},
+                    Arguments... arguments) {
   family.id = std::move(id);
   family.summary = std::move(summary);
   family.traits.parallel = ways.parallel;
   family.traits.vectorised = ways.vectorised;
-  family.create = std::move(create);
+  family.create = [arguments...] { return std::make_unique<Phase>(arguments...); };
   return family;
 }
 

@@ -13,24 +13,21 @@ namespace broadmark {
 namespace opencl {
 namespace {
 
-std::vector<cl::Platform> platforms() {
-  std::vector<cl::Platform> found;
+/// What get() fills a vector with; nothing if it fails: where no ICD is installed, or a platform is
+/// there and its device is not.
+template <class Found, class Get>
+std::vector<Found> foundBy(Get get) {
+  std::vector<Found> found;
   try {
-    cl::Platform::get(&found);
-  } catch (const cl::Error&) {  // no ICD is installed
+    get(&found);
+  } catch (const cl::Error&) {
     found.clear();
   }
   return found;
 }
 
-std::vector<cl::Device> devicesOf(const cl::Platform& platform) {
-  std::vector<cl::Device> found;
-  try {
-    platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
-  } catch (const cl::Error&) {  // the platform is there, its device is not
-    found.clear();
-  }
-  return found;
+std::vector<cl::Platform> platforms() {
+  return foundBy<cl::Platform>([](auto* found) { cl::Platform::get(found); });
 }
 
 bool isGpu(const cl::Device& device) {
@@ -73,7 +70,8 @@ cl::Device withThreads(cl::Device device, int threads) {
 std::vector<cl::Device> devices() {
   std::vector<cl::Device> all;
   for (const cl::Platform& platform : platforms()) {
-    std::ranges::move(devicesOf(platform), std::back_inserter(all));
+    const auto get = [&](auto* found) { platform.getDevices(CL_DEVICE_TYPE_ALL, found); };
+    std::ranges::move(foundBy<cl::Device>(get), std::back_inserter(all));
   }
   std::ranges::stable_partition(all, isGpu);
   return all;
@@ -129,13 +127,13 @@ cl::Program DeviceContext::build(const std::string& source, const std::string& o
   return program;
 }
 
-cl::Buffer DeviceContext::buffer(std::size_t bytes, cl_mem_flags flags) const {
+cl::Buffer DeviceContext::buffer(std::size_t bytes) const {
   const auto largest = device_.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   if (bytes > largest) {
     throw UnsupportedError(fmt::format("the device's largest buffer is {} MiB, {} MiB are needed",
                                        largest >> 20, bytes >> 20));
   }
-  return {context_, flags, std::max<std::size_t>(bytes, 1)};
+  return {context_, CL_MEM_READ_WRITE, std::max<std::size_t>(bytes, 1)};
 }
 
 }  // namespace opencl
@@ -149,7 +147,6 @@ std::vector<ComputeDevice> computeDevices() {
                      .gpu = opencl::isGpu(device),
                      .units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()),
                      .memory_bytes = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>(),
-                     .largest_buffer_bytes = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>(),
                      .driver = opencl::trimmed(device.getInfo<CL_DRIVER_VERSION>())});
   }
   return known;

@@ -59,7 +59,7 @@ class DeviceContext final : public SharedResource {
   [[nodiscard]] std::int64_t buildNanoseconds() const { return build_ns_; }
 
   /// A buffer of at least one byte. Throws UnsupportedError when the device cannot hold it.
-  [[nodiscard]] cl::Buffer buffer(std::size_t bytes, cl_mem_flags flags = CL_MEM_READ_WRITE) const;
+  [[nodiscard]] cl::Buffer buffer(std::size_t bytes) const;
 
   /// Runs a kernel with these arguments, in order, on `items` work items rounded up to whole groups
   /// of `group`. (A stated group size: PoCL compiles a kernel anew for each it has to guess.)

@@ -20,20 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The scenes that are named, or all built-in ones.
-std::vector<std::string> scenesOf(const BakeOptions& options) {
-  std::vector<std::string> scenes = options.sources;
-  if (!scenes.empty()) return scenes;
-  for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
-  return scenes;
-}
-
 /// Every combination, each once.
 std::vector<BakeJob> makeJobs(const BakeOptions& options) {
   std::vector<BakeJob> jobs;
   std::set<std::vector<fs::path>> taken;
   std::vector<std::string> parameters;
-  for (const std::string& name : scenesOf(options)) {
+  for (const std::string& name : options.sources.empty() ? sceneIds() : options.sources) {
     NamedSource scene(name);
     for (auto& [simulation, swept] : makeSimulations(scene, options.scene, options.parameters)) {
       BakeJob job{.simulation = {}, .scene = simulation->scene(), .paths = {}};

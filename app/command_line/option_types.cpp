@@ -7,12 +7,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "broadmark/scenes/simulation.h"
 #include "request/former_names.h"
 #include "request/sweep.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
@@ -102,15 +102,12 @@ constexpr SceneShortcut kSceneShortcuts[] = {
 
 double parseNumber(const std::string& text, std::string_view option, double min, bool open) {
   // CLI11's own checks let NaN pass.
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool number =
-      error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-  if (!number || value < min || (open && value == min)) {
+  const std::optional<double> value = numberIn(text);
+  if (!value || !std::isfinite(*value) || *value < min || (open && *value == min)) {
     throw InputError(
         fmt::format("{}: '{}' is not a number {} {}", option, text, open ? ">" : ">=", min));
   }
-  return value;
+  return *value;
 }
 
 double parseShare(const std::string& text, std::string_view option, bool open) {
@@ -213,19 +210,22 @@ CLI::Option* addParameters(CLI::App& app, ParameterValues& parameters) {
       });
 }
 
+CLI::Option* addOutput(CLI::App& app, std::string_view format, ResultPaths& outputs,
+                       std::string_view doc) {
+  const std::string name(format);
+  const auto set = [&outputs, name](const std::string& path) { outputs[name] = path; };
+  const auto get = [&outputs, name] {
+    const auto given = outputs.find(name);
+    return given == outputs.end() ? std::string() : given->second.string();
+  };
+  return addValue(app, "--" + name, "FILE", set, get,
+                  fmt::format("{}; '-': to standard output, instead of the table", doc));
+}
+
 std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) {
   std::vector<CLI::Option*> options;
   for (const ResultWriter& writer : resultWriters()) {
-    const auto set = [&outputs, name = std::string(writer.name)](const std::string& path) {
-      outputs[name] = path;
-    };
-    const auto get = [&outputs, name = std::string(writer.name)] {
-      const auto given = outputs.find(name);
-      return given == outputs.end() ? std::string() : given->second.string();
-    };
-    options.push_back(
-        addValue(app, fmt::format("--{}", writer.name), "FILE", set, get,
-                 fmt::format("{}; '-': to standard output, instead of the table", writer.doc)));
+    options.push_back(addOutput(app, writer.name, outputs, writer.doc));
   }
   return options;
 }

@@ -108,6 +108,9 @@ CLI::Option* addPlugins(CLI::App&, std::vector<std::string>& plugins,
                         const std::string& more = "algorithms or physics engines");
 /// --param
 CLI::Option* addParameters(CLI::App&, ParameterValues&);
+/// A file of results in one of several formats; `outputs` has those that are given, by `format`.
+CLI::Option* addOutput(CLI::App&, std::string_view format, ResultPaths& outputs,
+                       std::string_view doc);
 /// Where results go: --json, --csv, …
 std::vector<CLI::Option*> addResultOutputs(CLI::App&, ResultPaths&);
 /// --quiet

@@ -19,11 +19,12 @@ namespace {
 /// What an option cannot be combined with.
 enum Conflict : unsigned {
   kNone = 0,
-  kCase = 1,       ///< --case: a case of a results file states it already
-  kExport = 2,     ///< --export-case: it writes one recording and nothing else
-  kInspector = 4,  ///< the inspector: only a run without it uses the option
-  kWindow = 8,     ///< a window: only pictures drawn off-screen use the option
-  kRequest = 16,   ///< a file of a run request: the option is of a call of the program
+  kCase = 1,         ///< --case: a case of a results file states it already
+  kExport = 2,       ///< --export-case: it writes one recording and nothing else
+  kInspector = 4,    ///< the inspector: only a run without it uses the option
+  kWindow = 8,       ///< a window: only pictures drawn off-screen use the option
+  kRequest = 16,     ///< a file of a run request: the option is of a call of the program
+  kFixedCount = 32,  ///< --repetitions N: only --repetitions auto uses the option
 };
 
 Shard parseShard(const std::string& text) {
@@ -159,18 +160,16 @@ void SessionParser::addRun() {
                       RepetitionOptions::kFewestUntilPrecise,
                       RepetitionOptions::kMostUntilPrecise)),
       kInspector);
-  const auto tag_auto = [&](CLI::Option* option) {
-    tag(option, kInspector);
-    only_with_auto_.push_back(option);
-  };
-  tag_auto(addShare(app_, "--precision", repetitions.precision, true,
-                    "of --repetitions auto: width of the mean's 95 % interval over the "
-                    "repetitions"));
-  tag_auto(addPositive(
-      app_, "--max-seconds", "S", repetitions.max_seconds,
-      fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
-                  "more than {} times",
-                  RepetitionOptions::kFewestUntilPrecise)));
+  tag(addShare(app_, "--precision", repetitions.precision, true,
+               "of --repetitions auto: width of the mean's 95 % interval over the "
+               "repetitions"),
+      kInspector | kFixedCount);
+  tag(addPositive(
+          app_, "--max-seconds", "S", repetitions.max_seconds,
+          fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
+                      "more than {} times",
+                      RepetitionOptions::kFewestUntilPrecise)),
+      kInspector | kFixedCount);
   tag(addInteger(app_, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
                  "seed of the order in which cases take turns, another for each repetition"),
@@ -251,18 +250,14 @@ void SessionParser::requireNoConflict() const {
       {!options_.export_case.empty(), kExport, "cannot be combined with --export-case"},
       {options_.ui, kInspector, "only for runs without the inspector: leave out --ui"},
       {!options_.headless, kInspector, "only for runs without the inspector: add --headless"},
-      {!options_.headless, kWindow, "only for pictures drawn off-screen: add --headless"}};
+      {!options_.headless, kWindow, "only for pictures drawn off-screen: add --headless"},
+      {!options_.repetitions.until_precise, kFixedCount, "only with --repetitions auto"}};
   for (const Rule& rule : rules) {
     if (!rule.applies) continue;
     for (const auto& [option, conflicts] : tagged_) {
       if (option->count() == 0 || (conflicts & rule.conflict) == 0) continue;
       throw InputError(fmt::format("{}: {}", option->get_name(), rule.why));
     }
-  }
-  if (options_.repetitions.until_precise) return;
-  for (const CLI::Option* option : only_with_auto_) {
-    if (option->count() == 0) continue;
-    throw InputError(fmt::format("{}: only with --repetitions auto", option->get_name()));
   }
 }
 

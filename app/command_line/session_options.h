@@ -61,7 +61,6 @@ class SessionParser {
   CLI::App& app_;
   SessionOptions options_;
   std::vector<std::pair<const CLI::Option*, unsigned>> tagged_;
-  std::vector<const CLI::Option*> only_with_auto_;
 };
 
 }  // namespace broadmark

@@ -20,13 +20,12 @@ std::vector<std::string> namesOf(const CLI::Option& option) {
 
 bool takesValue(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-std::vector<CommandUsage> usageOf(const CLI::App& main) {
-  const auto shown = [](const CLI::Option* option) { return isShown(*option); };
-  std::vector<CommandUsage> all = {{"", main.get_description(), main.get_options(shown)}};
-  for (const CLI::App* command : main.get_subcommands([](const CLI::App*) { return true; })) {
-    all.push_back({command->get_name(), command->get_description(), command->get_options(shown)});
-  }
-  return all;
+std::vector<const CLI::Option*> shownOptions(const CLI::App& command) {
+  return command.get_options([](const CLI::Option* option) { return isShown(*option); });
+}
+
+std::vector<const CLI::App*> commandsOf(const CLI::App& main) {
+  return main.get_subcommands([](const CLI::App*) { return true; });
 }
 
 }  // namespace broadmark

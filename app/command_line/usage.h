@@ -11,12 +11,6 @@ class Option;
 
 namespace broadmark {
 
-struct CommandUsage {
-  std::string name;  ///< "": the main command
-  std::string summary;
-  std::vector<const CLI::Option*> options;
-};
-
 /// Whether help shows an option: CLI11's own way to hide one takes its name away, which complaints
 /// need.
 bool isShown(const CLI::Option&);
@@ -25,7 +19,10 @@ bool isShown(const CLI::Option&);
 std::vector<std::string> namesOf(const CLI::Option&);
 bool takesValue(const CLI::Option&);
 
-/// The main command, then the others. Only what help shows.
-std::vector<CommandUsage> usageOf(const CLI::App& main);
+/// Of a command, those that help shows.
+std::vector<const CLI::Option*> shownOptions(const CLI::App&);
+
+/// The commands besides the main one.
+std::vector<const CLI::App*> commandsOf(const CLI::App& main);
 
 }  // namespace broadmark

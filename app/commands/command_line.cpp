@@ -74,8 +74,7 @@ class HelpFormatter final : public CLI::Formatter {
 std::string unexpected(const CLI::App& app, const std::string& argument) {
   if (!argument.starts_with('-')) return fmt::format("unexpected argument '{}'", argument);
   std::vector<std::string> known;
-  const auto shown = [](const CLI::Option* option) { return isShown(*option); };
-  for (const CLI::Option* option : app.get_options(shown)) known.push_back(option->get_name());
+  for (const CLI::Option* option : shownOptions(app)) known.push_back(option->get_name());
   const std::string name = argument.substr(0, argument.find('='));
   const std::string nearest = nearestName(name, known);
   return fmt::format("unknown option '{}'{}", name,

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "broadmark/error.h"
@@ -25,7 +24,7 @@ struct Options {
   std::vector<std::string> baselines;  ///< more runs like `before`
   std::vector<fs::path> after;
   ComparisonOptions comparison;
-  std::map<std::string, fs::path> outputs;  ///< by writer's name
+  ResultPaths outputs;
 };
 
 NamedResults readResults(const fs::path& path) {
@@ -41,8 +40,8 @@ std::vector<fs::path> judgedFiles(const Options& options) {
 
 void write(const Options& options, const Comparison& comparison) {
   for (const ComparisonWriter& writer : comparisonWriters()) {
-    const fs::path& path = options.outputs.at(std::string(writer.name));
-    if (!path.empty()) writeOutput(path, writer.format(comparison));
+    const auto path = options.outputs.find(std::string(writer.name));
+    if (path != options.outputs.end()) writeOutput(path->second, writer.format(comparison));
   }
 }
 
@@ -63,8 +62,7 @@ int statusOf(const Comparison& comparison) {
 
 int run(const Options& options) {
   const std::vector<fs::path> judged = judgedFiles(options);
-  const auto asked = [](const auto& output) { return !output.second.empty(); };
-  if (judged.size() > 1 && std::ranges::any_of(options.outputs, asked)) {
+  if (judged.size() > 1 && !options.outputs.empty()) {
     throw InputError("compare: a file can be written for one judged run: name only one");
   }
   std::vector<NamedResults> before = {readResults(options.before)};
@@ -111,9 +109,7 @@ std::function<int()> add(CLI::App& app) {
   app.add_flag("--any-conditions", comparison.any_conditions,
                "compare other processors and build types, too");
   for (const ComparisonWriter& writer : comparisonWriters()) {
-    addPath(app, fmt::format("--{}", writer.name), "FILE",
-            options->outputs[std::string(writer.name)],
-            fmt::format("{}; '-': to standard output, instead of the table", writer.doc));
+    addOutput(app, writer.name, options->outputs, writer.doc);
   }
   return [options] { return run(*options); };
 }

@@ -19,50 +19,34 @@ namespace broadmark::commands::completion {
 namespace {
 
 // Each shell has the words of the main command where no other is named.
-using Usages = std::vector<CommandUsage>;
-
-/// A text with `escape` before each of these characters.
-std::string escaped(const std::string& text, std::string_view characters,
-                    std::string_view escape = "\\") {
-  std::string result;
-  for (const char c : text) {
-    if (characters.find(c) != std::string_view::npos) result += escape;
-    result += c;
-  }
-  return result;
-}
 
 /// What begins with dashes.
-std::vector<std::string> optionNames(const CommandUsage& command) {
+std::vector<std::string> optionNames(const CLI::App& command) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : command.options) {
+  for (const CLI::Option* option : shownOptions(command)) {
     if (!option->get_positional()) std::ranges::move(namesOf(*option), std::back_inserter(names));
   }
   return names;
 }
 
-std::vector<std::string> commandNames(const Usages& commands) {
+std::vector<std::string> commandNames(const CLI::App& main) {
   std::vector<std::string> names;
-  for (const CommandUsage& command : commands) {
-    if (!command.name.empty()) names.push_back(command.name);
-  }
+  for (const CLI::App* command : commandsOf(main)) names.push_back(command->get_name());
   return names;
 }
 
 /// The branches of a `case` over the commands, the main one last, as the pattern *.
 template <class Branch>
-std::string caseBranches(const Usages& commands, Branch&& branch) {
+std::string caseBranches(const CLI::App& main, Branch&& branch) {
   std::string text;
-  for (std::size_t i = 1; i <= commands.size(); ++i) {
-    const CommandUsage& command = commands[i % commands.size()];
-    text +=
-        fmt::format("    {})\n{} ;;\n", command.name.empty() ? "*" : command.name, branch(command));
+  for (const CLI::App* command : commandsOf(main)) {
+    text += fmt::format("    {})\n{} ;;\n", command->get_name(), branch(*command));
   }
-  return text;
+  return text + fmt::format("    *)\n{} ;;\n", branch(main));
 }
 
-std::string bashScript(const Usages& commands) {
-  const std::string options = caseBranches(commands, [](const CommandUsage& command) {
+std::string bashScript(const CLI::App& main) {
+  const std::string options = caseBranches(main, [](const CLI::App& command) {
     return fmt::format("      options='{}'", fmt::join(optionNames(command), " "));
   });
   return fmt::format(R"(_broadmark() {{
@@ -78,30 +62,36 @@ std::string bashScript(const Usages& commands) {
 }}
 complete -o default -F _broadmark broadmark
 )",
-                     options, fmt::join(commandNames(commands), " "));
+                     options, fmt::join(commandNames(main), " "));
 }
 
-std::string zshArguments(const CommandUsage& command) {
+std::string zshArguments(const CLI::App& command) {
   std::string text = "      _arguments";
-  for (const CLI::Option* option : command.options) {
+  for (const CLI::Option* option : shownOptions(command)) {
     if (option->get_positional()) continue;
     const bool has_value = takesValue(*option);
     const std::string value =
-        has_value ? fmt::format(":{}:_files", escaped(option->get_type_name(), ":\\")) : "";
+        has_value ? fmt::format(":{}:_files",
+                                escaped(option->get_type_name(), {{':', "\\:"}, {'\\', "\\\\"}}))
+                  : "";
     for (const std::string& name : namesOf(*option)) {
-      const std::string spec = fmt::format("{}{}[{}]{}", has_value ? "*" : "", name,
-                                           escaped(option->get_description(), "[]:\\"), value);
+      const std::string spec =
+          fmt::format("{}{}[{}]{}", has_value ? "*" : "", name,
+                      escaped(option->get_description(),
+                              {{'[', "\\["}, {']', "\\]"}, {':', "\\:"}, {'\\', "\\\\"}}),
+                      value);
       text += fmt::format(" \\\n        {}", shellQuoted(spec));
     }
   }
   return text + " \\\n        '*:file:_files'";
 }
 
-std::string zshScript(const Usages& commands) {
+std::string zshScript(const CLI::App& main) {
   std::string names;
-  for (const CommandUsage& command : commands) {
-    if (command.name.empty()) continue;
-    const std::string spec = fmt::format("{}:{}", command.name, escaped(command.summary, ":\\"));
+  for (const CLI::App* command : commandsOf(main)) {
+    const std::string spec =
+        fmt::format("{}:{}", command->get_name(),
+                    escaped(command->get_description(), {{':', "\\:"}, {'\\', "\\\\"}}));
     names += fmt::format("    {}\n", shellQuoted(spec));
   }
   return fmt::format(R"(#compdef broadmark
@@ -119,42 +109,43 @@ _broadmark() {{
 }}
 _broadmark "$@"
 )",
-                     names, caseBranches(commands, zshArguments));
+                     names, caseBranches(main, zshArguments));
 }
 
 std::string fishQuoted(const std::string& text) {
-  return fmt::format("'{}'", escaped(text, "'\\"));
+  return fmt::format("'{}'", escaped(text, {{'\'', "\\'"}, {'\\', "\\\\"}}));
 }
 
-std::string fishScript(const Usages& commands) {
-  const auto names = commandNames(commands);
+std::string fishScript(const CLI::App& main) {
   std::string text;
   const auto add = [&](const std::string& condition, const std::string& what,
                        const std::string& doc) {
     text +=
         fmt::format("complete -c broadmark -n '{}' {} -d {}\n", condition, what, fishQuoted(doc));
   };
-  for (const CommandUsage& command : commands) {
-    const bool is_main = command.name.empty();
-    const std::string inside =
-        is_main ? fmt::format("not __fish_seen_subcommand_from {}", fmt::join(names, " "))
-                : fmt::format("__fish_seen_subcommand_from {}", command.name);
-    if (!is_main) add("__fish_use_subcommand", fmt::format("-a {}", command.name), command.summary);
-    for (const CLI::Option* option : command.options) {
+  const auto add_options = [&](const std::string& condition, const CLI::App& command) {
+    for (const CLI::Option* option : shownOptions(command)) {
       if (option->get_positional()) continue;
       for (const std::string& name : namesOf(*option)) {
         const bool is_long = name.starts_with("--");
-        add(inside,
+        add(condition,
             fmt::format("-{} {}{}", is_long ? "l" : "s", name.substr(is_long ? 2 : 1),
                         takesValue(*option) ? " -r" : ""),
             option->get_description());
       }
     }
+  };
+  const std::string inside = "__fish_seen_subcommand_from ";
+  add_options(fmt::format("not {}{}", inside, fmt::join(commandNames(main), " ")), main);
+  for (const CLI::App* command : commandsOf(main)) {
+    const std::string& name = command->get_name();
+    add("__fish_use_subcommand", "-a " + name, command->get_description());
+    add_options(inside + name, *command);
   }
   return text;
 }
 
-using Script = std::string (*)(const Usages&);
+using Script = std::string (*)(const CLI::App&);
 constexpr NameTable kShells{
     {NamedValue<Script>{bashScript, "bash"}, {zshScript, "zsh"}, {fishScript, "fish"}}};
 
@@ -166,7 +157,7 @@ std::function<int()> add(CLI::App& app) {
       fmt::format("{}", fmt::join(kShells.names(), ", ")))
       ->required();
   return [script, &app] {
-    fmt::print("{}", (*script)(usageOf(*app.get_parent())));
+    fmt::print("{}", (*script)(*app.get_parent()));
     return exit_status::fine;
   };
 }

@@ -9,23 +9,15 @@
 #include "command_line/usage.h"
 #include "commands/command.h"
 #include "support/exit_status.h"
+#include "support/words.h"
 
 namespace broadmark::commands::manual {
 namespace {
 
 /// A text that roff takes for nothing else: no escapes, no requests, no hyphens for dashes.
 std::string plain(const std::string& text) {
-  std::string result = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
-  for (const char c : text) {
-    if (c == '\\') {
-      result += "\\e";
-    } else if (c == '-') {
-      result += "\\-";
-    } else {
-      result += c;
-    }
-  }
-  return result;
+  const bool is_request = text.starts_with('.') || text.starts_with('\'');
+  return (is_request ? "\\&" : "") + escaped(text, {{'\\', "\\e"}, {'-', "\\-"}});
 }
 
 std::string optionEntry(const CLI::Option& option) {
@@ -41,9 +33,9 @@ std::string optionEntry(const CLI::Option& option) {
   return fmt::format(".TP\n{}\n{}{}\n", head, plain(option.get_description()), value);
 }
 
-std::string optionEntries(const CommandUsage& command) {
+std::string optionEntries(const CLI::App& command) {
   std::string text;
-  for (const CLI::Option* option : command.options) text += optionEntry(*option);
+  for (const CLI::Option* option : shownOptions(command)) text += optionEntry(*option);
   return text;
 }
 
@@ -56,8 +48,7 @@ std::string exitStatusEntries() {
 }
 
 /// In the macros of man(7).
-std::string manualPage(const std::vector<CommandUsage>& commands, const std::string& version) {
-  const CommandUsage& main = commands.front();
+std::string manualPage(const CLI::App& main, const std::string& version) {
   std::string text = fmt::format(
       ".TH BROADMARK 1 \"\" \"Broadmark {}\" \"User Commands\"\n"
       ".SH NAME\nbroadmark \\- {}\n"
@@ -67,18 +58,17 @@ std::string manualPage(const std::vector<CommandUsage>& commands, const std::str
       ".SH DESCRIPTION\n{}\nIts README is the guide; this page lists every option.\n"
       ".SH OPTIONS\n{}.SH COMMANDS\n",
       plain(version), "tests, compares and validates broad\\-phase collision detection",
-      plain(main.summary), optionEntries(main));
-  for (const CommandUsage& command : commands) {
-    if (command.name.empty()) continue;
-    text += fmt::format(".SS broadmark {}\n{}\n{}", plain(command.name), plain(command.summary),
-                        optionEntries(command));
+      plain(main.get_description()), optionEntries(main));
+  for (const CLI::App* command : commandsOf(main)) {
+    text += fmt::format(".SS broadmark {}\n{}\n{}", plain(command->get_name()),
+                        plain(command->get_description()), optionEntries(*command));
   }
   return text + ".SH EXIT STATUS\n" + exitStatusEntries();
 }
 
 std::function<int()> add(CLI::App& app) {
   return [&app] {
-    fmt::print("{}", manualPage(usageOf(*app.get_parent()), thisEnvironment().version));
+    fmt::print("{}", manualPage(*app.get_parent(), thisEnvironment().version));
     return exit_status::fine;
   };
 }

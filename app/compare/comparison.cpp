@@ -49,14 +49,10 @@ std::string nameWithout(const CaseResult& result, const std::string& by) {
   if (by == "algorithm") return {};
   std::string name = caseNameOf(result);
   if (by.empty()) return name;
-  std::string rest;
-  for (std::size_t from = 0; from <= name.size();) {
-    const std::size_t to = std::min(name.find('/', from), name.size());
-    const std::string part = name.substr(from, to - from);
-    if (from == 0 || !states(part, by)) rest += '/' + part;
-    from = to + 1;
-  }
-  return rest;
+  std::vector<std::string> parts = splitAt('/', name);
+  std::erase_if(parts,
+                [&](const std::string& part) { return &part != parts.data() && states(part, by); });
+  return fmt::format("{}", fmt::join(parts, "/"));
 }
 
 /// The cases of one run by what they are compared as, in their order.

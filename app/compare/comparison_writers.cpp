@@ -117,27 +117,11 @@ std::string csv(const Comparison& comparison) {
   return text;
 }
 
-std::string escapedForXml(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:  // XML has no way to write other control characters
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
+/// Control characters, which XML has no way to write, become blanks.
+std::string escapedForXml(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return escaped(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}});
 }
 
 /// Whether nothing can be said of the case.
@@ -177,15 +161,7 @@ std::string junit(const Comparison& comparison) {
 
 /// A message as workflow commands want it.
 std::string escapedForGithub(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '%' || c == '\n' || c == '\r') {
-      result += fmt::format("%{:02X}", static_cast<unsigned>(c));
-    } else {
-      result += c;
-    }
-  }
-  return result;
+  return escaped(text, {{'%', "%25"}, {'\n', "%0A"}, {'\r', "%0D"}});
 }
 
 std::string github(const Comparison& comparison) {

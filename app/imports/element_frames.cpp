@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -92,7 +93,9 @@ class ElementFrames final : public IndexedFrames {
   void readFiles(const std::vector<fs::path>& files, double frame_rate) {
     kept_ = unnamedFile();
     for (const fs::path& file : files) {
-      MeshTopology mesh = readMesh(file, frame_rate, [&](auto points) { keep(points); });
+      const PointSink sink = [&](auto points) { keep(points, file); };
+      MeshTopology mesh = hasExtension(file, {".obj"}) ? readObj(file, sink)
+                                                       : readWithAssimp(file, frame_rate, sink);
       if (&file == &files.front()) {
         mesh_ = std::move(mesh);
       } else {
@@ -101,7 +104,14 @@ class ElementFrames final : public IndexedFrames {
     }
   }
 
-  void keep(std::span<const Point> points) {
+  void keep(std::span<const Point> points, const fs::path& file) {
+    const auto broken = std::ranges::find_if(points, [](const Point& point) {
+      return !std::ranges::all_of(point, [](float value) { return std::isfinite(value); });
+    });
+    if (broken != points.end()) {
+      throw InputError(fmt::format("{}: vertex {} has a coordinate that is no finite 32-bit float",
+                                   file.string(), broken - points.begin()));
+    }
     if (frames_ > kMostFrames) throw InputError(fmt::format("more than {} frames", kMostFrames));
     ++frames_;
     writeAll(kept_.get(), std::as_bytes(points), "the vertices of a mesh");

@@ -24,19 +24,15 @@ struct MeshTopology {
 /// Gets the vertices of one frame after the other.
 using PointSink = std::function<void(std::span<const Point>)>;
 
-/// The extensions of files with meshes that can be read.
-const std::vector<std::string>& meshExtensions();
-
-/// Reads a file: the frames of its animation, so many a second, or its only one. Every triangle has
-/// vertices that exist, and every coordinate is finite. Throws InputError.
-MeshTopology readMesh(const std::filesystem::path& file, double frame_rate, const PointSink& sink);
+// What reads a mesh from a file: the frames of its animation, or its only one. Every triangle has
+// vertices that exist.
 
 /// A Wavefront OBJ file. Assimp gives each corner of a face a vertex of its own: then no two faces
 /// would share one. Throws InputError.
 MeshTopology readObj(const std::filesystem::path& file, const PointSink& sink);
 
-/// What assimp reads. It does so in a child process, as damaged files may crash it, or make it take
-/// all memory. Throws InputError.
+/// What assimp reads, so many frames a second. It does so in a child process, as damaged files may
+/// crash it, or make it take all memory. Throws InputError.
 MeshTopology readWithAssimp(const std::filesystem::path& file, double frame_rate,
                             const PointSink& sink);
 

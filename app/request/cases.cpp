@@ -17,6 +17,7 @@
 #include "request/former_names.h"
 #include "request/plugins.h"
 #include "request/sweep.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
@@ -46,9 +47,8 @@ ParameterKey parseKey(const std::string& key) {
 /// An id of the original as the id that it stands for; anything else as it is.
 std::string ownSelector(const std::string& selector, const std::vector<Algorithm>& known) {
   const OriginalId* original = findOriginalId(selector);
-  if (original == nullptr) return selector;
-  const std::string id(original->algorithm);
-  return findAlgorithm(id, known) == nullptr ? selector : id;
+  const Algorithm* own = original == nullptr ? nullptr : findAlgorithm(original->algorithm, known);
+  return own == nullptr ? selector : own->id;
 }
 
 /// Those of the parameters that are for an algorithm, by their own names. What is given for it
@@ -126,7 +126,7 @@ int parseThreadCount(const std::string& text) {
   return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
 }
 
-const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known) {
+const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known) {
   const auto found = std::ranges::find(known, id, &Algorithm::id);
   return found == known.end() ? nullptr : &*found;
 }
@@ -187,7 +187,7 @@ std::vector<Case> selectCases(const CaseOptions& options, const ParameterValues&
     // The original's ids state an instruction set of their own.
     const OriginalId* original = findOriginalId(selector);
     const Algorithm* algorithm =
-        original == nullptr ? nullptr : findAlgorithm(std::string(original->algorithm), known);
+        original == nullptr ? nullptr : findAlgorithm(original->algorithm, known);
     if (algorithm == nullptr) {
       selectors.push_back(selector);
       continue;
@@ -218,16 +218,11 @@ Case caseNamed(const std::string& name, const std::string& device, AnswerKind an
   const std::size_t begin = lengthOfPlugin(name);
   std::vector<std::string> plugins;
   if (begin > 0) plugins.push_back(name.substr(0, begin - 1));
-  const std::size_t end = std::min(name.find('/', begin), name.size());
-  const Algorithm algorithm =
-      requireAlgorithm(name.substr(begin, end - begin), availableAlgorithms(plugins));
+  const std::vector<std::string> parts = splitAt('/', name.substr(begin));
+  const Algorithm algorithm = requireAlgorithm(parts.front(), availableAlgorithms(plugins));
 
   Case made = makeCase(algorithm, bestIsa(), allCores(), device, {}, answer);
-  for (std::size_t from = end + 1; from < name.size();) {
-    const std::size_t to = std::min(name.find('/', from), name.size());
-    takeCasePart(made, name.substr(from, to - from), name);
-    from = to + 1;
-  }
+  for (std::size_t i = 1; i < parts.size(); ++i) takeCasePart(made, parts[i], name);
   makeInstance(made);  // throws for bad parameters
   return made;
 }

@@ -47,7 +47,7 @@ Case caseNamed(const std::string& name, const std::string& device,
                AnswerKind answer = AnswerKind::pairs);
 
 /// The algorithm of this id, or null.
-const Algorithm* findAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
+const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known);
 /// The same; throws InputError if there is none.
 const Algorithm& requireAlgorithm(const std::string& id, const std::vector<Algorithm>& known);
 /// All ids, for messages.

@@ -30,12 +30,9 @@ void dropRepeated(std::vector<std::string>& texts) {
 std::vector<std::string> splitList(const std::vector<std::string>& texts) {
   std::vector<std::string> parts;
   for (const std::string& text : texts) {
-    for (std::size_t start = 0; start <= text.size();) {
-      const std::size_t end = std::min(text.find(',', start), text.size());
-      if (end > start) parts.push_back(text.substr(start, end - start));
-      start = end + 1;
-    }
+    std::ranges::move(splitAt(',', text), std::back_inserter(parts));
   }
+  std::erase(parts, "");
   return parts;
 }
 

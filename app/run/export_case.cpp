@@ -18,18 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A word as the shell takes it.
-std::string quoted(const std::string& word) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  return shellQuoted(word);
-}
-
 /// A path that is not taken for an option.
 std::string pathWord(const fs::path& path) {
   const std::string text = path.string();
-  return quoted(text.starts_with('-') ? "./" + text : text);
+  return shellQuoted(text.starts_with('-') ? "./" + text : text);
 }
 
 /// What is left, in one line.
@@ -58,15 +50,15 @@ std::string reproducingCommand(const Case& run, const fs::path& recording) {
   };
   const Algorithm& algorithm = run.algorithm;
   if (!algorithm.plugin.empty()) add("--plugin", pathWord(algorithm.plugin));
-  add("--algorithm", quoted(algorithm.id));
+  add("--algorithm", shellQuoted(algorithm.id));
   if (algorithm.traits.vectorised) add("--isa", std::string(isaName(run.isa)));
   if (algorithm.traits.parallel) add("--threads", fmt::format("{}", run.threads));
-  if (!run.device.empty()) add("--device", quoted(run.device));
+  if (!run.device.empty()) add("--device", shellQuoted(run.device));
   if (run.answer != AnswerKind::pairs) {
     add("--answer", std::string(kAnswerKinds.nameOf(run.answer)));
   }
   for (const auto& [key, value] : run.parameters)
-    add("--param", quoted(fmt::format("{}={}", key, value)));
+    add("--param", shellQuoted(fmt::format("{}={}", key, value)));
   add("--check", "full");
   return command;
 }
@@ -74,7 +66,7 @@ std::string reproducingCommand(const Case& run, const fs::path& recording) {
 std::string torturingCommand(const Case& run, const fs::path& recording) {
   const std::string plugin = run.algorithm.plugin.empty() ? "" : run.algorithm.plugin + ":";
   return fmt::format("broadmark torture {} --only-sources --case {} --rounds 1 --output {}",
-                     pathWord(recording), quoted(plugin + caseName(run)),
+                     pathWord(recording), shellQuoted(plugin + caseName(run)),
                      pathWord(recording.parent_path() / "again"));
 }
 

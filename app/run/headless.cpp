@@ -11,7 +11,6 @@
 #include "broadmark/files.h"
 #include "run/plan_run.h"
 #include "run/recordings.h"
-#include "run/screenshot.h"
 #include "support/exit_status.h"
 #include "support/interrupt.h"
 #include "support/output.h"
@@ -57,23 +56,22 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
     if (!results.complete || InterruptGuard::requested()) {
       throw Interrupted(fmt::format("{} kept", counted(results.cases.size(), "finished case")));
     }
-    const int status = exitStatusOf(judgedStatuses(results));
+    std::vector<Status> judged;
+    for (const CaseResult& result : results.cases) judged.push_back(result.status);
+    if (request_.allow_timeout) std::erase(judged, Status::timeout);
+    const int status = exitStatusOf(judged);
     return picture_failed_ && status != exit_status::wrong_answer ? exit_status::bad_input : status;
   }
 
  private:
-  /// Those that tell how the run ends.
-  [[nodiscard]] std::vector<Status> judgedStatuses(const Results& results) const {
-    std::vector<Status> statuses;
-    for (const CaseResult& result : results.cases) statuses.push_back(result.status);
-    if (request_.allow_timeout) std::erase(statuses, Status::timeout);
-    return statuses;
-  }
-
   void draw(IndexedFrames& recording, Oracle& oracle, const fs::path& path) {
     try {
-      takeScreenshot(recording, request_.frame.value_or(recording.scene().frames), oracle,
-                     request_.picture, path);
+      const SceneInfo& scene = recording.scene();
+      const Frame frame = recording.at(request_.frame.value_or(scene.frames));
+      const PairRun pairs = oracle.pairs(frame.boxes, scene.filter);
+      const PictureOptions& picture = request_.picture;
+      const auto context = makeOffscreenContext(picture.gl);
+      writePng(path, drawFrame(*context, scene, frame, {&pairs, 1}, picture.width, picture.height));
       written_.push_back(path);
     } catch (const RenderError& error) {
       std::cerr << fmt::format("broadmark: no screenshot: {}\n", error.what());
@@ -88,17 +86,6 @@ class HeadlessRun final : public TerminalTasks<RunObserver> {
   bool picture_failed_ = false;
   std::vector<fs::path> written_;
 };
-
-/// Every file that the run will write, with the option that asks for it.
-std::vector<std::pair<std::string, fs::path>> plannedFiles(const Plan& plan) {
-  std::vector<std::pair<std::string, fs::path>> files;
-  for (const auto& [name, path] : plan.request.outputs) files.emplace_back("--" + name, path);
-  for (const PlanEntry& entry : plan.entries) {
-    if (!entry.screenshot.empty()) files.emplace_back("--screenshot", entry.screenshot);
-    if (entry.original) files.emplace_back("m_outputLog", entry.original->output_log);
-  }
-  return files;
-}
 
 /// One name for a file, whatever it is called; the given one where there is none, as for a pipe.
 fs::path oneName(const fs::path& path) {
@@ -120,13 +107,18 @@ void requireWritable(const Plan& plan) {
         source.simulation ? source.simulation->input() : fs::path(source.reference.path);
     if (!file.empty()) taken[oneName(file)] = "a source";
   }
-  for (const auto& [option, path] : plannedFiles(plan)) {
+  const auto require = [&](const std::string& option, const fs::path& path) {
     const auto [other, free] = taken.emplace(oneName(path), option);
     if (!free) {
       throw InputError(fmt::format("{}: {}: already the file of {}: choose another name", option,
                                    path.string(), other->second));
     }
     requireOutput(path);
+  };
+  for (const auto& [name, path] : plan.request.outputs) require("--" + name, path);
+  for (const PlanEntry& entry : plan.entries) {
+    if (!entry.screenshot.empty()) require("--screenshot", entry.screenshot);
+    if (entry.original) require("m_outputLog", entry.original->output_log);
   }
 }
 

@@ -37,12 +37,6 @@ void addSource(Plan& plan, const std::string& name, PlanUse use) {
   }
 }
 
-std::vector<Case> selectedCases(const Plan& plan, PlanUse use) {
-  const CaseOptions& cases = plan.request.cases;
-  if (use == PlanUse::open && cases.algorithms.empty()) return {};
-  return selectCases(cases, plan.request.parameters, plan.algorithms);
-}
-
 void addCases(PlanEntry& entry, const std::vector<Case>& selected, const CaseOptions& options) {
   if (entry.cases.empty()) {
     entry.cases = selected;
@@ -148,7 +142,10 @@ Plan makePlan(const RunRequest& request, PlanUse use) {
 Plan makePlan(const RunRequest& request, PlanUse use, std::vector<Algorithm> algorithms) {
   Plan plan{.request = request, .algorithms = std::move(algorithms)};
   for (const std::string& source : request.sources) addSource(plan, source, use);
-  const std::vector<Case> selected = selectedCases(plan, use);
+  std::vector<Case> selected;
+  if (use == PlanUse::run || !request.cases.algorithms.empty()) {
+    selected = selectCases(request.cases, request.parameters, plan.algorithms);
+  }
   for (PlanEntry& entry : plan.entries) addCases(entry, selected, request.cases);
   if (request.sources.empty()) plan.cases = selected;
   requireParametersUsed(plan);

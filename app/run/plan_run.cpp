@@ -112,7 +112,10 @@ class PlanRun {
     try {
       whole = runPasses(*recording, oracle);
     } catch (...) {
-      keepFinished(entry);
+      try {
+        keep(entry);
+      } catch (const InputError&) {  // the first error is the one to report
+      }
       throw;
     }
     keep(entry);
@@ -183,14 +186,6 @@ class PlanRun {
     files_.add(planned.result);
     planned.ended = true;
     observer_.onCaseFinished(planned.result);
-  }
-
-  /// Saves finished cases even if the run fails.
-  void keepFinished(const PlanEntry& entry) {
-    try {
-      keep(entry);
-    } catch (const InputError&) {  // the first error is the one to report
-    }
   }
 
   /// Keeps the results of the cases that have been run, if only for some of their passes.

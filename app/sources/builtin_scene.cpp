@@ -8,9 +8,7 @@
 namespace broadmark::sources::builtin_scene {
 
 SourceKind kind() {
-  std::vector<std::string> ids;
-  for (const SceneListing& scene : builtinScenes()) ids.push_back(scene.id);
-  return {.what = fmt::format("built-in scenes ({})", fmt::join(ids, ", ")),
+  return {.what = fmt::format("built-in scenes ({})", fmt::join(sceneIds(), ", ")),
           .recognises = [](NamedSource& source) { return isSceneId(source.name()); },
           .open = openScene};
 }

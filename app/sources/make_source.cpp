@@ -95,10 +95,13 @@ std::string recordingKindsText() {
   return fmt::format("recordings ({})", fmt::join(recordingExtensions(), ", "));
 }
 
-bool isSceneId(const std::string& name) {
-  return std::ranges::any_of(builtinScenes(),
-                             [&](const SceneListing& scene) { return scene.id == name; });
+std::vector<std::string> sceneIds() {
+  std::vector<std::string> ids;
+  for (const SceneListing& scene : builtinScenes()) ids.push_back(scene.id);
+  return ids;
 }
+
+bool isSceneId(const std::string& name) { return std::ranges::count(sceneIds(), name) > 0; }
 
 Source simulationSource(std::unique_ptr<Simulation> simulation) {
   Source source;

@@ -16,7 +16,8 @@ inline constexpr const char* kSceneFile = "scene_file";
 /// "recordings (.aabbs, …)", for help.
 std::string recordingKindsText();
 
-/// Whether a built-in scene has this id.
+/// The ids of the built-in scenes.
+std::vector<std::string> sceneIds();
 bool isSceneId(const std::string& name);
 
 /// The recording of a simulation.

@@ -1,7 +1,5 @@
 // Settings files of the original Broadmark: a recording and the case to run on it.
 
-#include "sources/original_settings.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,17 +32,15 @@ ParameterValues originalParameters(const OriginalSettings& settings, const Algor
 std::vector<std::string> knownNames(const std::vector<Algorithm>& known) {
   std::vector<std::string> names;
   for (const OriginalId& id : originalIds()) {
-    if (findAlgorithm(std::string(id.algorithm), known) != nullptr) names.emplace_back(id.name);
+    if (findAlgorithm(id.algorithm, known) != nullptr) names.emplace_back(id.name);
   }
   return names;
 }
 
-}  // namespace
-
+/// Its case, the algorithm being one of `known`. Throws InputError.
 Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>& known) {
   const OriginalId* id = findOriginalId(settings.algorithm);
-  const Algorithm* algorithm =
-      id == nullptr ? nullptr : findAlgorithm(std::string(id->algorithm), known);
+  const Algorithm* algorithm = id == nullptr ? nullptr : findAlgorithm(id->algorithm, known);
   if (algorithm == nullptr) {
     throw InputError("m_algorithm: " +
                      unknownName("algorithm", settings.algorithm, knownNames(known)));
@@ -54,16 +50,11 @@ Case originalCase(const OriginalSettings& settings, const std::vector<Algorithm>
                   originalParameters(settings, *algorithm));
 }
 
-namespace {
-
 OpenedSource open(NamedSource& source, const OpeningOptions& options) {
   const OriginalSettings settings = parseOriginalSettings(source.text(), source.name());
-  OpenedSource opened;
-  opened.entries.push_back(
-      {.source = recordingSource(statedPath(source.path(), settings.input_scene)),
-       .cases = {originalCase(settings, options.algorithms)},
-       .original = settings});
-  return opened;
+  return OpenedSource({.source = recordingSource(statedPath(source.path(), settings.input_scene)),
+                       .cases = {originalCase(settings, options.algorithms)},
+                       .original = settings});
 }
 
 }  // namespace

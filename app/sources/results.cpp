@@ -135,14 +135,13 @@ namespace sources::results {
 namespace {
 
 OpenedSource open(NamedSource& source, const OpeningOptions& options) {
-  OpenedSource opened;
   Results results = parseResults(source.text(), source.name());
-  if (options.case_id.empty()) {
-    opened.results = std::move(results);
-    return opened;
+  if (!options.case_id.empty()) {
+    return OpenedSource(entryOf(resultOf(results, options.case_id, source.name()), source.path(),
+                                options.algorithms));
   }
-  opened.entries.push_back(entryOf(resultOf(results, options.case_id, source.name()), source.path(),
-                                   options.algorithms));
+  OpenedSource opened;
+  opened.results = std::move(results);
   return opened;
 }
 

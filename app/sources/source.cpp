@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
@@ -25,6 +26,10 @@ namespace broadmark {
 
 namespace {
 
+std::string kindsText(const std::vector<SourceKind>& kinds) {
+  return fmt::format("{}", fmt::join(kinds | std::views::transform(&SourceKind::what), ", "));
+}
+
 /// Whether it opens what is named.
 bool opens(const SourceKind& kind, NamedSource& source) {
   if (!kind.import) return kind.recognises(source);
@@ -34,18 +39,14 @@ bool opens(const SourceKind& kind, NamedSource& source) {
 
 OpenedSource openWith(const SourceKind& kind, NamedSource& source, const OpeningOptions& options) {
   if (!kind.import) return kind.open(source, options);
-  OpenedSource opened;
-  opened.entries.push_back(
+  return OpenedSource(
       {.source = importedSource({source.name()}, *kind.import, options.reading), .cases = {}});
-  return opened;
 }
 
 /// What is wrong with a source that is of no kind.
 InputError unknownSource(NamedSource& source) {
   if (!source.isFile()) {
-    std::vector<std::string> scenes;
-    for (const SceneListing& scene : builtinScenes()) scenes.push_back(scene.id);
-    return InputError(unknownName("scene", source.name(), scenes) + ", and no such file");
+    return InputError(unknownName("scene", source.name(), sceneIds()) + ", and no such file");
   }
   const std::string& schema = source.schema();
   const std::string kind =
@@ -89,11 +90,7 @@ std::vector<SourceKind> sourceKinds() {
   };
 }
 
-std::string sourceKindsText() {
-  std::string text;
-  for (const SourceKind& kind : sourceKinds()) text += (text.empty() ? "" : ", ") + kind.what;
-  return text;
-}
+std::string sourceKindsText() { return kindsText(sourceKinds()); }
 
 bool isSource(const std::string& name) { return isSceneId(name) || NamedSource(name).isFile(); }
 
@@ -119,11 +116,9 @@ std::optional<FileImport> importOf(const std::string& name) {
 }
 
 std::string importKindsText() {
-  std::vector<std::string> kinds;
-  for (const SourceKind& kind : sourceKinds()) {
-    if (kind.import) kinds.push_back(kind.what);
-  }
-  return fmt::format("{}", fmt::join(kinds, ", "));
+  std::vector<SourceKind> kinds = sourceKinds();
+  std::erase_if(kinds, [](const SourceKind& kind) { return !kind.import; });
+  return kindsText(kinds);
 }
 
 void requireReadingUsed(ReadingOptions options, const std::vector<PlanEntry>& entries) {

@@ -43,6 +43,9 @@ struct PlanEntry {
 
 /// A source that has been opened.
 struct OpenedSource {
+  OpenedSource() = default;
+  explicit OpenedSource(PlanEntry entry) { entries.push_back(std::move(entry)); }
+
   /// Scenes and recordings have no cases of their own.
   std::vector<PlanEntry> entries;
   /// A results file without a chosen case: then there are no entries.

@@ -15,6 +15,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/files.h"
+#include "support/words.h"
 
 namespace broadmark {
 namespace {
@@ -116,14 +117,9 @@ ProgramEnd runProgram(std::vector<std::string> command,
 
 bool isProgramThere(const std::string& name) {
   const char* const path = std::getenv("PATH");
-  std::string folders = path == nullptr ? "" : path;
-  while (!folders.empty()) {
-    const std::size_t end = std::min(folders.find(':'), folders.size());
-    const fs::path file = fs::path(folders.substr(0, end)) / name;
-    if (::access(file.c_str(), X_OK) == 0) return true;
-    folders.erase(0, end + 1);
-  }
-  return false;
+  return path != nullptr && std::ranges::any_of(splitAt(':', path), [&](const fs::path& folder) {
+           return ::access((folder / name).c_str(), X_OK) == 0;
+         });
 }
 
 void openByDesktop(const fs::path& file) {

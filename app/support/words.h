@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace broadmark {
 
@@ -18,7 +21,14 @@ std::string bytesText(std::uint64_t bytes);
 /// "1 case", "2 cases"; of "body" the plural is stated.
 std::string counted(std::uint64_t count, std::string_view one, std::string_view many = {});
 
-/// In single quotes, as a shell takes it.
+/// What stands between separators.
+std::vector<std::string> splitAt(char separator, std::string_view text);
+
+/// The text with these characters replaced.
+std::string escaped(std::string_view text,
+                    std::initializer_list<std::pair<char, std::string_view>> replacements);
+
+/// A word as a shell takes it: in single quotes where it needs them.
 std::string shellQuoted(const std::string& text);
 
 /// "3 bodies, 1 frame"

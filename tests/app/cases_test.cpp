@@ -11,12 +11,10 @@
 #include "engine/helpers.h"
 #include "original/ids.h"
 #include "parts.h"
-#include "sources/original_settings.h"
 
 namespace broadmark::tests {
 namespace {
 
-using sources::original_settings::originalCase;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -175,29 +173,6 @@ TEST(OriginalIds, AreOfExistingAlgorithms) {
               algorithm->traits.parallel && !algorithm->traits.on_device);
   }
   EXPECT_EQ(findOriginalId("bf"), nullptr);
-}
-
-TEST(OriginalCase, HasTheSettingsThreadsAndParameters) {
-  OriginalSettings settings{.algorithm = "KD", .margin = {0.25, 0.5, 0.125}};
-  settings.kd_objects_per_leaf = 20;
-  const Case kd = originalCase(settings, builtinAlgorithms());
-  EXPECT_EQ(kd.algorithm.id, "kd");
-  EXPECT_EQ(kd.parameters, (ParameterValues{{"margin", "0.5"}, {"objects_per_leaf", "20"}}));
-
-  settings.algorithm = "BF_SSE_Parallel";
-  settings.threads = 9'000;
-  const Case bf = originalCase(settings, builtinAlgorithms());
-  EXPECT_EQ(bf.algorithm.id, "bf-simd-mt");
-  EXPECT_EQ(bf.isa, Isa::sse2);
-  EXPECT_EQ(bf.threads, 1024);
-
-  settings.algorithm = "Tracy_Parallel";
-  settings.grid_objects_per_cell = 7;
-  EXPECT_EQ(originalCase(settings, builtinAlgorithms()).parameters.at("objects_per_cell"), "7");
-
-  settings.algorithm = "BF_SS";
-  EXPECT_THAT(inputErrorOf([&] { originalCase(settings, builtinAlgorithms()); }),
-              AllOf(HasSubstr("m_algorithm"), HasSubstr("'BF_SS'"), HasSubstr("BF_SSE")));
 }
 
 TEST(CaseNamed, IsTheInverseOfCaseName) {

@@ -188,6 +188,32 @@ TEST_F(Sources, OriginalSettings) {
   EXPECT_EQ(entry.source.reference.scene.objects, 2U);
 }
 
+TEST_F(Sources, OriginalSettingsThreadsAndParameters) {
+  writeRecording(directory_ / "small.aabbs");
+  const auto path_of = [this](const std::string& settings) {
+    return write("settings.json",
+                 R"({"m_inputScene": "small.aabbs", "m_outputLog": "log.json", )" + settings + "}");
+  };
+  const auto case_of = [&](const std::string& settings) {
+    return entryOf(path_of(settings)).cases.at(0);
+  };
+  const Case kd = case_of(R"("m_algorithm": "KD", "m_KD_ObjectsPerLeaf": 20,
+                             "m_margin": {"x": 0.25, "y": 0.5, "z": 0.125})");
+  EXPECT_EQ(kd.algorithm.id, "kd");
+  EXPECT_EQ(kd.parameters, (ParameterValues{{"margin", "0.5"}, {"objects_per_leaf", "20"}}));
+
+  const Case bf = case_of(R"("m_algorithm": "BF_SSE_Parallel", "m_numThreads": 9000)");
+  EXPECT_EQ(bf.algorithm.id, "bf-simd-mt");
+  EXPECT_EQ(bf.isa, Isa::sse2);
+  EXPECT_EQ(bf.threads, 1024);
+
+  const Case tracy = case_of(R"("m_algorithm": "Tracy_Parallel", "m_Grid_ObjectsPerCell": 7)");
+  EXPECT_EQ(tracy.parameters.at("objects_per_cell"), "7");
+
+  EXPECT_THAT(inputErrorOf([&] { open(path_of(R"("m_algorithm": "BF_SS")")); }),
+              AllOf(HasSubstr("m_algorithm"), HasSubstr("'BF_SS'"), HasSubstr("BF_SSE")));
+}
+
 TEST_F(Sources, ResultsWithAChosenCase) {
   const std::string path = recording();
   const CaseResult right = resultOn(path, "sap");

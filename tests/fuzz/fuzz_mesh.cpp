@@ -8,7 +8,6 @@
 #include <string>
 
 #include "import_through.h"
-#include "imports/mesh.h"
 
 namespace broadmark::sources::meshes {
 SourceKind kind();
@@ -20,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   static const SourceKind kind = sources::meshes::kind();
   static const auto folder = fs::temp_directory_path() / fmt::format("fuzz_mesh_{}", ::getpid());
-  const std::vector<std::string>& extensions = imports::meshExtensions();
+  const std::vector<std::string>& extensions = kind.import->extensions;
   // By its name assimp knows what a file is.
   const fs::path file = folder / ("a" + extensions[data[0] % extensions.size()]);
   fs::create_directories(folder);

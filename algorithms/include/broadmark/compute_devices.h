@@ -15,7 +15,6 @@ struct ComputeDevice {
   bool gpu = false;
   int units = 0;  ///< parallel compute units; of a CPU, its threads
   std::uint64_t memory_bytes = 0;
-  std::uint64_t largest_buffer_bytes = 0;
   std::string driver;
 };
 

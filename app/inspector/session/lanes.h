@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -30,9 +29,8 @@ class Lanes {
 
   /// Adds an algorithm with its default parameters. Throws InputError for an unknown id.
   LaneEdit& add(const std::string& algorithm_id) {
-    return add(Case{.algorithm = requireAlgorithm(algorithm_id, algorithms_),
-                    .isa = bestIsa(),
-                    .threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()))});
+    return add(
+        makeCase(requireAlgorithm(algorithm_id, algorithms_), bestIsa(), allCores(), {}, {}));
   }
 
   /// Throws InputError for bad parameters.
