@@ -65,8 +65,7 @@ cl::Device withThreads(cl::Device device, int threads) {
   return parts.front();
 }
 
-}  // namespace
-
+/// In the order of computeDevices().
 std::vector<cl::Device> devices() {
   std::vector<cl::Device> all;
   for (const cl::Platform& platform : platforms()) {
@@ -76,6 +75,8 @@ std::vector<cl::Device> devices() {
   std::ranges::stable_partition(all, isGpu);
   return all;
 }
+
+}  // namespace
 
 DeviceContext::DeviceContext(Execution& execution) {
   const std::vector<ComputeDevice> known = computeDevices();

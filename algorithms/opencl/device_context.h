@@ -32,9 +32,6 @@ class ScopedTimer {
   Clock::time_point start_ = Clock::now();
 };
 
-/// The devices in the order of computeDevices().
-std::vector<cl::Device> devices();
-
 /// Context and in-order queue on the wanted device. On a CPU it uses the execution's threads only.
 /// One for all instances under an Execution: making a context and building kernels takes far longer
 /// than a frame. Outlives all that is made from it.

@@ -110,11 +110,6 @@ double parseNumber(const std::string& text, std::string_view option, double min,
   return *value;
 }
 
-double parseShare(const std::string& text, std::string_view option, bool open) {
-  if (!text.ends_with('%')) return parseNumber(text, option, 0, open);
-  return parseNumber(text.substr(0, text.size() - 1), option, 0, open) / 100;
-}
-
 CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
                       std::function<void(const std::string&)> set, const ValueText& get,
                       const std::string& doc) {
@@ -138,7 +133,9 @@ CLI::Option* addPositive(CLI::App& app, const std::string& name, const std::stri
 CLI::Option* addShare(CLI::App& app, const std::string& name, double& target, bool open,
                       const std::string& doc) {
   const auto set = [&target, name, open](const std::string& text) {
-    target = parseShare(text, name, open);
+    const bool percent = text.ends_with('%');
+    const std::string number = text.substr(0, text.size() - (percent ? 1 : 0));
+    target = parseNumber(number, name, 0, open) / (percent ? 100 : 1);
   };
   return addValue(
       app, name, "SHARE", set, [&] { return fmt::format("{:.12g}%", 100 * target); }, doc);

@@ -30,9 +30,6 @@ namespace broadmark {
 /// A finite number >= `min`, or > `min` when `open`.
 double parseNumber(const std::string& text, std::string_view option, double min, bool open);
 
-/// A share, "1%" or "0.01", > 0 or, unless `open`, 0.
-double parseShare(const std::string& text, std::string_view option, bool open);
-
 /// The value called `text` in a NameTable.
 template <class Table>
 auto parseNamed(const std::string& text, std::string_view option, const Table& table) {

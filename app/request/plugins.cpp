@@ -57,7 +57,7 @@ std::string pluginFile(const std::string& named) {
                     "(find_package({}), see 'Physics SDKs' in the README)",
                     named, meant->releases, meant->package));
   }
-  return meant->file.string();
+  return fileOf(named).string();
 }
 
 /// The library that `named` means, which stays loaded.
@@ -166,8 +166,7 @@ void forEachEntry(const Plugin<Entry>& plugin, const std::string& file, Add add)
 
 std::vector<SdkPlugin> sdkPlugins() {
   std::vector<SdkPlugin> all;
-#define SDK_PLUGIN(name, package, releases, built) \
-  all.push_back({name, package, releases, built, (built) ? fileOf(name) : fs::path()});
+#define SDK_PLUGIN(name, package, releases, built) all.push_back({name, package, releases, built});
 #include "sdk_plugins.inc"
 #undef SDK_PLUGIN
   return all;

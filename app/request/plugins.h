@@ -2,7 +2,6 @@
 // loaded with --plugin.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -13,11 +12,10 @@ namespace broadmark {
 /// A plug-in that comes with the program: physics engines and algorithms of an SDK that is not part
 /// of it.
 struct SdkPlugin {
-  std::string name;            ///< "jolt": what --plugin takes
-  std::string package;         ///< "Jolt": what CMake's find_package looks for
-  std::string releases;        ///< "Jolt Physics 5.5": those that are known to do
-  bool built = false;          ///< false: its SDK was not found when the program was configured
-  std::filesystem::path file;  ///< if it was built
+  std::string name;      ///< "jolt": what --plugin takes
+  std::string package;   ///< "Jolt": what CMake's find_package looks for
+  std::string releases;  ///< "Jolt Physics 5.5": those that are known to do
+  bool built = false;    ///< false: its SDK was not found when the program was configured
 };
 
 /// All of them, whether built or not.
