@@ -1,7 +1,7 @@
-"""Files of every kind that the package reads, damaged at random: each is read, or refused in a line.
+"""Randomly damaged files of every type that the package reads: they are read or rejected in a line.
 
 Some values of a JSON document are replaced, left out or repeated, or bytes of any file are. The
-same seed gives the same files; BROADMARK_DAMAGED_FILES=N tries N of each kind instead of a few.
+same seed gives the same files; BROADMARK_DAMAGED_FILES=N tries N files of each type instead of a few.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ ODD_VALUES: list[Any] = [
 
 
 def places(document: Any) -> Iterator[tuple[Any, Any]]:
-    """Every container with a key or an index in it."""
+    """Every container with each of its keys or indices."""
     members = list(document.items()) if isinstance(document, dict) else list(enumerate(document))
     for key, value in members:
         yield document, key
@@ -103,7 +103,7 @@ def damaged_bytes(source: random.Random, content: bytes) -> bytes:
 
 
 def requires_one_line(read: Callable[[pathlib.Path], Any], path: pathlib.Path) -> bool:
-    """Whether the file was read; else it was refused in a line."""
+    """Whether the file was read; otherwise it was rejected with a one-line error."""
     try:
         read(path)
     except broadmark.InputError as error:
@@ -113,7 +113,7 @@ def requires_one_line(read: Callable[[pathlib.Path], Any], path: pathlib.Path) -
 
 
 def read_plan(path: pathlib.Path) -> None:
-    """As the command does before it asks the program for names and runs."""
+    """Reads and plans a campaign, as the command does before it calls the program."""
     planned_recordings(read_campaign(path))
 
 
@@ -152,17 +152,17 @@ def test_campaigns(tmp_path: pathlib.Path) -> None:
     try_all(tmp_path, "campaign.json", read_plan, lambda s: damaged_bytes(s, text))
 
 
-def test_results(tmp_path: pathlib.Path, some_results: pathlib.Path) -> None:
-    document = json.loads((some_results / "results.json").read_text())
+def test_results(tmp_path: pathlib.Path, small_results: pathlib.Path) -> None:
+    document = json.loads((small_results / "results.json").read_text())
     document["cases"] = document["cases"][:3]
     read = broadmark.read_results
     try_all(tmp_path, "results.json", read, lambda s: damaged_document(s, document))
-    lines = (some_results / "results.jsonl").read_bytes()
+    lines = (small_results / "results.jsonl").read_bytes()
     try_all(tmp_path, "results.jsonl", read, lambda s: damaged_bytes(s, lines))
 
 
-def test_attempts(tmp_path: pathlib.Path, some_results: pathlib.Path) -> None:
-    lines = [json.loads(line) for line in (some_results / "results.jsonl").open()]
+def test_attempts(tmp_path: pathlib.Path, small_results: pathlib.Path) -> None:
+    lines = [json.loads(line) for line in (small_results / "results.jsonl").open()]
 
     def damaged(source: random.Random) -> bytes:
         return b"".join(damaged_document(source, line) + b"\n" for line in lines[:4])

@@ -1,4 +1,4 @@
-"""The paper's table and claims from results."""
+"""Tests of the paper's table and claims."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 import pytest
-from made_results import CPU, case, paper_cases, write
+from synthetic_results import CPU, case, paper_cases, write
 
 from broadmark.paper import algorithms
 from broadmark.paper.algorithms import ALGORITHMS, table2
@@ -20,7 +20,7 @@ from broadmark.program import call
 
 @pytest.fixture(scope="module")
 def paper(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """The paper's own numbers as results."""
+    """The paper's numbers as results."""
     return write(tmp_path_factory.mktemp("paper") / "paper.json", paper_cases())
 
 
@@ -115,13 +115,13 @@ def test_most_threads_and_widest_instructions_count(tmp_path: pathlib.Path, comm
 
 
 def test_cases_that_compete_are_refused(tmp_path: pathlib.Path, command: Any) -> None:
-    one = case("Brownian", 1000, "kd", 0.1)
-    first = write(tmp_path / "a.json", [one])
+    original = case("Brownian", 1000, "kd", 0.1)
+    first = write(tmp_path / "a.json", [original])
     status, _, error = command("table2", first, first)
-    assert status == 2 and "Brownian Cubes 1000 kd" in error and "give one of them" in error
-    other = {**one, "id": one["id"].replace("/s1/", "/s2/")}
-    status, _, error = command("table2", write(tmp_path / "b.json", [one, other]))
-    assert status == 2 and one["id"] in error and other["id"] in error and "--filter" in error
+    assert status == 2 and "Brownian Cubes 1000 kd" in error and "give only one of them" in error
+    other = {**original, "id": original["id"].replace("/s1/", "/s2/")}
+    status, _, error = command("table2", write(tmp_path / "b.json", [original, other]))
+    assert status == 2 and original["id"] in error and other["id"] in error and "--filter" in error
     half = case("Brownian", 1000, "kd", 0.4, asked=2)
     status, text, _ = command("table2", first, write(tmp_path / "c.json", [half]))
     assert status == 0 and "0.10" in text and "incomplete" not in text
@@ -180,7 +180,7 @@ def test_results_without_the_papers_scenes_are_refused(
 ) -> None:
     file = write(tmp_path / "a.json", [case("Swarm", 1000, "kd", 0.1)])
     status, _, error = command("table2", file)
-    assert status == 2 and "the paper's scenes are needed" in error
+    assert status == 2 and "the paper's scenes are required" in error
     status, _, error = command("table2", file, "--filter", "Brownian")
     assert status == 2 and "no case is left" in error
     assert command("table2", file, "--filter", "(")[0] == 2
@@ -191,22 +191,22 @@ def judged(command: Any, *files: pathlib.Path) -> dict[int, tuple[str, str]]:
     assert status == 0
     (machine,) = json.loads(text)["machines"]
     return {
-        one["number"]: (one["verdict"], " ".join(part["figures"] for part in one["parts"]))
-        for one in machine["judgements"]
+        claim["number"]: (claim["verdict"], " ".join(part["figures"] for part in claim["parts"]))
+        for claim in machine["judgements"]
     }
 
 
 def test_claims_on_the_papers_own_table(paper: pathlib.Path, command: Any) -> None:
     verdicts = {number: verdict for number, (verdict, _) in judged(command, paper).items()}
     assert len(verdicts) == len(CLAIMS) == 13
-    # AxisSweep is slower than SAP, DBVT F and Tracy there.
+    # In the paper's table, AxisSweep is slower than SAP, DBVT F and Tracy.
     assert {n for n, v in verdicts.items() if v == FAILS} == {1, 3}
-    # It has no statuses, pairs or assorted objects.
+    # The table has no statuses, pairs or assorted objects.
     assert {n for n, v in verdicts.items() if v == UNKNOWN} == {11, 12, 13}
     assert {n for n, v in verdicts.items() if v == HOLDS} == {2, 4, 5, 6, 7, 8, 9, 10}
 
 
-#: What makes a claim fail (or hold) when the time of an algorithm in a scene is multiplied.
+#: Claims and the factors on the times of an algorithm in a scene that flip their verdicts.
 DOCTORED = [
     (2, "Brownian", "bf-simd-mt", 2, FAILS),
     (2, "Brownian", "sap-simd-mt", 0.5, FAILS),
@@ -247,11 +247,11 @@ def test_claims_flip_with_the_numbers(
 def test_claims_without_what_they_need_are_not_measured(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
-    cases = [one for one in paper_cases() if one["algorithm"] != "kd"]
+    cases = [other for other in paper_cases() if other["algorithm"] != "kd"]
     verdicts = judged(command, write(tmp_path / "a.json", cases))
     assert verdicts[6] == (UNKNOWN, "not in these results of Brownian")
     assert verdicts[10][0] == UNKNOWN
-    small = [one for one in paper_cases() if one["recording"]["objects"] < 100_000]
+    small = [other for other in paper_cases() if other["recording"]["objects"] < 100_000]
     verdicts = judged(command, write(tmp_path / "b.json", small))
     assert verdicts[9][0] == UNKNOWN and "neither a million objects" in verdicts[9][1]
 

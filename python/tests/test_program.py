@@ -1,4 +1,4 @@
-"""Running the program, and the command line of the package."""
+"""Tests of calls of the program and of the package's command line."""
 
 from __future__ import annotations
 
@@ -65,14 +65,14 @@ def test_bad_usage_is_status_2(command: Any) -> None:
 
 
 def test_results_are_shown_and_written(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
-    status, out, _ = command("read", some_results / "results.json")
+    status, out, _ = command("read", small_results / "results.json")
     assert status == 0 and "sap-mt" in out and "dbvt" not in out
     cases, frames = tmp_path / "cases.csv", tmp_path / "frames.csv"
     assert (
-        command("read", some_results / "results.json", "--csv", cases, "--csv-frames", frames)[0]
+        command("read", small_results / "results.json", "--csv", cases, "--csv-frames", frames)[0]
         == 0
     )
-    assert len(pd.read_csv(cases)) == len(pd.read_csv(some_results / "results.csv"))
-    assert len(pd.read_csv(frames)) == len(pd.read_csv(some_results / "frames.csv"))
+    assert len(pd.read_csv(cases)) == len(pd.read_csv(small_results / "results.csv"))
+    assert len(pd.read_csv(frames)) == len(pd.read_csv(small_results / "frames.csv"))

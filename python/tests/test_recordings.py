@@ -1,4 +1,4 @@
-"""Recordings as arrays, and back."""
+"""Tests of reading and writing recordings."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_what_is_written_is_read_and_verified(tmp_path: pathlib.Path) -> None:
 def test_arrays_may_come_one_by_one_and_flat(tmp_path: pathlib.Path) -> None:
     boxes = random_boxes(3, 2)
     path = tmp_path / "mine.aabbs"
-    broadmark.write_recording(path, (one.reshape(-1, 6).astype(float) for one in boxes))
+    broadmark.write_recording(path, (frame.reshape(-1, 6).astype(float) for frame in boxes))
     np.testing.assert_array_equal(broadmark.read_recording(path).boxes, boxes)
 
 
@@ -70,17 +70,20 @@ def test_poses_are_those_of_the_same_scenes_boxes(tmp_path: pathlib.Path) -> Non
 @pytest.mark.parametrize(
     ("boxes", "message"),
     [
-        ([[[0, 0, 0, 1, 1, 1]]], "1 sets of boxes"),
+        ([[[0, 0, 0, 1, 1, 1]]], "at least 2 sets of boxes"),
         ([[[0, 0, 0, 1, 1]]] * 2, r"frame 0: boxes: of shape \(1, 5\)"),
         ([[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, np.nan]]], "frame 1: boxes: body 0"),
-        ([[[0, 2, 0, 1, 1, 1]]] * 2, "frame 0: boxes: body 0 has its min"),
-        ([[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, 1]] * 2], "frame 1: has 2 bodies, the first 1"),
-        ([[["a"] * 6]] * 2, "not numbers"),
+        ([[[0, 2, 0, 1, 1, 1]]] * 2, "frame 0: boxes: body 0 has a min"),
+        (
+            [[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, 1]] * 2],
+            "frame 1: has 2 bodies, the first frame 1",
+        ),
+        ([[["a"] * 6]] * 2, "expected numbers"),
     ],
 )
 def test_what_a_recording_cannot_hold(tmp_path: pathlib.Path, boxes: Any, message: str) -> None:
     with pytest.raises(broadmark.InputError, match=message):
-        broadmark.write_recording(tmp_path / "mine.aabbs", [np.array(one) for one in boxes])
+        broadmark.write_recording(tmp_path / "mine.aabbs", [np.array(frame) for frame in boxes])
     assert not list(tmp_path.iterdir())
 
 
@@ -91,7 +94,7 @@ def test_names_that_a_header_cannot_hold(tmp_path: pathlib.Path) -> None:
 
 
 def changing_boxes(frames: int, bodies: int) -> Any:
-    """Boxes of which a tenth changes in each frame, some vanish and come back."""
+    """Boxes of changing frames: a tenth of the bodies moves per frame, some disappear and reappear."""
     generator = np.random.default_rng(2)
     boxes = np.repeat(random_boxes(1, bodies), frames, axis=0)
     for before, now in itertools.pairwise(boxes):
@@ -133,7 +136,7 @@ def test_changing_worlds_are_read_in_any_order(tmp_path: pathlib.Path) -> None:
     np.testing.assert_array_equal(recording.groups.tags, GROUPS.tags)
     assert recording.groups.worlds is None
     for frame in (-1, 40):
-        with pytest.raises(broadmark.InputError, match="last one is 39"):
+        with pytest.raises(broadmark.InputError, match="last frame is 39"):
             recording.frame(frame)
 
 

@@ -1,4 +1,4 @@
-"""The report as a file: what is in it, and what it is made of."""
+"""Tests of the report's file and data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import broadmark
 from broadmark.program import call
 from broadmark.report import page, write_report
 from broadmark.report.data import page_data
-from broadmark.report.timelines import points_of_a_case, timeline
+from broadmark.report.timelines import points_per_case, timeline
 
 
 def data_of(tmp_path: pathlib.Path, *cases: dict[str, Any]) -> dict[str, Any]:
@@ -30,13 +30,13 @@ def texts(column: dict[str, Any]) -> list[str]:
 
 
 def test_the_command_writes_one_file(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
     report = tmp_path / "a report.html"
-    status, out, _ = command("report", some_results / "results.json", "-o", report)
+    status, out, _ = command("report", small_results / "results.json", "-o", report)
     assert status == 0
     assert re.search(r"written: .*a report\.html \(\d\.\d MB, \d+ cases\)", out)
-    assert [one.name for one in tmp_path.iterdir()] == ["a report.html"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a report.html"]
     text = report.read_text("utf-8")
     assert "default-src 'none'" in text and "d3js.org v5" in text and "BSD-3-Clause" in text
     data = json.loads(text.partition('id="data">')[2].partition("</script>")[0])
@@ -69,9 +69,9 @@ def test_without_the_program_there_are_no_pictures(
 
 
 def test_a_recording_that_is_gone_has_no_picture(tmp_path: pathlib.Path) -> None:
-    one = case("sap", 100, 1e-5)
-    one["recording"]["source"] = "gone.aabbs"
-    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", [one]))
+    result = case("sap", 100, 1e-5)
+    result["recording"]["source"] = "gone.aabbs"
+    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", [result]))
     notes = write_report(results, tmp_path / "report.html")
     assert len(notes) == 1 and notes[0].startswith("Brownian Cubes: no picture")
 
@@ -83,11 +83,11 @@ def test_without_d3_its_package_is_named(
     monkeypatch.setattr(page, "D3", tmp_path / "no.js")
     status, _, error = command("report", results, "-o", tmp_path / "report.html")
     assert status == 2 and "node-d3" in error
-    assert [one.name for one in tmp_path.iterdir()] == ["results.jsonl"]
+    assert [path.name for path in tmp_path.iterdir()] == ["results.jsonl"]
 
 
-def test_commands_run_the_case_again(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    results = broadmark.read_results(some_results / "results.json")
+def test_commands_run_the_case_again(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    results = broadmark.read_results(small_results / "results.json")
     is_kd = results.cases["id"].str.startswith("FreeFall/Cubes/N200/F4/s1/kd/")
     (number,) = results.cases.index[is_kd][:1]
     data = page_data(results)
@@ -127,28 +127,31 @@ def test_variants_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None
 
 def test_recordings_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None:
     def on(objects: int, recording_hash: str, **source: str) -> dict[str, Any]:
-        one = case("sap", objects, 1e-5)
-        one["recording"] |= {"hash": recording_hash, "frames": int(source["frames"])}
-        one["recording"]["source"] = {"objects": str(objects)} | source
-        return one
+        result = case("sap", objects, 1e-5)
+        result["recording"] |= {"hash": recording_hash, "frames": int(source["frames"])}
+        result["recording"]["source"] = {"objects": str(objects)} | source
+        return result
 
     seeds = data_of(tmp_path, on(1, "a", frames="4", seed="1"), on(2, "b", frames="4", seed="2"))
-    assert [one["setting"] for one in seeds["recordings"]] == ["seed=1", "seed=2"]
+    assert [recording["setting"] for recording in seeds["recordings"]] == ["seed=1", "seed=2"]
     sizes = data_of(tmp_path, on(1, "a", frames="4"), on(2, "b", frames="8"))
-    assert [one["setting"] for one in sizes["recordings"]] == ["", ""]
+    assert [recording["setting"] for recording in sizes["recordings"]] == ["", ""]
     frames = data_of(tmp_path, on(1, "a", frames="4"), on(1, "b", frames="8"))
-    assert [one["setting"] for one in frames["recordings"]] == ["4 frames", "8 frames"]
+    assert [recording["setting"] for recording in frames["recordings"]] == ["4 frames", "8 frames"]
     unlike = data_of(tmp_path, on(1, "a1", frames="4"), on(1, "b2", frames="4"))
-    assert [one["setting"] for one in unlike["recordings"]] == ["recording a1", "recording b2"]
+    assert [recording["setting"] for recording in unlike["recordings"]] == [
+        "recording a1",
+        "recording b2",
+    ]
 
 
 def test_a_timeline_is_means_of_medians() -> None:
-    one = case("sap", 100, 1e-6)
+    result = case("sap", 100, 1e-6)
     frames = np.arange(1000.0)
-    for phase in one["frames"]:
-        one["frames"][phase] = [frames, frames + 2, frames + 1000, frames[:3]]
-    one["frame_counts"]["pairs"] = frames
-    line = timeline(one, 200)
+    for phase in result["frames"]:
+        result["frames"][phase] = [frames, frames + 2, frames + 1000, frames[:3]]
+    result["frame_counts"]["pairs"] = frames
+    line = timeline(result, 200)
     points = np.frombuffer(base64.b64decode(line), "<f4").reshape(5, 200)
     np.testing.assert_allclose(points[0], frames.reshape(200, 5).mean(1) + 2)
     np.testing.assert_allclose(points[4], frames.reshape(200, 5).mean(1))
@@ -156,9 +159,9 @@ def test_a_timeline_is_means_of_medians() -> None:
 
 
 def test_many_cases_have_fewer_points() -> None:
-    assert points_of_a_case(1) == 200
-    assert 20 <= points_of_a_case(10_000) < 200
-    assert points_of_a_case(10**9) == 20
+    assert points_per_case(1) == 200
+    assert 20 <= points_per_case(10_000) < 200
+    assert points_per_case(10**9) == 20
 
 
 def test_what_fuzzers_found_makes_a_page_or_is_refused(tmp_path: pathlib.Path) -> None:
