@@ -2,7 +2,7 @@
 
 
 class InputError(Exception):
-    """Bad input. The message is a line that names the place, the error and the expected input."""
+    """Bad input. The message is a line that names the file or option, the error and the expected input."""
 
     def __init__(self, text: str) -> None:
         """Escapes line breaks and other unprintable characters, for example in file names."""

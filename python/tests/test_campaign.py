@@ -96,7 +96,7 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
     assert f"written: {tmp_path / 'the output/results.json'}" in out
 
 
-def test_a_campaign_may_ask_for_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_campaign_can_request_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd"], answer="events")
     status, _, err = run(file)
     assert status == 0, err
@@ -105,9 +105,7 @@ def test_a_campaign_may_ask_for_events(write: Any, run: Any, tmp_path: pathlib.P
     assert all("/events" in id_ for id_ in cases["id"])
 
 
-def test_results_lead_back_to_their_recordings(
-    write: Any, run: Any, tmp_path: pathlib.Path
-) -> None:
+def test_results_identify_their_recordings(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     assert run(write(), "--quiet")[2] == ""
     moved = tmp_path / "moved"
     (tmp_path / "the output").rename(moved)
@@ -116,9 +114,7 @@ def test_results_lead_back_to_their_recordings(
     assert "ok" in again
 
 
-def test_larger_recordings_are_left_out_past_the_cap(
-    write: Any, run: Any, tmp_path: pathlib.Path
-) -> None:
+def test_recordings_past_the_cap_are_not_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     blocks = [BLOCK | {"objects": [20, 40, 80]}, BLOCK | {"objects": 40, "seed": 2}]
     file = write(
         recordings=blocks,
@@ -168,7 +164,7 @@ def test_large_recordings_are_split_from_small_ones(
     assert parameters["engine"] == "splitter"
 
 
-def test_a_campaign_may_grow(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_campaign_can_be_extended(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     assert run(write(algorithm=["bf"]))[0] == 0
     before = attempts(tmp_path)
     larger = BLOCK | {"objects": [20, 40, 80]}
@@ -196,7 +192,7 @@ def test_the_list_runs_nothing(write: Any, run: Any, tmp_path: pathlib.Path) -> 
     assert "0 cases are finished, 4 remain; 2 recordings remain to be baked" in out
 
 
-def test_one_recording_alone(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_single_recording_can_be_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     name = "brownian cubes N40 F5 kinematic seed=1"
     file = write()
     assert run(file, "--recording", name, "--bake")[0] == 0
@@ -234,7 +230,7 @@ def test_engines_of_plugins_bake(
     assert set(results(tmp_path).cases["status"]) == {"ok"}
 
 
-def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
+def test_a_failed_recording_does_not_stop_the_others(
     write: Any, run: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write()
@@ -415,7 +411,7 @@ def test_each_recording_is_planned_once_by_size(write: Any) -> None:
     assert names == [f"brownian cubes N{n} F5 kinematic seed=1" for n in (20, 40)]
 
 
-def test_a_split_recording_takes_the_shortest_source_that_suffices(write: Any) -> None:
+def test_a_recording_is_split_from_the_shortest_sufficient_source(write: Any) -> None:
     blocks = [
         BLOCK | {"objects": 10, "frames": [5, 20, 10]},
         BLOCK | {"objects": [80, 640], "frames": 8, "split": True},
@@ -428,7 +424,7 @@ def test_a_split_recording_takes_the_shortest_source_that_suffices(write: Any) -
     assert [key for key, recording in planned.items() if recording.is_split] == [(10, 10), (80, 8)]
 
 
-def test_jobs_wait_for_what_they_need(write: Any) -> None:
+def test_jobs_depend_on_required_jobs(write: Any) -> None:
     class Empty:
         def is_baked(self, recording: Recording) -> bool:
             return False
@@ -506,7 +502,7 @@ def test_remaining_time_follows_finished_cases(write: Any) -> None:
         ),
     ],
 )
-def test_bad_files_are_refused(
+def test_invalid_files_are_rejected(
     write: Any, run: Any, keys: dict[str, Any], message: str, tmp_path: pathlib.Path
 ) -> None:
     file = write(**keys)
@@ -515,7 +511,7 @@ def test_bad_files_are_refused(
     assert not (tmp_path / "the output").exists()
 
 
-def test_invalid_json_is_refused(run: Any, tmp_path: pathlib.Path) -> None:
+def test_invalid_json_is_rejected(run: Any, tmp_path: pathlib.Path) -> None:
     file = tmp_path / "some.json"
     assert "cannot be read" in run(file)[2]
     for text in (

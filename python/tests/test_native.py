@@ -42,7 +42,7 @@ def test_every_algorithm_finds_the_pairs(algorithm: str, count: int) -> None:
     assert set(map(tuple, pairs.tolist())) == brute_force(boxes)
 
 
-def test_boxes_may_be_flat_doubles_or_views() -> None:
+def test_boxes_can_be_flat_doubles_or_views() -> None:
     boxes = boxes_in(12, 300)
     expected = brute_force(boxes)
     padded = np.zeros((300, 2, 4), np.float32)
@@ -78,12 +78,12 @@ os._exit(0)
 """
 
 
-def test_other_threads_go_on() -> None:
+def test_the_gil_is_released() -> None:
     code = OTHER_THREADS.format(package=str(SOURCE_FOLDER / "python"))
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-REFUSED: list[tuple[dict[str, Any], str]] = [
+INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
     ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), expected \(n, 2, 3\) or \(n, 6\)"),
     ({"boxes": np.zeros((2, 3, 2))}, "of shape"),
     ({"boxes": [[0, 0, 0, 1, 1, np.nan]]}, "body 0 has a coordinate that is not a finite number"),
@@ -98,8 +98,8 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
 ]
 
 
-@pytest.mark.parametrize(("arguments", "message"), REFUSED)
-def test_what_is_refused(arguments: dict[str, Any], message: str) -> None:
+@pytest.mark.parametrize(("arguments", "message"), INVALID_ARGUMENTS)
+def test_invalid_arguments_are_rejected(arguments: dict[str, Any], message: str) -> None:
     all_arguments: dict[str, Any] = {"boxes": np.zeros((1, 6))} | arguments
     with pytest.raises(broadmark.InputError, match=message):
         broadmark.overlaps(**all_arguments)

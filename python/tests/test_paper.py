@@ -28,7 +28,7 @@ def rows_of(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def test_the_papers_algorithms_are_those_of_its_table_and_of_the_program() -> None:
+def test_the_papers_algorithms_match_its_table_and_the_program() -> None:
     with open(pathlib.Path(algorithms.__file__).with_name("table2.csv"), encoding="utf-8") as file:
         names = {row["algorithm"] for row in csv.DictReader(file)}
     assert {algorithm.name for algorithm in ALGORITHMS} == names
@@ -36,7 +36,7 @@ def test_the_papers_algorithms_are_those_of_its_table_and_of_the_program() -> No
     assert {algorithm.id for algorithm in ALGORITHMS} - known == set()
 
 
-def test_algorithms_of_a_panel_look_different() -> None:
+def test_algorithms_of_a_panel_have_different_styles() -> None:
     looks = [(a.panel, a.colour, a.marker, a.filled, a.line) for a in ALGORITHMS]
     assert len(set(looks)) == len(looks)
 
@@ -65,7 +65,7 @@ def test_ratios_of_rounded_times_are_left_out(tmp_path: pathlib.Path, command: A
     assert float(large["paper_ratio_to_cgal"]) == pytest.approx(0.03 / 0.18)
 
 
-def test_nothing_is_shown_past_the_cap_and_no_wrong_answer_has_a_time(
+def test_results_past_the_cap_and_times_of_wrong_answers_are_hidden(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     cases = [
@@ -97,7 +97,9 @@ def test_nothing_is_shown_past_the_cap_and_no_wrong_answer_has_a_time(
     }
 
 
-def test_most_threads_and_widest_instructions_count(tmp_path: pathlib.Path, command: Any) -> None:
+def test_the_most_threads_and_the_widest_instruction_set_are_used(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
     cases = [
         case("Brownian", 1000, "bf-simd-mt", 0.1, threads=2, isa="avx512"),
         case("Brownian", 1000, "bf-simd-mt", 0.2, threads=4, isa="sse2"),
@@ -114,7 +116,7 @@ def test_most_threads_and_widest_instructions_count(tmp_path: pathlib.Path, comm
     assert row["seconds_per_frame"] == "0.1"
 
 
-def test_cases_that_compete_are_refused(tmp_path: pathlib.Path, command: Any) -> None:
+def test_ambiguous_cases_are_rejected(tmp_path: pathlib.Path, command: Any) -> None:
     original = case("Brownian", 1000, "kd", 0.1)
     first = write(tmp_path / "a.json", [original])
     status, _, error = command("table2", first, first)
@@ -175,7 +177,7 @@ def test_table_as_text_markdown_and_latex(tmp_path: pathlib.Path, command: Any) 
     assert written.read_text() == latex
 
 
-def test_results_without_the_papers_scenes_are_refused(
+def test_results_without_the_papers_scenes_are_rejected(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     file = write(tmp_path / "a.json", [case("Swarm", 1000, "kd", 0.1)])
@@ -228,7 +230,7 @@ DOCTORED = [
 
 
 @pytest.mark.parametrize(("number", "scene", "algorithm", "factor", "verdict"), DOCTORED)
-def test_claims_flip_with_the_numbers(
+def test_changed_times_flip_verdicts(
     number: int,
     scene: str,
     algorithm: str,
@@ -244,7 +246,7 @@ def test_claims_flip_with_the_numbers(
     assert judged(command, write(tmp_path / "a.json", cases))[number][0] == verdict
 
 
-def test_claims_without_what_they_need_are_not_measured(
+def test_claims_without_required_results_are_not_measured(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     cases = [other for other in paper_cases() if other["algorithm"] != "kd"]
@@ -256,7 +258,7 @@ def test_claims_without_what_they_need_are_not_measured(
     assert verdicts[9][0] == UNKNOWN and "neither a million objects" in verdicts[9][1]
 
 
-def test_a_cpu_says_nothing_about_gpus(tmp_path: pathlib.Path, command: Any) -> None:
+def test_results_of_a_cpu_are_no_evidence_about_gpus(tmp_path: pathlib.Path, command: Any) -> None:
     verdicts = judged(command, write(tmp_path / "a.json", paper_cases(), device=CPU))
     assert {n for n, (v, _) in verdicts.items() if v == UNKNOWN} == {7, 8, 9, 10, 11, 12, 13}
     assert "there is no GPU" in verdicts[7][1]

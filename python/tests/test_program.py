@@ -31,7 +31,7 @@ def test_arrays_are_run() -> None:
     assert set(results.cases["status"]) == {"ok"}
 
 
-def test_a_wrong_answer_is_a_status_and_no_exception(faulty_plugin: str) -> None:
+def test_a_wrong_answer_is_a_status_not_an_exception(faulty_plugin: str) -> None:
     results = broadmark.run(
         "brownian", plugin=faulty_plugin, algorithm="faulty", objects=200, frames=300
     )
@@ -39,12 +39,12 @@ def test_a_wrong_answer_is_a_status_and_no_exception(faulty_plugin: str) -> None
     assert results.frames["missed"].sum() == results.cases["missed"].sum() > 0
 
 
-def test_what_the_program_refuses_is_its_own_message() -> None:
+def test_errors_have_the_programs_message() -> None:
     with pytest.raises(broadmark.InputError, match="no-such"):
         broadmark.run("brownian", algorithm="no-such")
 
 
-def test_a_program_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_program_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BROADMARK", "/there/is/no/such")
     with pytest.raises(broadmark.InputError, match="BROADMARK is '/there/is/no/such'"):
         broadmark.run("brownian")

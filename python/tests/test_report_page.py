@@ -49,7 +49,7 @@ def test_everything_is_drawn(opened: Page, small_results: pathlib.Path) -> None:
     assert opened.js("return performance.getEntriesByType('resource').length") == 0
 
 
-def test_a_table_of_ratios_punishes_gaps(opened: Page, standard: pathlib.Path) -> None:
+def test_gaps_are_penalised_in_ratios(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     rows = opened.ratios()
     # Ratios to the best of each size; a gap counts as twice the slowest: 2 × 3, 2 × 2, 2 × 2.
@@ -114,7 +114,7 @@ def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path)
     assert opened.ratios()["bf"][2:] == ["1.00", "2.00", "timeout"]
 
 
-def test_headers_sort(opened: Page, standard: pathlib.Path) -> None:
+def test_headers_sort_the_table(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("cases")
     times = "return [...document.querySelectorAll('#cases tbody tr')].map((r) => r.cells[5].textContent)"
@@ -150,7 +150,7 @@ def test_tooltips_on_hover_and_focus(opened: Page, standard: pathlib.Path) -> No
     assert opened.find("#details-title").text == "kd"
 
 
-def test_the_grid_is_walked_by_arrow_keys(opened: Page, standard: pathlib.Path) -> None:
+def test_arrow_keys_move_in_the_grid(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.ratios()
     opened.js("document.querySelector('[role=gridcell]').focus()")
@@ -161,7 +161,7 @@ def test_the_grid_is_walked_by_arrow_keys(opened: Page, standard: pathlib.Path) 
     )
 
 
-def test_details_tell_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
+def test_details_show_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("cases")
     link = opened.find("#cases tbody tr:first-child button")
@@ -185,7 +185,7 @@ def test_details_tell_commands_and_hash(opened: Page, standard: pathlib.Path) ->
     assert opened.driver.switch_to.active_element == link
 
 
-def test_a_timeline_follows_keys(opened: Page, standard: pathlib.Path) -> None:
+def test_arrow_keys_move_the_timeline_cursor(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("frames")
     names = opened.texts("#frames .phases > span")
@@ -230,7 +230,7 @@ def test_the_summary_warns(opened: Page, standard: pathlib.Path) -> None:
     assert opened.ratios()["sap"][2] == "2.00"
 
 
-def test_hostile_names_are_only_texts(opened: Page) -> None:
+def test_hostile_names_are_inserted_as_text(opened: Page) -> None:
     evil = [
         "</script><script>window.hacked=1</script>",
         "<img src=x onerror=window.hacked=1>",
@@ -260,7 +260,7 @@ def test_hostile_names_are_only_texts(opened: Page) -> None:
     assert len(opened.texts("script")) == 4
 
 
-def test_a_phone_shows_it_without_scrolling_sideways(opened: Page, standard: pathlib.Path) -> None:
+def test_a_phone_needs_no_horizontal_scrolling(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard, width=360)
     for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
         opened.section(section)
@@ -270,7 +270,7 @@ def test_a_phone_shows_it_without_scrolling_sideways(opened: Page, standard: pat
     assert opened.texts("#found") == ["3 of 12 cases"]
 
 
-def test_dark_by_the_system_and_by_the_button(opened: Page, standard: pathlib.Path) -> None:
+def test_dark_theme_by_system_and_by_button(opened: Page, standard: pathlib.Path) -> None:
     colour = "return getComputedStyle(document.body).backgroundColor"
     opened.show(standard)
     light = opened.js(colour)
@@ -306,7 +306,7 @@ def test_it_prints_on_a4(opened: Page, standard: pathlib.Path) -> None:
         assert float(height) == pytest.approx(841.9, abs=1.5)
 
 
-def test_another_time_is_compared(opened: Page, standard: pathlib.Path) -> None:
+def test_other_times_can_be_compared(opened: Page, standard: pathlib.Path) -> None:
     cases = standard_cases()
     for result in cases:
         result["summary"]["p95"] = 1e-4 * len(result["algorithm"])

@@ -15,7 +15,7 @@ from synthetic_results import case, write
 import broadmark
 
 
-def test_cases_are_those_of_the_programs_csv(small_results: pathlib.Path) -> None:
+def test_cases_match_the_programs_csv(small_results: pathlib.Path) -> None:
     expected = pd.read_csv(small_results / "results.csv", keep_default_na=False, na_values=[""])
     for name in ("results.json", "results.jsonl"):
         cases = broadmark.read_results(small_results / name).cases
@@ -36,7 +36,7 @@ def test_cases_are_those_of_the_programs_csv(small_results: pathlib.Path) -> Non
                 )
 
 
-def test_frames_are_those_of_the_programs_csv(small_results: pathlib.Path) -> None:
+def test_frames_match_the_programs_csv(small_results: pathlib.Path) -> None:
     expected = pd.read_csv(small_results / "frames.csv", keep_default_na=False, na_values=[""])
     frames = broadmark.read_results(small_results / "results.json").frames
     assert len(frames) == len(expected) > 100
@@ -45,7 +45,7 @@ def test_frames_are_those_of_the_programs_csv(small_results: pathlib.Path) -> No
         assert list(ours) == list(there), column
 
 
-def test_several_files_are_one_table(small_results: pathlib.Path) -> None:
+def test_several_files_are_combined(small_results: pathlib.Path) -> None:
     paths = [small_results / "results.json", small_results / "results.jsonl"]
     both = broadmark.read_results(*paths)
     single = broadmark.read_results(paths[0])
@@ -66,9 +66,7 @@ def test_selected_cases_keep_their_frames(small_results: pathlib.Path) -> None:
     )
 
 
-def test_a_file_that_was_cut_is_partial(
-    small_results: pathlib.Path, tmp_path: pathlib.Path
-) -> None:
+def test_a_truncated_file_is_partial(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
     text = (small_results / "results.jsonl").read_text()
     cut = tmp_path / "cut.jsonl"
     cut.write_text(text[: len(text) * 2 // 3])
@@ -117,7 +115,7 @@ def test_times_are_arrays(small_results: pathlib.Path) -> None:
         ('{"schema": "broadmark-results/2"}\n5\n', "line 2"),
     ],
 )
-def test_other_files_are_refused(tmp_path: pathlib.Path, text: str, message: str) -> None:
+def test_other_files_are_rejected(tmp_path: pathlib.Path, text: str, message: str) -> None:
     file = tmp_path / "file.json"
     file.write_text(text)
     with pytest.raises(broadmark.InputError, match=message) as refused:
@@ -125,7 +123,7 @@ def test_other_files_are_refused(tmp_path: pathlib.Path, text: str, message: str
     assert str(file) in str(refused.value)
 
 
-def test_what_fuzzers_found_is_read_or_refused() -> None:
+def test_fuzzed_files_are_read_or_rejected() -> None:
     read = 0
     for file in sorted((SOURCE_FOLDER / "tests/fuzz/corpus/results").iterdir()):
         try:
@@ -135,14 +133,14 @@ def test_what_fuzzers_found_is_read_or_refused() -> None:
     assert read > 5
 
 
-def test_nothing_has_empty_tables(tmp_path: pathlib.Path) -> None:
+def test_empty_results_have_empty_tables(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "nothing.json"
     file.write_text(json.dumps({"schema": "broadmark-results/2", "environments": [], "cases": []}))
     results = broadmark.read_results(file)
     assert len(results.cases) == len(results.frames) == 0
 
 
-def test_a_population_is_known_where_it_changes(tmp_path: pathlib.Path) -> None:
+def test_changing_populations_are_counted(tmp_path: pathlib.Path) -> None:
     changing = case("FreeFall", 1000, "kd", 1e-3, bodies={"mean": 812.5, "max": 990})
     path = write(tmp_path / "r.json", [changing, case("FreeFall", 1000, "sap", 1e-3)])
     cases = broadmark.read_results(path).cases.set_index("algorithm")

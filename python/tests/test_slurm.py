@@ -115,7 +115,7 @@ class Cluster:
         if numbers := self.call("squeue", "--noheader", "--format=%A").split():
             self.call("srun", "--dependency=afterany:" + ":".join(numbers), "true")
 
-    def task_that_runs(self, recording: str) -> tuple[str, list[int]]:
+    def running_task(self, recording: str) -> tuple[str, list[int]]:
         """The array task that runs a recording, and its processes."""
         tasks: dict[str, list[int]] = {}
         for pid, environment in self._our_processes():
@@ -243,7 +243,7 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
         name = f"brownian cubes N40 F50 kinematic seed={seed}"
         wait_until(tmp_path, lambda: len(finished_cases(output, name)) == 2)  # in its last case
         there = finished_cases(output, name)
-        task, pids = cluster.task_that_runs(name)
+        task, pids = cluster.running_task(name)
         cluster.call("scontrol", "requeue", task)
         if is_hard:
             for pid in pids:
@@ -266,7 +266,7 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
     assert command("campaign", file, "--output", output, "--slurm")[1] == "no case is left to run\n"
 
 
-def test_what_slurm_refuses_leaves_no_job(
+def test_a_rejected_submission_leaves_no_job(
     cluster: Cluster,
     file: pathlib.Path,
     tmp_path: pathlib.Path,

@@ -124,7 +124,7 @@ class Runner:
             self.progress.event(f"waiting for another process that runs {recording.name}")
 
         with self.folder.lock(recording, waiting) as lock, self._local_copy(recording) as path:
-            self.folder.load(recording, self.ledger)  # another process may have run it meanwhile
+            self.folder.load(recording, self.ledger)  # another process may have run it
             for selection in self.campaign.selections:
                 pending = [
                     variant

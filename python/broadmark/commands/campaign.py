@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         *("-o", "--output"),
         type=pathlib.Path,
         metavar="DIR",
-        help="folder for recordings and results (default: the file's name without .json)",
+        help="folder for recordings and results (default: the file's name without .json, in the current folder)",
     )
     mode = parser.add_mutually_exclusive_group()
     mode.add_argument(

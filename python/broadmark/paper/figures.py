@@ -99,12 +99,12 @@ def paper_curves(scene: str, log: bool) -> list[Curve]:
     return found
 
 
-def fastest_single(ours: list[Curve]) -> Curve | None:
+def fastest_single(measured_curves: list[Curve]) -> Curve | None:
     """The single-threaded algorithm with the least time at the largest size within the cap. Ties are
     resolved at the next smaller size, and so on."""
     times_within_cap = {
         curve.algorithm: {n: s for n, s in curve.points if s <= CAP_SECONDS}
-        for curve in ours
+        for curve in measured_curves
         if not curve.parallel
     }
     sizes = sorted({n for points in times_within_cap.values() for n in points}, reverse=True)
@@ -113,35 +113,40 @@ def fastest_single(ours: list[Curve]) -> Curve | None:
     best = min(
         times_within_cap, key=lambda a: [times_within_cap[a].get(n, math.inf) for n in sizes]
     )
-    return next(curve for curve in ours if curve.algorithm == best)
+    return next(curve for curve in measured_curves if curve.algorithm == best)
 
 
 def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
     """Figure 5, 6 or 7."""
-    ours = curves(times, scene.name)
-    theirs = paper_curves(scene.name, options.log) if options.paper else []
+    measured_curves = curves(times, scene.name)
+    reference_curves = paper_curves(scene.name, options.log) if options.paper else []
     style_of = {
         **PAPER_STYLES,
         **styles({id_: times.families[id_] for id_ in times.other_algorithms}),
     }
     result = Figure(figsize=(9.8, 4.6), layout="constrained")
-    result.suptitle(f"{scene.title}: mean time of a frame")
+    result.suptitle(f"{scene.title}: mean time per frame")
     panels = result.subplots(1, 2, sharey=True)
     for axes, panel in zip(panels, (SINGLE, PARALLEL)):
         axes.set_title(panel[0].upper() + panel[1:], loc="left")
         axes.set_xlabel("thousands of objects")
-        for curve in _panel_curves(theirs, panel):
+        for curve in _panel_curves(reference_curves, panel):
             style = {**style_of[curve.algorithm].line_properties(), "marker": "", "linewidth": 2.2}
             axes.plot(*zip(*curve.points), **style, alpha=0.25, zorder=1.5)
-        drawn = _panel_curves(ours, panel)
+        drawn = _panel_curves(measured_curves, panel)
         for curve in drawn:
             _draw(axes, curve, style_of[curve.algorithm])
-        if theirs:
+        if reference_curves:
             axes.plot(
-                [], [], color=light("faint"), linewidth=2.2, alpha=0.5, label="faint: the paper’s"
+                [],
+                [],
+                color=light("faint"),
+                linewidth=2.2,
+                alpha=0.5,
+                label="faint: the paper’s curves",
             )
         if any(curve.timeout for curve in drawn):
-            axes.plot([], [], "x", color=light("faint"), label="time limit crossed")
+            axes.plot([], [], "x", color=light("faint"), label="time limit exceeded")
         axes.legend(
             loc="upper center",
             bbox_to_anchor=(0.5, -0.14),
@@ -149,7 +154,7 @@ def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
             columnspacing=1.2,
             handlelength=2.6,
         )
-        _set_axes(axes, ours, options)
+        _set_axes(axes, measured_curves, options)
     panels[0].set_ylabel("time per frame" if options.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
     result.supxlabel("; ".join(notes), fontsize=6.5, color=light("faint"))
@@ -172,8 +177,10 @@ def _draw(axes: Any, curve: Curve, style: Style) -> None:
         axes.plot(*curve.timeout, "x", color=style.colour, markersize=6, zorder=3)
 
 
-def _set_axes(axes: Any, ours: list[Curve], options: FigureOptions) -> None:
-    measured = [n for curve in ours for n, _ in [*curve.points, *filter(None, [curve.timeout])]]
+def _set_axes(axes: Any, measured_curves: list[Curve], options: FigureOptions) -> None:
+    measured = [
+        n for curve in measured_curves for n, _ in [*curve.points, *filter(None, [curve.timeout])]
+    ]
     full = options.paper or options.full_range
     max_thousands = max([*measured, MAX_THOUSANDS] if full else measured)
     if options.log:

@@ -50,18 +50,18 @@ def _entry(times: Times, scene: str, objects: int, algorithm: str) -> Entry:
     past = any(smaller.exceeds_cap for size, smaller in shown.items() if size < objects)
     seconds = measurement.seconds if measurement else None
     reference = times.shown(scene, REFERENCE).get(objects)
-    theirs = table2().get((scene, objects, algorithm))
-    their_reference = table2().get((scene, objects, REFERENCE), 0)
-    rounded = their_reference < MIN_REFERENCE_SECONDS or (theirs or 0) < MIN_OTHER_SECONDS
+    paper_seconds = table2().get((scene, objects, algorithm))
+    paper_reference = table2().get((scene, objects, REFERENCE), 0)
+    rounded = paper_reference < MIN_REFERENCE_SECONDS or (paper_seconds or 0) < MIN_OTHER_SECONDS
     return Entry(
         scene,
         objects,
         algorithm,
         measurement.status if measurement else PAST_THE_CAP if past else "",
         seconds,
-        theirs,
+        paper_seconds,
         seconds / reference.seconds if seconds and reference and reference.seconds else None,
-        None if theirs is None or rounded else theirs / their_reference,
+        None if paper_seconds is None or rounded else paper_seconds / paper_reference,
     )
 
 

@@ -41,7 +41,7 @@ function fillDetails(dialog, testCase) {
     copyable("Without the results file", joined("broadmark --headless", testCase.recording.command, testCase.variant_command, testCase.condition_command), "command"),
     copyable("Hash of the recording", testCase.recording.hash || kNoValue, "hash"),
     copyable("Case", testCase.id, "id"),
-    element("h3", {}, "All values"),
+    element("h3", {}, "Other values"),
     facts("particulars", particularsOf(testCase)));
   dialog.replaceChildren(parts);
 }
