@@ -1,8 +1,8 @@
-// What both parts of the plug-in need before they use Jolt.
+// Initialises Jolt for both parts of the plug-in.
 #pragma once
 
 #include <Jolt/Jolt.h>
-// Jolt's other headers need the one above.
+// Must precede Jolt's other headers.
 #include <Jolt/RegisterTypes.h>
 
 #include <Jolt/Core/Factory.h>
@@ -11,9 +11,9 @@
 
 namespace broadmark {
 
-/// The first member of whatever has members of Jolt's: sets up what Jolt keeps for the whole
-/// process, its allocator and its types. Throws UnsupportedError when the library was built with
-/// other options than its headers say.
+/// Must be the first member of a class with Jolt members: registers Jolt's allocator and types,
+/// which are global to the process. Throws UnsupportedError if the library was built with other
+/// options than the plug-in.
 struct JoltLibrary {
   JoltLibrary() {
     static const bool initialised = initialise();
@@ -26,7 +26,7 @@ struct JoltLibrary {
       throw UnsupportedError("Jolt was built with other options than this plug-in");
     }
     JPH::RegisterDefaultAllocator();
-    JPH::Factory::sInstance = new JPH::Factory();  // for the rest of the process
+    JPH::Factory::sInstance = new JPH::Factory();  // never deleted
     JPH::RegisterTypes();
     return true;
   }

@@ -1,11 +1,11 @@
-// Rigid bodies by Jolt Physics: quad trees, Gilbert-Johnson-Keerthi and expanding polytopes,
-// sequential impulses with warm start, islands that fall asleep together.
+// Rigid bodies by Jolt Physics: quad trees, GJK and EPA, sequential impulses with warm starting,
+// sleeping islands.
 //
-// One thread: the generator bakes a scene on each core. Jolt keeps its order of work by itself
-// (mDeterministicSimulation), so the same calls give the same bits.
+// Single-threaded, because the generator bakes a scene per core. Jolt is deterministic
+// (mDeterministicSimulation): the same calls give bit-identical results.
 //
-// Jolt needs to know beforehand how many bodies and contacts there will be at most: parameters of
-// this engine. What does not fit is an error, not a contact that is left out.
+// Jolt requires the maximum numbers of bodies and contacts in advance; they are parameters of this
+// engine. Exceeding them is an error, so no contact is dropped silently.
 
 #include "broadmark/scenes/physics_engine.h"
 
@@ -39,7 +39,7 @@ JPH::Vec3 toJolt(const Vec3& v) { return {v[0], v[1], v[2]}; }
 JPH::Quat toJolt(const std::array<float, 4>& q) { return {q[0], q[1], q[2], q[3]}; }
 Vec3 fromJolt(JPH::Vec3Arg v) { return {v.GetX(), v.GetY(), v.GetZ()}; }
 
-/// Our layers, and one of the walls. For the trees there are the walls and the bodies.
+/// Our layers and a layer for the walls; two broad-phase layers, for walls and for bodies.
 class Layers final : public JPH::BroadPhaseLayerInterface,
                      public JPH::ObjectVsBroadPhaseLayerFilter,
                      public JPH::ObjectLayerPairFilter {
@@ -66,7 +66,7 @@ class Layers final : public JPH::BroadPhaseLayerInterface,
 
 JPH::Ref<JPH::Shape> shapeOf(const BoxShape& box) {
   const Vec3& half = box.half_extents;
-  // Edges are rounded, as Jolt advises, but by no more than a thin box has.
+  // Jolt recommends a convex radius; it is limited for thin boxes.
   const float radius =
       std::min(JPH::cDefaultConvexRadius, std::min({half[0], half[1], half[2]}) / 4);
   return new JPH::BoxShape(toJolt(half), radius);
@@ -77,26 +77,26 @@ JPH::Ref<JPH::Shape> shapeOf(const SphereShape& sphere) {
 
 class JoltBody : public PhysicsBody {
  public:
-  /// `interface` is borrowed.
+  /// `interface` is not owned.
   JoltBody(const BodyDescription& description, const PhysicsSettings& settings,
            JPH::BodyInterface& interface)
       : shape_(description.shape), interface_(interface) {
     const auto shape = std::visit([](const auto& kind) { return shapeOf(kind); }, shape_);
-    JPH::BodyCreationSettings created(
+    JPH::BodyCreationSettings body_settings(
         shape, toJolt(description.pose.position), toJolt(description.pose.rotation).Normalized(),
         JPH::EMotionType::Dynamic, static_cast<JPH::ObjectLayer>(description.layer));
-    created.mLinearVelocity = toJolt(description.linear_velocity);
-    created.mAngularVelocity = toJolt(description.angular_velocity);
-    created.mFriction = static_cast<float>(settings.friction);
-    created.mRestitution = static_cast<float>(settings.restitution);
-    created.mLinearDamping = dampingFactor(settings.linear_damping);
-    created.mAngularDamping = dampingFactor(settings.angular_damping);
-    created.mMotionQuality = JPH::EMotionQuality::LinearCast;
-    created.mMaxLinearVelocity = 1e6F;  // bodies of all sizes: no limit
-    created.mMaxAngularVelocity = static_cast<float>(settings.max_angular_speed);
-    created.mOverrideMassProperties = JPH::EOverrideMassProperties::CalculateInertia;
-    created.mMassPropertiesOverride.mMass = static_cast<float>(description.mass);
-    body_ = interface.CreateBody(created);
+    body_settings.mLinearVelocity = toJolt(description.linear_velocity);
+    body_settings.mAngularVelocity = toJolt(description.angular_velocity);
+    body_settings.mFriction = static_cast<float>(settings.friction);
+    body_settings.mRestitution = static_cast<float>(settings.restitution);
+    body_settings.mLinearDamping = dampingFactor(settings.linear_damping);
+    body_settings.mAngularDamping = dampingFactor(settings.angular_damping);
+    body_settings.mMotionQuality = JPH::EMotionQuality::LinearCast;
+    body_settings.mMaxLinearVelocity = 1e6F;  // no limit
+    body_settings.mMaxAngularVelocity = static_cast<float>(settings.max_angular_speed);
+    body_settings.mOverrideMassProperties = JPH::EOverrideMassProperties::CalculateInertia;
+    body_settings.mMassPropertiesOverride.mMass = static_cast<float>(description.mass);
+    body_ = interface.CreateBody(body_settings);
     if (body_ == nullptr) {
       throw InputError("engine 'jolt': more bodies than its parameter most_bodies allows");
     }
@@ -142,12 +142,12 @@ class JoltBody : public PhysicsBody {
   void wake() {
     if (!frozen()) interface_.ActivateBody(id());
   }
-  /// Wakes those around, as if something there had changed.
+  /// Wakes the bodies nearby.
   void wakeNeighbours() {
-    constexpr float kReach = 0.1F;
-    JPH::AABox around = body_->GetWorldSpaceBounds();
-    around.ExpandBy(JPH::Vec3::sReplicate(kReach));
-    interface_.ActivateBodiesInAABox(around, {}, {});
+    constexpr float kMargin = 0.1F;
+    JPH::AABox bounds = body_->GetWorldSpaceBounds();
+    bounds.ExpandBy(JPH::Vec3::sReplicate(kMargin));
+    interface_.ActivateBodiesInAABox(bounds, {}, {});
   }
 
  private:
@@ -155,7 +155,7 @@ class JoltBody : public PhysicsBody {
 
   Shape shape_;
   JPH::BodyInterface& interface_;
-  JPH::Body* body_ = nullptr;  ///< of interface_
+  JPH::Body* body_ = nullptr;  ///< owned by interface_
 };
 
 class JoltEngine final : public PhysicsEngine {
@@ -172,16 +172,16 @@ class JoltEngine final : public PhysicsEngine {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"most_bodies", "bodies that there may be at once, walls included", &most_bodies_, 16,
+    visit({"most_bodies", "maximum number of bodies, including walls", &max_bodies_, 16,
            JPH::BodyID::cMaxBodyIndex});
-    visit({"most_contacts", "pairs of bodies that may be near each other at once", &most_contacts_,
-           16, 100'000'000});
+    visit({"most_contacts", "maximum number of pairs of nearby bodies", &max_contacts_, 16,
+           100'000'000});
   }
 
   void setLayers(const LayerMatrix& layers) override { layers_.set(layers); }
 
   PhysicsBody& addBody(const BodyDescription& description) override {
-    begin();
+    createSystem();
     return bodies_->add(description, settings_, system_->GetBodyInterfaceNoLock());
   }
 
@@ -192,30 +192,29 @@ class JoltEngine final : public PhysicsEngine {
   }
 
   void addWall(const HalfSpace& wall) override {
-    begin();
-    // It is solid as far as this from the point of it that is nearest to the origin: a wall of a
-    // world around the origin.
+    createSystem();
+    // The wall extends this far from its point nearest to the origin.
     const float extent = 1000 + 10 * std::abs(wall.offset);
-    JPH::BodyCreationSettings created(
+    JPH::BodyCreationSettings wall_settings(
         new JPH::PlaneShape(JPH::Plane(toJolt(wall.normal), -wall.offset), nullptr, extent),
         JPH::RVec3::sZero(), JPH::Quat::sIdentity(), JPH::EMotionType::Static, Layers::kWalls);
-    created.mFriction = static_cast<float>(settings_.friction);
-    created.mRestitution = static_cast<float>(settings_.restitution);
+    wall_settings.mFriction = static_cast<float>(settings_.friction);
+    wall_settings.mRestitution = static_cast<float>(settings_.restitution);
     walls_.push_back(system_->GetBodyInterfaceNoLock().CreateAndAddBody(
-        created, JPH::EActivation::DontActivate));
+        wall_settings, JPH::EActivation::DontActivate));
   }
 
   void setGravity(const Vec3& gravity) override {
     if (gravity == gravity_) return;
     gravity_ = gravity;
-    begin();
+    createSystem();
     system_->SetGravity(toJolt(gravity));
     bodies_->each([](JoltBody& body) { body.wake(); });
   }
   [[nodiscard]] Vec3 gravity() const override { return gravity_; }
 
   void step() override {
-    begin();
+    createSystem();
     if (!std::exchange(stepped_, true)) system_->OptimizeBroadPhase();
     const JPH::EPhysicsUpdateError error =
         system_->Update(static_cast<float>(settings_.time_step),
@@ -230,22 +229,22 @@ class JoltEngine final : public PhysicsEngine {
   }
 
  private:
-  /// Makes Jolt's world, when the parameters are known.
-  void begin() {
+  /// Creates Jolt's world on first use, when the parameters are known.
+  void createSystem() {
     if (system_) return;
     system_.emplace();
-    const auto contacts = static_cast<JPH::uint>(most_contacts_);
-    system_->Init(static_cast<JPH::uint>(most_bodies_), 0, contacts, contacts, layers_, layers_,
+    const auto contacts = static_cast<JPH::uint>(max_contacts_);
+    system_->Init(static_cast<JPH::uint>(max_bodies_), 0, contacts, contacts, layers_, layers_,
                   layers_);
     JPH::PhysicsSettings settings = system_->GetPhysicsSettings();
-    // Friction takes at least two.
+    // Friction requires at least two iterations.
     settings.mNumVelocitySteps =
         static_cast<JPH::uint>(std::max<std::int64_t>(settings_.solver_iterations, 2));
-    // A body that would get deep into a wall within a step is stopped at it; slower ones are left
-    // to the solver, which pushes bodies that start inside each other apart.
+    // Continuous detection only for bodies that would penetrate a wall deeply in a step: the solver
+    // separates bodies that start overlapping.
     settings.mLinearCastThreshold = 0.2F;
     settings.mLinearCastMaxPenetration = 0.02F;
-    // Of a point of a body that moves without turning.
+    // The speed of a body that moves without rotation.
     settings.mPointVelocitySleepThreshold =
         static_cast<float>(std::max(std::sqrt(2 * settings_.sleep_threshold), 1e-6));
     system_->SetPhysicsSettings(settings);
@@ -255,8 +254,8 @@ class JoltEngine final : public PhysicsEngine {
 
   JoltLibrary library_;
   PhysicsSettings settings_;
-  std::int64_t most_bodies_ = 65'536;
-  std::int64_t most_contacts_ = 1'048'576;
+  std::int64_t max_bodies_ = 65'536;
+  std::int64_t max_contacts_ = 1'048'576;
   Vec3 gravity_{};
   Layers layers_;
   JPH::TempAllocatorMalloc memory_;

@@ -1,23 +1,21 @@
-// Jolt Physics' broad phase alone (BroadPhaseQuadTree): for each broad-phase layer a tree with four
-// children to a node. Boxes of moving bodies only widen those above them; in each frame the widened
-// part of a tree is built anew. Each active body is then looked up in the trees. O(m + n log n), m
-// the bodies that moved; O(n) space.
+// Jolt Physics' broad phase (BroadPhaseQuadTree): a tree with four children per node for each
+// broad-phase layer. Moving bodies only enlarge the boxes of their ancestors; each frame rebuilds
+// the enlarged part of the trees and then queries them with every active body. O(m + n log n) time
+// for m moved bodies, O(n) space.
 //
-// Used as PhysicsSystem::Update() does, which is the only user that its documentation foresees:
-// the same calls in the same order, lookups by workers in batches of sixteen bodies, and Optimize()
-// once all bodies are there ("Architecture of Jolt Physics", Broad Phase). Each of our layers is an
-// object layer and a broad-phase layer, so what never meets is kept apart beforehand, as advised
-// there. Speculative contacts are a matter of its solver: the distance is 0 here, and the answer is
-// exact, as a body's own box is tested last.
+// The calls and their order are those of PhysicsSystem::Update(), the only documented use: queries
+// by workers in batches of sixteen bodies, and Optimize() after adding all bodies ("Architecture of
+// Jolt Physics", Broad Phase). As recommended there, each of our layers is an object layer and a
+// broad-phase layer, so that non-colliding layers are separate. The speculative contact distance,
+// which only the solver uses, is 0. The answer is exact: the last test uses the body's own box.
 //
-// A box is that of a body's shape, and may change without the body moving: the shape that stands
-// for it here just tells the box.
+// Jolt takes a body's box from its shape, so the shapes here only return the current box.
 //
 // Library: Jolt Physics 5, J. Rouwe.
 
 #include "broadmark/plugin.h"
 #include "jolt/library.h"
-// Jolt's own headers after the one above.
+// Jolt's headers must follow the header above.
 #include <Jolt/Physics/Body/BodyCreationSettings.h>
 #include <Jolt/Physics/Body/BodyManager.h>
 #include <Jolt/Physics/Body/BodyPair.h>
@@ -36,16 +34,16 @@
 namespace broadmark::jolt_quad_tree {
 namespace {
 
-/// Bodies that a worker looks up at a time: PhysicsSystem's cActiveBodiesBatchSize.
+/// The number of bodies per batch of queries: PhysicsSystem's cActiveBodiesBatchSize.
 constexpr std::size_t kBatch = 16;
 
 JPH::Vec3 vectorOf(const std::array<float, 4>& corner) { return {corner[0], corner[1], corner[2]}; }
 
-/// A shape that is only a box, wherever its body is.
-class BoxOfBody final : public JPH::Shape {
+/// A shape that is the world-space box of its body.
+class BodyBox final : public JPH::Shape {
  public:
-  /// `box` is borrowed.
-  explicit BoxOfBody(const Aabb& box)
+  /// `box` is not owned.
+  explicit BodyBox(const Aabb& box)
       : Shape(JPH::EShapeType::User1, JPH::EShapeSubType::User1), box_(&box) {
     SetEmbedded();
   }
@@ -55,7 +53,7 @@ class BoxOfBody final : public JPH::Shape {
   }
   JPH::AABox GetLocalBounds() const override { return {JPH::Vec3::sZero(), JPH::Vec3::sZero()}; }
 
-  // Nothing below is asked for by a broad phase.
+  // The broad phase uses none of the functions below.
   JPH::uint GetSubShapeIDBitsRecursive() const override { return 0; }
   float GetInnerRadius() const override { return 0; }
   JPH::MassProperties GetMassProperties() const override { return {}; }
@@ -101,8 +99,7 @@ class BoxOfBody final : public JPH::Shape {
   const Aabb* box_;
 };
 
-/// Which layers meet, told to Jolt: an object layer is a layer of ours, and a broad-phase layer of
-/// its own.
+/// The layer matrix for Jolt. Each of our layers is an object layer and a broad-phase layer.
 class Layers final : public JPH::BroadPhaseLayerInterface,
                      public JPH::ObjectVsBroadPhaseLayerFilter,
                      public JPH::ObjectLayerPairFilter {
@@ -130,10 +127,10 @@ class Layers final : public JPH::BroadPhaseLayerInterface,
   JPH::uint count_ = 1;
 };
 
-/// Where Jolt puts the pairs that it finds.
+/// Collects the pairs that Jolt finds.
 class Pairs final : public JPH::BodyPairCollector {
  public:
-  /// Both borrowed; `filter` is null where layers decide alone.
+  /// Neither is owned; `filter` is null if layers are the only filter.
   Pairs(PairBuffer& pairs, const CollisionFilter* filter) : pairs_(pairs), filter_(filter) {}
 
   void AddHit(const JPH::BodyPair& pair) override {
@@ -154,11 +151,11 @@ class QuadTree final : public BoxBroadPhase {
   QuadTree& operator=(const QuadTree&) = delete;
   ~QuadTree() override {
     if (layers_ == nullptr) return;
-    std::vector<JPH::BodyID> there;
+    std::vector<JPH::BodyID> present;
     for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
-      if (isThere(body)) there.push_back(bodies_[body]->GetID());
+      if (isInTree(body)) present.push_back(bodies_[body]->GetID());
     }
-    takeOut(there);
+    removeBodies(present);
     std::vector<JPH::BodyID> all;
     for (const JPH::Body* body : bodies_) all.push_back(body->GetID());
     if (!all.empty()) manager_.DestroyBodies(all.data(), static_cast<int>(all.size()));
@@ -171,35 +168,35 @@ class QuadTree final : public BoxBroadPhase {
     manager_.Init(static_cast<JPH::uint>(std::max<std::size_t>(boxes().size(), 1)), 0, *layers_);
     trees_.Init(&manager_, *layers_);
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);
-    arrived_.clear();
+    added_.clear();
     for (const std::uint32_t body : first.presentBodies()) {
       bodies_[body]->CalculateWorldSpaceBoundsInternal();
-      arrived_.push_back(bodies_[body]->GetID());
+      added_.push_back(bodies_[body]->GetID());
     }
-    putIn(arrived_);
+    addBodies(added_);
     trees_.Optimize();
   }
 
   void updateObjects(const Frame& frame) override {
     BoxBroadPhase::updateObjects(frame);
     moved_.clear();
-    arrived_.clear();
-    vanished_.clear();
+    added_.clear();
+    removed_.clear();
     for (const std::uint32_t body : *frame.changed) {
       const bool is_present = !isEmpty(boxes()[body]);
-      if (!is_present && !isThere(body)) continue;
+      if (!is_present && !isInTree(body)) continue;
       const JPH::BodyID id = bodies_[body]->GetID();
-      (!is_present ? vanished_ : !isThere(body) ? arrived_ : moved_).push_back(id);
+      (!is_present ? removed_ : !isInTree(body) ? added_ : moved_).push_back(id);
     }
   }
 
   void updateStructures() override {
-    takeOut(vanished_);
-    updateBounds(arrived_);
-    putIn(arrived_);
+    removeBodies(removed_);
+    updateBounds(added_);
+    addBodies(added_);
     trees_.LockModifications();
     updateBounds(moved_);
-    tellMoved();
+    notifyMoved();
     trees_.UnlockModifications();
     trees_.FrameSync();
     trees_.LockModifications();
@@ -209,13 +206,14 @@ class QuadTree final : public BoxBroadPhase {
 
   void visitCounters(const CounterVisitor& visit) const override {
     visit("moves", moved_.size());
-    visit("arrivals", arrived_.size());
-    visit("removals", vanished_.size());
+    visit("arrivals", added_.size());
+    visit("removals", removed_.size());
   }
 
   [[nodiscard]] std::string validate() const override {
     for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
-      if (isThere(body) == isEmpty(boxes()[body])) return "a body came or went unseen";
+      if (isInTree(body) == isEmpty(boxes()[body]))
+        return "a tree missed a body that appeared or disappeared";
     }
     return {};
   }
@@ -223,7 +221,7 @@ class QuadTree final : public BoxBroadPhase {
  private:
   using Ids = std::vector<JPH::BodyID>;
 
-  [[nodiscard]] bool isThere(std::uint32_t body) const { return bodies_[body]->IsInBroadPhase(); }
+  [[nodiscard]] bool isInTree(std::uint32_t body) const { return bodies_[body]->IsInBroadPhase(); }
 
   void create(std::uint32_t body) {
     shapes_.emplace_back(boxes()[body]);
@@ -236,14 +234,14 @@ class QuadTree final : public BoxBroadPhase {
     manager_.AddBodyWithCustomID(bodies_.back(), JPH::BodyID(body, 1));
   }
 
-  /// May change the order of the ids.
-  void putIn(Ids& ids) {
+  /// May reorder the ids.
+  void addBodies(Ids& ids) {
     if (ids.empty()) return;
     const int count = static_cast<int>(ids.size());
     trees_.AddBodiesFinalize(ids.data(), count, trees_.AddBodiesPrepare(ids.data(), count));
     manager_.ActivateBodies(ids.data(), count);
   }
-  void takeOut(Ids& ids) {
+  void removeBodies(Ids& ids) {
     if (ids.empty()) return;
     const int count = static_cast<int>(ids.size());
     manager_.DeactivateBodies(ids.data(), count);
@@ -258,7 +256,7 @@ class QuadTree final : public BoxBroadPhase {
     });
   }
 
-  void tellMoved() {
+  void notifyMoved() {
     team().run(moved_.size(), [&](int, Range part) {
       if (part.size() == 0) return;
       trees_.NotifyBodiesAABBChanged(moved_.data() + part.begin, static_cast<int>(part.size()),
@@ -269,10 +267,10 @@ class QuadTree final : public BoxBroadPhase {
   void findPairs() override {
     const JPH::BodyID* const active = manager_.GetActiveBodiesUnsafe(JPH::EBodyType::RigidBody);
     const std::size_t count = manager_.GetNumActiveBodies(JPH::EBodyType::RigidBody);
-    const bool layers_decide = filter_.worlds().empty() && filter_.tags().empty();
+    const bool only_layers = filter_.worlds().empty() && filter_.tags().empty();
     std::atomic<std::size_t> next = 0;
     team().run([&](int worker) {
-      Pairs found(pairs(worker), layers_decide ? nullptr : &filter_);
+      Pairs found(pairs(worker), only_layers ? nullptr : &filter_);
       std::array<JPH::BodyID, kBatch> batch;
       for (std::size_t begin; (begin = next.fetch_add(kBatch)) < count;) {
         const std::size_t size = std::min(kBatch, count - begin);
@@ -286,14 +284,14 @@ class QuadTree final : public BoxBroadPhase {
   JoltLibrary library_;
   CollisionFilter filter_;
   std::unique_ptr<Layers> layers_;
-  std::deque<BoxOfBody> shapes_;  ///< by body
+  std::deque<BodyBox> shapes_;  ///< by body
   JPH::BodyManager manager_;
   JPH::BroadPhaseQuadTree trees_;
-  std::vector<JPH::Body*> bodies_;  ///< of manager_
-  // In this frame.
+  std::vector<JPH::Body*> bodies_;  ///< owned by manager_
+  // Of the current frame.
   Ids moved_;
-  Ids arrived_;
-  Ids vanished_;
+  Ids added_;
+  Ids removed_;
 };
 
 }  // namespace
@@ -301,7 +299,7 @@ class QuadTree final : public BoxBroadPhase {
 std::vector<Algorithm> variants() {
   Algorithm algorithm = {.id = "jolt-quadtree",
                          .family = "Jolt",
-                         .summary = "Jolt Physics' quad trees, each body looked up",
+                         .summary = "Jolt Physics' quad trees, queried by every body",
                          .traits = {.incremental = true,
                                     .library_allocates = true,
                                     .changing_worlds = ChangingWorlds::native,

@@ -1,4 +1,4 @@
-// What both parts of the plug-in need before they use PhysX.
+// Initialises PhysX for both parts of the plug-in.
 #pragma once
 
 #include <PxPhysicsAPI.h>
@@ -12,7 +12,7 @@
 
 namespace broadmark {
 
-/// Deletes PhysX's objects, which release themselves.
+/// Deleter for PhysX's objects.
 struct ReleasePhysX {
   template <class Object>
   void operator()(Object* object) const {
@@ -20,7 +20,7 @@ struct ReleasePhysX {
   }
 };
 
-/// PhysX goes on after most errors, with less than was asked for.
+/// Stores PhysX's errors, because PhysX continues after most of them with incomplete results.
 class PhysXErrors final : public physx::PxErrorCallback {
  public:
   static PhysXErrors& instance() {
@@ -33,13 +33,13 @@ class PhysXErrors final : public physx::PxErrorCallback {
     constexpr int kHarmless = physx::PxErrorCode::eDEBUG_INFO | physx::PxErrorCode::eDEBUG_WARNING |
                               physx::PxErrorCode::ePERF_WARNING;
     if ((code & kHarmless) != 0) return;
-    const std::lock_guard alone(mutex_);
+    const std::lock_guard lock(mutex_);
     if (first_.empty()) first_ = message;
   }
 
-  /// Throws std::runtime_error for the first one since the last call, if there was one.
+  /// Throws std::runtime_error for the first error since the last call, if any.
   void check() {
-    const std::lock_guard alone(mutex_);
+    const std::lock_guard lock(mutex_);
     if (!first_.empty()) throw std::runtime_error("PhysX: " + std::exchange(first_, {}));
   }
 
@@ -48,13 +48,14 @@ class PhysXErrors final : public physx::PxErrorCallback {
   std::string first_;
 };
 
-/// PhysX's foundation, of which a process has one: for as long as it runs. Throws UnsupportedError
-/// when the library has another version than its headers.
+/// PhysX's foundation, a singleton that is never released. Throws UnsupportedError if the versions
+/// of the library and its headers differ.
 inline physx::PxFoundation& physXFoundation() {
   static physx::PxDefaultAllocator allocator;
   static physx::PxFoundation* const foundation =
       PxCreateFoundation(PX_PHYSICS_VERSION, allocator, PhysXErrors::instance());
-  if (foundation == nullptr) throw UnsupportedError("PhysX: the library does not fit its headers");
+  if (foundation == nullptr)
+    throw UnsupportedError("PhysX: the library does not match its headers");
   return *foundation;
 }
 

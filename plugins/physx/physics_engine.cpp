@@ -1,12 +1,10 @@
-// Rigid bodies by PhysX: persistent contact manifolds, a solver over islands, which fall asleep by
-// their energy.
+// Rigid bodies by PhysX: persistent contact manifolds, a solver over islands, sleeping by energy.
 //
-// Temporal Gauss-Seidel ("TGS"), which PhysX advises where masses and sizes differ, kept bodies of
-// all sizes that start inside each other from sinking into each other; speculative contacts did
-// not.
+// The temporal Gauss-Seidel solver (TGS), which PhysX recommends for differing masses and sizes,
+// separates bodies that start overlapping; speculative contacts did not.
 //
-// One thread: the generator bakes a scene on each core. With enhanced determinism the same calls
-// give the same bits.
+// Single-threaded, because the generator bakes a scene per core. With enhanced determinism, the
+// same calls give bit-identical results.
 
 #include "broadmark/scenes/physics_engine.h"
 
@@ -24,27 +22,27 @@
 namespace broadmark::scenes::physx_engine {
 namespace {
 
-/// The smallest speed of an impact that bounces, in units per second.
-constexpr float kBounceSpeed = 0.1F;
-/// The largest speed at which overlapping bodies are pushed apart, in units per second: otherwise
-/// bodies that start inside each other would explode.
-constexpr float kSeparationSpeed = 5;
+/// The minimum speed of an impact that bounces, in units per second.
+constexpr float kMinBounceSpeed = 0.1F;
+/// The maximum speed at which overlapping bodies are separated, in units per second, so that bodies
+/// that start overlapping do not explode.
+constexpr float kMaxSeparationSpeed = 5;
 
-/// How near bodies are when PhysX begins to look at their contact: so a body of usual speed is
-/// stopped at a wall, not in it.
+/// The distance below which PhysX generates contacts, so that bodies of normal speed stop at a wall
+/// and not inside it.
 constexpr float kContactOffset = 0.1F;
-/// Bodies that move further than this towards each other in a substep are swept: nothing gets
-/// behind a wall. By itself PhysX goes by the size of the shapes, which for a wall is huge.
-constexpr float kSweptWay = 0.4F;
+/// The relative motion per substep above which continuous detection is used, so that bodies do not
+/// tunnel through walls. PhysX's default is based on the shapes' sizes, which are huge for walls.
+constexpr float kCcdThreshold = 0.4F;
 
 template <class Object>
-using Released = std::unique_ptr<Object, ReleasePhysX>;
+using PhysXPtr = std::unique_ptr<Object, ReleasePhysX>;
 
-/// PhysX's factory, of which a process has one: for as long as it runs.
+/// PhysX's factory, a singleton that is never released.
 physx::PxPhysics& factory() {
   static physx::PxPhysics* const physics =
       PxCreatePhysics(PX_PHYSICS_VERSION, physXFoundation(), physx::PxTolerancesScale());
-  if (physics == nullptr) throw UnsupportedError("PhysX: creates no physics");
+  if (physics == nullptr) throw UnsupportedError("PhysX: cannot create the physics object");
   return *physics;
 }
 
@@ -62,12 +60,12 @@ physx::PxSphereGeometry geometryOf(const SphereShape& sphere) {
   return physx::PxSphereGeometry(sphere.radius);
 }
 
-/// Of a body: its layer, the layers that it pushes, and 0. Of a wall: 0, 0 and 1.
+/// A body's layer, the mask of layers it collides with, and 0; 0, 0 and 1 for a wall.
 using Layers = physx::PxFilterData;
 
-physx::PxFilterFlags whetherToCollide(physx::PxFilterObjectAttributes, Layers a,
-                                      physx::PxFilterObjectAttributes, Layers b,
-                                      physx::PxPairFlags& pair, const void*, physx::PxU32) {
+physx::PxFilterFlags filterCollision(physx::PxFilterObjectAttributes, Layers a,
+                                     physx::PxFilterObjectAttributes, Layers b,
+                                     physx::PxPairFlags& pair, const void*, physx::PxU32) {
   pair = physx::PxPairFlag::eCONTACT_DEFAULT | physx::PxPairFlag::eDETECT_CCD_CONTACT;
   const bool is_wall = (a.word2 | b.word2) != 0;
   return is_wall || (a.word1 & b.word0) != 0 ? physx::PxFilterFlag::eDEFAULT
@@ -76,9 +74,9 @@ physx::PxFilterFlags whetherToCollide(physx::PxFilterObjectAttributes, Layers a,
 
 class PhysXBody : public PhysicsBody {
  public:
-  /// `scene` and `material` are borrowed. `pushes`: the layers that it pushes.
+  /// `scene` and `material` are not owned. `mask`: the layers that the body collides with.
   PhysXBody(const BodyDescription& description, const PhysicsSettings& settings,
-            physx::PxScene& scene, physx::PxMaterial& material, std::uint32_t pushes)
+            physx::PxScene& scene, physx::PxMaterial& material, std::uint32_t mask)
       : shape_(description.shape), scene_(scene) {
     actor_.reset(factory().createRigidDynamic(toPhysX(description.pose)));
     physx::PxShape* const shape = std::visit(
@@ -87,14 +85,14 @@ class PhysXBody : public PhysicsBody {
         },
         shape_);
     shape->setContactOffset(kContactOffset);
-    shape->setSimulationFilterData(Layers(1U << description.layer, pushes, 0, 0));
+    shape->setSimulationFilterData(Layers(1U << description.layer, mask, 0, 0));
     physx::PxRigidBodyExt::setMassAndUpdateInertia(*actor_, static_cast<float>(description.mass));
     actor_->setLinearDamping(dampingFactor(settings.linear_damping));
     actor_->setAngularDamping(dampingFactor(settings.angular_damping));
     actor_->setMaxAngularVelocity(static_cast<float>(settings.max_angular_speed));
-    actor_->setMaxDepenetrationVelocity(kSeparationSpeed);
+    actor_->setMaxDepenetrationVelocity(kMaxSeparationSpeed);
     actor_->setSleepThreshold(static_cast<float>(settings.sleep_threshold));
-    // PhysX takes no more than 255.
+    // PhysX's maximum is 255.
     actor_->setSolverIterationCounts(
         static_cast<physx::PxU32>(std::min<std::int64_t>(settings.solver_iterations, 255)));
     actor_->setRigidBodyFlag(physx::PxRigidBodyFlag::eENABLE_CCD, true);
@@ -104,7 +102,7 @@ class PhysXBody : public PhysicsBody {
   }
   PhysXBody(const PhysXBody&) = delete;
   PhysXBody& operator=(const PhysXBody&) = delete;
-  ~PhysXBody() override { scene_.removeActor(*actor_); }  // wakes those that it touched
+  ~PhysXBody() override { scene_.removeActor(*actor_); }  // wakes the touching bodies
 
   [[nodiscard]] const Shape& shape() const override { return shape_; }
   [[nodiscard]] Pose pose() const override {
@@ -140,7 +138,7 @@ class PhysXBody : public PhysicsBody {
  private:
   Shape shape_;
   physx::PxScene& scene_;
-  Released<physx::PxRigidDynamic> actor_;
+  PhysXPtr<physx::PxRigidDynamic> actor_;
   bool frozen_ = false;
 };
 
@@ -150,14 +148,14 @@ class PhysXEngine final : public PhysicsEngine {
       : settings_(settings), dispatcher_((factory(), physx::PxDefaultCpuDispatcherCreate(0))) {
     physx::PxSceneDesc description(factory().getTolerancesScale());
     description.cpuDispatcher = dispatcher_.get();
-    description.filterShader = whetherToCollide;
-    description.bounceThresholdVelocity = kBounceSpeed;
+    description.filterShader = filterCollision;
+    description.bounceThresholdVelocity = kMinBounceSpeed;
     description.solverType = physx::PxSolverType::eTGS;
     description.flags |= physx::PxSceneFlag::eENABLE_ENHANCED_DETERMINISM;
     description.flags |= physx::PxSceneFlag::eENABLE_CCD;
-    description.ccdThreshold = kSweptWay;
+    description.ccdThreshold = kCcdThreshold;
     scene_.reset(factory().createScene(description));
-    if (!scene_) throw UnsupportedError("PhysX: creates no scene");
+    if (!scene_) throw UnsupportedError("PhysX: cannot create a scene");
     const auto friction = static_cast<float>(settings.friction);
     material_.reset(
         factory().createMaterial(friction, friction, static_cast<float>(settings.restitution)));
@@ -172,8 +170,8 @@ class PhysXEngine final : public PhysicsEngine {
   void removeBody(PhysicsBody& body) override { bodies_.remove(static_cast<PhysXBody&>(body)); }
 
   void addWall(const HalfSpace& wall) override {
-    // A box, as planes are left out of continuous detection: solid as far as this from the point
-    // of the wall that is nearest to the origin.
+    // A box, because continuous detection ignores planes. It extends this far from the point of the
+    // wall nearest to the origin.
     const float extent = 1000 + 10 * std::abs(wall.offset);
     const physx::PxPlane plane(toPhysX(wall.normal), -wall.offset);
     physx::PxTransform pose = physx::PxTransformFromPlaneEquation(plane);  // x along the normal
@@ -212,10 +210,10 @@ class PhysXEngine final : public PhysicsEngine {
   PhysicsSettings settings_;
   Vec3 gravity_{};
   LayerMatrix layers_ = LayerMatrix::all();
-  Released<physx::PxDefaultCpuDispatcher> dispatcher_;
-  Released<physx::PxScene> scene_;
-  Released<physx::PxMaterial> material_;
-  std::vector<Released<physx::PxRigidStatic>> walls_;
+  PhysXPtr<physx::PxDefaultCpuDispatcher> dispatcher_;
+  PhysXPtr<physx::PxScene> scene_;
+  PhysXPtr<physx::PxMaterial> material_;
+  std::vector<PhysXPtr<physx::PxRigidStatic>> walls_;
   BodyPool<PhysXBody> bodies_;
 };
 

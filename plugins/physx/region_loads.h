@@ -1,5 +1,5 @@
-// How many bodies MBP's regions hold. A region numbers them with sixteen bits, those that leave it
-// in the same frame included; beyond that PhysX loses pairs, and does not always say so.
+// Counts the bodies in MBP's regions. A region has sixteen-bit indices, also for bodies that leave
+// it in the current frame; above this limit PhysX loses pairs, not always with an error.
 #pragma once
 
 #include <PxPhysicsAPI.h>
@@ -13,11 +13,10 @@
 
 namespace broadmark {
 
-/// Columns of regions, `count` by `count`, over two axes of a world. The outermost ones have no
-/// end.
+/// A grid of `count` by `count` regions over two axes of a world. The outer regions are unbounded.
 class RegionLoads {
  public:
-  /// `axes`: those that are divided.
+  /// `axes`: the axes that are divided.
   RegionLoads(const Aabb& world, std::array<int, 2> axes, int count, std::size_t bodies)
       : axes_(axes),
         count_(count),
@@ -34,7 +33,7 @@ class RegionLoads {
   }
 
   [[nodiscard]] int count() const { return count_; }
-  /// Where a region ends, on the first or the second of the axes.
+  /// The bounds of region k on the first or the second axis.
   [[nodiscard]] float low(std::size_t side, int k) const {
     return k == 0 ? -PX_MAX_BOUNDS_EXTENTS : borders_[side][static_cast<std::size_t>(k) - 1];
   }
@@ -42,30 +41,30 @@ class RegionLoads {
     return k + 1 == count_ ? PX_MAX_BOUNDS_EXTENTS : borders_[side][static_cast<std::size_t>(k)];
   }
 
-  /// A body is somewhere else now, or has come. Until settle() it is where it was, too.
+  /// Moves or adds a body. Until endFrame(), the body also counts in the regions that it left.
   void move(std::uint32_t body, const physx::PxBounds3& bounds) {
     const Range now = rangeOf(bounds);
     const Range before = ranges_[body];
-    eachIn(now, [&](int i, int j) {
+    forEachRegion(now, [&](int i, int j) {
       if (!before.holds(i, j)) enter(i, j);
     });
-    eachIn(before, [&](int i, int j) {
-      if (!now.holds(i, j)) left_.push_back(at(i, j));
+    forEachRegion(before, [&](int i, int j) {
+      if (!now.holds(i, j)) departures_.push_back(indexOf(i, j));
     });
     ranges_[body] = now;
   }
   void remove(std::uint32_t body) {
-    eachIn(ranges_[body], [&](int i, int j) { left_.push_back(at(i, j)); });
+    forEachRegion(ranges_[body], [&](int i, int j) { departures_.push_back(indexOf(i, j)); });
     ranges_[body] = {};
   }
-  /// The frame is over.
-  void settle() {
-    for (const std::size_t region : left_) --loads_[region];
-    left_.clear();
+  /// Removes departed bodies from the counts.
+  void endFrame() {
+    for (const std::size_t region : departures_) --loads_[region];
+    departures_.clear();
   }
 
  private:
-  /// Regions from the first to the last one on each axis; none at first.
+  /// The regions from `first` to `last` on each axis; empty by default.
   struct Range {
     std::array<std::int8_t, 2> first = {0, 0};
     std::array<std::int8_t, 2> last = {-1, -1};
@@ -75,7 +74,7 @@ class RegionLoads {
     }
   };
 
-  /// PhysX rounds borders and bounds outward, by less than this share.
+  /// PhysX rounds borders and bounds outward by less than this relative error.
   static constexpr float kRounding = 1e-5F;
 
   [[nodiscard]] Range rangeOf(const physx::PxBounds3& bounds) const {
@@ -94,22 +93,23 @@ class RegionLoads {
   }
 
   template <class Visit>
-  static void eachIn(const Range& range, Visit visit) {
+  static void forEachRegion(const Range& range, Visit visit) {
     for (int i = range.first[0]; i <= range.last[0]; ++i) {
       for (int j = range.first[1]; j <= range.last[1]; ++j) visit(i, j);
     }
   }
 
-  [[nodiscard]] std::size_t at(int i, int j) const {
+  [[nodiscard]] std::size_t indexOf(int i, int j) const {
     return static_cast<std::size_t>(i * count_ + j);
   }
 
   void enter(int i, int j) {
-    constexpr std::uint32_t kMost = 0xFFFF;
-    if (++loads_[at(i, j)] < kMost) return;
+    constexpr std::uint32_t kMaxLoad = 0xFFFF;
+    if (++loads_[indexOf(i, j)] < kMaxLoad) return;
     throw UnsupportedError(
-        "PhysX's MBP: a region holds 65,534 bodies at most, those that leave it in the same frame "
-        "included");
+        "PhysX's MBP: a region holds up to 65,534 bodies, including those that leave it in the "
+        "same "
+        "frame");
   }
 
   std::array<int, 2> axes_;
@@ -117,7 +117,7 @@ class RegionLoads {
   std::array<std::vector<float>, 2> borders_;
   std::vector<Range> ranges_;  ///< by body
   std::vector<std::uint32_t> loads_;
-  std::vector<std::size_t> left_;  ///< a region for each body that has left it in this frame
+  std::vector<std::size_t> departures_;  ///< the region of each departure in this frame
 };
 
 }  // namespace broadmark

@@ -1,8 +1,6 @@
-// The algorithms as a function of Python: a set of boxes in, its overlapping pairs out.
-//
-// The package's overlaps() checks arrays and names; here only what it needs of C++ is found. Boxes
-// are copied once, into the padded layout that all algorithms read; pairs once, as they lie in
-// memory of the algorithm's, in one run per thread.
+// Python bindings of the algorithms: boxes in, overlapping pairs out. The package's overlaps()
+// validates the arguments. Boxes are copied into the algorithms' padded layout, and pairs from the
+// per-thread runs of the algorithm.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -34,14 +32,14 @@ using Pairs = py::array_t<std::uint32_t>;
 Algorithm algorithmOf(const std::string& id) {
   const std::vector<Algorithm> all = builtinAlgorithms();
   const auto found = std::ranges::find(all, id, &Algorithm::id);
-  if (found == all.end()) throw InputError("algorithm '" + id + "': there is none of that id");
+  if (found == all.end()) throw InputError("algorithm '" + id + "': unknown algorithm");
   return *found;
 }
 
 Isa isaOf(const std::string& name) {
   if (name == "auto") return bestIsa();
   const std::optional<Isa> isa = kIsas.find(name);
-  if (!isa) throw InputError("isa '" + name + "': is neither auto nor an instruction set");
+  if (!isa) throw InputError("isa '" + name + "': expected auto or an instruction set");
   return *isa;
 }
 
@@ -64,15 +62,15 @@ SceneInfo sceneOf(const std::vector<Aabb>& boxes) {
           .world = world};
 }
 
-/// The pairs of a run's last frame that overlap: a conservative algorithm reports some more.
+/// The overlapping pairs of the last frame, without the false pairs of a conservative algorithm.
 std::vector<Pair> overlapping(PairRuns runs, const std::vector<Aabb>& boxes, bool exact) {
   std::vector<Pair> pairs;
   pairs.reserve(pairCount(runs));
-  for (const PairRun run : runs) {
+  for (const PairRun source : runs) {
     if (exact) {
-      pairs.insert(pairs.end(), run.begin(), run.end());
+      pairs.insert(pairs.end(), source.begin(), source.end());
     } else {
-      std::ranges::copy_if(run, std::back_inserter(pairs), [&](const Pair& pair) {
+      std::ranges::copy_if(source, std::back_inserter(pairs), [&](const Pair& pair) {
         return overlaps(boxes[pair.a], boxes[pair.b]);
       });
     }
@@ -80,24 +78,26 @@ std::vector<Pair> overlapping(PairRuns runs, const std::vector<Aabb>& boxes, boo
   return pairs;
 }
 
-std::vector<Pair> findPairs(std::span<const float> numbers, const Case& wanted) {
+std::vector<Pair> findPairs(std::span<const float> numbers, const Case& test_case) {
   const std::vector<Aabb> boxes = copied(numbers);
-  CaseRun run(wanted, RunPolicy::unlimited(CheckMode::off));
-  // An algorithm may expect a frame after the initial pose: it is the same.
-  if (run.start(sceneOf(boxes), {.index = 0, .boxes = boxes})) {
-    run.step({.index = 1, .boxes = boxes});
+  CaseRun case_run(test_case, RunPolicy::unlimited(CheckMode::off));
+  // Algorithms expect a frame after the initial pose.
+  if (case_run.start(sceneOf(boxes), {.index = 0, .boxes = boxes})) {
+    case_run.step({.index = 1, .boxes = boxes});
   }
-  if (run.status() != Status::ok) throw InputError(wanted.algorithm.id + ": " + run.reason());
-  return overlapping(run.answer(), boxes, run.margin() == 0);
+  if (case_run.status() != Status::ok) {
+    throw InputError(test_case.algorithm.id + ": " + case_run.reason());
+  }
+  return overlapping(case_run.answer(), boxes, case_run.margin() == 0);
 }
 
-/// The array takes over the memory.
+/// The array takes ownership of the pairs.
 Pairs asArray(std::vector<Pair> pairs) {
-  const auto* kept = new std::vector<Pair>(std::move(pairs));
-  const py::capsule owner(kept,
+  const auto* owned = new std::vector<Pair>(std::move(pairs));
+  const py::capsule owner(owned,
                           [](void* memory) { delete static_cast<std::vector<Pair>*>(memory); });
-  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(kept->size()), 2};
-  const auto* first = reinterpret_cast<const std::uint32_t*>(kept->data());
+  const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(owned->size()), 2};
+  const auto* first = reinterpret_cast<const std::uint32_t*>(owned->data());
   return Pairs(shape, first, owner);
 }
 
@@ -106,7 +106,7 @@ Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
   const std::span<const float> numbers(boxes.data(), static_cast<std::size_t>(boxes.size()));
   std::vector<Pair> pairs;
   {
-    const py::gil_scoped_release others_may_run;
+    const py::gil_scoped_release release;
     pairs =
         findPairs(numbers, makeCase(algorithmOf(algorithm), isaOf(isa), threads, "", parameters));
   }
@@ -117,14 +117,14 @@ Pairs overlapsOf(const Boxes& boxes, const std::string& algorithm, int threads,
 }  // namespace broadmark
 
 PYBIND11_MODULE(_native, module) {
-  // What the package raises for bad input.
+  // The package converts it to its own InputError.
   py::register_local_exception<broadmark::InputError>(module, "NativeInputError", PyExc_ValueError);
   module.def("overlaps", &broadmark::overlapsOf, py::arg("boxes").noconvert(), py::arg("algorithm"),
              py::arg("threads"), py::arg("isa"), py::arg("parameters"));
   module.def("algorithms", [] {
     std::vector<std::string> ids;
-    for (const broadmark::Algorithm& one : broadmark::builtinAlgorithms()) {
-      if (one.traits.finds_pairs) ids.push_back(one.id);
+    for (const broadmark::Algorithm& algorithm : broadmark::builtinAlgorithms()) {
+      if (algorithm.traits.finds_pairs) ids.push_back(algorithm.id);
     }
     return ids;
   });

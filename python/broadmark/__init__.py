@@ -1,10 +1,10 @@
-"""Broadmark from Python: recordings as arrays, results as data frames, runs, tables, figures.
+"""Broadmark from Python: recordings as arrays, results as data frames, runs, tables and figures.
 
 `python3 -m broadmark --help` lists the commands. The functions behind them:
 
 - `read_recording`, `write_recording`: the boxes of a recording as numpy arrays
-- `present`: which bodies are there; `EMPTY_BOX` is the box of one that is absent
-- `run`: runs algorithms on a scene, a recording or arrays, by the program `broadmark`
+- `present`: which bodies are present; `EMPTY_BOX` is the box of an absent body
+- `run`: runs algorithms on a scene, a recording or arrays with the program `broadmark`
 - `overlaps`: the overlapping pairs of an array of boxes
 - `read_results`: results files as pandas data frames
 """

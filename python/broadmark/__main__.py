@@ -12,14 +12,14 @@ from broadmark.commands import COMMANDS
 
 EXIT_STATUSES = """\
 exit status:
-  0    all well
-  1    a wrong answer, or an algorithm that failed
+  0    success
+  1    a wrong answer or a failed algorithm
   2    bad usage or bad input
   130  interrupted (Ctrl-C)"""
 
 
 def parser(names: list[str]) -> argparse.ArgumentParser:
-    """These commands with their options."""
+    """The parser of the named commands."""
     summary, _, rest = (broadmark.__doc__ or "").partition("\n")
     top = argparse.ArgumentParser(
         "python3 -m broadmark",
@@ -43,9 +43,9 @@ def parser(names: list[str]) -> argparse.ArgumentParser:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Runs one command; bad input is a line on standard error and status 2."""
+    """Runs a command. Bad input prints a line on standard error and returns status 2."""
     arguments = sys.argv[1:] if arguments is None else arguments
-    # A command that is called does not wait for what others import.
+    # Import only the called command's module: other commands load large libraries.
     names = [name for name in COMMANDS if name in arguments[:1]] or COMMANDS
     options = parser(names).parse_args(arguments)
     try:

@@ -1,8 +1,8 @@
-"""Pictures that are the same bytes for the same input, and how algorithms look in them.
+"""Reproducible figures, and the styles of algorithms in them. The same input gives the same bytes.
 
-The colour says the family, the marker the algorithm; the paper's algorithms keep the paper's markers.
-No display is needed, and nothing outside is changed: figures are made without pyplot, with settings
-that hold only meanwhile.
+The colour shows the family, the marker the algorithm; the paper's algorithms have the paper's
+markers. Figures are made without pyplot and within a style context, so no display is needed and no
+global setting changes.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, NullFormatter
 
 from broadmark.errors import InputError
-from broadmark.files import whole_file
+from broadmark.files import atomic_write
 from broadmark.palette import LIGHT, curves_of, light
 from broadmark.paper.algorithms import BY_ID
 
-#: Formats, with what keeps dates and versions out of the files.
+#: Formats with the metadata that keeps dates and versions out of the files.
 FORMATS: dict[str, dict[str, Any]] = {
     "svg": {"Date": None, "Creator": "Broadmark"},
     "pdf": {"CreationDate": None, "Creator": "Broadmark", "Producer": None},
@@ -32,9 +32,9 @@ FORMATS: dict[str, dict[str, Any]] = {
 
 SETTINGS = {
     "svg.hashsalt": "broadmark",
-    "svg.fonttype": "none",  # text stays text: small files, words that can be searched
+    "svg.fonttype": "none",  # text instead of paths: small, searchable files
     "pdf.fonttype": 42,
-    "text.parse_math": False,  # a $ in a name is a $
+    "text.parse_math": False,  # names may contain $
     "savefig.dpi": 160,
     "font.size": 8,
     "axes.titlesize": 9,
@@ -55,42 +55,42 @@ SETTINGS = {
 
 
 def check_format(path: str | os.PathLike[str]) -> str:
-    """The format that a name's ending says; InputError for none of ours."""
+    """The format of a file name's extension. Raises InputError for an unknown extension."""
     kind = pathlib.PurePath(path).suffix[1:]
     if kind not in FORMATS:
-        raise InputError(f"{path}: its name ends with none of .svg, .pdf, .png")
+        raise InputError(f"{path}: the extension must be .svg, .pdf or .png")
     return kind
 
 
 def draw(paths: Iterable[str | os.PathLike[str]], picture: Callable[[], Figure]) -> None:
-    """Makes a figure and saves it in the format of each name's ending."""
+    """Makes a figure and saves it in each path's format."""
     formats = {path: check_format(path) for path in paths}
     with matplotlib.style.context(["default", SETTINGS]):
         figure = picture()
         for path, kind in formats.items():
-            with whole_file(path) as file:
+            with atomic_write(path) as file:
                 figure.savefig(file, format=kind, metadata=FORMATS[kind])
 
 
 @dataclass(frozen=True)
 class Style:
-    """How an algorithm looks."""
+    """The style of an algorithm in figures."""
 
     colour: str
     marker: str
     filled: bool
     line: str
 
-    def of_line(self) -> dict[str, Any]:
-        """For Axes.plot."""
+    def line_properties(self) -> dict[str, Any]:
+        """Arguments of Axes.plot for a line with markers."""
         face = self.colour if self.filled else light("page")
-        return {"color": self.colour, "linestyle": self.line, **self._of_marker(face)}
+        return {"color": self.colour, "linestyle": self.line, **self._marker_properties(face)}
 
-    def of_points(self) -> dict[str, Any]:
-        """For Axes.plot of points alone."""
-        return {**self.of_line(), "linestyle": "none"}
+    def point_properties(self) -> dict[str, Any]:
+        """Arguments of Axes.plot for markers without a line."""
+        return {**self.line_properties(), "linestyle": "none"}
 
-    def _of_marker(self, face: str) -> dict[str, Any]:
+    def _marker_properties(self, face: str) -> dict[str, Any]:
         return {
             "marker": self.marker,
             "markerfacecolor": face,
@@ -99,29 +99,31 @@ class Style:
         }
 
     def lighter(self) -> Style:
-        """For a parallel variant beside its sequential twin of the same style."""
-        return replace(self, colour=to_hex([0.4 + 0.6 * part for part in to_rgb(self.colour)]))
+        """The style of a parallel variant beside its sequential counterpart."""
+        return replace(
+            self, colour=to_hex([0.4 + 0.6 * channel for channel in to_rgb(self.colour)])
+        )
 
 
-#: Of algorithms that are not in the paper.
+#: Markers of algorithms that are not in the paper.
 OWN_MARKERS = ["P", "X", "*", "h", "<", ">", "8", "H"]
 
 
 def styles(families: Mapping[str, str]) -> dict[str, Style]:
-    """A style for each of these ids of algorithms, of the family beside it. A variant on several
-    threads (-mt) looks like that on one, as in the paper."""
+    """The style of each algorithm, from a mapping of ids to families. A multi-threaded variant (-mt)
+    has the style of the single-threaded variant, as in the paper."""
     curves = curves_of(families.values())
-    own = sorted({_stem(one) for one in families if one not in BY_ID})
-    found = {}
+    own = sorted({_stem(id_) for id_ in families if id_ not in BY_ID})
+    styles_by_id = {}
     for id_, family in families.items():
         colour = LIGHT["curve"][curves[family]]
         if id_ in BY_ID:
             paper = BY_ID[id_]
-            found[id_] = Style(colour, paper.marker, paper.filled, paper.line)
+            styles_by_id[id_] = Style(colour, paper.marker, paper.filled, paper.line)
         else:
             marker = OWN_MARKERS[own.index(_stem(id_)) % len(OWN_MARKERS)]
-            found[id_] = Style(colour, marker, True, "--" if id_.startswith("gpu-") else "-")
-    return found
+            styles_by_id[id_] = Style(colour, marker, True, "--" if id_.startswith("gpu-") else "-")
+    return styles_by_id
 
 
 def _stem(algorithm: str) -> str:
@@ -129,7 +131,7 @@ def _stem(algorithm: str) -> str:
 
 
 def log_scale(axes: Any, name: str, unit: str = "") -> None:
-    """Makes the axis x or y logarithmic, with plain numbers or with a unit and prefix (2 ms, 10 kB)."""
+    """Makes the axis x or y logarithmic; with a unit, ticks have SI prefixes (2 ms, 10 kB)."""
     {"x": axes.set_xscale, "y": axes.set_yscale}[name]("log")
     axis = {"x": axes.xaxis, "y": axes.yaxis}[name]
     axis.set_major_locator(LogLocator(subs=(1,) if unit == "B" else (1, 2, 5)))

@@ -1,10 +1,9 @@
-"""What a user can mend."""
+"""Errors that a user can fix."""
 
 
 class InputError(Exception):
-    """Bad input: one line that names what is wrong, where, and what would be right."""
+    """Bad input. The message is a line that names the file or option, the error and the expected input."""
 
     def __init__(self, text: str) -> None:
-        """Line breaks and other characters that cannot be printed, in names for instance, are shown
-        by their codes."""
+        """Escapes line breaks and other unprintable characters, for example in file names."""
         super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in text))

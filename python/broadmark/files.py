@@ -1,4 +1,4 @@
-"""Files that appear only when they are complete."""
+"""Atomic writing of files."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from broadmark.errors import InputError
 
 
 @contextlib.contextmanager
-def whole_file(path: str | os.PathLike[str]) -> Iterator[Any]:
-    """A binary file that gets its name when it is complete and on the disc, and is removed when it
-    does not get so far."""
+def atomic_write(path: str | os.PathLike[str]) -> Iterator[Any]:
+    """A binary file that replaces `path` once it is complete and on the disk. An error removes it."""
     path = pathlib.Path(path)
     partial = path.with_name(path.name + f".{os.getpid()}.partial")
     try:
@@ -31,7 +30,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Any]:
 
 
 def sync_folder(path: pathlib.Path) -> None:
-    """Makes sure that the names in a folder outlive a power failure."""
+    """Flushes a folder's entries to the disk, so that renames survive a power failure."""
     folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(folder)
@@ -40,9 +39,9 @@ def sync_folder(path: pathlib.Path) -> None:
 
 
 def write_text(path: str | None, text: str) -> None:
-    """Writes a text to a file, or prints it where none is named."""
+    """Writes a text to a file; prints it if `path` is None."""
     if path is None:
         print(text, end="")
         return
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(text.encode())

@@ -1,4 +1,4 @@
-"""The algorithms as functions: boxes in, pairs out, within this process."""
+"""Algorithms as functions in this process: boxes in, overlapping pairs out."""
 
 from __future__ import annotations
 
@@ -25,22 +25,22 @@ def overlaps(
     isa: str = "auto",
     parameters: dict[str, Any] | None = None,
 ) -> npt.NDArray[np.uint32]:
-    """All pairs of boxes that overlap: an (m, 2) array of their positions, the smaller one first.
+    """All pairs of overlapping boxes: an (m, 2) array of indices, the smaller index first.
 
     `boxes` is an array (n, 2, 3) or (n, 6): min x y z, max x y z; 32-bit floats are not converted.
-    Touching counts. The order of the pairs is the algorithm's own. `threads` (default: all cores)
-    matters to the parallel algorithms only. Other Python threads go on meanwhile.
+    Touching boxes overlap. The order of the pairs depends on the algorithm. Only parallel algorithms
+    use `threads` (default: all cores). The call releases the GIL.
 
-    Raises InputError for other shapes, NaN, inverted boxes and names that are not known.
+    Raises InputError for other shapes, NaN, inverted boxes and unknown names.
     """
     native = _native()
     if algorithm not in native.algorithms():
         known = ", ".join(native.algorithms())
-        raise InputError(f"algorithm '{algorithm}': is none of {known}")
+        raise InputError(f"algorithm '{algorithm}': unknown; expected one of {known}")
     if threads is None:
         threads = len(os.sched_getaffinity(0))
     if not 1 <= threads <= 1024:
-        raise InputError(f"threads {threads}: is not a number from 1 to 1024")
+        raise InputError(f"threads {threads}: expected a number from 1 to 1024")
     texts = {name: str(value) for name, value in (parameters or {}).items()}
     try:
         pairs: npt.NDArray[np.uint32] = native.overlaps(
@@ -53,7 +53,7 @@ def overlaps(
 
 @functools.cache
 def _native() -> ModuleType:
-    """The compiled module: installed with this package, or built beside the program."""
+    """The compiled module, installed with this package or built next to the program."""
     folders = [pathlib.Path(__file__).parent, pathlib.Path(find_program()).parent / "python"]
     for folder in folders:
         for file in folder.glob("_native*.so"):
@@ -63,5 +63,5 @@ def _native() -> ModuleType:
                 spec.loader.exec_module(module)
                 return module
     raise InputError(
-        "the compiled part of the package is not there: build with BROADMARK_PYTHON=ON"
+        "the compiled module of the package was not found: build with BROADMARK_PYTHON=ON"
     )

@@ -1,21 +1,21 @@
-"""The colours, each by its meaning: assets/palette.txt, from which the program has them, too."""
+"""The colours by their meaning, read from assets/palette.txt as by the program."""
 
 from __future__ import annotations
 
 import pathlib
 from collections.abc import Iterable
 
-_HERE = pathlib.Path(__file__).resolve()
-_PLACES = [_HERE.with_name("palette.txt"), _HERE.parents[2] / "assets/palette.txt"]
+_MODULE = pathlib.Path(__file__).resolve()
+_CANDIDATES = [_MODULE.with_name("palette.txt"), _MODULE.parents[2] / "assets/palette.txt"]
 
-#: By name, for light and for dark backgrounds.
+#: Colours by name, for light and for dark backgrounds.
 LIGHT: dict[str, list[str]] = {}
 DARK: dict[str, list[str]] = {}
 
-#: Which of the curve colours a family of algorithms has.
+#: The index of each algorithm family's curve colour.
 CURVES: dict[str, int] = {}
 
-for _line in next(one for one in _PLACES if one.exists()).read_text("utf-8").splitlines():
+for _line in next(path for path in _CANDIDATES if path.exists()).read_text("utf-8").splitlines():
     if _line and not _line.startswith("#"):
         _name, _light, _dark, *_meaning = _line.split(maxsplit=3)
         if _name == "curve":
@@ -25,30 +25,30 @@ for _line in next(one for one in _PLACES if one.exists()).read_text("utf-8").spl
 
 
 def light(name: str) -> str:
-    """The single colour of this name, on light backgrounds."""
+    """The colour `name` on light backgrounds."""
     (colour,) = LIGHT[name]
     return colour
 
 
 def curves_of(families: Iterable[str]) -> dict[str, int]:
-    """Which curve colour each family has. Those that the palette does not list have what the others
-    leave, and repeat it."""
+    """The index of each family's curve colour. Families that the palette does not list share the
+    colours that the others leave unused."""
     names = sorted(set(families))
-    taken = {CURVES[name] for name in names if name in CURVES}
-    every = range(len(LIGHT["curve"]))
-    left = [one for one in every if one not in taken] or list(every)
-    others = [name for name in names if name not in CURVES]
+    used = {CURVES[name] for name in names if name in CURVES}
+    indices = range(len(LIGHT["curve"]))
+    unused = [i for i in indices if i not in used] or list(indices)
+    unlisted = [name for name in names if name not in CURVES]
     return {
-        name: CURVES[name] if name in CURVES else left[others.index(name) % len(left)]
+        name: CURVES[name] if name in CURVES else unused[unlisted.index(name) % len(unused)]
         for name in names
     }
 
 
 def css(colours: dict[str, list[str]]) -> str:
-    """Custom properties: --NAME, of a list --NAME-0 and so on."""
+    """CSS custom properties: --NAME, or --NAME-0, --NAME-1, … for a list of colours."""
     named = [
-        (name if len(several) == 1 else f"{name}-{i}", colour)
-        for name, several in colours.items()
-        for i, colour in enumerate(several)
+        (name if len(values) == 1 else f"{name}-{i}", colour)
+        for name, values in colours.items()
+        for i, colour in enumerate(values)
     ]
     return " ".join(f"--{name}: {colour};" for name, colour in named)

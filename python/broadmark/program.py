@@ -1,4 +1,4 @@
-"""The program `broadmark`, called from Python."""
+"""Calls of the program `broadmark`."""
 
 from __future__ import annotations
 
@@ -18,47 +18,49 @@ from broadmark.errors import InputError
 from broadmark.recordings import write_recording
 from broadmark.results import Results, read_results
 
-#: The environment variable that names the program.
+#: The environment variable with the program's path.
 VARIABLE = "BROADMARK"
 
-#: The kind of JSON file that a run request is.
+#: The schema of a run request.
 RUN_SCHEMA = "broadmark-run/1"
 
-#: Exit statuses with which a run has results all the same: fine, a wrong answer, a time limit.
+#: Exit statuses of runs that have results: success, a wrong answer, a time limit.
 WITH_RESULTS = (0, 1, 4)
 
 
 def find_program() -> str:
-    """The program: what $BROADMARK names, the one built or installed with this package, or on PATH."""
+    """The program's path: $BROADMARK, else built or installed with this package, else on PATH."""
     named = os.environ.get(VARIABLE)
     if named:
         if not os.access(named, os.X_OK):
-            raise InputError(f"${VARIABLE} is '{named}', which is no program")
+            raise InputError(f"${VARIABLE} is '{named}', which is not an executable file")
         return named
     package = pathlib.Path(__file__).resolve().parent
-    for beside in (package.parents[1] / "build/release", *(p / "bin" for p in package.parents)):
-        if os.access(beside / "broadmark", os.X_OK):
-            return str(beside / "broadmark")
+    for folder in (package.parents[1] / "build/release", *(p / "bin" for p in package.parents)):
+        if os.access(folder / "broadmark", os.X_OK):
+            return str(folder / "broadmark")
     found = shutil.which("broadmark")
     if found:
         return found
-    raise InputError(f"the program broadmark is not there: build it, or name it in ${VARIABLE}")
+    raise InputError(
+        f"the program broadmark was not found: build it, or set ${VARIABLE} to its path"
+    )
 
 
 def call(*arguments: str, accept: tuple[int, ...] = (0,), show: bool = False) -> str:
     """Runs the program and returns what it prints; with `show` it prints to the terminal instead.
 
-    Raises InputError with its own message when it ends with a status that is not in `accept`.
+    Raises InputError with the program's message if its exit status is not in `accept`.
     """
-    keep = None if show else subprocess.PIPE
-    done = subprocess.run(
-        [find_program(), *arguments], stdout=keep, stderr=keep, text=True, check=False
+    stream = None if show else subprocess.PIPE
+    completed = subprocess.run(
+        [find_program(), *arguments], stdout=stream, stderr=stream, text=True, check=False
     )
-    if done.returncode in (-signal.SIGINT, 130):
+    if completed.returncode in (-signal.SIGINT, 130):
         raise KeyboardInterrupt
-    if done.returncode not in accept:
-        raise _refusal(done.returncode, done.stderr or "")
-    return done.stdout or ""
+    if completed.returncode not in accept:
+        raise _error_from(completed.returncode, completed.stderr or "")
+    return completed.stdout or ""
 
 
 def follow(
@@ -67,10 +69,10 @@ def follow(
     accept: tuple[int, ...] = (0,),
     keep_open: tuple[int, ...] = (),
 ) -> None:
-    """Runs the program and calls `tick` a few times a second meanwhile.
+    """Runs the program and calls `tick` ten times a second until it ends.
 
-    An interruption is passed on to the program, which then keeps what is finished. `keep_open` are
-    files that the program holds, too. Raises InputError as `call` does.
+    An interruption is passed on to the program, which then saves the finished cases. The program
+    inherits the file descriptors `keep_open`. Raises InputError as `call` does.
     """
     with tempfile.TemporaryFile("w+", errors="replace") as errors:
         process = subprocess.Popen(
@@ -92,11 +94,11 @@ def follow(
             raise KeyboardInterrupt
         if process.returncode not in accept:
             errors.seek(0)
-            raise _refusal(process.returncode, errors.read())
+            raise _error_from(process.returncode, errors.read())
 
 
 def _interrupt(process: subprocess.Popen[bytes]) -> None:
-    """Ends the program: by itself, or at once when that is wished again."""
+    """Asks the program to end and waits for it; a second interruption kills it."""
     try:
         process.send_signal(signal.SIGINT)
         process.wait()
@@ -105,15 +107,15 @@ def _interrupt(process: subprocess.Popen[bytes]) -> None:
         process.wait()
 
 
-def _refusal(status: int, stderr: str) -> InputError:
+def _error_from(status: int, stderr: str) -> InputError:
     lines = stderr.strip().splitlines()
     message = lines[-1] if lines else f"broadmark ended with status {status}"
     return InputError(message.removeprefix("broadmark: "))
 
 
 def as_options(**options: Any) -> list[str]:
-    """Options of the command line: threads=[1, 2] is --threads 1,2; allow_timeout=True is
-    --allow-timeout; param={"margin": 0.1} is --param margin=0.1; None is nothing."""
+    """Command-line options: threads=[1, 2] gives --threads 1,2; allow_timeout=True gives
+    --allow-timeout; param={"margin": 0.1} gives --param margin=0.1; None and False give nothing."""
     arguments = []
     for name, value in options.items():
         option = "--" + name.replace("_", "-")
@@ -122,8 +124,8 @@ def as_options(**options: Any) -> list[str]:
         if value is True:
             arguments.append(option)
         elif isinstance(value, dict):
-            for key, one in value.items():
-                arguments += [option, f"{key}={_text(one)}"]
+            for key, item in value.items():
+                arguments += [option, f"{key}={_text(item)}"]
         else:
             arguments += [option, _text(value)]
     return arguments
@@ -132,7 +134,7 @@ def as_options(**options: Any) -> list[str]:
 def _text(value: Any) -> str:
     if isinstance(value, str) or not isinstance(value, Iterable):
         return str(value)
-    return ",".join(str(one) for one in value)
+    return ",".join(str(item) for item in value)
 
 
 @contextlib.contextmanager
@@ -140,12 +142,12 @@ def request_file(**options: Any) -> Iterator[str]:
     """The path of a run request (docs/run-requests.md) with these options, for --request."""
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
         path = pathlib.Path(folder, "request.json")
-        path.write_text(json.dumps({"schema": RUN_SCHEMA, **options}, default=_plain), "utf-8")
+        path.write_text(json.dumps({"schema": RUN_SCHEMA, **options}, default=_json_value), "utf-8")
         yield str(path)
 
 
-def _plain(value: Any) -> Any:
-    """What JSON has no type for: arrays and their numbers, other sequences, paths."""
+def _json_value(value: Any) -> Any:
+    """Converts values that JSON has no type for: numpy arrays and numbers, sequences, paths."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if isinstance(value, os.PathLike):
@@ -154,16 +156,16 @@ def _plain(value: Any) -> Any:
 
 
 def run(source: Any, *, algorithm: Any = "all", show: bool = False, **options: Any) -> Results:
-    """Runs algorithms, and returns their results; a case that failed says so in its `status`.
+    """Runs algorithms and returns their results; the `status` of a case shows whether it failed.
 
-    `source` is whatever the command line takes (a scene's name, a file), or boxes as
-    `write_recording` takes them. Other arguments are the program's options, as a run request
-    (docs/run-requests.md) has them:
+    `source` is a source as on the command line (the name of a scene, a file), or boxes as in
+    `write_recording`. Other arguments are the program's options, as in a run request
+    (docs/run-requests.md):
 
         run("brownian", algorithm="sap*", objects=[1000, 8000], threads=[1, 2], repetitions=5)
 
-    With `show`, progress and the program's own table go to the terminal. Raises InputError for
-    what the program refuses.
+    With `show`, the terminal shows the program's progress and table. Raises InputError if the
+    program rejects the request.
     """
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
         if not isinstance(source, (str, os.PathLike)):

@@ -1,8 +1,8 @@
-"""Recordings as numpy arrays. Those of worlds that change (.broadmark) are in recording2. The others
-(.aabbs, .posrot) are those of the original Broadmark:
+"""Recordings as numpy arrays. Those of changing worlds (.broadmark) are in recording2. The others
+(.aabbs, .posrot) have the format of the original Broadmark:
 
     char[128] name, char[128] object type, int32 bodies, int32 frames, int32 0, int32 0, world box,
-    a box for each body, then `frames` times a record for each body
+    a box per body, then for each frame a record per body
 
 A box is eight 32-bit floats: min x y z 0, max x y z 0. A record is a box (.aabbs) or a pose
 (.posrot): position x y z 0, rotation x y z w.
@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from broadmark import recording2
 from broadmark.errors import InputError
-from broadmark.files import whole_file
+from broadmark.files import atomic_write
 
 Path = str | os.PathLike[str]
 Floats = npt.NDArray[np.float32]
@@ -43,7 +43,7 @@ RECORD_BYTES = 32
 
 @dataclass(frozen=True)
 class Recording:
-    """Boxes of n bodies in F frames after the initial pose, mapped from the file."""
+    """Boxes of n bodies in the initial pose and F frames, mapped from the file."""
 
     name: str
     object_type: str
@@ -58,7 +58,7 @@ class PoseRecording:
     name: str
     object_type: str
     world: Floats  #: (2, 3): min, max
-    boxes: Floats  #: (n, 2, 3): of the bodies before they were moved and turned
+    boxes: Floats  #: (n, 2, 3): of the bodies in their local frames
     positions: Floats  #: (F, n, 3)
     rotations: Floats  #: (F, n, 4): quaternions x y z w
 
@@ -67,13 +67,13 @@ EXTENSIONS = (".aabbs", ".broadmark", ".posrot")
 
 
 def read_recording(path: Path) -> Recording | recording2.ChangingRecording | PoseRecording:
-    """Maps a recording (.aabbs, .broadmark, .posrot): only what is used is read.
+    """Maps a recording (.aabbs, .broadmark, .posrot) into memory; pages are read on access.
 
-    Raises InputError for a file of another kind or size. `broadmark verify` checks all values.
+    Raises InputError for another file type or a wrong size. `broadmark verify` checks the values.
     """
     path = pathlib.Path(path)
     if path.suffix not in EXTENSIONS:
-        raise InputError(f"{path}: is no recording: its name ends with none of {EXTENSIONS}")
+        raise InputError(f"{path}: not a recording: the extension must be one of {EXTENSIONS}")
     try:
         content = np.memmap(path, np.uint8, "r")
     except (OSError, ValueError) as error:  # ValueError: an empty file
@@ -81,24 +81,26 @@ def read_recording(path: Path) -> Recording | recording2.ChangingRecording | Pos
     if path.suffix == ".broadmark":
         return recording2.read(path, content)
     if content.size < HEADER.itemsize:
-        raise InputError(f"{path}: has {content.size} bytes, its header alone {HEADER.itemsize}")
+        raise InputError(
+            f"{path}: has {content.size} bytes, fewer than the header's {HEADER.itemsize}"
+        )
     header = content[: HEADER.itemsize].view(HEADER)[0]
     bodies, frames = int(header["bodies"]), int(header["frames"])
     records = bodies * (1 + frames)
-    expected = HEADER.itemsize + RECORD_BYTES * records
-    if bodies < 0 or frames < 0 or content.size != expected:
+    expected_size = HEADER.itemsize + RECORD_BYTES * records
+    if bodies < 0 or frames < 0 or content.size != expected_size:
         raise InputError(
-            f"{path}: has {content.size} bytes, but {expected} with the {bodies} bodies "
-            f"and {frames} frames of its header"
+            f"{path}: has {content.size} bytes, but its header states {bodies} bodies and "
+            f"{frames} frames: expected {expected_size} bytes"
         )
-    sets = content[HEADER.itemsize :].view("<f4").reshape(1 + frames, bodies, 2, 4)
-    about = (_text(header["name"]), _text(header["object_type"]), header["world"][:, :3].copy())
+    frame_data = content[HEADER.itemsize :].view("<f4").reshape(1 + frames, bodies, 2, 4)
+    metadata = (_text(header["name"]), _text(header["object_type"]), header["world"][:, :3].copy())
     if path.suffix == ".aabbs":
-        return Recording(*about, boxes=sets[..., :3])
-    poses = sets[1:]
+        return Recording(*metadata, boxes=frame_data[..., :3])
+    poses = frame_data[1:]
     return PoseRecording(
-        *about,
-        boxes=sets[0, :, :, :3],
+        *metadata,
+        boxes=frame_data[0, :, :, :3],
         positions=poses[:, :, 0, :3],
         rotations=poses[:, :, 1],
     )
@@ -109,41 +111,41 @@ def _text(field: bytes) -> str:
 
 
 def as_boxes(boxes: Any, *, may_be_absent: bool = False) -> Floats:
-    """Boxes as an array (n, 2, 3) of 32-bit floats, without copying one that is so already.
+    """Boxes as an array (n, 2, 3) of 32-bit floats; an array of this type is not copied.
 
-    Takes (n, 2, 3) and (n, 6): min x y z, max x y z. Raises InputError for other shapes, NaN and
-    boxes whose min is greater than their max; an infinite side is one of these here, as recordings
-    hold none. Where bodies may be absent, EMPTY_BOX stands for one that is.
+    Accepts (n, 2, 3) and (n, 6): min x y z, max x y z. Raises InputError for other shapes, NaN,
+    infinite coordinates and boxes with min > max. With `may_be_absent`, EMPTY_BOX marks an absent
+    body.
     """
     array = np.asarray(boxes)
     if array.dtype.kind not in "iuf":
-        raise InputError(f"boxes: of type {array.dtype}, not numbers")
+        raise InputError(f"boxes: expected numbers, not type {array.dtype}")
     if array.ndim == 2 and array.shape[1] == 6:
         array = array.reshape(-1, 2, 3)
     if array.ndim != 3 or array.shape[1:] != (2, 3):
-        raise InputError(f"boxes: of shape {array.shape}, not (n, 2, 3) or (n, 6)")
+        raise InputError(f"boxes: of shape {array.shape}, expected (n, 2, 3) or (n, 6)")
     array = array.astype(np.float32, copy=False)
     low, high = array[:, 0], array[:, 1]
     if len(array) and not (
-        (low <= high).all() and array.min() > -np.inf and array.max() < np.inf  # NaN is neither
+        (low <= high).all() and array.min() > -np.inf and array.max() < np.inf  # false for NaN
     ):
-        _require_sound(array, may_be_absent)
+        _require_valid(array, may_be_absent)
     return array
 
 
-def _require_sound(boxes: Floats, may_be_absent: bool) -> None:
-    """Raises InputError for the first bad box."""
-    unknown = ~np.isfinite(boxes).all((1, 2))
-    bad = unknown | (boxes[:, 0] > boxes[:, 1]).any(1)
+def _require_valid(boxes: Floats, may_be_absent: bool) -> None:
+    """Raises InputError for the first invalid box."""
+    not_finite = ~np.isfinite(boxes).all((1, 2))
+    invalid = not_finite | (boxes[:, 0] > boxes[:, 1]).any(1)
     if may_be_absent:
-        bad &= (boxes != EMPTY_BOX).any((1, 2))
-        if not bad.any():
+        invalid &= (boxes != EMPTY_BOX).any((1, 2))
+        if not invalid.any():
             return
-    body = int(bad.argmax())
-    if unknown[body]:
-        raise InputError(f"boxes: body {body} has a side that is not a finite number")
+    body = int(invalid.argmax())
+    if not_finite[body]:
+        raise InputError(f"boxes: body {body} has a coordinate that is not a finite number")
     raise InputError(
-        f"boxes: body {body} has its min {boxes[body, 0]} above its max {boxes[body, 1]}"
+        f"boxes: body {body} has a min {boxes[body, 0]} greater than its max {boxes[body, 1]}"
     )
 
 
@@ -158,53 +160,55 @@ def write_recording(
 ) -> None:
     """Writes boxes as a recording (.aabbs, .broadmark).
 
-    `boxes` is an array (F + 1, n, 2, 3), or any iterable of arrays (n, 2, 3) or (n, 6), taken one
-    by one: the first is the initial pose, which is not timed, the others are the frames. `world`
-    (2, 3): default, what contains all boxes. Only .broadmark holds EMPTY_BOX, for absent bodies, and
-    `groups`. A file appears only when it is whole. Raises InputError for boxes that a recording
-    cannot hold.
+    `boxes` is an array (F + 1, n, 2, 3), or an iterable of arrays (n, 2, 3) or (n, 6), consumed as
+    the file is written: the initial pose, which is not timed, then the frames. `world` (2, 3) is the
+    bounding box of all boxes by default. EMPTY_BOX for absent bodies and `groups` require
+    .broadmark. The file is written atomically. Raises InputError for boxes that a recording cannot
+    hold.
     """
     path = pathlib.Path(path)
-    changing = path.suffix == ".broadmark"
-    if path.suffix != ".aabbs" and not changing:
-        raise InputError(f"{path}: the name of a recording of boxes ends with .aabbs or .broadmark")
-    if groups is not None and not changing:
-        raise InputError(f"{path}: groups of bodies need .broadmark")
+    is_changing = path.suffix == ".broadmark"
+    if path.suffix != ".aabbs" and not is_changing:
+        raise InputError(
+            f"{path}: the extension of a recording of boxes must be .aabbs or .broadmark"
+        )
+    if groups is not None and not is_changing:
+        raise InputError(f"{path}: groups of bodies require the extension .broadmark")
     _field("name", name), _field("object type", object_type)
-    frames = _checked(boxes, may_be_absent=changing)
+    frames = _validated(boxes, may_be_absent=is_changing)
     first = next(frames, None)
     if first is None:
         raise InputError(_too_few(path, 0))
-    with whole_file(path) as file:
-        writer: recording2.Writer | _SetWriter
-        if changing:
-            bodies, known = len(first), groups or recording2.Groups()
-            header = recording2.new_header(name, object_type, bodies, known)
-            writer = recording2.Writer(file, header, known, bodies)
+    with atomic_write(path) as file:
+        writer: recording2.Writer | _AabbsWriter
+        if is_changing:
+            bodies, filter_groups = len(first), groups or recording2.Groups()
+            header = recording2.new_header(name, object_type, bodies, filter_groups)
+            writer = recording2.Writer(file, header, filter_groups, bodies)
         else:
-            writer = _SetWriter(file, name, object_type, len(first))
+            writer = _AabbsWriter(file, name, object_type, len(first))
         bounds: Floats | None = None
-        sets = 0
+        frame_count = 0
         for array in itertools.chain([first], frames):
             writer.write(array)
-            there = array[recording2.present(array)]
-            if len(there):
-                reach = np.stack([there[:, 0].min(0), there[:, 1].max(0)])
-                bounds = reach if bounds is None else _united(bounds, reach)
-            sets += 1
-        if sets < 2:
-            raise InputError(_too_few(path, sets))
+            present_boxes = array[recording2.present(array)]
+            if len(present_boxes):
+                frame_bounds = np.stack([present_boxes[:, 0].min(0), present_boxes[:, 1].max(0)])
+                bounds = frame_bounds if bounds is None else _merged(bounds, frame_bounds)
+            frame_count += 1
+        if frame_count < 2:
+            raise InputError(_too_few(path, frame_count))
         if world is not None:
             bounds = as_boxes(np.asarray(world)[np.newaxis])[0]
         writer.finish(np.zeros((2, 3), np.float32) if bounds is None else bounds)
 
 
-def _too_few(path: pathlib.Path, sets: int) -> str:
-    return f"{path}: {sets} sets of boxes: the initial pose and a frame are least"
+def _too_few(path: pathlib.Path, frame_count: int) -> str:
+    return f"{path}: expected at least 2 sets of boxes, the initial pose and a frame; got {frame_count}"
 
 
-def _checked(boxes: Iterable[Any], may_be_absent: bool) -> Iterator[Floats]:
-    """All frames as arrays of the same size."""
+def _validated(boxes: Iterable[Any], may_be_absent: bool) -> Iterator[Floats]:
+    """The frames as validated arrays of the same size."""
     bodies: int | None = None
     for number, frame in enumerate(boxes):
         try:
@@ -213,12 +217,12 @@ def _checked(boxes: Iterable[Any], may_be_absent: bool) -> Iterator[Floats]:
             raise InputError(f"frame {number}: {error}") from None
         bodies = len(array) if bodies is None else bodies
         if len(array) != bodies:
-            raise InputError(f"frame {number}: has {len(array)} bodies, the first {bodies}")
+            raise InputError(f"frame {number}: has {len(array)} bodies, the first frame {bodies}")
         yield array
 
 
-class _SetWriter:
-    """Writes an .aabbs recording into an open file, frame by frame."""
+class _AabbsWriter:
+    """Writes an .aabbs recording to an open file, frame by frame."""
 
     def __init__(self, file: Any, name: str, object_type: str, bodies: int) -> None:
         self._file = file
@@ -240,11 +244,11 @@ class _SetWriter:
         self._header.tofile(self._file)
 
 
-def _united(a: Floats, b: Floats) -> Floats:
+def _merged(a: Floats, b: Floats) -> Floats:
     return np.stack([np.minimum(a[0], b[0]), np.maximum(a[1], b[1])])
 
 
-def _field(what: str, text: str) -> bytes:
+def _field(name: str, text: str) -> bytes:
     if not text.isascii() or not text.isprintable() or not 0 < len(text) < 128:
-        raise InputError(f"{what} '{text}': is not 1 to 127 printable ASCII characters")
+        raise InputError(f"{name} '{text}': expected 1 to 127 printable ASCII characters")
     return text.encode("ascii")

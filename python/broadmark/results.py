@@ -1,4 +1,4 @@
-"""Results files as pandas data frames (docs/results.md describes the files)."""
+"""Results files as pandas data frames; docs/results.md describes the files."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from broadmark.errors import InputError
 
 SCHEMAS = ("broadmark-results/2", "broadmark-results/1")
 
-#: What the program's results have of a case: docs/results.md lists these columns. The file is
-#: written from the program's own table (tests/engine/case_columns_test.cpp).
+#: The columns of a case, described in docs/results.md. The file is generated from the program's
+#: table (tests/engine/case_columns_test.cpp).
 COLUMNS: list[dict[str, Any]] = json.loads(
     (pathlib.Path(__file__).parent / "columns.json").read_text("utf-8")
 )
 
-#: The parts of a frame's work that are timed apart, and all of it.
+#: The separately timed phases of a frame.
 PHASES = ["update_objects", "clean_cache", "update_structures", "search_overlaps"]
-TRANSFERS = ["upload", "download"]  #: are in the phases; only of algorithms on a device
+TRANSFERS = ["upload", "download"]  #: included in the phases; only for algorithms on a device
 COUNTS = ["pairs", "changed_bodies", "missed", "false", "allowed_extra", "invalid"]
 
-#: The columns that tell which case a frame is of.
+#: The columns that identify a frame's case.
 CASE_KEYS = ["case", *(column["key"] for column in COLUMNS if column["frames"])]
 
 
@@ -38,12 +38,12 @@ CASE_KEYS = ["case", *(column["key"] for column in COLUMNS if column["frames"])]
 class Results:
     """The cases of one or several results files.
 
-    `cases` has a row per case, its index being the case's number. Columns are those of the
-    program's `--csv`, and `machine`, `file`, `complete` (it ran as often as was asked for, or ended
-    by its status), `warnings`. Times are in seconds. Cells of what is not known are missing (NaN).
+    `cases` has a row per case, indexed by the case's number. The columns are those of the program's
+    `--csv`, and `machine`, `file`, `complete` (all requested repetitions ran, or the status ended the
+    case) and `warnings`. Times are in seconds. Unknown values are missing (NaN).
 
-    `details` holds what else the files say of each case, by its number: parameters, conditions,
-    counters, differences, and its times as arrays.
+    `details` holds the remaining data of each case, by its number: parameters, conditions, counters,
+    differences, and times as arrays.
     """
 
     cases: pd.DataFrame
@@ -53,19 +53,19 @@ class Results:
 
     @property
     def partial(self) -> list[str]:
-        """The files of runs that did not come to an end."""
-        return [one.file for one in self.files.itertuples() if not one.complete]
+        """The files of unfinished runs."""
+        return [row.file for row in self.files.itertuples() if not row.complete]
 
     @functools.cached_property
     def frames(self) -> pd.DataFrame:
-        """A row per case, repetition and frame; columns are those of the program's `--csv-frames`.
+        """A row per case, repetition and frame; the columns are those of the program's `--csv-frames`.
 
         Times are in whole nanoseconds; `repetition` and `frame` count from 1.
         """
         numbers = [i for i, case in enumerate(self.details) if case["initialize_ns"]]
         if not numbers:
             return pd.DataFrame(columns=[*CASE_KEYS, "repetition", "frame"])
-        tables = [_frames_of(number, self.details[number]) for number in numbers]
+        tables = [_frame_table(number, self.details[number]) for number in numbers]
         frames = pd.concat(tables, ignore_index=True)
         keys = self.cases[CASE_KEYS[1:]].astype("category")
         for column in reversed(CASE_KEYS[1:]):
@@ -73,7 +73,7 @@ class Results:
         return frames
 
     def select(self, keep: Any) -> Results:
-        """These cases only: `keep` is a mask, as in `results.select(results.cases.status == "ok")`."""
+        """The cases of the mask `keep`, for example `results.select(results.cases.status == "ok")`."""
         cases = self.cases[keep]
         return Results(
             cases.reset_index(drop=True).assign(case=range(len(cases))),
@@ -83,15 +83,15 @@ class Results:
         )
 
 
-#: What it raises to take values for others than they are.
-_MISSHAPEN = (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError)
+#: Exceptions raised by values of an unexpected type or shape.
+_SHAPE_ERRORS = (KeyError, TypeError, IndexError, AttributeError, ValueError, OverflowError)
 
 
 def read_results(*paths: str | os.PathLike[str]) -> Results:
     """Reads results files of any version, JSON or JSON Lines.
 
-    Raises InputError for a file that is none. A file whose last line is broken is of a run that was
-    ended while it wrote: what is before counts, and the file is in `partial`.
+    Raises InputError for other files. An incomplete last line means that the run was ended while
+    writing it: the lines before are read, and the file is in `partial`.
     """
     environments: list[dict[str, Any]] = []
     details: list[dict[str, Any]] = []
@@ -102,16 +102,18 @@ def read_results(*paths: str | os.PathLike[str]) -> Results:
         try:
             files.append(_file_row(path, document))
         except TypeError as error:
-            raise InputError(f"{path}: its options are not a list: {error}") from None
-        known = [_number_in(environments, one) for one in document.environments]
+            raise InputError(f"{path}: the options are not a list: {error}") from None
+        environment_indices = [
+            _environment_index(environments, environment) for environment in document.environments
+        ]
         for case in document.cases:
             try:
                 _check_lengths(case)
                 row = _row(case)
-                row["environment"] = known[case.get("environment", 0)]
-            except _MISSHAPEN as error:
+                row["environment"] = environment_indices[case.get("environment", 0)]
+            except _SHAPE_ERRORS as error:
                 raise InputError(
-                    f"{path}: case {case.get('id', len(rows))!r}: not as docs/results.md has it: "
+                    f"{path}: case {case.get('id', len(rows))!r}: does not match docs/results.md: "
                     f"{type(error).__name__} {error}"
                 ) from None
             rows.append({"case": len(rows), **row, "file": os.fspath(path)})
@@ -137,7 +139,11 @@ class _Document:
 
 
 def _file_row(path: str | os.PathLike[str], document: _Document) -> dict[str, Any]:
-    started = [str(one["started"]) for one in document.environments if one.get("started")]
+    started = [
+        str(environment["started"])
+        for environment in document.environments
+        if environment.get("started")
+    ]
     return {
         "file": os.fspath(path),
         "command": ["broadmark", *map(str, document.options)],
@@ -146,7 +152,7 @@ def _file_row(path: str | os.PathLike[str], document: _Document) -> dict[str, An
     }
 
 
-def _opened(path: pathlib.Path) -> TextIO:
+def _open(path: pathlib.Path) -> TextIO:
     if path.suffix == ".gz":
         return gzip.open(path, "rt", encoding="utf-8")
     return open(path, encoding="utf-8")
@@ -154,22 +160,22 @@ def _opened(path: pathlib.Path) -> TextIO:
 
 def _document(path: pathlib.Path) -> _Document:
     try:
-        with _opened(path) as file:
+        with _open(path) as file:
             first = file.readline()
             try:
                 head = _parsed(first)
-            except json.JSONDecodeError:  # a document of many lines
+            except json.JSONDecodeError:  # a JSON document of many lines
                 head = _parsed(first + file.read())
             if not isinstance(head, dict) or head.get("schema") not in SCHEMAS:
-                raise InputError(f"{path}: is no results file: its schema is not {SCHEMAS[0]}")
+                raise InputError(f"{path}: not a results file: the schema is not {SCHEMAS[0]}")
             if "cases" not in head:
                 return _from_lines(path, file, head.get("options", []))
-    except (OSError, EOFError, zlib.error, RecursionError, *_MISSHAPEN) as error:
+    except (OSError, EOFError, zlib.error, RecursionError, *_SHAPE_ERRORS) as error:
         raise InputError(f"{path}: cannot be read: {error}") from None
     environments = head.get("environments", [head.get("environment")])
     if not all(
-        isinstance(some, list) and all(isinstance(one, dict) for one in some)
-        for some in (environments, head["cases"])
+        isinstance(values, list) and all(isinstance(value, dict) for value in values)
+        for values in (environments, head["cases"])
     ):
         raise InputError(f"{path}: an environment or a case is not an object")
     complete = head.get("complete", True)
@@ -183,8 +189,8 @@ def _from_lines(path: pathlib.Path, lines: Iterable[str], options: list[str]) ->
             kind, content = next(iter(_parsed(line).items()))
         except (json.JSONDecodeError, AttributeError, StopIteration):
             if line.endswith("\n"):
-                raise InputError(f"{path}: line {number}: is no JSON object") from None
-            break  # the run ended while it wrote this line
+                raise InputError(f"{path}: line {number}: not a JSON object") from None
+            break  # the run was ended while writing this line
         if kind == "end":
             document.complete = content["complete"]
         elif kind == "environment":
@@ -195,7 +201,7 @@ def _from_lines(path: pathlib.Path, lines: Iterable[str], options: list[str]) ->
 
 
 def _parsed(text: str) -> Any:
-    """JSON whose times and counts of frames are arrays: a tenth of the memory of lists."""
+    """Parses JSON with the times and counts of frames as arrays: a tenth of the memory of lists."""
     return json.loads(text, object_hook=_with_arrays)
 
 
@@ -210,50 +216,51 @@ def _with_arrays(members: dict[str, Any]) -> dict[str, Any]:
     return members
 
 
-def _number_in(environments: list[dict[str, Any]], one: dict[str, Any]) -> int:
-    """The number of the machine and build; runs that began at another time are of the same."""
-    changing = ("started", "load_average")
-    lasting = {key: value for key, value in one.items() if key not in changing}
+def _environment_index(environments: list[dict[str, Any]], environment: dict[str, Any]) -> int:
+    """The index of an environment, added if new. Start time and load are ignored."""
+    ignored = ("started", "load_average")
+    identity = {key: value for key, value in environment.items() if key not in ignored}
     for number, known in enumerate(environments):
-        if all(known.get(key) == value for key, value in lasting.items()):
+        if all(known.get(key) == value for key, value in identity.items()):
             return number
-    environments.append(one)
+    environments.append(environment)
     return len(environments) - 1
 
 
 def _machine_names(environments: list[dict[str, Any]]) -> list[str]:
-    """A short name for each environment, no two alike."""
+    """A short unique name for each environment."""
     names: list[str] = []
-    for one in environments:
-        host = f"{one['host']}: " if one.get("host") else ""
-        name = f"{host}{one.get('cpu') or 'unknown'}, {one.get('logical_cores', '?')} cores"
-        alike = sum(other.split(" #")[0] == name for other in names)
-        names.append(f"{name} #{alike + 1}" if alike else name)
+    for environment in environments:
+        host = f"{environment['host']}: " if environment.get("host") else ""
+        cores = environment.get("logical_cores", "?")
+        name = f"{host}{environment.get('cpu') or 'unknown'}, {cores} cores"
+        duplicates = sum(other.split(" #")[0] == name for other in names)
+        names.append(f"{name} #{duplicates + 1}" if duplicates else name)
     return names
 
 
 def _check_lengths(case: dict[str, Any]) -> None:
-    """Raises ValueError unless every phase has the same frames, in as many repetitions."""
+    """Raises ValueError unless all phases have the same numbers of repetitions and frames."""
     lengths = [len(repetition) for repetition in case["frames"]["total"]]
     if len(lengths) != len(case["initialize_ns"]):
-        raise ValueError("as many repetitions as initialisations are expected")
+        raise ValueError("expected equal numbers of repetitions and initialisations")
     for phase, repetitions in case["frames"].items():
         if [len(repetition) for repetition in repetitions] != lengths:
-            raise ValueError(f"{phase}: the same number of frames in all phases is expected")
+            raise ValueError(f"{phase}: expected the same number of frames in all phases")
 
 
 def is_complete(case: dict[str, Any]) -> bool:
-    """Whether a case ran as often as was asked for, or ended by its status."""
-    asked = case.get("conditions", {}).get("repetitions")
-    return case["status"] != "ok" or asked is None or len(case["frames"]["total"]) >= asked
+    """Whether all requested repetitions of a case ran, or its status ended it."""
+    requested = case.get("conditions", {}).get("repetitions")
+    return case["status"] != "ok" or requested is None or len(case["frames"]["total"]) >= requested
 
 
 def _row(case: dict[str, Any]) -> dict[str, Any]:
-    """What the table of cases says of one."""
+    """A case's row in the table of cases."""
     known = {"always": True, "timed": bool(case["initialize_ns"]), "checked": case["checked"]}
     return {
         **{
-            column["key"]: _FORMS[column["form"]](_found(column, case), case)
+            column["key"]: _FORMS[column["form"]](_value_at(column, case), case)
             if known[column["known"]]
             else None
             for column in COLUMNS
@@ -263,8 +270,8 @@ def _row(case: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _found(column: dict[str, Any], case: dict[str, Any]) -> Any:
-    """What stands at a column's place; files of earlier versions lack some of those optional."""
+def _value_at(column: dict[str, Any], case: dict[str, Any]) -> Any:
+    """The value at a column's path; files of earlier versions lack some optional values."""
     value: Any = case
     for name in column["path"].split("/"):
         if isinstance(value, list):
@@ -283,15 +290,15 @@ def _joined(parameters: Any, _: dict[str, Any]) -> str:
 
 
 def _seconds(nanoseconds: Any, case: dict[str, Any]) -> float | None:
-    """The mean; without a device there are no times of one."""
+    """The mean of all frames; 0 for the transfer times of a case without a device."""
     if nanoseconds is None:
         return 0.0 if any(map(len, case["frames"]["total"])) else None
-    all_of_them = np.hstack(nanoseconds) if nanoseconds else np.empty(0)
-    return float(all_of_them.mean()) * 1e-9 if len(all_of_them) else None
+    times = np.hstack(nanoseconds) if nanoseconds else np.empty(0)
+    return float(times.mean()) * 1e-9 if len(times) else None
 
 
 def _per_frame(sums: Any, case: dict[str, Any]) -> float | None:
-    """Over the repetitions of which the sum is known."""
+    """The mean per frame over the repetitions with a known sum."""
     known = [
         (total, len(times))
         for total, times in zip(sums or [], case["frames"]["total"])
@@ -301,7 +308,7 @@ def _per_frame(sums: Any, case: dict[str, Any]) -> float | None:
     return sum(total for total, _ in known) / frames if frames else None
 
 
-#: How a column follows from what stands at its place in a case.
+#: The conversion from the value at a column's path to the column, by the column's form.
 _FORMS: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
     "value": lambda value, _: value,
     "text": lambda value, _: value if isinstance(value, str) else "",
@@ -312,7 +319,7 @@ _FORMS: dict[str, Callable[[Any, dict[str, Any]], Any]] = {
 }
 
 
-def _frames_of(number: int, case: dict[str, Any]) -> pd.DataFrame:
+def _frame_table(number: int, case: dict[str, Any]) -> pd.DataFrame:
     tables = []
     counts = case.get("frame_counts", {})
     for repetition in range(len(case["frames"]["total"])):
@@ -326,9 +333,9 @@ def _frames_of(number: int, case: dict[str, Any]) -> pd.DataFrame:
             times = case["frames"].get(phase)
             columns[f"{phase}_ns"] = times[repetition] if times else 0
         for count in COUNTS:
-            # Kinds of wrong pairs that there are none of are left out of the file.
-            none = 0 if case["checked"] and count not in ("pairs", "changed_bodies") else np.nan
+            # The file omits the counts of kinds of wrong pairs that did not occur.
+            default = 0 if case["checked"] and count not in ("pairs", "changed_bodies") else np.nan
             values = counts.get(count, [])[:length]
-            columns[count] = values if len(values) == length else none
+            columns[count] = values if len(values) == length else default
         tables.append(pd.DataFrame(columns, index=range(length)))
     return pd.concat(tables, ignore_index=True)

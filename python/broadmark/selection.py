@@ -1,7 +1,7 @@
-"""Which cases of results a table or a picture shows, and the options that choose them.
+"""The choice of cases that a table or a figure shows, and its options.
 
-Times of several machines are never pooled, nor is one of two cases chosen in silence: what competes
-for one place is an error that tells how to choose.
+Times of several machines are never pooled. Two cases for the same cell or point are an error whose
+message names the options to choose between them.
 """
 
 from __future__ import annotations
@@ -16,43 +16,47 @@ import pandas as pd
 from broadmark.errors import InputError
 from broadmark.results import Results, read_results
 
-#: Instruction sets, the widest last.
-WIDTHS = ["scalar", "sse2", "neon", "avx2", "avx512"]
+#: Instruction sets in ascending order of vector width.
+ISAS = ["scalar", "sse2", "neon", "avx2", "avx512"]
 
-#: What a recording is called in titles; two recordings that differ in more compete for one place.
+#: The columns that identify a recording in titles. Recordings that are equal in them conflict.
 RECORDING = ["scene", "object_type", "objects"]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """RESULTS and the options that choose from them, as `read_selected` takes them."""
+    """Adds RESULTS and the options that `read_selected` applies to them."""
     parser.add_argument("results", nargs="+", metavar="RESULTS", help="results (.json, .jsonl)")
-    parser.add_argument("--machine", metavar="NAME", help="of this machine only (part of its name)")
-    parser.add_argument("--filter", metavar="REGEX", help="only cases whose id matches")
+    parser.add_argument(
+        "--machine", metavar="NAME", help="only cases of this machine (part of its name)"
+    )
+    parser.add_argument("--filter", metavar="REGEX", help="only cases with a matching id")
 
 
 def read_selected(options: argparse.Namespace, may_be_empty: bool = False) -> Results:
-    """The results that the options of `add_options` name. Without a case they are an error, unless
-    they `may_be_empty` and had none to choose from."""
+    """The results selected by the options of `add_options`. Raises InputError if no case is left,
+    unless `may_be_empty` is set and the files have no cases."""
     results = read_results(*options.results)
     may_be_empty = may_be_empty and not len(results.cases)
     for path in results.partial:
-        print(f"{path}: partial: its run did not come to an end", file=sys.stderr)
+        print(f"{path}: partial: the run was not finished", file=sys.stderr)
     cases = results.cases
     if options.filter is not None and len(cases):
         try:
             results = results.select(cases["id"].str.contains(re.compile(options.filter)))
         except re.error as error:
-            raise InputError(f"--filter '{options.filter}': is no pattern: {error}") from None
+            raise InputError(
+                f"--filter '{options.filter}': not a regular expression: {error}"
+            ) from None
     if options.machine is not None and len(results.cases):
         known = sorted(results.cases["machine"].unique())
         chosen = [name for name in known if options.machine in name]
         if len(chosen) != 1:
             raise InputError(
-                f"--machine '{options.machine}': is part of {len(chosen)} names of {_listed(known)}"
+                f"--machine '{options.machine}': matches {len(chosen)} names of {_quoted(known)}"
             )
         results = results.select(results.cases["machine"] == chosen[0])
     if not len(results.cases) and not may_be_empty:
-        raise InputError("no case is left of these results: mend --filter or --machine")
+        raise InputError("no case is left: change --filter or --machine")
     return results
 
 
@@ -62,55 +66,56 @@ def by_machine(results: Results) -> list[tuple[str, Results]]:
     return [(name, results.select(machines == name)) for name in machines.unique()]
 
 
-def one_machine(results: Results) -> tuple[str, Results]:
-    """The results, which must be of one machine."""
+def single_machine(results: Results) -> tuple[str, Results]:
+    """The name and results of the only machine. Raises InputError if there are several."""
     machines = by_machine(results)
     if len(machines) > 1:
-        names = _listed([name for name, _ in machines])
+        names = _quoted([name for name, _ in machines])
         raise InputError(f"results of {len(machines)} machines: choose one with --machine: {names}")
     return machines[0]
 
 
 def match_names(names: pd.Series, patterns: str) -> pd.Series:
-    """Which names are among ID[,ID…], globs allowed. InputError for a pattern that none matches."""
+    """A mask of the names that match ID[,ID…], globs allowed. Raises InputError for a pattern without
+    a match."""
     mask = pd.Series(False, index=names.index)
     for pattern in patterns.split(","):
         matches = names.map(lambda name, p=pattern: fnmatchcase(name.lower(), p.lower()))
         if not matches.any():
-            raise InputError(f"'{pattern}': matches none of {_listed(sorted(names.unique()))}")
+            raise InputError(f"'{pattern}': matches none of {_quoted(sorted(names.unique()))}")
         mask |= matches
     return mask
 
 
-def one_per_place(cases: pd.DataFrame, place: list[str]) -> pd.DataFrame:
-    """The cases, if no two of them have the same values of `place`; a case that ran to its end
-    replaces one that did not. Else InputError."""
-    cases = cases[cases["complete"] | ~cases.groupby(place)["complete"].transform("any")]
-    twice = cases[cases.duplicated(place, keep=False)]
-    if len(twice):
-        same = (twice[place] == twice[place].iloc[0]).all(axis=1)
-        first, second = (case for _, case in twice[same].iloc[:2].iterrows())
-        what = " ".join(str(first[column]) for column in place)
+def require_unique(cases: pd.DataFrame, keys: list[str]) -> pd.DataFrame:
+    """The cases, unique in the columns `keys`: a complete case replaces an incomplete case. Raises
+    InputError for cases that are equal in these columns."""
+    cases = cases[cases["complete"] | ~cases.groupby(keys)["complete"].transform("any")]
+    duplicates = cases[cases.duplicated(keys, keep=False)]
+    if len(duplicates):
+        equal = (duplicates[keys] == duplicates[keys].iloc[0]).all(axis=1)
+        first, second = (case for _, case in duplicates[equal].iloc[:2].iterrows())
+        description = " ".join(str(first[column]) for column in keys)
         if first["id"] == second["id"]:
             raise InputError(
-                f"{what}: is in {first['file']} and {second['file']}: give one of them"
+                f"{description}: is in {first['file']} and {second['file']}: give only one of them"
             )
         raise InputError(
-            f"{what}: two cases compete, {first['id']} and {second['id']}: choose with --filter"
+            f"{description}: two cases match, {first['id']} and {second['id']}: choose with --filter"
         )
     return cases
 
 
 def best_variants(cases: pd.DataFrame) -> pd.DataFrame:
-    """For each algorithm on each recording the case with the most threads and, of these, with the
-    widest instruction set."""
-    rank = cases["threads"] * len(WIDTHS) + cases["isa"].map(
-        lambda isa: WIDTHS.index(isa) if isa in WIDTHS else 0
+    """For each algorithm and recording, the case with the most threads; ties go to the widest
+    instruction set."""
+    rank = cases["threads"] * len(ISAS) + cases["isa"].map(
+        lambda isa: ISAS.index(isa) if isa in ISAS else 0
     )
-    place = [*RECORDING, "algorithm"]
-    best = rank.groupby([cases[column] for column in place]).transform("max")
-    return one_per_place(cases[rank == best], place)
+    keys = [*RECORDING, "algorithm"]
+    best = rank.groupby([cases[column] for column in keys]).transform("max")
+    return require_unique(cases[rank == best], keys)
 
 
-def _listed(names: list[str]) -> str:
+def _quoted(names: list[str]) -> str:
     return ", ".join(f"'{name}'" for name in names)

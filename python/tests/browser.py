@@ -1,4 +1,4 @@
-"""A report in a browser: Chromium without a window, driven by selenium."""
+"""A report in headless Chromium, driven by selenium."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Page:
         self.driver, self.folder = driver, folder
 
     def show(self, *paths: pathlib.Path, width: int = 1280, dark: bool = False) -> None:
-        """Writes the report of these results and opens it; a width of a phone makes it one."""
+        """Writes the report of the results and opens it; a width below 600 emulates a phone."""
         report = self.folder / "a report.html"
         write_report(broadmark.read_results(*paths), report, pictures=False)
         size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600}
@@ -38,7 +38,7 @@ class Page:
         self.driver.get(report.as_uri())
 
     def section(self, name: str) -> Any:
-        """A section, scrolled to and drawn."""
+        """Scrolls to a section, waits until it is drawn and returns it."""
         found = self.driver.find_element(By.ID, name)
         self.js("arguments[0].scrollIntoView()", found)
         self.wait(f"return document.querySelector('#{name} .body:not([aria-busy])')")
@@ -48,22 +48,22 @@ class Page:
         return self.driver.execute_script(script, *arguments)
 
     def wait(self, script: str, *arguments: Any) -> Any:
-        """Until a script, asked after every change of the page, returns something true."""
+        """Waits until a script, rerun after every change of the page, returns a true value."""
         return self.driver.execute_async_script(
             """
             const done = arguments[arguments.length - 1];
             const values = [...arguments].slice(1, -1);
             const script = new Function(arguments[0]);
-            const observer = new MutationObserver(ask);
-            function ask() {
+            const observer = new MutationObserver(check);
+            function check() {
               const found = script(...values);
               if (!found) return;
               observer.disconnect();
               done(found);
             }
-            const what = {subtree: true, childList: true, attributes: true, characterData: true};
-            observer.observe(document, what);
-            ask();
+            const changes = {subtree: true, childList: true, attributes: true, characterData: true};
+            observer.observe(document, changes);
+            check();
             """,
             script,
             *arguments,
@@ -84,7 +84,7 @@ class Page:
             self.driver.switch_to.active_element.send_keys(key)
 
     def filter(self, name: str, *texts: str) -> None:
-        """Only these of a filter."""
+        """Selects only the given options of a filter."""
         menu = self.find(f'details.filter[data-filter="{name}"]')
         menu.find_element(By.TAG_NAME, "summary").click()
         menu.find_element(By.XPATH, ".//button[text()='none']").click()
@@ -93,7 +93,7 @@ class Page:
         menu.find_element(By.TAG_NAME, "summary").click()
 
     def ratios(self, table: int = 0) -> dict[str, list[str]]:
-        """The rows of a table of ratios: mean, gaps, and a cell per recording."""
+        """The rows of a table of ratios: mean, gaps and a cell per recording."""
         self.section("ratios")
         self.wait("return document.querySelectorAll('table[role=grid]')[arguments[0]]", table)
         rows = self.js(
@@ -105,7 +105,7 @@ class Page:
 
 
 def start_browser(home: pathlib.Path) -> Any:
-    """Chromium, whose files are all in this folder."""
+    """Starts Chromium with all its files in `home`."""
     if not CHROMEDRIVER.exists():
         pytest.skip("Debian's chromium-driver is missing")
     options = webdriver.ChromeOptions()
@@ -115,5 +115,5 @@ def start_browser(home: pathlib.Path) -> Any:
     folders = dict.fromkeys(("HOME", "XDG_CONFIG_HOME", "TMPDIR"), str(home))
     service = Service(str(CHROMEDRIVER), env={"PATH": "/usr/bin:/bin", **folders})
     driver = webdriver.Chrome(options=options, service=service)
-    driver.set_script_timeout(24 * 3600)  # the limit on a test's time is the only one
+    driver.set_script_timeout(24 * 3600)  # only the test's own time limit applies
     return driver

@@ -1,4 +1,4 @@
-"""What several tests share."""
+"""Common fixtures of the tests."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SOURCE_FOLDER = pathlib.Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="session")
-def some_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
+def small_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     """A folder with results of a small run in every format: results.json, .jsonl, .csv, frames.csv."""
     folder = tmp_path_factory.mktemp("results")
     call(
@@ -32,7 +32,7 @@ def some_results(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
 
 @pytest.fixture
 def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
-    """Runs a command of the package: exit status, standard output, standard error."""
+    """Runs a command of the package; returns exit status, standard output and standard error."""
 
     def run(*arguments: object) -> tuple[int, str, str]:
         try:
@@ -47,13 +47,13 @@ def command(capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, 
 
 @pytest.fixture(scope="session")
 def faulty_plugin() -> str:
-    """A plug-in with an algorithm, `faulty`, that is wrong on purpose."""
+    """A plug-in with the deliberately wrong algorithm `faulty`."""
     return tests_plugin("libfaulty_algorithm.so")
 
 
 @pytest.fixture(scope="session")
 def engine_plugin() -> str:
-    """A plug-in with a physics engine, `drift`."""
+    """A plug-in with the physics engine `drift`."""
     return tests_plugin("libmy_engine.so")
 
 

@@ -1,4 +1,4 @@
-"""Waits for what happens in a folder."""
+"""Waits for changes in a folder."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ CHANGES = 0x2 | 0x8 | 0x40 | 0x80 | 0x100 | 0x200
 
 
 def wait_until(folder: pathlib.Path, condition: Callable[[], object]) -> None:
-    """Returns once the condition holds; asks it after every change below the folder."""
+    """Waits until the condition holds, checked after every change below the folder."""
     libc = ctypes.CDLL(None)
     events = libc.inotify_init1(os.O_CLOEXEC)
     try:
         while True:
-            # First the watches, then the question: no change comes in between.
+            # Add the watches before the check, so that no change is missed.
             for path, _, _ in os.walk(folder):
                 libc.inotify_add_watch(events, os.fsencode(path), CHANGES)
             if condition():

@@ -1,4 +1,4 @@
-"""Results files made up for tests of the report."""
+"""Synthetic results files for tests of the report."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import pathlib
 from typing import Any
 
-#: Two machines, three sizes of one scene, a case of every status.
+#: Seconds per frame by algorithm and number of bodies; None: a timeout.
 SECONDS = {
     ("bf", 100): 1e-5,
     ("bf", 200): 4e-5,
@@ -33,10 +33,10 @@ def environment(cpu: str = "A processor") -> dict[str, Any]:
 
 
 def case(algorithm: str, objects: int, seconds: float | None, **changes: Any) -> dict[str, Any]:
-    """A case of two repetitions of four frames; without seconds it is a timeout."""
+    """A case of two repetitions of four frames; a timeout if `seconds` is None."""
     frames = 4 if seconds else 0
     ns = int((seconds or 0) * 1e9)
-    made = {
+    content = {
         "id": f"Brownian/Cubes/N{objects}/F4/s1/{algorithm}",
         "recording": {
             "name": "Brownian",
@@ -88,12 +88,12 @@ def case(algorithm: str, objects: int, seconds: float | None, **changes: Any) ->
             "total": [[ns] * frames] * 2 if seconds else [],
         },
     }
-    made.update(copy.deepcopy(changes))
-    return made
+    content.update(copy.deepcopy(changes))
+    return content
 
 
 def standard_cases() -> list[dict[str, Any]]:
-    """A time for each of SECONDS, and a mismatch, an error and a size that is not supported."""
+    """The cases of SECONDS, a mismatch, an error and an unsupported case."""
     wrong = {"repetition": 1, "frame": 3, "missed_count": 1, "missed": [[0, 1]]}
     return [
         *(case(algorithm, objects, seconds) for (algorithm, objects), seconds in SECONDS.items()),
@@ -112,11 +112,11 @@ def write_results(
     complete: bool = True,
     cpu: str = "A processor",
 ) -> pathlib.Path:
-    """A results file as JSON Lines."""
+    """Writes a results file as JSON Lines."""
     lines: list[dict[str, Any]] = [
         {"schema": "broadmark-results/2", "options": ["--headless", "brownian"]},
         {"environment": environment(cpu)},
-        *({"case": one} for one in cases),
+        *({"case": entry} for entry in cases),
     ]
     if complete:
         lines.append({"end": {"complete": True, "cases": len(cases)}})

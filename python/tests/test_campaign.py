@@ -1,4 +1,4 @@
-"""Campaigns on this machine: what is run, when, and what is left of it after an interruption."""
+"""Tests of campaigns on this machine, including interruptions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from conftest import SOURCE_FOLDER
 from folder_watch import wait_until
 
 import broadmark
-from broadmark.campaign.attempts import PART, read_attempt
+from broadmark.campaign.attempts import PARTIAL_SUFFIX, read_attempt
 from broadmark.campaign.description import read_campaign
 from broadmark.campaign.estimate import Estimate
 from broadmark.campaign.ledger import Ledger, Outcome
@@ -29,7 +29,7 @@ BLOCK = {"scenes": "brownian", "objects": [20, 40], "frames": 5, "engine": "kine
 
 @pytest.fixture
 def write(tmp_path: pathlib.Path) -> Callable[..., pathlib.Path]:
-    """Writes a campaign: of two small recordings and two variants, but for what is given."""
+    """Writes a campaign of two small recordings and two variants; arguments replace its keys."""
 
     def write(**keys: Any) -> pathlib.Path:
         document = {
@@ -46,7 +46,7 @@ def write(tmp_path: pathlib.Path) -> Callable[..., pathlib.Path]:
 
 @pytest.fixture
 def run(tmp_path: pathlib.Path, command: Any) -> Callable[..., tuple[int, str, str]]:
-    """Runs the command on a campaign; its folder is "the output"."""
+    """Runs the command on a campaign with the output folder "the output"."""
 
     def run(file: pathlib.Path, *options: str) -> tuple[int, str, str]:
         status, out, err = command("campaign", file, "--output", tmp_path / "the output", *options)
@@ -56,7 +56,7 @@ def run(tmp_path: pathlib.Path, command: Any) -> Callable[..., tuple[int, str, s
 
 
 def attempts(folder: pathlib.Path) -> dict[str, bytes]:
-    """All files of results, with their content."""
+    """The contents of all attempts, by path."""
     paths = (folder / "the output/runs").glob("*/*.jsonl")
     return {f"{path.parent.name}/{path.name}": path.read_bytes() for path in paths}
 
@@ -84,7 +84,7 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
     assert set(cases["repetitions"]) == {2} and set(cases["status"]) == {"ok"}
     ids = set(cases["id"])
     assert "Brownian/Cubes/N20/F5/s2/density=0.05/engine=kinematic/kd-mt/avx2/t1/margin=0" in {
-        one.replace("avx512", "avx2").replace("neon", "avx2") for one in ids
+        id_.replace("avx512", "avx2").replace("neon", "avx2") for id_ in ids
     }
     assert "FreeFall/Cubes/N20/F5/s1/engine=bullet/bf-mt/t2" in ids
     assert set(cases["seed"]) == {1, 2}
@@ -96,18 +96,16 @@ def test_every_case_is_run_once(write: Any, run: Any, tmp_path: pathlib.Path) ->
     assert f"written: {tmp_path / 'the output/results.json'}" in out
 
 
-def test_a_campaign_may_ask_for_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_campaign_can_request_events(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd"], answer="events")
     status, _, err = run(file)
     assert status == 0, err
     cases = results(tmp_path).cases
     assert set(cases["answer"]) == {"events"} and set(cases["status"]) == {"ok"}
-    assert all("/events" in one for one in cases["id"])
+    assert all("/events" in id_ for id_ in cases["id"])
 
 
-def test_results_lead_back_to_their_recordings(
-    write: Any, run: Any, tmp_path: pathlib.Path
-) -> None:
+def test_results_identify_their_recordings(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     assert run(write(), "--quiet")[2] == ""
     moved = tmp_path / "moved"
     (tmp_path / "the output").rename(moved)
@@ -116,9 +114,7 @@ def test_results_lead_back_to_their_recordings(
     assert "ok" in again
 
 
-def test_larger_recordings_are_left_out_past_the_cap(
-    write: Any, run: Any, tmp_path: pathlib.Path
-) -> None:
+def test_recordings_past_the_cap_are_not_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     blocks = [BLOCK | {"objects": [20, 40, 80]}, BLOCK | {"objects": 40, "seed": 2}]
     file = write(
         recordings=blocks,
@@ -127,7 +123,7 @@ def test_larger_recordings_are_left_out_past_the_cap(
         time_limit=0.01,
     )
     status, out, _ = run(file)
-    assert status == 0  # a limit that is crossed on purpose is no failure
+    assert status == 0  # a timeout is not a failure of the campaign
     cases = results(tmp_path).cases
     slow = cases[cases["params"] == "phase_us=3000"]
     assert list(slow["objects"]) == [20, 40] and list(slow["seed"]) == [1, 2]
@@ -143,7 +139,9 @@ def test_larger_recordings_are_left_out_past_the_cap(
     assert results(tmp_path).partial == []
 
 
-def test_what_no_variant_needs_is_not_baked(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_recordings_without_pending_variants_are_not_baked(
+    write: Any, run: Any, tmp_path: pathlib.Path
+) -> None:
     file = write(algorithm=["time-validator"], time_limit=0.001)
     assert run(file)[0] == 0
     (recording,) = (tmp_path / "the output/recordings").rglob("*.aabbs")
@@ -162,11 +160,11 @@ def test_large_recordings_are_split_from_small_ones(
     assert sorted(set(zip(cases["objects"], cases["frames"]))) == [(10, 8), (80, 4), (640, 4)]
     assert set(cases["status"]) == {"ok"}
     sidecars = (tmp_path / "the output/recordings").rglob("*N640*.json")
-    (parameters,) = (json.loads(one.read_text())["parameters"] for one in sidecars)
+    (parameters,) = (json.loads(sidecar.read_text())["parameters"] for sidecar in sidecars)
     assert parameters["engine"] == "splitter"
 
 
-def test_a_campaign_may_grow(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_campaign_can_be_extended(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     assert run(write(algorithm=["bf"]))[0] == 0
     before = attempts(tmp_path)
     larger = BLOCK | {"objects": [20, 40, 80]}
@@ -176,7 +174,7 @@ def test_a_campaign_may_grow(write: Any, run: Any, tmp_path: pathlib.Path) -> No
 
     kept = (tmp_path / "the output/campaign.json").read_bytes()
     for change, what in (
-        ({"repetitions": 2}, "its 'repetitions' is None, not 2"),
+        ({"repetitions": 2}, "the 'repetitions' is None, not 2"),
         ({"recordings": [BLOCK]}, "it has the recording 'brownian cubes N80 F5 kinematic seed=1'"),
         ({"algorithm": ["bf"], "recordings": [larger]}, "it runs bf, kd with other"),
         ({"threads": [1], "recordings": [larger]}, "it runs bf, kd with other"),
@@ -191,10 +189,10 @@ def test_the_list_runs_nothing(write: Any, run: Any, tmp_path: pathlib.Path) -> 
     status, out, err = run(write(), "--list")
     assert status == 0 and not (tmp_path / "the output").exists()
     assert "brownian cubes N40 F5 kinematic seed=1  to bake" in out
-    assert "0 cases are finished, 4 are to be run; 2 recordings are to be baked" in out
+    assert "0 cases are finished, 4 remain; 2 recordings remain to be baked" in out
 
 
-def test_one_recording_alone(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
+def test_a_single_recording_can_be_run(write: Any, run: Any, tmp_path: pathlib.Path) -> None:
     name = "brownian cubes N40 F5 kinematic seed=1"
     file = write()
     assert run(file, "--recording", name, "--bake")[0] == 0
@@ -209,7 +207,7 @@ def test_one_recording_alone(write: Any, run: Any, tmp_path: pathlib.Path) -> No
     assert status == 0 and len(results(tmp_path).cases) == 2
     assert results(tmp_path).partial  # half of the campaign
     status, _, err = run(file, "--recording", "brownian")
-    assert status == 2 and "none of those that --list shows" in err
+    assert status == 2 and "not a recording shown by --list" in err
 
 
 def test_wrong_answers_do_not_stop_a_campaign(
@@ -232,7 +230,7 @@ def test_engines_of_plugins_bake(
     assert set(results(tmp_path).cases["status"]) == {"ok"}
 
 
-def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
+def test_a_failed_recording_does_not_stop_the_others(
     write: Any, run: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write()
@@ -245,12 +243,12 @@ def test_a_recording_that_cannot_be_run_does_not_stop_the_others(
     assert list(results(tmp_path).cases["objects"]) == [40, 40]
 
 
-# Interruptions, of the real command in a process of its own
+# Interruptions of the real command in a separate process
 
 
 @pytest.fixture
 def start(tmp_path: pathlib.Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
-    """Starts the command as the leader of a group of processes."""
+    """Starts the command as the leader of a process group."""
     started = []
 
     def start(file: pathlib.Path, **environment: str) -> subprocess.Popen[str]:
@@ -271,11 +269,11 @@ def start(tmp_path: pathlib.Path) -> Iterator[Callable[..., subprocess.Popen[str
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         with process:
-            pass  # waits, and closes the pipe
+            pass  # waits and closes the pipe
 
 
-def kept_cases(folder: pathlib.Path) -> dict[str, Any]:
-    """The times of all cases that are finished, by id without what the program does not know."""
+def finished_cases(folder: pathlib.Path) -> dict[str, Any]:
+    """The times of all finished cases, by the program's id."""
     cases = {}
     for path in (folder / "the output/runs").glob("*/*.jsonl"):
         for line in read_attempt(path):
@@ -287,7 +285,7 @@ def kept_cases(folder: pathlib.Path) -> dict[str, Any]:
 
 @pytest.fixture
 def long_campaign(write: Any) -> pathlib.Path:
-    """Of two recordings, each with two variants that end at once and then one of a second."""
+    """A campaign of two recordings with two variants that end at once and one that takes a second."""
     path = write(
         recordings=[BLOCK | {"frames": 100}],
         algorithm=["bf", "sap", "time-validator"],
@@ -307,10 +305,12 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     tmp_path: pathlib.Path,
 ) -> None:
     process = start(long_campaign)
-    wait_until(tmp_path, lambda: len(kept_cases(tmp_path)) >= 2)
+    wait_until(tmp_path, lambda: len(finished_cases(tmp_path)) >= 2)
     if interruption == "kill everything":
         os.killpg(process.pid, signal.SIGKILL)
-    elif interruption == "kill the command":  # the program goes on, and is waited for
+    elif (
+        interruption == "kill the command"
+    ):  # the program continues, and the next command waits for it
         process.kill()
     elif interruption == "Ctrl-C":
         os.killpg(process.pid, signal.SIGINT)
@@ -319,25 +319,24 @@ def test_after_an_interruption_no_finished_case_is_run_again(
     _, err = process.communicate()
     if interruption in ("Ctrl-C", "termination"):
         assert process.returncode == 130
-        assert "cases are finished; the same command goes on" in err
-    before = kept_cases(tmp_path)
+        assert "cases are finished; rerun the same command to resume" in err
+    before = finished_cases(tmp_path)
     assert not (tmp_path / "the output/results.json").exists()
 
     assert run(long_campaign)[0] == 0
-    after = kept_cases(tmp_path)
+    after = finished_cases(tmp_path)
     assert before.items() <= after.items() and len(before) < len(after) == 6
     cases = results(tmp_path).cases
     assert len(cases) == 6 and cases["id"].is_unique
     assert results(tmp_path).partial == []
 
 
-# The number of the call on a file at which it happens, in the command and in each program that it
-# starts.
+# A fault and the number of the file system call at which it occurs, in the command and its programs.
 @pytest.mark.parametrize(
     "fault",
     ["ENOSPC 1", "ENOSPC 9", "ENOSPC 20", "kill 5", "kill 9", "kill 20"],
 )
-def test_after_a_failure_of_the_disc_the_same_command_goes_on(
+def test_after_a_disk_failure_the_same_command_resumes(
     fault: str,
     write: Any,
     start: Any,
@@ -347,7 +346,7 @@ def test_after_a_failure_of_the_disc_the_same_command_goes_on(
 ) -> None:
     file = write()
     environment = {
-        "LD_PRELOAD": os.path.basename(fault_injection),  # no path, which a space would end
+        "LD_PRELOAD": os.path.basename(fault_injection),  # not a path: spaces separate entries
         "LD_LIBRARY_PATH": os.path.dirname(fault_injection),
         "BROADMARK_FAULT_FOLDER": str(tmp_path / "the output"),
         "BROADMARK_FAULT_LOG": str(tmp_path / "calls.txt"),
@@ -359,40 +358,40 @@ def test_after_a_failure_of_the_disc_the_same_command_goes_on(
     assert process.returncode in ((2, -signal.SIGKILL) if killed else (2,)), err
     assert "Traceback" not in err
     assert killed or "No space left on device" in err
-    before = kept_cases(tmp_path)
+    before = finished_cases(tmp_path)
 
     status, _, err = run(file)
     assert status == 0, err
-    assert before.items() <= kept_cases(tmp_path).items()
+    assert before.items() <= finished_cases(tmp_path).items()
     cases = results(tmp_path).cases
     assert len(cases) == 4 and cases["id"].is_unique and set(cases["status"]) == {"ok"}
 
 
 @pytest.mark.parametrize(
-    ("text", "instead"),
+    ("text", "replacement"),
     [
         # Interrupted between two repetitions.
         ('"repetitions":1', '"repetitions":2'),
-        # The program may see its worker die before it is killed itself: it cannot know why.
+        # The program may see its worker die before it is killed itself.
         ('"status":"ok","reason":""', '"status":"error","reason":"killed with SIGKILL (Killed)"'),
         ('"status":"ok","reason":""', '"status":"error","reason":"crashed with SIGTERM (…)"'),
     ],
 )
-def test_what_did_not_come_to_its_end_is_run_again(
-    text: str, instead: str, write: Any, run: Any, tmp_path: pathlib.Path
+def test_unfinished_cases_are_run_again(
+    text: str, replacement: str, write: Any, run: Any, tmp_path: pathlib.Path
 ) -> None:
     file = write(recordings=[BLOCK | {"objects": 20}], algorithm=["bf", "kd", "sap"])
     assert run(file)[0] == 0
     path = next((tmp_path / "the output/runs").glob("*/1.jsonl"))
     lines = path.read_text().splitlines(keepends=True)
     assert text in lines[2]
-    cut = [*lines[:2], lines[2].replace(text, instead), lines[3], lines[4][:100]]
-    path.with_name("1" + PART).write_text("".join(cut))
+    cut = [*lines[:2], lines[2].replace(text, replacement), lines[3], lines[4][:100]]
+    path.with_name("1" + PARTIAL_SUFFIX).write_text("".join(cut))
     path.unlink()
-    before = kept_cases(tmp_path)
+    before = finished_cases(tmp_path)
     assert len(before) == 1
     assert run(file)[0] == 0
-    assert before.items() < kept_cases(tmp_path).items()
+    assert before.items() < finished_cases(tmp_path).items()
     cases = results(tmp_path).cases
     assert len(cases) == 3 and cases["id"].is_unique and set(cases["status"]) == {"ok"}
 
@@ -406,22 +405,26 @@ def recordings_of(path: pathlib.Path) -> list[Recording]:
 
 def test_each_recording_is_planned_once_by_size(write: Any) -> None:
     names = [
-        one.name for one in recordings_of(write(recordings=[BLOCK | {"objects": [40, 20]}, BLOCK]))
+        recording.name
+        for recording in recordings_of(write(recordings=[BLOCK | {"objects": [40, 20]}, BLOCK]))
     ]
     assert names == [f"brownian cubes N{n} F5 kinematic seed=1" for n in (20, 40)]
 
 
-def test_a_split_recording_takes_the_shortest_source_that_suffices(write: Any) -> None:
+def test_a_recording_is_split_from_the_shortest_sufficient_source(write: Any) -> None:
     blocks = [
         BLOCK | {"objects": 10, "frames": [5, 20, 10]},
         BLOCK | {"objects": [80, 640], "frames": 8, "split": True},
     ]
-    planned = {(one.objects, one.frames): one for one in recordings_of(write(recordings=blocks))}
+    planned = {
+        (recording.objects, recording.frames): recording
+        for recording in recordings_of(write(recordings=blocks))
+    }
     assert planned[80, 8].source == planned[10, 10] and planned[640, 8].source == planned[80, 8]
-    assert [key for key, one in planned.items() if one.is_split] == [(10, 10), (80, 8)]
+    assert [key for key, recording in planned.items() if recording.is_split] == [(10, 10), (80, 8)]
 
 
-def test_jobs_wait_for_what_they_need(write: Any) -> None:
+def test_jobs_depend_on_required_jobs(write: Any) -> None:
     class Empty:
         def is_baked(self, recording: Recording) -> bool:
             return False
@@ -433,7 +436,7 @@ def test_jobs_wait_for_what_they_need(write: Any) -> None:
     ]
     ledger = Ledger(recordings_of(write(recordings=blocks)), ["kd"])
     jobs = planned_jobs(Empty(), ledger, None)  # type: ignore[arg-type]
-    after = {job.name: [(kind, other.name) for kind, other in job.after] for job in jobs}
+    after = {job.name: [(condition, other.name) for condition, other in job.after] for job in jobs}
     assert after == {
         "bake-10": [],
         "run-10": [("aftercorr", "bake-10")],
@@ -450,53 +453,56 @@ def test_jobs_wait_for_what_they_need(write: Any) -> None:
     assert [len(job.recordings) for job in jobs][:2] == [2, 2]
 
 
-def test_time_left_follows_what_is_known(write: Any) -> None:
+def test_remaining_time_follows_finished_cases(write: Any) -> None:
     small, large = recordings_of(write(recordings=[BLOCK | {"objects": [1000, 4000]}]))
     ledger = Ledger([small, large], ["kd"])
     ledger.add(small, "kd", Outcome("ok", 0.02))
     estimate = Estimate(ledger, {"repetitions": 3})
     once = 5 * 3 * 4 * 0.02  # frames, repetitions, four times the bodies
-    assert once < estimate.left([]) < 3 * once
-    assert estimate.left([large]) > estimate.left([])
+    assert once < estimate.remaining([]) < 3 * once
+    assert estimate.remaining([large]) > estimate.remaining([])
     with_timeout = Estimate(ledger, {"repetitions": 3, "time_limit": 0.05})
-    assert with_timeout.left([]) < estimate.left([])  # three frames are enough
+    assert with_timeout.remaining([]) < estimate.remaining([])  # three frames are enough
     ledger.add(large, "kd", Outcome("ok", 0.08))
-    assert estimate.left([]) == 0
+    assert estimate.remaining([]) == 0
 
 
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"schema": "broadmark-campaign/2"}, "is no campaign"),
+        ({"schema": "broadmark-campaign/2"}, "not a campaign"),
         ({"algorithms": ["kd"]}, "unknown key 'algorithms' (did you mean 'algorithm'?)"),
-        ({"algorithm": "kd"}, 'algorithm: "kd" is not a list with something in it'),
-        ({"algorithm": []}, "algorithm: [] is not a list with something in it"),
-        ({"algorithm": [5]}, "algorithm[0]: an object with algorithm is expected"),
+        ({"algorithm": "kd"}, 'algorithm: "kd" is not a non-empty list'),
+        ({"algorithm": []}, "algorithm: [] is not a non-empty list"),
+        ({"algorithm": [5]}, "algorithm[0]: expected an object with algorithm"),
         ({"algorithm": [{"threads": 1}]}, "algorithm[0]: 'algorithm' is missing"),
         ({"algorithm": ["no-such"]}, "algorithm: --algorithm: unknown algorithm 'no-such'"),
         ({"algorithm": None}, "'algorithm' is missing"),
-        ({"threads": [1, "2"]}, 'threads: [1, "2"] is not a whole number from 0 or a list of'),
+        ({"threads": [1, "2"]}, 'threads: [1, "2"] is not a non-negative integer or a list of'),
         ({"parameters": {"margin": {}}}, "parameters: "),
         ({"parameters": {"no_such": 1}}, "algorithm: --param: unknown parameter 'no_such'"),
-        ({"repetitions": "often"}, "repetitions: \"often\" is not a whole number or 'auto'"),
-        ({"time_limit": "0.5"}, 'time_limit: "0.5" is not a number'),
+        (
+            {"repetitions": "often"},
+            "repetitions: \"often\" is not a non-negative integer or 'auto'",
+        ),
+        ({"time_limit": "0.5"}, 'time_limit: "0.5" is not a non-negative number'),
         ({"recordings": [{}]}, "recordings[0]: 'scenes' is missing"),
-        ({"recordings": [5]}, "recordings[0]: an object with scenes, objects, frames is expected"),
+        ({"recordings": [5]}, "recordings[0]: expected an object with scenes, objects, frames"),
         ({"recordings": [BLOCK | {"objects": True}]}, "recordings[0].objects: true is not"),
         ({"recordings": [BLOCK | {"scenes": "no"}]}, "recordings[0]: unknown scene 'no'"),
         ({"recordings": [BLOCK | {"split": 1}]}, "recordings[0].split: 1 is not true or false"),
         (
             {"recordings": [BLOCK | {"objects": 80, "split": True}]},
-            "recordings[0]: brownian cubes N80 F5 kinematic seed=1: is split from one of 10 bodies",
+            "recordings[0]: brownian cubes N80 F5 kinematic seed=1: requires a recording of 10 bodies",
         ),
-        ({"recordings": [BLOCK | {"objects": 12, "split": True}]}, "12 is no multiple of 8"),
+        ({"recordings": [BLOCK | {"objects": 12, "split": True}]}, "12 is not a multiple of 8"),
         (
             {"recordings": [BLOCK | {"objects": [5, 40]}, BLOCK | {"split": True, "objects": 40}]},
-            "recordings[1]: brownian cubes N40 F5 kinematic seed=1 is made by splitting and",
+            "recordings[1]: brownian cubes N40 F5 kinematic seed=1 is split in this block and",
         ),
     ],
 )
-def test_bad_files_are_refused(
+def test_invalid_files_are_rejected(
     write: Any, run: Any, keys: dict[str, Any], message: str, tmp_path: pathlib.Path
 ) -> None:
     file = write(**keys)
@@ -505,7 +511,7 @@ def test_bad_files_are_refused(
     assert not (tmp_path / "the output").exists()
 
 
-def test_files_that_are_no_json(run: Any, tmp_path: pathlib.Path) -> None:
+def test_invalid_json_is_rejected(run: Any, tmp_path: pathlib.Path) -> None:
     file = tmp_path / "some.json"
     assert "cannot be read" in run(file)[2]
     for text in (
@@ -519,7 +525,7 @@ def test_files_that_are_no_json(run: Any, tmp_path: pathlib.Path) -> None:
         assert status == 2 and str(file) in err
 
 
-def test_the_campaigns_that_come_with_the_program_and_the_documents_are_sound(
+def test_the_campaigns_of_the_program_and_the_documents_are_valid(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     document = (SOURCE_FOLDER / "docs/campaigns.md").read_text("utf-8")

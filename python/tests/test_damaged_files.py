@@ -1,7 +1,7 @@
-"""Files of every kind that the package reads, damaged at random: each is read, or refused in a line.
+"""Randomly damaged files of every type that the package reads: they are read or rejected in a line.
 
 Some values of a JSON document are replaced, left out or repeated, or bytes of any file are. The
-same seed gives the same files; BROADMARK_DAMAGED_FILES=N tries N of each kind instead of a few.
+same seed gives the same files; BROADMARK_DAMAGED_FILES=N tries N files of each type instead of a few.
 """
 
 from __future__ import annotations
@@ -58,19 +58,19 @@ ODD_VALUES: list[Any] = [
 ]
 
 
-def places(document: Any) -> Iterator[tuple[Any, Any]]:
-    """Every container with a key or an index in it."""
+def locations(document: Any) -> Iterator[tuple[Any, Any]]:
+    """Every container with each of its keys or indices."""
     members = list(document.items()) if isinstance(document, dict) else list(enumerate(document))
     for key, value in members:
         yield document, key
         if isinstance(value, (dict, list)):
-            yield from places(value)
+            yield from locations(value)
 
 
 def damaged_document(source: random.Random, document: Any) -> bytes:
     document = copy.deepcopy(document)
     for _ in range(source.randint(1, 3)):
-        found = list(places(document))
+        found = list(locations(document))
         if not found:
             break
         container, key = source.choice(found)
@@ -102,8 +102,8 @@ def damaged_bytes(source: random.Random, content: bytes) -> bytes:
     return bytes(changed)
 
 
-def requires_one_line(read: Callable[[pathlib.Path], Any], path: pathlib.Path) -> bool:
-    """Whether the file was read; else it was refused in a line."""
+def is_read_or_rejected(read: Callable[[pathlib.Path], Any], path: pathlib.Path) -> bool:
+    """Whether the file was read; otherwise it was rejected with a one-line error."""
     try:
         read(path)
     except broadmark.InputError as error:
@@ -113,7 +113,7 @@ def requires_one_line(read: Callable[[pathlib.Path], Any], path: pathlib.Path) -
 
 
 def read_plan(path: pathlib.Path) -> None:
-    """As the command does before it asks the program for names and runs."""
+    """Reads and plans a campaign, as the command does before it calls the program."""
     planned_recordings(read_campaign(path))
 
 
@@ -125,7 +125,7 @@ def read_whole_recording(path: pathlib.Path) -> None:
             recording.changed(frame)
 
 
-def try_all(
+def read_damaged_files(
     tmp_path: pathlib.Path,
     name: str,
     read: Callable[[pathlib.Path], Any],
@@ -135,39 +135,41 @@ def try_all(
     for seed in range(MANY):
         path.write_bytes(damaged(random.Random(seed)))
         try:
-            requires_one_line(read, path)
+            is_read_or_rejected(read, path)
         except Exception as error:
             raise AssertionError(f"seed {seed}: {path.read_bytes()[:2000]!r}") from error
 
 
-def test_the_campaign_itself_is_right(tmp_path: pathlib.Path) -> None:
+def test_the_undamaged_campaign_is_valid(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "campaign.json"
     path.write_text(json.dumps(CAMPAIGN))
-    assert requires_one_line(read_plan, path)
+    assert is_read_or_rejected(read_plan, path)
 
 
 def test_campaigns(tmp_path: pathlib.Path) -> None:
-    try_all(tmp_path, "campaign.json", read_plan, lambda s: damaged_document(s, CAMPAIGN))
+    read_damaged_files(
+        tmp_path, "campaign.json", read_plan, lambda s: damaged_document(s, CAMPAIGN)
+    )
     text = json.dumps(CAMPAIGN).encode()
-    try_all(tmp_path, "campaign.json", read_plan, lambda s: damaged_bytes(s, text))
+    read_damaged_files(tmp_path, "campaign.json", read_plan, lambda s: damaged_bytes(s, text))
 
 
-def test_results(tmp_path: pathlib.Path, some_results: pathlib.Path) -> None:
-    document = json.loads((some_results / "results.json").read_text())
+def test_results(tmp_path: pathlib.Path, small_results: pathlib.Path) -> None:
+    document = json.loads((small_results / "results.json").read_text())
     document["cases"] = document["cases"][:3]
     read = broadmark.read_results
-    try_all(tmp_path, "results.json", read, lambda s: damaged_document(s, document))
-    lines = (some_results / "results.jsonl").read_bytes()
-    try_all(tmp_path, "results.jsonl", read, lambda s: damaged_bytes(s, lines))
+    read_damaged_files(tmp_path, "results.json", read, lambda s: damaged_document(s, document))
+    lines = (small_results / "results.jsonl").read_bytes()
+    read_damaged_files(tmp_path, "results.jsonl", read, lambda s: damaged_bytes(s, lines))
 
 
-def test_attempts(tmp_path: pathlib.Path, some_results: pathlib.Path) -> None:
-    lines = [json.loads(line) for line in (some_results / "results.jsonl").open()]
+def test_attempts(tmp_path: pathlib.Path, small_results: pathlib.Path) -> None:
+    lines = [json.loads(line) for line in (small_results / "results.jsonl").open()]
 
     def damaged(source: random.Random) -> bytes:
         return b"".join(damaged_document(source, line) + b"\n" for line in lines[:4])
 
-    try_all(tmp_path, "1.jsonl", read_attempt, damaged)
+    read_damaged_files(tmp_path, "1.jsonl", read_attempt, damaged)
 
 
 @pytest.mark.parametrize(
@@ -179,4 +181,4 @@ def test_recordings(tmp_path: pathlib.Path, corpus: str, ending: str) -> None:
     def damaged(source: random.Random) -> bytes:
         return damaged_bytes(source, source.choice(seeds))
 
-    try_all(tmp_path, f"a.{ending}", read_whole_recording, damaged)
+    read_damaged_files(tmp_path, f"a.{ending}", read_whole_recording, damaged)

@@ -1,4 +1,4 @@
-"""What the README and the example notebook show works."""
+"""Tests of the examples in the README and the notebook."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_notebooks_run(
 ) -> None:
     nbformat = pytest.importorskip("nbformat")
     nbclient = pytest.importorskip("nbclient")
-    # Whatever a kernel keeps of its own, it keeps here.
+    # The kernel's own files.
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("IPYTHONDIR", str(tmp_path / "ipython"))
     monkeypatch.setenv("PYTHONPATH", str(SOURCE_FOLDER / "python"))

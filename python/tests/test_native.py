@@ -1,4 +1,4 @@
-"""The algorithms as functions."""
+"""Tests of the algorithms as functions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from broadmark.native import _native
 
 
 def boxes_in(side: float, count: int) -> Any:
-    """Boxes of all sizes, some of them touching, flat or alike."""
+    """Boxes of all sizes, including touching, flat and equal boxes."""
     generator = np.random.default_rng(3)
     low = np.round(generator.uniform(0, side, (count, 3)))
     return np.stack([low, low + generator.integers(0, 3, (count, 3))], axis=1).astype(np.float32)
@@ -34,7 +34,7 @@ def test_every_algorithm_finds_the_pairs(algorithm: str, count: int) -> None:
     try:
         pairs = broadmark.overlaps(boxes, algorithm, threads=2)
     except broadmark.InputError as error:
-        if algorithm.startswith(("gpu-", "b3-")):  # no device here, or one that cannot
+        if algorithm.startswith(("gpu-", "b3-")):  # no device, or an unsuitable device
             pytest.skip(str(error))
         raise
     assert pairs.dtype == np.uint32 and pairs.shape == (len(pairs), 2)
@@ -42,7 +42,7 @@ def test_every_algorithm_finds_the_pairs(algorithm: str, count: int) -> None:
     assert set(map(tuple, pairs.tolist())) == brute_force(boxes)
 
 
-def test_boxes_may_be_flat_doubles_or_views() -> None:
+def test_boxes_can_be_flat_doubles_or_views() -> None:
     boxes = boxes_in(12, 300)
     expected = brute_force(boxes)
     padded = np.zeros((300, 2, 4), np.float32)
@@ -58,7 +58,7 @@ def test_parameters_and_instruction_sets() -> None:
         assert set(map(tuple, pairs.tolist())) == brute_force(boxes)
 
 
-# The call takes an hour: were the lock held, this would not end.
+# The call takes an hour, so the test would time out if the call held the GIL.
 OTHER_THREADS = """
 import os, sys, threading, time
 sys.path.insert(0, {package!r})
@@ -73,33 +73,33 @@ broadmark.overlaps(boxes[:2], "bf")
 threading.Thread(target=work, daemon=True).start()
 begun.wait()
 for _ in range(1000):
-    time.sleep(0)  # lets the other thread go on
+    time.sleep(0)  # yields to the other thread
 os._exit(0)
 """
 
 
-def test_other_threads_go_on() -> None:
+def test_the_gil_is_released() -> None:
     code = OTHER_THREADS.format(package=str(SOURCE_FOLDER / "python"))
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-REFUSED: list[tuple[dict[str, Any], str]] = [
-    ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), not \(n, 2, 3\) or \(n, 6\)"),
+INVALID_ARGUMENTS: list[tuple[dict[str, Any], str]] = [
+    ({"boxes": np.zeros((2, 5))}, r"of shape \(2, 5\), expected \(n, 2, 3\) or \(n, 6\)"),
     ({"boxes": np.zeros((2, 3, 2))}, "of shape"),
-    ({"boxes": [[0, 0, 0, 1, 1, np.nan]]}, "body 0 has a side that is not a finite number"),
-    ({"boxes": [[0, 0, 0, 1, np.inf, 1]]}, "body 0 has a side"),
-    ({"boxes": [[0] * 6, [0, 0, 2, 1, 1, 1]]}, "body 1 has its min"),
-    ({"boxes": [["x"] * 6]}, "not numbers"),
-    ({"algorithm": "quick"}, "algorithm 'quick': is none of bf, "),
+    ({"boxes": [[0, 0, 0, 1, 1, np.nan]]}, "body 0 has a coordinate that is not a finite number"),
+    ({"boxes": [[0, 0, 0, 1, np.inf, 1]]}, "body 0 has a coordinate"),
+    ({"boxes": [[0] * 6, [0, 0, 2, 1, 1, 1]]}, "body 1 has a min"),
+    ({"boxes": [["x"] * 6]}, "expected numbers"),
+    ({"algorithm": "quick"}, "algorithm 'quick': unknown; expected one of bf, "),
     ({"isa": "mmx"}, "isa 'mmx'"),
-    ({"threads": 0}, "threads 0: is not a number from 1 to"),
+    ({"threads": 0}, "threads 0: expected a number from 1 to"),
     ({"parameters": {"cells": 3}}, "unknown parameter 'cells'"),
     ({"parameters": {"objects_per_cell": "many"}}, "objects_per_cell"),
 ]
 
 
-@pytest.mark.parametrize(("arguments", "message"), REFUSED)
-def test_what_is_refused(arguments: dict[str, Any], message: str) -> None:
+@pytest.mark.parametrize(("arguments", "message"), INVALID_ARGUMENTS)
+def test_invalid_arguments_are_rejected(arguments: dict[str, Any], message: str) -> None:
     all_arguments: dict[str, Any] = {"boxes": np.zeros((1, 6))} | arguments
     with pytest.raises(broadmark.InputError, match=message):
         broadmark.overlaps(**all_arguments)

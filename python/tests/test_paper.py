@@ -1,4 +1,4 @@
-"""The paper's table and claims from results."""
+"""Tests of the paper's table and claims."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import re
 from typing import Any
 
 import pytest
-from made_results import CPU, case, paper_cases, write
+from synthetic_results import CPU, case, paper_cases, write
 
 from broadmark.paper import algorithms
 from broadmark.paper.algorithms import ALGORITHMS, table2
@@ -20,7 +20,7 @@ from broadmark.program import call
 
 @pytest.fixture(scope="module")
 def paper(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
-    """The paper's own numbers as results."""
+    """The paper's numbers as results."""
     return write(tmp_path_factory.mktemp("paper") / "paper.json", paper_cases())
 
 
@@ -28,7 +28,7 @@ def rows_of(text: str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text)))
 
 
-def test_the_papers_algorithms_are_those_of_its_table_and_of_the_program() -> None:
+def test_the_papers_algorithms_match_its_table_and_the_program() -> None:
     with open(pathlib.Path(algorithms.__file__).with_name("table2.csv"), encoding="utf-8") as file:
         names = {row["algorithm"] for row in csv.DictReader(file)}
     assert {algorithm.name for algorithm in ALGORITHMS} == names
@@ -36,7 +36,7 @@ def test_the_papers_algorithms_are_those_of_its_table_and_of_the_program() -> No
     assert {algorithm.id for algorithm in ALGORITHMS} - known == set()
 
 
-def test_algorithms_of_a_panel_look_different() -> None:
+def test_algorithms_of_a_panel_have_different_styles() -> None:
     looks = [(a.panel, a.colour, a.marker, a.filled, a.line) for a in ALGORITHMS]
     assert len(set(looks)) == len(looks)
 
@@ -65,7 +65,7 @@ def test_ratios_of_rounded_times_are_left_out(tmp_path: pathlib.Path, command: A
     assert float(large["paper_ratio_to_cgal"]) == pytest.approx(0.03 / 0.18)
 
 
-def test_nothing_is_shown_past_the_cap_and_no_wrong_answer_has_a_time(
+def test_results_past_the_cap_and_times_of_wrong_answers_are_hidden(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     cases = [
@@ -97,7 +97,9 @@ def test_nothing_is_shown_past_the_cap_and_no_wrong_answer_has_a_time(
     }
 
 
-def test_most_threads_and_widest_instructions_count(tmp_path: pathlib.Path, command: Any) -> None:
+def test_the_most_threads_and_the_widest_instruction_set_are_used(
+    tmp_path: pathlib.Path, command: Any
+) -> None:
     cases = [
         case("Brownian", 1000, "bf-simd-mt", 0.1, threads=2, isa="avx512"),
         case("Brownian", 1000, "bf-simd-mt", 0.2, threads=4, isa="sse2"),
@@ -114,14 +116,14 @@ def test_most_threads_and_widest_instructions_count(tmp_path: pathlib.Path, comm
     assert row["seconds_per_frame"] == "0.1"
 
 
-def test_cases_that_compete_are_refused(tmp_path: pathlib.Path, command: Any) -> None:
-    one = case("Brownian", 1000, "kd", 0.1)
-    first = write(tmp_path / "a.json", [one])
+def test_ambiguous_cases_are_rejected(tmp_path: pathlib.Path, command: Any) -> None:
+    original = case("Brownian", 1000, "kd", 0.1)
+    first = write(tmp_path / "a.json", [original])
     status, _, error = command("table2", first, first)
-    assert status == 2 and "Brownian Cubes 1000 kd" in error and "give one of them" in error
-    other = {**one, "id": one["id"].replace("/s1/", "/s2/")}
-    status, _, error = command("table2", write(tmp_path / "b.json", [one, other]))
-    assert status == 2 and one["id"] in error and other["id"] in error and "--filter" in error
+    assert status == 2 and "Brownian Cubes 1000 kd" in error and "give only one of them" in error
+    other = {**original, "id": original["id"].replace("/s1/", "/s2/")}
+    status, _, error = command("table2", write(tmp_path / "b.json", [original, other]))
+    assert status == 2 and original["id"] in error and other["id"] in error and "--filter" in error
     half = case("Brownian", 1000, "kd", 0.4, asked=2)
     status, text, _ = command("table2", first, write(tmp_path / "c.json", [half]))
     assert status == 0 and "0.10" in text and "incomplete" not in text
@@ -175,12 +177,12 @@ def test_table_as_text_markdown_and_latex(tmp_path: pathlib.Path, command: Any) 
     assert written.read_text() == latex
 
 
-def test_results_without_the_papers_scenes_are_refused(
+def test_results_without_the_papers_scenes_are_rejected(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
     file = write(tmp_path / "a.json", [case("Swarm", 1000, "kd", 0.1)])
     status, _, error = command("table2", file)
-    assert status == 2 and "the paper's scenes are needed" in error
+    assert status == 2 and "the paper's scenes are required" in error
     status, _, error = command("table2", file, "--filter", "Brownian")
     assert status == 2 and "no case is left" in error
     assert command("table2", file, "--filter", "(")[0] == 2
@@ -191,22 +193,22 @@ def judged(command: Any, *files: pathlib.Path) -> dict[int, tuple[str, str]]:
     assert status == 0
     (machine,) = json.loads(text)["machines"]
     return {
-        one["number"]: (one["verdict"], " ".join(part["figures"] for part in one["parts"]))
-        for one in machine["judgements"]
+        claim["number"]: (claim["verdict"], " ".join(part["figures"] for part in claim["parts"]))
+        for claim in machine["judgements"]
     }
 
 
 def test_claims_on_the_papers_own_table(paper: pathlib.Path, command: Any) -> None:
     verdicts = {number: verdict for number, (verdict, _) in judged(command, paper).items()}
     assert len(verdicts) == len(CLAIMS) == 13
-    # AxisSweep is slower than SAP, DBVT F and Tracy there.
+    # In the paper's table, AxisSweep is slower than SAP, DBVT F and Tracy.
     assert {n for n, v in verdicts.items() if v == FAILS} == {1, 3}
-    # It has no statuses, pairs or assorted objects.
+    # The table has no statuses, pairs or assorted objects.
     assert {n for n, v in verdicts.items() if v == UNKNOWN} == {11, 12, 13}
     assert {n for n, v in verdicts.items() if v == HOLDS} == {2, 4, 5, 6, 7, 8, 9, 10}
 
 
-#: What makes a claim fail (or hold) when the time of an algorithm in a scene is multiplied.
+#: Claims and the factors on the times of an algorithm in a scene that flip their verdicts.
 DOCTORED = [
     (2, "Brownian", "bf-simd-mt", 2, FAILS),
     (2, "Brownian", "sap-simd-mt", 0.5, FAILS),
@@ -228,7 +230,7 @@ DOCTORED = [
 
 
 @pytest.mark.parametrize(("number", "scene", "algorithm", "factor", "verdict"), DOCTORED)
-def test_claims_flip_with_the_numbers(
+def test_changed_times_flip_verdicts(
     number: int,
     scene: str,
     algorithm: str,
@@ -244,19 +246,19 @@ def test_claims_flip_with_the_numbers(
     assert judged(command, write(tmp_path / "a.json", cases))[number][0] == verdict
 
 
-def test_claims_without_what_they_need_are_not_measured(
+def test_claims_without_required_results_are_not_measured(
     tmp_path: pathlib.Path, command: Any
 ) -> None:
-    cases = [one for one in paper_cases() if one["algorithm"] != "kd"]
+    cases = [other for other in paper_cases() if other["algorithm"] != "kd"]
     verdicts = judged(command, write(tmp_path / "a.json", cases))
     assert verdicts[6] == (UNKNOWN, "not in these results of Brownian")
     assert verdicts[10][0] == UNKNOWN
-    small = [one for one in paper_cases() if one["recording"]["objects"] < 100_000]
+    small = [other for other in paper_cases() if other["recording"]["objects"] < 100_000]
     verdicts = judged(command, write(tmp_path / "b.json", small))
     assert verdicts[9][0] == UNKNOWN and "neither a million objects" in verdicts[9][1]
 
 
-def test_a_cpu_says_nothing_about_gpus(tmp_path: pathlib.Path, command: Any) -> None:
+def test_results_of_a_cpu_are_no_evidence_about_gpus(tmp_path: pathlib.Path, command: Any) -> None:
     verdicts = judged(command, write(tmp_path / "a.json", paper_cases(), device=CPU))
     assert {n for n, (v, _) in verdicts.items() if v == UNKNOWN} == {7, 8, 9, 10, 11, 12, 13}
     assert "there is no GPU" in verdicts[7][1]

@@ -1,4 +1,4 @@
-"""The paper's figures and the plots: files, legends, axes, and the same bytes every time."""
+"""Tests of the paper's figures and the plots: files, legends, axes, reproducibility."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
-from made_results import case, paper_cases, write
+from synthetic_results import case, paper_cases, write
 
 import broadmark
 from broadmark.drawing import SETTINGS, styles
 from broadmark.palette import CURVES, curves_of
 from broadmark.paper.algorithms import BY_ID, PARALLEL, SCENES, SINGLE
-from broadmark.paper.figures import Look, curves, fastest_single, figure
+from broadmark.paper.figures import FigureOptions, curves, fastest_single, figure
 from broadmark.paper.times import times_by_machine
 from broadmark.plots import KINDS
 from broadmark.plots.scaling import fit
@@ -34,9 +34,9 @@ def paper(tmp_path_factory: pytest.TempPathFactory) -> pathlib.Path:
     return write(tmp_path_factory.mktemp("paper") / "paper.json", paper_cases())
 
 
-def drawn(file: pathlib.Path, look: Look, scene: int = 0) -> Any:
+def drawn(file: pathlib.Path, options: FigureOptions, scene: int = 0) -> Any:
     (times,) = times_by_machine(broadmark.read_results(file))
-    return figure(times, SCENES[scene], look)
+    return figure(times, SCENES[scene], options)
 
 
 def labels(axes: Any) -> list[str]:
@@ -57,8 +57,8 @@ def test_figures_in_all_formats(paper: pathlib.Path, tmp_path: pathlib.Path, com
     assert "thousands of objects" in svg and "Brownian" in svg
 
 
-def test_panels_are_the_papers(paper: pathlib.Path) -> None:
-    single, parallel = drawn(paper, Look()).axes
+def test_panels_have_the_papers_algorithms(paper: pathlib.Path) -> None:
+    single, parallel = drawn(paper, FigureOptions()).axes
     assert labels(single) == [a.name for a in BY_ID.values() if a.panel == SINGLE]
     assert labels(parallel) == [a.name for a in BY_ID.values() if a.panel == PARALLEL] + ["KD"]
     assert single.get_xlim() == (0, 1024 * 1.02) and single.get_ylim() == (0, 0.55)
@@ -77,7 +77,7 @@ def test_a_line_ends_at_the_first_size_past_the_cap(tmp_path: pathlib.Path) -> N
     bf, kd = curves(times, "Brownian")
     assert bf.points == [(1, 0.1), (2, 0.6)] and bf.timeout is None
     assert kd.points == [(1, 0.1)] and kd.timeout == (2, 0.5)
-    assert "time limit crossed" in labels(figure(times, SCENES[0], Look()).axes[0])
+    assert "time limit exceeded" in labels(figure(times, SCENES[0], FigureOptions()).axes[0])
 
 
 def test_a_scene_without_a_time_has_no_figure(tmp_path: pathlib.Path, command: Any) -> None:
@@ -92,31 +92,33 @@ def test_a_scene_without_a_time_has_no_figure(tmp_path: pathlib.Path, command: A
     assert svg.name == "figure7.svg" and ">a$b$_{c}</text>" in svg.read_text()
 
 
-def test_range_follows_the_results_unless_full(tmp_path: pathlib.Path) -> None:
+def test_the_axis_range_follows_the_results_unless_full(tmp_path: pathlib.Path) -> None:
     cases = [case("Brownian", n, id_, 0.01) for n in (1000, 32000) for id_ in ("kd", "kd-mt")]
     file = write(tmp_path / "a.json", cases)
-    assert drawn(file, Look()).axes[0].get_xlim()[1] == pytest.approx(32 * 1.02)
-    assert drawn(file, Look(full_range=True)).axes[0].get_xlim()[1] == pytest.approx(1024 * 1.02)
-    with_paper = drawn(file, Look(paper=True)).axes[0]
+    assert drawn(file, FigureOptions()).axes[0].get_xlim()[1] == pytest.approx(32 * 1.02)
+    assert drawn(file, FigureOptions(full_range=True)).axes[0].get_xlim()[1] == pytest.approx(
+        1024 * 1.02
+    )
+    with_paper = drawn(file, FigureOptions(paper=True)).axes[0]
     assert with_paper.get_xlim()[1] == pytest.approx(1024 * 1.02)
     assert sum((line.get_alpha() or 1) < 0.5 for line in with_paper.get_lines()) == 10
-    log = drawn(file, Look(log=True)).axes[0]
+    log = drawn(file, FigureOptions(log=True)).axes[0]
     assert (log.get_xscale(), log.get_yscale()) == ("log", "log") and log.get_ylim()[1] == 0.55
 
 
-def test_own_algorithms_have_styles_of_their_own(tmp_path: pathlib.Path) -> None:
+def test_other_algorithms_have_their_own_styles(tmp_path: pathlib.Path) -> None:
     own = ["kd-mt", "grid2d-sap", "mine", "yours-mt", "gpu-grid"]
     found = styles(dict.fromkeys(own, "Any"))
-    papers = {(one.colour, one.marker) for one in BY_ID.values()}
+    papers = {(algorithm.colour, algorithm.marker) for algorithm in BY_ID.values()}
     others = {(found[id_].colour, found[id_].marker) for id_ in own}
     assert len(others) == len(own) and not papers & others
     cases = [case("Brownian", 1000, id_, 0.1) for id_ in own]
-    single, parallel = drawn(write(tmp_path / "a.json", cases), Look()).axes
+    single, parallel = drawn(write(tmp_path / "a.json", cases), FigureOptions()).axes
     assert labels(single) == ["grid2d-sap", "mine"]
     assert set(labels(parallel)) >= {"kd-mt", "yours-mt", "gpu-grid"}
 
 
-def test_families_have_their_curve_colours_and_unknown_ones_what_is_left() -> None:
+def test_unlisted_families_have_unused_curve_colours() -> None:
     rows = re.findall(r"^   \S+ +(\S+(?: \S+)*)", call("list", "algorithms"), re.MULTILINE)
     assert set(rows) - {"self-check"} <= CURVES.keys()
     assert curves_of(["new", "KD", "Grid SAP", "Embree"]) == {
@@ -127,7 +129,7 @@ def test_families_have_their_curve_colours_and_unknown_ones_what_is_left() -> No
     }
 
 
-def test_the_fastest_is_that_at_the_largest_size(tmp_path: pathlib.Path) -> None:
+def test_the_fastest_algorithm_is_chosen_at_the_largest_size(tmp_path: pathlib.Path) -> None:
     times_of = {"bf": (0.1, 0.9), "kd": (0.3, 0.4), "sap": (0.2, 0.4), "kd-mt": (0.1, 0.1)}
     cases = [
         case("Brownian", n, id_, seconds)
@@ -139,9 +141,7 @@ def test_the_fastest_is_that_at_the_largest_size(tmp_path: pathlib.Path) -> None
     assert best is not None and best.algorithm == "sap"
 
 
-def test_memory_shows_cases_that_take_less_than_a_page(
-    tmp_path: pathlib.Path, command: Any
-) -> None:
+def test_memory_shows_cases_below_a_page(tmp_path: pathlib.Path, command: Any) -> None:
     cases = [
         case("Brownian", 1000, id_, 0.1) | {"peak_bytes": n}
         for id_, n in (("grid2d-sap", 0), ("axis-sweep", 9999))
@@ -151,10 +151,10 @@ def test_memory_shows_cases_that_take_less_than_a_page(
     assert "grid2d-sap" in file.read_text() and "axis-sweep" in file.read_text()
 
 
-def test_the_same_input_makes_the_same_bytes(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+def test_output_is_reproducible(
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
-    results = some_results / "results.json"
+    results = small_results / "results.json"
     for kind in MAGIC:
         files = [tmp_path / f"{n}.{kind}" for n in "ab"]
         for file in files:
@@ -163,11 +163,11 @@ def test_the_same_input_makes_the_same_bytes(
     assert "matplotlib v" not in files[0].with_suffix(".svg").read_text()
 
 
-def test_settings_outside_are_kept(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+def test_global_settings_are_unchanged(
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
     before = dict(matplotlib.rcParams)
-    command("plot", "bars", some_results / "results.json", "-o", tmp_path / "a.svg")
+    command("plot", "bars", small_results / "results.json", "-o", tmp_path / "a.svg")
     assert dict(matplotlib.rcParams) == before
     assert before["svg.hashsalt"] != SETTINGS["svg.hashsalt"]
 
@@ -175,32 +175,32 @@ def test_settings_outside_are_kept(
 @pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "phases"])
 @pytest.mark.parametrize("log", [[], ["--log"]])
 def test_every_kind(
-    kind: str, log: list[str], some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+    kind: str, log: list[str], small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
     file = tmp_path / "plot.svg"
-    status, out, error = command("plot", kind, some_results / "results.json", "-o", file, *log)
+    status, out, error = command("plot", kind, small_results / "results.json", "-o", file, *log)
     assert (status, error) == (0, "") and out == f"written: {file}\n"
     svg = file.read_text()
     for text in ("Brownian cubes", "FreeFall cubes", "sap-mt/t1", "sap-mt/t2", "kd"):
         assert text in svg
     if kind == "scaling":
-        assert "exponent ± its standard error" in svg
+        assert "exponent ± standard error" in svg
 
 
-def test_phases_are_of_one_case(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+def test_phases_require_a_single_case(
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
-    plot = ["plot", "phases", some_results / "results.json", "-o", tmp_path / "plot.svg"]
-    one = ["--scene", "brownian", "--algorithm", "kd", "--objects", "100"]
+    plot = ["plot", "phases", small_results / "results.json", "-o", tmp_path / "plot.svg"]
+    single = ["--scene", "brownian", "--algorithm", "kd", "--objects", "100"]
     status, _, error = command(*plot)
     assert status == 2 and "20 are left" in error and "--filter" in error
-    assert command(*plot, *one)[0] == 0
+    assert command(*plot, *single)[0] == 0
     assert "search overlaps" in (tmp_path / "plot.svg").read_text()
-    status, _, error = command(*plot, *one, "--log")
+    status, _, error = command(*plot, *single, "--log")
     assert status == 2 and "--log" in error
 
 
-def test_what_is_left_out_is_told(tmp_path: pathlib.Path, command: Any) -> None:
+def test_omitted_cases_are_reported(tmp_path: pathlib.Path, command: Any) -> None:
     cases = [
         case("Brownian", 1000, "kd", 0.1),
         case("Brownian", 1000, "bf", 0.6, status="timeout"),
@@ -220,11 +220,11 @@ def test_what_is_left_out_is_told(tmp_path: pathlib.Path, command: Any) -> None:
         (["--algorithm", "bf"], "no case with a time is left: 1 mismatch"),
         (["--algorithm", "kd", "--scene", "Gravity"], "no case is left"),
         (["--filter", "nothing"], "no case is left"),
-        (["-o", "a.gif"], "a.gif: its name ends with none of"),
+        (["-o", "a.gif"], "a.gif: the extension must be"),
         (["-o", "no/such/folder.svg"], "cannot be written"),
     ],
 )
-def test_what_cannot_be_drawn(
+def test_invalid_requests_are_rejected(
     options: list[str], message: str, tmp_path: pathlib.Path, command: Any
 ) -> None:
     cases = [
@@ -237,7 +237,7 @@ def test_what_cannot_be_drawn(
     assert not (tmp_path / "a.svg").exists()
 
 
-def test_plots_need_what_they_show(tmp_path: pathlib.Path, command: Any) -> None:
+def test_plots_require_their_columns(tmp_path: pathlib.Path, command: Any) -> None:
     file = write(tmp_path / "a.json", [case("Brownian", 1000, "kd", 0.1, peak_bytes=None)])
     for kind, message in (("memory", "--in-process"), ("scaling", "two numbers of bodies")):
         status, _, error = command("plot", kind, file, "-o", tmp_path / "a.svg")
@@ -271,7 +271,7 @@ def test_the_strip(tmp_path: pathlib.Path, command: Any) -> None:
     assert 1.7 < width / height < 2
 
 
-def test_strips_that_cannot_be(tmp_path: pathlib.Path, command: Any) -> None:
+def test_invalid_strips_are_rejected(tmp_path: pathlib.Path, command: Any) -> None:
     for options in (["--objects", "many"], ["--objects", "0"], ["there/is/no.aabbs"]):
         status, _, error = command("figure3", "-o", tmp_path / "a.png", *options)
         assert status == 2 and error.startswith("broadmark: ")

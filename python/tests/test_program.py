@@ -1,4 +1,4 @@
-"""Running the program, and the command line of the package."""
+"""Tests of calls of the program and of the package's command line."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_arrays_are_run() -> None:
     assert set(results.cases["status"]) == {"ok"}
 
 
-def test_a_wrong_answer_is_a_status_and_no_exception(faulty_plugin: str) -> None:
+def test_a_wrong_answer_is_a_status_not_an_exception(faulty_plugin: str) -> None:
     results = broadmark.run(
         "brownian", plugin=faulty_plugin, algorithm="faulty", objects=200, frames=300
     )
@@ -39,12 +39,12 @@ def test_a_wrong_answer_is_a_status_and_no_exception(faulty_plugin: str) -> None
     assert results.frames["missed"].sum() == results.cases["missed"].sum() > 0
 
 
-def test_what_the_program_refuses_is_its_own_message() -> None:
+def test_errors_have_the_programs_message() -> None:
     with pytest.raises(broadmark.InputError, match="no-such"):
         broadmark.run("brownian", algorithm="no-such")
 
 
-def test_a_program_that_is_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_program_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("BROADMARK", "/there/is/no/such")
     with pytest.raises(broadmark.InputError, match="BROADMARK is '/there/is/no/such'"):
         broadmark.run("brownian")
@@ -65,14 +65,14 @@ def test_bad_usage_is_status_2(command: Any) -> None:
 
 
 def test_results_are_shown_and_written(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
-    status, out, _ = command("read", some_results / "results.json")
+    status, out, _ = command("read", small_results / "results.json")
     assert status == 0 and "sap-mt" in out and "dbvt" not in out
     cases, frames = tmp_path / "cases.csv", tmp_path / "frames.csv"
     assert (
-        command("read", some_results / "results.json", "--csv", cases, "--csv-frames", frames)[0]
+        command("read", small_results / "results.json", "--csv", cases, "--csv-frames", frames)[0]
         == 0
     )
-    assert len(pd.read_csv(cases)) == len(pd.read_csv(some_results / "results.csv"))
-    assert len(pd.read_csv(frames)) == len(pd.read_csv(some_results / "frames.csv"))
+    assert len(pd.read_csv(cases)) == len(pd.read_csv(small_results / "results.csv"))
+    assert len(pd.read_csv(frames)) == len(pd.read_csv(small_results / "frames.csv"))

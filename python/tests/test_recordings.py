@@ -1,4 +1,4 @@
-"""Recordings as arrays, and back."""
+"""Tests of reading and writing recordings."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def random_boxes(frames: int, bodies: int) -> Any:
     return np.stack([low, low + 1], axis=2).astype(np.float32)
 
 
-def test_what_is_written_is_read_and_verified(tmp_path: pathlib.Path) -> None:
+def test_written_recordings_are_read_and_verified(tmp_path: pathlib.Path) -> None:
     boxes = random_boxes(4, 7)
     path = tmp_path / "mine.aabbs"
     broadmark.write_recording(path, boxes, name="Mine", object_type="Things")
@@ -35,10 +35,10 @@ def test_what_is_written_is_read_and_verified(tmp_path: pathlib.Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["mine.aabbs"]
 
 
-def test_arrays_may_come_one_by_one_and_flat(tmp_path: pathlib.Path) -> None:
+def test_arrays_can_be_iterated_and_flat(tmp_path: pathlib.Path) -> None:
     boxes = random_boxes(3, 2)
     path = tmp_path / "mine.aabbs"
-    broadmark.write_recording(path, (one.reshape(-1, 6).astype(float) for one in boxes))
+    broadmark.write_recording(path, (frame.reshape(-1, 6).astype(float) for frame in boxes))
     np.testing.assert_array_equal(broadmark.read_recording(path).boxes, boxes)
 
 
@@ -53,7 +53,7 @@ def test_nothing_is_copied(tmp_path: pathlib.Path) -> None:
     assert np.shares_memory(as_boxes(flat), flat)
 
 
-def test_poses_are_those_of_the_same_scenes_boxes(tmp_path: pathlib.Path) -> None:
+def test_poses_match_the_boxes_of_the_scene(tmp_path: pathlib.Path) -> None:
     call(
         *("bake", "--scenes", "brownian", "--objects", "20", "--frames", "5", "--quiet"),
         *("--recorder", "aabbs,posrot", "--output", str(tmp_path)),
@@ -70,28 +70,31 @@ def test_poses_are_those_of_the_same_scenes_boxes(tmp_path: pathlib.Path) -> Non
 @pytest.mark.parametrize(
     ("boxes", "message"),
     [
-        ([[[0, 0, 0, 1, 1, 1]]], "1 sets of boxes"),
+        ([[[0, 0, 0, 1, 1, 1]]], "at least 2 sets of boxes"),
         ([[[0, 0, 0, 1, 1]]] * 2, r"frame 0: boxes: of shape \(1, 5\)"),
         ([[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, np.nan]]], "frame 1: boxes: body 0"),
-        ([[[0, 2, 0, 1, 1, 1]]] * 2, "frame 0: boxes: body 0 has its min"),
-        ([[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, 1]] * 2], "frame 1: has 2 bodies, the first 1"),
-        ([[["a"] * 6]] * 2, "not numbers"),
+        ([[[0, 2, 0, 1, 1, 1]]] * 2, "frame 0: boxes: body 0 has a min"),
+        (
+            [[[0, 0, 0, 1, 1, 1]], [[0, 0, 0, 1, 1, 1]] * 2],
+            "frame 1: has 2 bodies, the first frame 1",
+        ),
+        ([[["a"] * 6]] * 2, "expected numbers"),
     ],
 )
-def test_what_a_recording_cannot_hold(tmp_path: pathlib.Path, boxes: Any, message: str) -> None:
+def test_invalid_boxes_are_rejected(tmp_path: pathlib.Path, boxes: Any, message: str) -> None:
     with pytest.raises(broadmark.InputError, match=message):
-        broadmark.write_recording(tmp_path / "mine.aabbs", [np.array(one) for one in boxes])
+        broadmark.write_recording(tmp_path / "mine.aabbs", [np.array(frame) for frame in boxes])
     assert not list(tmp_path.iterdir())
 
 
-def test_names_that_a_header_cannot_hold(tmp_path: pathlib.Path) -> None:
+def test_invalid_names_are_rejected(tmp_path: pathlib.Path) -> None:
     for name in ("", "x" * 128, "größer", "a\nb"):
         with pytest.raises(broadmark.InputError, match="printable ASCII"):
             broadmark.write_recording(tmp_path / "a.aabbs", random_boxes(2, 2), name=name)
 
 
 def changing_boxes(frames: int, bodies: int) -> Any:
-    """Boxes of which a tenth changes in each frame, some vanish and come back."""
+    """Boxes of changing frames: a tenth of the bodies moves per frame, some disappear and reappear."""
     generator = np.random.default_rng(2)
     boxes = np.repeat(random_boxes(1, bodies), frames, axis=0)
     for before, now in itertools.pairwise(boxes):
@@ -133,11 +136,11 @@ def test_changing_worlds_are_read_in_any_order(tmp_path: pathlib.Path) -> None:
     np.testing.assert_array_equal(recording.groups.tags, GROUPS.tags)
     assert recording.groups.worlds is None
     for frame in (-1, 40):
-        with pytest.raises(broadmark.InputError, match="last one is 39"):
+        with pytest.raises(broadmark.InputError, match="last frame is 39"):
             recording.frame(frame)
 
 
-def test_the_program_reads_what_python_writes_and_back(tmp_path: pathlib.Path) -> None:
+def test_program_and_python_read_each_others_files(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "a.broadmark"
     written = changing_recording(path)
     assert "ok" in call("verify", str(path))
@@ -152,7 +155,9 @@ def test_the_program_reads_what_python_writes_and_back(tmp_path: pathlib.Path) -
         call("convert", str(path), str(tmp_path / "c.aabbs"))
 
 
-def test_the_reader_in_the_manual(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_reader_in_the_documents(
+    tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     manual = pathlib.Path(__file__).parents[2] / "docs/recordings.md"
     code = manual.read_text().split("```python\n")[1].split("```")[0]
     assert len(code.splitlines()) <= 12
@@ -167,7 +172,7 @@ def test_the_reader_in_the_manual(tmp_path: pathlib.Path, monkeypatch: pytest.Mo
             np.testing.assert_array_equal(names["boxes"], boxes[last])
 
 
-def test_what_only_changing_recordings_hold(tmp_path: pathlib.Path) -> None:
+def test_only_changing_recordings_hold_absent_bodies_and_groups(tmp_path: pathlib.Path) -> None:
     boxes = changing_boxes(40, 60)
     with pytest.raises(broadmark.InputError, match="not a finite number"):
         broadmark.write_recording(tmp_path / "a.aabbs", boxes)
@@ -188,7 +193,7 @@ def test_what_only_changing_recordings_hold(tmp_path: pathlib.Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_bad_changing_files_are_refused(tmp_path: pathlib.Path) -> None:
+def test_invalid_changing_files_are_rejected(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "mine.broadmark"
     changing_recording(path)
     whole = path.read_bytes()
@@ -216,7 +221,7 @@ def test_bad_changing_files_are_refused(tmp_path: pathlib.Path) -> None:
             broadmark.read_recording(path)
 
 
-def test_bad_files_are_refused(tmp_path: pathlib.Path) -> None:
+def test_invalid_files_are_rejected(tmp_path: pathlib.Path) -> None:
     path = tmp_path / "mine.aabbs"
     broadmark.write_recording(path, random_boxes(3, 2))
     whole = path.read_bytes()

@@ -1,4 +1,4 @@
-"""The report as a file: what is in it, and what it is made of."""
+"""Tests of the report's file and data."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import broadmark
 from broadmark.program import call
 from broadmark.report import page, write_report
 from broadmark.report.data import page_data
-from broadmark.report.timelines import points_of_a_case, timeline
+from broadmark.report.timelines import points_per_case, timeline
 
 
 def data_of(tmp_path: pathlib.Path, *cases: dict[str, Any]) -> dict[str, Any]:
@@ -29,14 +29,14 @@ def texts(column: dict[str, Any]) -> list[str]:
     return [column["texts"][code] for code in column["codes"]]
 
 
-def test_the_command_writes_one_file(
-    some_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
+def test_the_command_writes_a_single_file(
+    small_results: pathlib.Path, tmp_path: pathlib.Path, command: Any
 ) -> None:
     report = tmp_path / "a report.html"
-    status, out, _ = command("report", some_results / "results.json", "-o", report)
+    status, out, _ = command("report", small_results / "results.json", "-o", report)
     assert status == 0
     assert re.search(r"written: .*a report\.html \(\d\.\d MB, \d+ cases\)", out)
-    assert [one.name for one in tmp_path.iterdir()] == ["a report.html"]
+    assert [path.name for path in tmp_path.iterdir()] == ["a report.html"]
     text = report.read_text("utf-8")
     assert "default-src 'none'" in text and "d3js.org v5" in text and "BSD-3-Clause" in text
     data = json.loads(text.partition('id="data">')[2].partition("</script>")[0])
@@ -44,7 +44,7 @@ def test_the_command_writes_one_file(
     assert base64.b64decode(data["pictures"][0]["uri"].partition(",")[2]).startswith(b"\x89PNG")
 
 
-def test_cases_are_chosen_as_elsewhere(tmp_path: pathlib.Path, command: Any) -> None:
+def test_options_select_cases(tmp_path: pathlib.Path, command: Any) -> None:
     results = write_results(tmp_path / "r.jsonl", [case(a, 100, 1e-5) for a in ("kd", "sap")])
     report = tmp_path / "report.html"
     status, out, _ = command("report", results, "-o", report, "--no-pictures", "--filter", "/kd$")
@@ -68,26 +68,26 @@ def test_without_the_program_there_are_no_pictures(
     assert status == 0 and "No pictures" not in out
 
 
-def test_a_recording_that_is_gone_has_no_picture(tmp_path: pathlib.Path) -> None:
-    one = case("sap", 100, 1e-5)
-    one["recording"]["source"] = "gone.aabbs"
-    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", [one]))
+def test_a_missing_recording_has_no_picture(tmp_path: pathlib.Path) -> None:
+    result = case("sap", 100, 1e-5)
+    result["recording"]["source"] = "gone.aabbs"
+    results = broadmark.read_results(write_results(tmp_path / "results.jsonl", [result]))
     notes = write_report(results, tmp_path / "report.html")
     assert len(notes) == 1 and notes[0].startswith("Brownian Cubes: no picture")
 
 
-def test_without_d3_its_package_is_named(
+def test_a_missing_d3_names_its_package(
     tmp_path: pathlib.Path, command: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     results = write_results(tmp_path / "results.jsonl", standard_cases())
     monkeypatch.setattr(page, "D3", tmp_path / "no.js")
     status, _, error = command("report", results, "-o", tmp_path / "report.html")
     assert status == 2 and "node-d3" in error
-    assert [one.name for one in tmp_path.iterdir()] == ["results.jsonl"]
+    assert [path.name for path in tmp_path.iterdir()] == ["results.jsonl"]
 
 
-def test_commands_run_the_case_again(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    results = broadmark.read_results(some_results / "results.json")
+def test_commands_run_the_case_again(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    results = broadmark.read_results(small_results / "results.json")
     is_kd = results.cases["id"].str.startswith("FreeFall/Cubes/N200/F4/s1/kd/")
     (number,) = results.cases.index[is_kd][:1]
     data = page_data(results)
@@ -107,7 +107,7 @@ def test_commands_run_the_case_again(some_results: pathlib.Path, tmp_path: pathl
             assert again[column] == results.cases[column][number], column
 
 
-def test_variants_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None:
+def test_variants_are_labelled_by_differing_traits(tmp_path: pathlib.Path) -> None:
     data = data_of(
         tmp_path,
         case("sap", 100, 1e-5),
@@ -125,30 +125,35 @@ def test_variants_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None
     assert list(data["parameters"]) == ["leaf"]
 
 
-def test_recordings_are_told_apart_by_what_differs(tmp_path: pathlib.Path) -> None:
-    def on(objects: int, recording_hash: str, **source: str) -> dict[str, Any]:
-        one = case("sap", objects, 1e-5)
-        one["recording"] |= {"hash": recording_hash, "frames": int(source["frames"])}
-        one["recording"]["source"] = {"objects": str(objects)} | source
-        return one
+def test_recordings_are_labelled_by_differing_settings(tmp_path: pathlib.Path) -> None:
+    def case_on(objects: int, recording_hash: str, **source: str) -> dict[str, Any]:
+        result = case("sap", objects, 1e-5)
+        result["recording"] |= {"hash": recording_hash, "frames": int(source["frames"])}
+        result["recording"]["source"] = {"objects": str(objects)} | source
+        return result
 
-    seeds = data_of(tmp_path, on(1, "a", frames="4", seed="1"), on(2, "b", frames="4", seed="2"))
-    assert [one["setting"] for one in seeds["recordings"]] == ["seed=1", "seed=2"]
-    sizes = data_of(tmp_path, on(1, "a", frames="4"), on(2, "b", frames="8"))
-    assert [one["setting"] for one in sizes["recordings"]] == ["", ""]
-    frames = data_of(tmp_path, on(1, "a", frames="4"), on(1, "b", frames="8"))
-    assert [one["setting"] for one in frames["recordings"]] == ["4 frames", "8 frames"]
-    unlike = data_of(tmp_path, on(1, "a1", frames="4"), on(1, "b2", frames="4"))
-    assert [one["setting"] for one in unlike["recordings"]] == ["recording a1", "recording b2"]
+    seeds = data_of(
+        tmp_path, case_on(1, "a", frames="4", seed="1"), case_on(2, "b", frames="4", seed="2")
+    )
+    assert [recording["setting"] for recording in seeds["recordings"]] == ["seed=1", "seed=2"]
+    sizes = data_of(tmp_path, case_on(1, "a", frames="4"), case_on(2, "b", frames="8"))
+    assert [recording["setting"] for recording in sizes["recordings"]] == ["", ""]
+    frames = data_of(tmp_path, case_on(1, "a", frames="4"), case_on(1, "b", frames="8"))
+    assert [recording["setting"] for recording in frames["recordings"]] == ["4 frames", "8 frames"]
+    unlike = data_of(tmp_path, case_on(1, "a1", frames="4"), case_on(1, "b2", frames="4"))
+    assert [recording["setting"] for recording in unlike["recordings"]] == [
+        "recording a1",
+        "recording b2",
+    ]
 
 
-def test_a_timeline_is_means_of_medians() -> None:
-    one = case("sap", 100, 1e-6)
+def test_timeline_points_are_means_of_medians() -> None:
+    result = case("sap", 100, 1e-6)
     frames = np.arange(1000.0)
-    for phase in one["frames"]:
-        one["frames"][phase] = [frames, frames + 2, frames + 1000, frames[:3]]
-    one["frame_counts"]["pairs"] = frames
-    line = timeline(one, 200)
+    for phase in result["frames"]:
+        result["frames"][phase] = [frames, frames + 2, frames + 1000, frames[:3]]
+    result["frame_counts"]["pairs"] = frames
+    line = timeline(result, 200)
     points = np.frombuffer(base64.b64decode(line), "<f4").reshape(5, 200)
     np.testing.assert_allclose(points[0], frames.reshape(200, 5).mean(1) + 2)
     np.testing.assert_allclose(points[4], frames.reshape(200, 5).mean(1))
@@ -156,12 +161,12 @@ def test_a_timeline_is_means_of_medians() -> None:
 
 
 def test_many_cases_have_fewer_points() -> None:
-    assert points_of_a_case(1) == 200
-    assert 20 <= points_of_a_case(10_000) < 200
-    assert points_of_a_case(10**9) == 20
+    assert points_per_case(1) == 200
+    assert 20 <= points_per_case(10_000) < 200
+    assert points_per_case(10**9) == 20
 
 
-def test_what_fuzzers_found_makes_a_page_or_is_refused(tmp_path: pathlib.Path) -> None:
+def test_fuzzed_files_are_reported_or_rejected(tmp_path: pathlib.Path) -> None:
     written = 0
     for file in sorted((SOURCE_FOLDER / "tests/fuzz/corpus/results").iterdir()):
         try:
@@ -172,6 +177,6 @@ def test_what_fuzzers_found_makes_a_page_or_is_refused(tmp_path: pathlib.Path) -
     assert written > 5
 
 
-def test_nothing_has_a_page(tmp_path: pathlib.Path, command: Any) -> None:
+def test_empty_results_have_a_page(tmp_path: pathlib.Path, command: Any) -> None:
     results = write_results(tmp_path / "nothing.jsonl", [])
     assert command("report", results, "-o", tmp_path / "report.html")[0] == 0

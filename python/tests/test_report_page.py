@@ -1,4 +1,4 @@
-"""What the report shows, and how it answers to pointer and keys."""
+"""Tests of the report in a browser: content, pointer and keyboard."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 @pytest.fixture
 def opened(driver: Any, tmp_path: pathlib.Path) -> Iterator[Page]:
-    """A page; after the test the browser's console must be without a word."""
+    """A page. The browser's console must be empty after the test."""
     driver.get_log("browser")
     yield Page(driver, tmp_path)
     assert driver.get_log("browser") == []
@@ -38,8 +38,8 @@ def standard(tmp_path: pathlib.Path) -> pathlib.Path:
     return write_results(tmp_path / "standard.jsonl", standard_cases())
 
 
-def test_everything_is_drawn(opened: Page, some_results: pathlib.Path) -> None:
-    opened.show(some_results / "results.json")
+def test_everything_is_drawn(opened: Page, small_results: pathlib.Path) -> None:
+    opened.show(small_results / "results.json")
     assert opened.texts("#summary .tile")[:2] == ["20 cases", "4 recordings"]
     for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
         opened.section(section)
@@ -49,7 +49,7 @@ def test_everything_is_drawn(opened: Page, some_results: pathlib.Path) -> None:
     assert opened.js("return performance.getEntriesByType('resource').length") == 0
 
 
-def test_a_table_of_ratios_punishes_gaps(opened: Page, standard: pathlib.Path) -> None:
+def test_gaps_are_penalised_in_ratios(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     rows = opened.ratios()
     # Ratios to the best of each size; a gap counts as twice the slowest: 2 × 3, 2 × 2, 2 × 2.
@@ -79,7 +79,7 @@ def test_failures_and_gaps_are_listed_with_their_reason(
     opened.section("scaling")
     opened.wait("return document.querySelector('#scaling svg[role=group]')")
     assert opened.texts("#scaling text.gap") == ["◔\u202f1", "≠\u202f1", "!\u202f1", "∅\u202f1"]
-    assert "faulty" not in opened.js(  # a wrong answer has no point
+    assert "faulty" not in opened.js(  # wrong answers have no point
         "return [...document.querySelectorAll('#scaling .series')]"
         ".filter((n) => n.querySelector('.symbol')).map((n) => n.dataset.variant)"
     )
@@ -114,7 +114,7 @@ def test_a_filter_of_statuses_hides_no_gap(opened: Page, standard: pathlib.Path)
     assert opened.ratios()["bf"][2:] == ["1.00", "2.00", "timeout"]
 
 
-def test_headers_sort(opened: Page, standard: pathlib.Path) -> None:
+def test_headers_sort_the_table(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("cases")
     times = "return [...document.querySelectorAll('#cases tbody tr')].map((r) => r.cells[5].textContent)"
@@ -124,7 +124,7 @@ def test_headers_sort(opened: Page, standard: pathlib.Path) -> None:
     opened.find(f"{column} button").send_keys(Keys.ENTER)
     assert opened.find(column).get_attribute("aria-sort") == "descending"
     assert opened.js(times)[0] == "80.0\u00a0µs"
-    assert opened.js(times)[-3:] == ["–"] * 3  # what is not known is last
+    assert opened.js(times)[-3:] == ["–"] * 3  # unknown values come last
 
 
 def test_tooltips_on_hover_and_focus(opened: Page, standard: pathlib.Path) -> None:
@@ -150,7 +150,7 @@ def test_tooltips_on_hover_and_focus(opened: Page, standard: pathlib.Path) -> No
     assert opened.find("#details-title").text == "kd"
 
 
-def test_the_grid_is_walked_by_arrow_keys(opened: Page, standard: pathlib.Path) -> None:
+def test_arrow_keys_move_in_the_grid(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.ratios()
     opened.js("document.querySelector('[role=gridcell]').focus()")
@@ -161,7 +161,7 @@ def test_the_grid_is_walked_by_arrow_keys(opened: Page, standard: pathlib.Path) 
     )
 
 
-def test_details_tell_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
+def test_details_show_commands_and_hash(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("cases")
     link = opened.find("#cases tbody tr:first-child button")
@@ -185,7 +185,7 @@ def test_details_tell_commands_and_hash(opened: Page, standard: pathlib.Path) ->
     assert opened.driver.switch_to.active_element == link
 
 
-def test_a_timeline_follows_keys(opened: Page, standard: pathlib.Path) -> None:
+def test_arrow_keys_move_the_timeline_cursor(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard)
     opened.section("frames")
     names = opened.texts("#frames .phases > span")
@@ -230,7 +230,7 @@ def test_the_summary_warns(opened: Page, standard: pathlib.Path) -> None:
     assert opened.ratios()["sap"][2] == "2.00"
 
 
-def test_hostile_names_are_only_texts(opened: Page) -> None:
+def test_hostile_names_are_inserted_as_text(opened: Page) -> None:
     evil = [
         "</script><script>window.hacked=1</script>",
         "<img src=x onerror=window.hacked=1>",
@@ -239,13 +239,16 @@ def test_hostile_names_are_only_texts(opened: Page) -> None:
     ]
     hostile = []
     for i, name in enumerate(evil):
-        one = case(
+        result = case(
             name, 100, 1e-5 * (i + 1), family=name, id=name, params={name: name}, device=name
         )
-        one["recording"] |= {"name": name, "object_type": name, "hash": name}
-        one["recording"]["source"] = {name: name, "seed": str(i)}
-        one["conditions"]["warnings"] = [name]
-        hostile += [one, {**one, "status": "error", "reason": name, "id": name + "2", "threads": 2}]
+        result["recording"] |= {"name": name, "object_type": name, "hash": name}
+        result["recording"]["source"] = {name: name, "seed": str(i)}
+        result["conditions"]["warnings"] = [name]
+        hostile += [
+            result,
+            {**result, "status": "error", "reason": name, "id": name + "2", "threads": 2},
+        ]
     path = write_results(opened.folder / "hostile.jsonl", hostile, cpu=evil[0])
     opened.show(path)
     for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
@@ -257,7 +260,7 @@ def test_hostile_names_are_only_texts(opened: Page) -> None:
     assert len(opened.texts("script")) == 4
 
 
-def test_a_phone_shows_it_without_scrolling_sideways(opened: Page, standard: pathlib.Path) -> None:
+def test_a_phone_needs_no_horizontal_scrolling(opened: Page, standard: pathlib.Path) -> None:
     opened.show(standard, width=360)
     for section in ("ratios", "scaling", "memory", "frames", "failures", "cases"):
         opened.section(section)
@@ -267,7 +270,7 @@ def test_a_phone_shows_it_without_scrolling_sideways(opened: Page, standard: pat
     assert opened.texts("#found") == ["3 of 12 cases"]
 
 
-def test_dark_by_the_system_and_by_the_button(opened: Page, standard: pathlib.Path) -> None:
+def test_dark_theme_by_system_and_by_button(opened: Page, standard: pathlib.Path) -> None:
     colour = "return getComputedStyle(document.body).backgroundColor"
     opened.show(standard)
     light = opened.js(colour)
@@ -303,10 +306,10 @@ def test_it_prints_on_a4(opened: Page, standard: pathlib.Path) -> None:
         assert float(height) == pytest.approx(841.9, abs=1.5)
 
 
-def test_another_time_is_compared(opened: Page, standard: pathlib.Path) -> None:
+def test_other_times_can_be_compared(opened: Page, standard: pathlib.Path) -> None:
     cases = standard_cases()
-    for one in cases:
-        one["summary"]["p95"] = 1e-4 * len(one["algorithm"])
+    for result in cases:
+        result["summary"]["p95"] = 1e-4 * len(result["algorithm"])
     opened.show(write_results(standard, cases))
     opened.find(".found option:nth-child(3)").click()
     assert opened.ratios()["sap"][2:] == ["1.50", "1.50", "1.50"]
@@ -315,15 +318,15 @@ def test_another_time_is_compared(opened: Page, standard: pathlib.Path) -> None:
 def test_ten_thousand_cases_open_quickly(opened: Page) -> None:
     many = []
     for i in range(10_000):
-        one = case(f"algorithm{i % 40}", 1000 * (1 + i // 400), 1e-5 * (1 + i % 97))
-        one["recording"]["source"] = f"recording{i // 400}.aabbs"
-        one["id"] = str(i)
-        one["threads"] = 1 + i // 40 % 10
-        many.append(one)
+        result = case(f"algorithm{i % 40}", 1000 * (1 + i // 400), 1e-5 * (1 + i % 97))
+        result["recording"]["source"] = f"recording{i // 400}.aabbs"
+        result["id"] = str(i)
+        result["threads"] = 1 + i // 40 % 10
+        many.append(result)
     opened.show(write_results(opened.folder / "many.jsonl", many))
     assert opened.texts("#found") == ["10,000 cases"]
     opened.wait("return document.querySelector('table[role=grid]')")
-    # What makes it quick: most cases have no element.
+    # Most cases have no element, so the page is fast.
     assert opened.js("return document.getElementsByTagName('*').length") < 10_000
     opened.filter("algorithm", "algorithm7")
     assert opened.texts("#found") == ["250 of 10,000 cases"]

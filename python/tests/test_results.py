@@ -1,4 +1,4 @@
-"""Results files as data frames."""
+"""Tests of results files as data frames."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ import numpy as np
 import pandas as pd
 import pytest
 from conftest import SOURCE_FOLDER
-from made_results import case, write
+from synthetic_results import case, write
 
 import broadmark
 
 
-def test_cases_are_those_of_the_programs_csv(some_results: pathlib.Path) -> None:
-    expected = pd.read_csv(some_results / "results.csv", keep_default_na=False, na_values=[""])
+def test_cases_match_the_programs_csv(small_results: pathlib.Path) -> None:
+    expected = pd.read_csv(small_results / "results.csv", keep_default_na=False, na_values=[""])
     for name in ("results.json", "results.jsonl"):
-        cases = broadmark.read_results(some_results / name).cases
-        cases = cases.set_index("id").loc[expected["id"]].reset_index()  # lines are as cases ended
+        cases = broadmark.read_results(small_results / name).cases
+        cases = (
+            cases.set_index("id").loc[expected["id"]].reset_index()
+        )  # lines are in the order of completion
         for column in expected:
             there = (
                 expected[column].fillna("")
@@ -34,28 +36,28 @@ def test_cases_are_those_of_the_programs_csv(some_results: pathlib.Path) -> None
                 )
 
 
-def test_frames_are_those_of_the_programs_csv(some_results: pathlib.Path) -> None:
-    expected = pd.read_csv(some_results / "frames.csv", keep_default_na=False, na_values=[""])
-    frames = broadmark.read_results(some_results / "results.json").frames
+def test_frames_match_the_programs_csv(small_results: pathlib.Path) -> None:
+    expected = pd.read_csv(small_results / "frames.csv", keep_default_na=False, na_values=[""])
+    frames = broadmark.read_results(small_results / "results.json").frames
     assert len(frames) == len(expected) > 100
     for column in expected.columns.drop(["checked", "disturbed"]):
         there, ours = expected[column].fillna(""), frames[column].astype(object).fillna("")
         assert list(ours) == list(there), column
 
 
-def test_several_files_are_one_table(some_results: pathlib.Path) -> None:
-    paths = [some_results / "results.json", some_results / "results.jsonl"]
+def test_several_files_are_combined(small_results: pathlib.Path) -> None:
+    paths = [small_results / "results.json", small_results / "results.jsonl"]
     both = broadmark.read_results(*paths)
-    one = broadmark.read_results(paths[0])
-    assert len(both.cases) == 2 * len(one.cases)
+    single = broadmark.read_results(paths[0])
+    assert len(both.cases) == 2 * len(single.cases)
     assert list(both.cases.index) == list(both.cases["case"]) == list(range(len(both.cases)))
-    assert len(both.environments) == 1  # one machine
+    assert len(both.environments) == 1  # single machine
     assert both.cases["file"].nunique() == 2
-    assert len(both.frames) == 2 * len(one.frames)
+    assert len(both.frames) == 2 * len(single.frames)
 
 
-def test_selected_cases_keep_their_frames(some_results: pathlib.Path) -> None:
-    results = broadmark.read_results(some_results / "results.json")
+def test_selected_cases_keep_their_frames(small_results: pathlib.Path) -> None:
+    results = broadmark.read_results(small_results / "results.json")
     kd = results.select(results.cases["algorithm"] == "kd")
     assert set(kd.frames["algorithm"]) == {"kd"}
     assert list(kd.cases.index) == list(kd.cases["case"]) == [0, 1, 2, 3]
@@ -64,19 +66,19 @@ def test_selected_cases_keep_their_frames(some_results: pathlib.Path) -> None:
     )
 
 
-def test_a_file_that_was_cut_is_partial(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    text = (some_results / "results.jsonl").read_text()
+def test_a_truncated_file_is_partial(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    text = (small_results / "results.jsonl").read_text()
     cut = tmp_path / "cut.jsonl"
     cut.write_text(text[: len(text) * 2 // 3])
     results = broadmark.read_results(cut)
     assert results.partial == [str(cut)]
     assert (
-        0 < len(results.cases) < len(broadmark.read_results(some_results / "results.jsonl").cases)
+        0 < len(results.cases) < len(broadmark.read_results(small_results / "results.jsonl").cases)
     )
 
 
-def test_compressed_files_are_read(some_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
-    plain = some_results / "results.json"
+def test_compressed_files_are_read(small_results: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    plain = small_results / "results.json"
     compressed = tmp_path / "results.json.gz"
     compressed.write_bytes(gzip.compress(plain.read_bytes()))
     expected = broadmark.read_results(plain)
@@ -96,8 +98,8 @@ def test_the_first_version_is_read() -> None:
     assert list(results.cases["missed"]) == [1]
 
 
-def test_times_are_arrays(some_results: pathlib.Path) -> None:
-    details = broadmark.read_results(some_results / "results.json").details
+def test_times_are_arrays(small_results: pathlib.Path) -> None:
+    details = broadmark.read_results(small_results / "results.json").details
     assert all(isinstance(a, np.ndarray) for case in details for a in case["frames"]["total"])
 
 
@@ -106,14 +108,14 @@ def test_times_are_arrays(some_results: pathlib.Path) -> None:
     [
         ("", "cannot be read"),
         ("{", "cannot be read"),
-        ("[]", "its schema is not broadmark-results/2"),
-        ('{"schema": "broadmark-scene/1"}', "its schema is not broadmark-results/2"),
+        ("[]", "the schema is not broadmark-results/2"),
+        ('{"schema": "broadmark-scene/1"}', "the schema is not broadmark-results/2"),
         ('{"schema": "broadmark-results/2", "environments": [], "cases": [5]}', "not an object"),
         ('{"schema": "broadmark-results/2", "environments": [], "cases": [{}]}', "case 0"),
         ('{"schema": "broadmark-results/2"}\n5\n', "line 2"),
     ],
 )
-def test_other_files_are_refused(tmp_path: pathlib.Path, text: str, message: str) -> None:
+def test_other_files_are_rejected(tmp_path: pathlib.Path, text: str, message: str) -> None:
     file = tmp_path / "file.json"
     file.write_text(text)
     with pytest.raises(broadmark.InputError, match=message) as refused:
@@ -121,7 +123,7 @@ def test_other_files_are_refused(tmp_path: pathlib.Path, text: str, message: str
     assert str(file) in str(refused.value)
 
 
-def test_what_fuzzers_found_is_read_or_refused() -> None:
+def test_fuzzed_files_are_read_or_rejected() -> None:
     read = 0
     for file in sorted((SOURCE_FOLDER / "tests/fuzz/corpus/results").iterdir()):
         try:
@@ -131,14 +133,14 @@ def test_what_fuzzers_found_is_read_or_refused() -> None:
     assert read > 5
 
 
-def test_nothing_has_empty_tables(tmp_path: pathlib.Path) -> None:
+def test_empty_results_have_empty_tables(tmp_path: pathlib.Path) -> None:
     file = tmp_path / "nothing.json"
     file.write_text(json.dumps({"schema": "broadmark-results/2", "environments": [], "cases": []}))
     results = broadmark.read_results(file)
     assert len(results.cases) == len(results.frames) == 0
 
 
-def test_a_population_is_known_where_it_changes(tmp_path: pathlib.Path) -> None:
+def test_changing_populations_are_counted(tmp_path: pathlib.Path) -> None:
     changing = case("FreeFall", 1000, "kd", 1e-3, bodies={"mean": 812.5, "max": 990})
     path = write(tmp_path / "r.json", [changing, case("FreeFall", 1000, "sap", 1e-3)])
     cases = broadmark.read_results(path).cases.set_index("algorithm")

@@ -1,4 +1,4 @@
-"""Campaigns as jobs of Slurm: of a real one, with one node, that lives in a folder of the tests."""
+"""Tests of campaigns as Slurm jobs, on a real Slurm with one node in a temporary folder."""
 
 from __future__ import annotations
 
@@ -53,15 +53,15 @@ PartitionName=main Nodes={host} Default=YES State=UP
 
 
 def end_with_parent() -> None:
-    """For a child between fork and exec: it is killed when the tests are."""
+    """Called in a child between fork and exec: the kernel kills the child when the parent dies."""
     ctypes.CDLL(None).prctl(1, signal.SIGKILL)
 
 
 def free_ports(count: int) -> list[int]:
     sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [int(one.getsockname()[1]) for one in sockets]
-    for one in sockets:
-        one.close()
+    ports = [int(socket_.getsockname()[1]) for socket_ in sockets]
+    for socket_ in sockets:
+        socket_.close()
     return ports
 
 
@@ -90,7 +90,7 @@ class Cluster:
         files = {"key-file": "key", "pid-file": "pid", "seed-file": "seed", "log-file": "log"}
         munge = [f"--{option}={self.folder}/munge.{name}" for option, name in files.items()]
         key.rename(self.folder / "munge.key")
-        # --force: the folder lies in one that everybody may write to.
+        # --force: the parent folder is world-writable.
         self._begin("/usr/sbin/munged", "--foreground", "--force", *munge, f"-S{self.folder}/munge")
         wait_until(self.folder, (self.folder / "munge").exists)
         self._begin("/usr/sbin/slurmctld", "-D", "-i")
@@ -107,19 +107,19 @@ class Cluster:
         return done.stdout
 
     def jobs(self) -> str:
-        """Those that have not ended."""
+        """The unfinished jobs."""
         return self.call("squeue", "--noheader", "--states=PD,R", "--array", "--format=%i %j %T %R")
 
     def wait_for_jobs(self) -> None:
-        """Until all have ended."""
+        """Waits until all jobs have ended."""
         if numbers := self.call("squeue", "--noheader", "--format=%A").split():
             self.call("srun", "--dependency=afterany:" + ":".join(numbers), "true")
 
-    def task_that_runs(self, recording: str) -> tuple[str, list[int]]:
-        """The number of the array's task, and its processes."""
+    def running_task(self, recording: str) -> tuple[str, list[int]]:
+        """The array task that runs a recording, and its processes."""
         tasks: dict[str, list[int]] = {}
         for pid, environment in self._our_processes():
-            variables = dict(one.split("=", 1) for one in environment if "=" in one)
+            variables = dict(variable.split("=", 1) for variable in environment if "=" in variable)
             if "SLURM_ARRAY_TASK_ID" in variables:
                 task = f"{variables['SLURM_ARRAY_JOB_ID']}_{variables['SLURM_ARRAY_TASK_ID']}"
                 tasks.setdefault(task, []).append(pid)
@@ -131,7 +131,7 @@ class Cluster:
         raise AssertionError(f"no job runs {recording}: {self.jobs()}")
 
     def stop(self) -> None:
-        """Ends whatever was started here, however it is."""
+        """Kills all started processes, in any state."""
         if (self.folder / "slurm.conf").exists():
             subprocess.run(["scancel", "--me"], env=self.environment, check=False)
         for daemon in reversed(self._daemons):
@@ -157,7 +157,7 @@ class Cluster:
             )
 
     def _our_processes(self) -> Iterator[tuple[int, list[str]]]:
-        """All processes that this cluster's daemons have started, and themselves."""
+        """This cluster's daemons and all processes that they started."""
         ours = f"SLURM_CONF={self.folder}/slurm.conf"
         for entry in pathlib.Path("/proc").glob("[0-9]*/environ"):
             with contextlib.suppress(OSError):
@@ -173,18 +173,18 @@ def cluster() -> Iterator[Cluster]:
         pytest.skip(f"needs the packages munge and slurm-wlm: {missing[0]} is not there")
     if os.geteuid() != 0:
         pytest.skip("Slurm's daemons need root to start jobs")
-    # Not pytest's folder: the path of a socket has 107 bytes at most.
+    # Not pytest's folder: the path of a socket is limited to 107 bytes.
     folder = pathlib.Path(tempfile.mkdtemp(prefix="bm-slurm-", dir="/tmp"))
-    one = Cluster(folder)
+    started = Cluster(folder)
     try:
-        one.start()
-        yield one
+        started.start()
+        yield started
     finally:
-        one.stop()
+        started.stop()
         shutil.rmtree(folder)
 
 
-#: The last variant takes some seconds: by then the others are finished.
+#: The last variant takes some seconds; the others have finished by then.
 CAMPAIGN = {
     "schema": "broadmark-campaign/1",
     "recordings": [
@@ -217,7 +217,7 @@ def file(tmp_path: pathlib.Path) -> pathlib.Path:
 
 def finished_cases(folder: pathlib.Path, recording: str) -> list[dict[str, Any]]:
     paths = (folder / "runs" / recording).glob("*.jsonl")
-    return [line.content for one in paths for line in read_attempt(one) if line.kind == "case"]
+    return [line.content for path in paths for line in read_attempt(path) if line.kind == "case"]
 
 
 def test_killed_and_requeued_jobs_repeat_no_finished_case(
@@ -230,7 +230,7 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
     monkeypatch.setenv("SLURM_CONF", cluster.environment["SLURM_CONF"])
     local = tmp_path / "local disk"
     local.mkdir()
-    monkeypatch.setenv("LOCAL_DISK", str(local))  # sbatch hands it to the jobs
+    monkeypatch.setenv("LOCAL_DISK", str(local))  # sbatch passes it to the jobs
     output = tmp_path / "out put"
     status, out, err = command(
         *("campaign", file, "--output", output, "--slurm"),
@@ -239,11 +239,11 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
     assert status == 0 and out.startswith("submitted: "), err
 
     before: dict[tuple[int, str], Any] = {}
-    for seed, is_hard in ((1, True), (2, False)):  # killed at once, told to end
+    for seed, is_hard in ((1, True), (2, False)):  # SIGKILL, SIGTERM
         name = f"brownian cubes N40 F50 kinematic seed={seed}"
         wait_until(tmp_path, lambda: len(finished_cases(output, name)) == 2)  # in its last case
         there = finished_cases(output, name)
-        task, pids = cluster.task_that_runs(name)
+        task, pids = cluster.running_task(name)
         cluster.call("scontrol", "requeue", task)
         if is_hard:
             for pid in pids:
@@ -262,11 +262,11 @@ def test_killed_and_requeued_jobs_repeat_no_finished_case(
         if case["recording"]["objects"] == 40 and key in before:
             assert [list(times) for times in case["frames"]["total"]] == before[key]
     assert set(results.cases["recording_file"].str.startswith("recordings/")) == {True}
-    assert len(list(local.iterdir())) == 1  # of the job that could not tidy up
-    assert command("campaign", file, "--output", output, "--slurm")[1] == "nothing is left to run\n"
+    assert len(list(local.iterdir())) == 1  # left by the killed job
+    assert command("campaign", file, "--output", output, "--slurm")[1] == "no case is left to run\n"
 
 
-def test_what_slurm_refuses_leaves_no_job(
+def test_a_rejected_submission_leaves_no_job(
     cluster: Cluster,
     file: pathlib.Path,
     tmp_path: pathlib.Path,
@@ -276,12 +276,12 @@ def test_what_slurm_refuses_leaves_no_job(
     monkeypatch.setenv("SLURM_CONF", cluster.environment["SLURM_CONF"])
     arguments = ("campaign", file, "--output", tmp_path / "out", "--slurm")
     status, _, err = command(*arguments, "--sbatch=--partition=none")
-    assert status == 2 and "nothing is submitted" in err and "partition" in err
+    assert status == 2 and "no job was submitted" in err and "partition" in err
     assert not cluster.jobs()
 
     assert command(*arguments, "--list")[0] == 0
     merge = tmp_path / "out/slurm/merge.sh"
-    merge.unlink()  # the last one
+    merge.unlink()  # the last job's script
     with pytest.raises(broadmark.InputError, match="merge.sh"):
         slurm.submit(tmp_path / "out/slurm/submit")
     cluster.wait_for_jobs()

@@ -1,9 +1,9 @@
-"""What the inspector is made to do: rounds of a script, drawn from a seed.
+"""The actions of the soak test: rounds of an inspector script, generated from a seed.
 
-A round is a few deeds in random order and with random values, then the same small piece of work in
-the same state, between two marks: what is sampled there can be compared from round to round. A deed
-leaves no algorithm behind and nothing unsaved, so any other may follow it. What a deed expects is
-written down in it: a wrong state ends the script with the number of its line.
+A round consists of random actions with random values, followed by the reference work, which is the
+same in every round and enclosed by two marks, so that its samples are comparable between rounds. An
+action leaves no algorithm and no unsaved changes behind, so actions can follow in any order. Actions
+contain `expect` commands: an unexpected state ends the script with the line number.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator
 
-#: In every build.
+#: Algorithms of every build.
 ALGORITHMS = [
     "sap",
     "kd",
@@ -42,9 +42,9 @@ PANELS = [
     "Mismatches",
     "Results",
 ]
-#: Files that must be there before, and the arguments that bake them.
+#: Recordings to prepare, with the arguments of `bake`.
 RECORDINGS = {
-    "yardstick.broadmark": [
+    "reference.broadmark": [
         "--scenes",
         "brownian",
         "--objects",
@@ -64,12 +64,12 @@ RECORDINGS = {
         "30",
     ],
 }
-#: Written before and after the piece of work.
+#: The marks before and after the reference work.
 BEGIN, END = "begun", "ended"
 
-YARDSTICK = f"""
+REFERENCE_WORK = f"""
 resize 1280x720
-open yardstick.broadmark
+open reference.broadmark
 wait settled
 key Home
 click Algorithms/Add…
@@ -88,38 +88,38 @@ expect error = ""
 
 
 class Rounds:
-    """An endless script: the same seed, the same lines."""
+    """An endless script, determined by its seed."""
 
     def __init__(self, seed: int) -> None:
         self._random = random.Random(seed)
         self._saved: set[str] = set()
-        self._deeds: list[Callable[[], str]] = []
+        self._actions: list[Callable[[], str]] = []
 
     def __iter__(self) -> Iterator[str]:
-        yield "patience 20\nopen yardstick.broadmark\nclick Playback/Loop\nexpect loop = yes\n"
-        yield "click Batch/scenes/freefall\nclick Batch/scenes/brownian\n"  # of the two only this
+        yield "patience 20\nopen reference.broadmark\nclick Playback/Loop\nexpect loop = yes\n"
+        yield "click Batch/scenes/freefall\nclick Batch/scenes/brownian\n"  # only one scene
         while True:
-            yield "".join(self._next()() for _ in range(2)) + YARDSTICK
+            yield "".join(self._next()() for _ in range(2)) + REFERENCE_WORK
 
     def _next(self) -> Callable[[], str]:
-        """Each deed once, in random order, before any comes again."""
-        if not self._deeds:
-            self._deeds = [
+        """All actions once in random order, then again."""
+        if not self._actions:
+            self._actions = [
                 self._open,
                 self._simulate,
                 self._save,
                 self._compare,
                 self._crash,
-                self._look,
+                self._change_view,
                 self._author,
                 self._export,
                 self._batch,
             ]
-            self._random.shuffle(self._deeds)
-        return self._deeds.pop()
+            self._random.shuffle(self._actions)
+        return self._actions.pop()
 
-    def _number(self, least: int, most: int) -> int:
-        return self._random.randint(least, most)
+    def _number(self, minimum: int, maximum: int) -> int:
+        return self._random.randint(minimum, maximum)
 
     def _open(self) -> str:
         name = self._random.choice(list(RECORDINGS))
@@ -142,9 +142,9 @@ wait settled
 """
 
     def _simulate(self) -> str:
-        # With a recording open, what else might be simulated is folded away.
+        # The form of a new simulation is collapsed while a recording is open.
         return f"""
-open yardstick.broadmark
+open reference.broadmark
 wait settled
 click Scene/draft
 choose Scene/scene {self._random.choice(SCENES)}
@@ -174,15 +174,15 @@ expect title = {name}
 
     def _compare(self) -> str:
         ids = self._random.sample(ALGORITHMS, self._number(2, 4))
-        add = "".join(f"click Algorithms/Add…\nclick Algorithms/add/{one}\n" for one in ids)
-        remove = "".join(f"click Algorithms/{one}/Remove\n" for one in ids)
-        right = "".join(f"expect lane.{one}.status = ok\n" for one in ids)
+        add = "".join(f"click Algorithms/Add…\nclick Algorithms/add/{id_}\n" for id_ in ids)
+        remove = "".join(f"click Algorithms/{id_}/Remove\n" for id_ in ids)
+        expectations = "".join(f"expect lane.{id_}.status = ok\n" for id_ in ids)
         return f"""
 open changing.broadmark
 wait settled
 {add}wait settled
 {self._seek()}
-{right}panel Results
+{expectations}panel Results
 wait 3
 panel Timeline
 click Timeline/logarithmic
@@ -191,9 +191,9 @@ wait 5
 """
 
     def _crash(self) -> str:
-        """An algorithm that crashes costs a worker process."""
+        """An algorithm crashes its worker process."""
         return f"""
-open yardstick.broadmark
+open reference.broadmark
 wait settled
 key Home
 click Algorithms/Add…
@@ -207,7 +207,7 @@ click Algorithms/unruly/Remove
 expect error = ""
 """
 
-    def _look(self) -> str:
+    def _change_view(self) -> str:
         share = self._random.random
         return f"""
 resize {self._number(300, 1900)}x{self._number(200, 1000)}
@@ -264,7 +264,7 @@ expect author.modified = no
 """
 
     def _export(self) -> str:
-        """A wrong answer, shrunk and written."""
+        """Exports a reduced case of a wrong answer."""
         name = f"case-{self._number(1, 3)}.aabbs"
         replace = "expect dialog = yes\nclick File/Save\n" if name in self._saved else ""
         self._saved.add(name)

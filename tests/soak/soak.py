@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""The inspector for hours: does it take more and more memory, keep descriptors, become slower?
+"""Soak test of the inspector: detects growing memory, leaked descriptors and slow-downs over hours.
 
     tests/soak/soak.py --program FILE --plugins FOLDER [--minutes M] [--seed S] [--output DIR]
 
-One process of the inspector, off-screen, plays rounds of random deeds (rounds.py) until the time is
-over; beside it small headless runs follow each other. In each round, in the same state, the
-inspector's memory, descriptors, threads and worker processes are sampled, and the processor time
-that a small piece of work takes. In the end a table judges them (judgement.py); samples.csv,
-runs.csv and soak.png are in the output folder. Exit status 1 if anything grows, is left behind or
-becomes slower, or if the inspector ends by itself.
+An off-screen inspector performs rounds of random actions (rounds.py) until the time is over, while
+small headless runs are executed in sequence. In every round, in the same state, the inspector's
+memory, descriptors, threads and worker processes are sampled, and the processor time of the reference
+work. Finally, a table lists the trends (trends.py); samples.csv, runs.csv and soak.png are in the
+output folder. The exit status is 1 for growth, leaks or slow-downs, or if the inspector ends early.
 """
 
 from __future__ import annotations
@@ -23,37 +22,37 @@ import sys
 import time
 from dataclasses import asdict, astuple, dataclass, fields
 
-from judgement import Judgement, grows, leaks, slows_down
 from rounds import BEGIN, END, RECORDINGS, Rounds
+from trends import Trend, grows, leaks, slows_down
 
-#: No round takes less, in seconds: so many are written into the script.
-SHORTEST_ROUND = 1.0
-FEWEST_ROUNDS = 2
-#: A pause of so many seconds is none of ours.
-STOPPED = 5
-#: After so many seconds what wrote the mark is closed again.
-CALM = 0.2
-#: A round that takes longer hangs.
-LONGEST_ROUND = 300
+#: The minimum duration of a round in seconds, for the number of rounds in the script.
+MIN_ROUND_SECONDS = 1.0
+MIN_ROUNDS = 2
+#: A longer gap in seconds means that the test itself was stopped.
+MAX_GAP = 5
+#: The delay in seconds after which the file of the mark is closed.
+MARK_DELAY = 0.2
+#: The maximum duration of a round in seconds; a longer round hangs.
+MAX_ROUND_SECONDS = 300
 MIB = 1 << 20
 
 
 @dataclass(frozen=True)
 class Sample:
-    """Of the inspector, in a round."""
+    """A sample of the inspector in a round."""
 
-    minutes: float  #: since the beginning
+    minutes: float  #: since the start
     resident_mib: float
-    anonymous_mib: float  #: of that what is not of files: heap and stacks
+    anonymous_mib: float  #: the anonymous part: heap and stacks
     descriptors: int
     threads: int
-    workers: int  #: processes that it has started and that are there
-    processor_seconds: float  #: of the small piece of work
-    seconds: float  #: the same by the clock
+    workers: int  #: running child processes
+    processor_seconds: float  #: of the reference work
+    seconds: float  #: of the reference work, wall clock
 
 
 class Process:
-    """What the system tells of a process."""
+    """A process in /proc."""
 
     def __init__(self, pid: int) -> None:
         self._folder = pathlib.Path(f"/proc/{pid}")
@@ -65,8 +64,8 @@ class Process:
                 return int(line.split()[1]) * 1024 / MIB
         return 0.0
 
-    def count(self, of: str) -> int:
-        return len(list((self._folder / of).iterdir()))
+    def count(self, folder: str) -> int:
+        return len(list((self._folder / folder).iterdir()))
 
     def children(self) -> int:
         tasks = (self._folder / "task").glob("*/children")
@@ -78,7 +77,7 @@ class Process:
 
 
 class Inspector:
-    """The inspector, and what has been sampled of it."""
+    """The inspector and its samples."""
 
     def __init__(self, options: argparse.Namespace, folder: pathlib.Path) -> None:
         self.samples: list[Sample] = []
@@ -88,7 +87,7 @@ class Inspector:
         self._seen = {name: self._time(name) for name in self._marks}
         self._begun: Sample | None = None
         self._begun_at = 0.0  # in processor seconds
-        self._due: float | None = None  # when it is to be sampled
+        self._due: float | None = None  # the time of the next sample
         with open(folder / "output.txt", "wb") as output:
             self._process = subprocess.Popen(
                 [options.program, "--headless", "--ui", "--script", "script.txt"]
@@ -100,19 +99,19 @@ class Inspector:
                 stderr=subprocess.STDOUT,
             )
         self._system = Process(self._process.pid)
-        self._start = self._last = self._looked = time.monotonic()
+        self._start = self._last = self._polled = time.monotonic()
 
-    def look(self) -> None:
-        """Takes note of what has happened since."""
+    def poll(self) -> None:
+        """Samples the inspector when a mark has changed."""
         now = time.monotonic()
-        if now > self._looked + STOPPED:
-            self._last += now - self._looked  # somebody has stopped us all for a while
-        self._looked = now
+        if now > self._polled + MAX_GAP:
+            self._last += now - self._polled  # all processes were stopped
+        self._polled = now
         if self._changed(BEGIN):
             self._changed(END)
             self._begun = None
             self._begun_at = self._system.processor_seconds()
-            self._due = time.monotonic() + CALM
+            self._due = time.monotonic() + MARK_DELAY
         elif self._due and time.monotonic() > self._due:
             self._begun = self._sample()
             self._due = None
@@ -127,12 +126,12 @@ class Inspector:
             self._begun = None
             self._last = time.monotonic()
 
-    def wrong(self) -> str:
-        """Why it is no use going on."""
+    def failure(self) -> str:
+        """The reason to stop early; "" to continue."""
         if self._process.poll() is not None:
-            return f"has ended by itself, with {self._process.returncode}: see output.txt"
-        if time.monotonic() - self._last > LONGEST_ROUND:
-            return f"has not ended a round for {LONGEST_ROUND} s"
+            return f"ended early with status {self._process.returncode}: see output.txt"
+        if time.monotonic() - self._last > MAX_ROUND_SECONDS:
+            return f"has not finished a round for {MAX_ROUND_SECONDS} s"
         return ""
 
     def end(self) -> None:
@@ -146,7 +145,7 @@ class Inspector:
         try:
             now = self._time(mark)
         except FileNotFoundError:
-            return False  # while another takes its name
+            return False  # while the file is replaced
         changed = now != self._seen[mark]
         self._seen[mark] = now
         return changed
@@ -165,9 +164,9 @@ class Inspector:
 
 
 class HeadlessRuns:
-    """Small runs, one after the other with pauses; each is the same as the first."""
+    """Identical small runs in sequence, with pauses."""
 
-    PAUSE = 2.0
+    PAUSE_SECONDS = 2.0
 
     def __init__(self, options: argparse.Namespace, folder: pathlib.Path) -> None:
         self.processor_seconds: list[float] = []
@@ -175,22 +174,22 @@ class HeadlessRuns:
             [
                 options.program,
                 "--headless",
-                "yardstick.broadmark",
+                "reference.broadmark",
                 "--quiet",
                 "--check",
                 "full",
             ]
             + ["--algorithm", "sap,kd-mt,columns,tide", "--threads", "2"]
             + ["--json", "results.json", "--csv", "results.csv"]
-            # How busy the machine is is no fault of theirs.
+            # The machine may be busy.
             + ["--allow-timeout", "--hard-limit", "600"]
         )
         self._folder = folder
         self._process: subprocess.Popen[bytes] | None = None
         self._next = time.monotonic()
 
-    def look(self) -> None:
-        """Takes note of one that has ended, or begins another."""
+    def poll(self) -> None:
+        """Records a finished run, or starts the next."""
         if self._process is None:
             if time.monotonic() >= self._next:
                 self._process = subprocess.Popen(
@@ -206,9 +205,9 @@ class HeadlessRuns:
             return
         self._process = None
         if status != 0:
-            raise SystemExit(f"soak: a headless run has ended with status {status}")
+            raise SystemExit(f"soak: a headless run ended with status {status}")
         self.processor_seconds.append(usage.ru_utime + usage.ru_stime)
-        self._next = time.monotonic() + self.PAUSE
+        self._next = time.monotonic() + self.PAUSE_SECONDS
 
     def end(self) -> None:
         if self._process:
@@ -217,7 +216,7 @@ class HeadlessRuns:
 
 
 def prepare(options: argparse.Namespace, folder: pathlib.Path) -> None:
-    """Recordings, and a script that is longer than the time."""
+    """Bakes the recordings and writes a script for the whole duration."""
     for name, arguments in RECORDINGS.items():
         command = [options.program, "bake", *arguments, "--quiet"]
         into = folder / "baked"
@@ -231,22 +230,22 @@ def prepare(options: argparse.Namespace, folder: pathlib.Path) -> None:
         shutil.rmtree(into)
     rounds = iter(Rounds(options.seed))
     with open(folder / "script.txt", "w", encoding="utf-8") as script:
-        for _ in range(2 + round(60 * options.minutes / SHORTEST_ROUND)):
+        for _ in range(2 + round(60 * options.minutes / MIN_ROUND_SECONDS)):
             script.write(next(rounds))
 
 
-def judged(inspector: Inspector, runs: HeadlessRuns, allowed_mib: float) -> list[Judgement]:
-    def of(name: str) -> list[float]:
+def find_trends(inspector: Inspector, runs: HeadlessRuns, allowed_mib: float) -> list[Trend]:
+    def values(name: str) -> list[float]:
         return [getattr(sample, name) for sample in inspector.samples]
 
     allowed_share = 0.1
     return [
-        grows("resident memory, MiB", of("resident_mib"), allowed_mib),
-        grows("of that heap and stacks, MiB", of("anonymous_mib"), allowed_mib),
-        leaks("descriptors", of("descriptors")),
-        leaks("threads", of("threads")),
-        leaks("worker processes", of("workers")),
-        slows_down("inspector's yardstick, s", of("processor_seconds"), allowed_share),
+        grows("resident memory, MiB", values("resident_mib"), allowed_mib),
+        grows("heap and stacks, MiB", values("anonymous_mib"), allowed_mib),
+        leaks("descriptors", values("descriptors")),
+        leaks("threads", values("threads")),
+        leaks("worker processes", values("workers")),
+        slows_down("reference work, s", values("processor_seconds"), allowed_share),
         slows_down("headless run, s", runs.processor_seconds, allowed_share),
     ]
 
@@ -271,7 +270,7 @@ def draw(path: pathlib.Path, samples: list[Sample]) -> None:
     rows = {
         "memory, MiB": ["resident_mib", "anonymous_mib"],
         "count": ["descriptors", "threads", "workers"],
-        "yardstick, s": ["processor_seconds", "seconds"],
+        "reference work, s": ["processor_seconds", "seconds"],
     }
     figure, axes = pyplot.subplots(len(rows), 1, figsize=(9, 8), sharex=True)
     for axis, (label, names) in zip(axes, rows.items()):
@@ -288,29 +287,29 @@ def draw(path: pathlib.Path, samples: list[Sample]) -> None:
     figure.savefig(path)
 
 
-def report(judgements: list[Judgement], rounds: int, runs: int) -> None:
+def report(trends: list[Trend], rounds: int, runs: int) -> None:
     print(f"{rounds} rounds of the inspector, {runs} headless runs")
-    print(f"{'':32} {'at first':>10} {'at last':>10}")
-    for one in judgements:
-        print(f"{one.what:32} {one.first:10.2f} {one.last:10.2f}  {one.wrong or 'ok'}")
+    print(f"{'':32} {'first':>10} {'last':>10}")
+    for trend in trends:
+        print(
+            f"{trend.quantity:32} {trend.first:10.2f} {trend.last:10.2f}  {trend.problem or 'ok'}"
+        )
 
 
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="broadmark")
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="the program broadmark")
     parser.add_argument(
         "--plugins",
         type=pathlib.Path,
         required=True,
-        help="where the tests' plug-ins are",
+        help="folder with the tests' plug-ins",
     )
-    parser.add_argument("--minutes", type=float, default=120, help="how long (default: 120)")
-    parser.add_argument("--seed", type=int, default=1, help="same seed, same deeds")
-    parser.add_argument(
-        "--allowed-mib", type=float, default=16, help="growth of memory that is allowed"
-    )
+    parser.add_argument("--minutes", type=float, default=120, help="duration (default: 120)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the actions")
+    parser.add_argument("--allowed-mib", type=float, default=16, help="allowed growth of memory")
     parser.add_argument("--output", type=pathlib.Path, default=pathlib.Path("soak"))
     options = parser.parse_args()
     options.program = options.program.resolve()
@@ -327,32 +326,32 @@ def main() -> int:
     prepare(options, work)
     inspector = Inspector(options, work)
     runs = HeadlessRuns(options, work)
-    start = told = time.monotonic()
+    start = last_report = time.monotonic()
     try:
-        while not (wrong := inspector.wrong()):
+        while not (failure := inspector.failure()):
             is_over = time.monotonic() > start + 60 * options.minutes
-            if is_over and len(inspector.samples) >= FEWEST_ROUNDS:
+            if is_over and len(inspector.samples) >= MIN_ROUNDS:
                 break
-            inspector.look()
-            runs.look()
+            inspector.poll()
+            runs.poll()
             time.sleep(0.01)
-            if time.monotonic() > told + 60:
-                told = time.monotonic()
+            if time.monotonic() > last_report + 60:
+                last_report = time.monotonic()
                 write_csv(folder, inspector, runs)
-                minutes = (told - start) / 60
+                minutes = (last_report - start) / 60
                 print(f"soak: {minutes:.0f} of {options.minutes:g} min", file=sys.stderr)
     finally:
         inspector.end()
         runs.end()
     write_csv(folder, inspector, runs)
-    judgements = judged(inspector, runs, options.allowed_mib)
-    report(judgements, len(inspector.samples), len(runs.processor_seconds))
+    trends = find_trends(inspector, runs, options.allowed_mib)
+    report(trends, len(inspector.samples), len(runs.processor_seconds))
     if inspector.samples:
         draw(folder / "soak.png", inspector.samples)
-    if wrong:
-        print(f"soak: the inspector {wrong}", file=sys.stderr)
+    if failure:
+        print(f"soak: the inspector {failure}", file=sys.stderr)
         print((work / "output.txt").read_text(errors="replace")[-2000:], file=sys.stderr)
-    return 1 if wrong or any(one.wrong for one in judgements) else 0
+    return 1 if failure or any(trend.problem for trend in trends) else 0
 
 
 if __name__ == "__main__":

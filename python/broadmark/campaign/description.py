@@ -1,7 +1,7 @@
 """The campaign file: JSON, described in docs/campaigns.md.
 
-A key is called as the program's option is, and its values are the program's to judge: here it is
-only checked that keys are known and values of their type.
+Keys are named like the program's options. This module checks keys and types; the program checks the
+values.
 """
 
 from __future__ import annotations
@@ -18,30 +18,30 @@ from broadmark.errors import InputError
 
 SCHEMA = "broadmark-campaign/1"
 
-#: A parameter's value: the program takes texts, files of scene parameters tell numbers from texts.
+#: A parameter's value. The program accepts strings; scene parameter files distinguish numbers.
 Value = str | int | float | bool
-#: Names with one or several values; every combination is meant.
+#: Names with their values; every combination is run.
 Values = tuple[tuple[str, tuple[Value, ...]], ...]
 
 
 @dataclass(frozen=True)
 class Block:
-    """Recordings: every combination of these."""
+    """A grid of recordings: every combination of these values."""
 
-    where: str  #: in the file, for messages
+    where: str  #: the path in the file, for messages
     scenes: tuple[str, ...]
     object_types: tuple[str, ...]
     objects: tuple[int, ...]
     frames: tuple[int, ...]
-    engines: tuple[str, ...]  #: "": each scene's own
+    engines: tuple[str, ...]  #: "": each scene's default
     seeds: tuple[int, ...]
     parameters: Values
-    split: bool  #: not simulated, but made of recordings with an eighth of the bodies
+    split: bool  #: split from recordings with an eighth of the bodies, not simulated
 
 
 @dataclass(frozen=True)
 class Selection:
-    """Variants: every combination of these. None: the program's default."""
+    """A grid of variants: every combination of these values. None: the program's default."""
 
     where: str
     algorithms: tuple[str, ...]
@@ -52,18 +52,18 @@ class Selection:
 
 @dataclass(frozen=True)
 class Campaign:
-    """What a campaign file says."""
+    """The content of a campaign file."""
 
     path: pathlib.Path
     text: str
     title: str
     blocks: tuple[Block, ...]
     selections: tuple[Selection, ...]
-    options: dict[str, Any]  #: how every case is measured: options of the program
+    options: dict[str, Any]  #: the program's options for measuring a case
 
 
 def read_campaign(path: pathlib.Path) -> Campaign:
-    """Reads a campaign file. Raises InputError that names file and key."""
+    """Reads a campaign file. Raises InputError with the file and the key."""
     try:
         text = path.read_text(encoding="utf-8")
         document = json.loads(text, object_pairs_hook=_without_repeated_keys)
@@ -71,12 +71,12 @@ def read_campaign(path: pathlib.Path) -> Campaign:
         raise InputError(f"{path}: cannot be read: {error}") from None
     try:
         return _campaign(path, text, document)
-    except _Wrong as wrong:
-        raise InputError(f"{path}: {wrong}") from None
+    except _InvalidKey as error:
+        raise InputError(f"{path}: {error}") from None
 
 
-class _Wrong(Exception):
-    """A key and what is wrong with it."""
+class _InvalidKey(Exception):
+    """The path of a key and its error."""
 
 
 def _without_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -84,14 +84,14 @@ def _without_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(members) < len(pairs):
         names = [name for name, _ in pairs]
         repeated = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"'{repeated}' is there twice in one object")
+        raise ValueError(f"'{repeated}' is repeated in an object")
     return members
 
 
 def _campaign(path: pathlib.Path, text: str, document: Any) -> Campaign:
     if not isinstance(document, dict) or document.get("schema") != SCHEMA:
-        raise _Wrong(f"is no campaign: its \"schema\" is not '{SCHEMA}'")
-    keys = _taken(document, "", CAMPAIGN_KEYS, required=["recordings", "algorithm"])
+        raise _InvalidKey(f"not a campaign: the \"schema\" is not '{SCHEMA}'")
+    keys = _convert_members(document, "", CAMPAIGN_KEYS, required=["recordings", "algorithm"])
     del keys["schema"]
     common = {name: keys.pop(name) for name in ("threads", "isa", "parameters") if name in keys}
     return Campaign(
@@ -107,7 +107,7 @@ def _campaign(path: pathlib.Path, text: str, document: Any) -> Campaign:
 def _blocks(blocks: list[Any]) -> Iterator[Block]:
     for number, block in enumerate(blocks):
         where = f"recordings[{number}]"
-        keys = _taken(block, where, BLOCK_KEYS, required=["scenes", "objects", "frames"])
+        keys = _convert_members(block, where, BLOCK_KEYS, required=["scenes", "objects", "frames"])
         yield Block(
             where,
             scenes=keys["scenes"],
@@ -122,14 +122,14 @@ def _blocks(blocks: list[Any]) -> Iterator[Block]:
 
 
 def _selections(algorithms: list[Any], common: dict[str, Any]) -> Iterator[Selection]:
-    """Those that are only named are run together; an object is a selection of its own."""
-    named = [one for one in algorithms if isinstance(one, str)]
+    """A selection for all plain names together and a selection for each object."""
+    named = [entry for entry in algorithms if isinstance(entry, str)]
     if named:
         yield _selection("algorithm", {**common, "algorithm": tuple(named)})
-    for number, one in enumerate(algorithms):
-        if not isinstance(one, str):
+    for number, entry in enumerate(algorithms):
+        if not isinstance(entry, str):
             where = f"algorithm[{number}]"
-            own = _taken(one, where, SELECTION_KEYS, required=["algorithm"])
+            own = _convert_members(entry, where, SELECTION_KEYS, required=["algorithm"])
             yield _selection(where, common | own)
 
 
@@ -143,57 +143,59 @@ def _selection(where: str, keys: dict[str, Any]) -> Selection:
     )
 
 
-def _taken(
+def _convert_members(
     members: Any, where: str, known: dict[str, Callable[[Any], Any]], required: list[str]
 ) -> dict[str, Any]:
-    """The members, each as its key has it."""
-    place = f"{where}: " if where else ""
+    """The members of an object, each converted by its key's function in `known`."""
+    prefix = f"{where}: " if where else ""
     if not isinstance(members, dict):
-        raise _Wrong(f"{place}an object with {', '.join(required)} is expected")
+        raise _InvalidKey(f"{prefix}expected an object with {', '.join(required)}")
     for name in members:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             hint = f"did you mean '{near[0]}'?" if near else f"one of: {', '.join(known)}"
-            raise _Wrong(f"{place}unknown key '{name}' ({hint})")
+            raise _InvalidKey(f"{prefix}unknown key '{name}' ({hint})")
     for name in required:
         if members.get(name) is None:
-            raise _Wrong(f"{place}'{name}' is missing")
-    taken = {}
+            raise _InvalidKey(f"{prefix}'{name}' is missing")
+    converted = {}
     for name, value in members.items():
         try:
             if value is not None:
-                taken[name] = known[name](value)
-        except _Wrong as wrong:
+                converted[name] = known[name](value)
+        except _InvalidKey as error:
             shown = json.dumps(value)
             shown = shown if len(shown) < 60 else shown[:57] + "..."
-            raise _Wrong(f"{where}{'.' if where else ''}{name}: {shown} is not {wrong}") from None
-    return taken
+            raise _InvalidKey(
+                f"{where}{'.' if where else ''}{name}: {shown} is not {error}"
+            ) from None
+    return converted
 
 
-def _one(what: str, fits: Callable[[Any], bool]) -> Callable[[Any], Any]:
-    def take(value: Any) -> Any:
+def _single(description: str, fits: Callable[[Any], bool]) -> Callable[[Any], Any]:
+    def convert(value: Any) -> Any:
         if not fits(value):
-            raise _Wrong(what)
+            raise _InvalidKey(description)
         return value
 
-    return take
+    return convert
 
 
-def _one_or_several(what: str, fits: Callable[[Any], bool]) -> Callable[[Any], Any]:
-    def take(value: Any) -> Any:
+def _one_or_more(description: str, fits: Callable[[Any], bool]) -> Callable[[Any], Any]:
+    def convert(value: Any) -> Any:
         values = value if isinstance(value, list) else [value]
         if not values or not all(map(fits, values)):
-            raise _Wrong(f"{what} or a list of those")
+            raise _InvalidKey(f"{description} or a list of such values")
         return tuple(dict.fromkeys(values))
 
-    return take
+    return convert
 
 
-def _is_text(value: Any) -> bool:
+def _is_string(value: Any) -> bool:
     return isinstance(value, str) and value != ""
 
 
-def _is_whole(value: Any) -> bool:
+def _is_integer(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
@@ -204,71 +206,73 @@ def _is_number(value: Any) -> bool:
 
 
 def _is_value(value: Any) -> bool:
-    return _is_text(value) or isinstance(value, bool) or isinstance(value, (int, float))
+    return _is_string(value) or isinstance(value, bool) or isinstance(value, (int, float))
 
 
-_text = _one("a text", _is_text)
-_texts = _one_or_several("a text", _is_text)
-_number = _one("a number from 0", _is_number)
-_whole = _one("a whole number from 0", _is_whole)
-_wholes = _one_or_several("a whole number from 0", _is_whole)
-_switch = _one("true or false", lambda value: isinstance(value, bool))
-_list = _one("a list with something in it", lambda value: isinstance(value, list) and value != [])
+_string = _single("a string", _is_string)
+_strings = _one_or_more("a string", _is_string)
+_number = _single("a non-negative number", _is_number)
+_integer = _single("a non-negative integer", _is_integer)
+_integers = _one_or_more("a non-negative integer", _is_integer)
+_boolean = _single("true or false", lambda value: isinstance(value, bool))
+_list = _single("a non-empty list", lambda value: isinstance(value, list) and value != [])
 
 
 def _parameters(value: Any) -> Values:
     if not isinstance(value, dict):
-        raise _Wrong("an object of parameters and their values")
-    take = _one_or_several("an object whose members are a text, a number, true or false", _is_value)
-    return tuple((name, take(values)) for name, values in value.items())
+        raise _InvalidKey("an object of parameters and their values")
+    convert = _one_or_more(
+        "an object with members that are strings, numbers, true or false", _is_value
+    )
+    return tuple((name, convert(values)) for name, values in value.items())
 
 
 def _precision(value: Any) -> Any:
-    if not _is_text(value) and not _is_number(value):
-        raise _Wrong("a number or a text such as '2%'")
+    if not _is_string(value) and not _is_number(value):
+        raise _InvalidKey("a number or a string such as '2%'")
     return value
 
 
 def _repetitions(value: Any) -> Any:
-    if value != "auto" and not _is_whole(value):
-        raise _Wrong("a whole number or 'auto'")
+    if value != "auto" and not _is_integer(value):
+        raise _InvalidKey("a non-negative integer or 'auto'")
     return value
 
 
 BLOCK_KEYS: dict[str, Callable[[Any], Any]] = {
-    "scenes": _texts,
-    "object_type": _texts,
-    "objects": _wholes,
-    "frames": _wholes,
-    "engine": _texts,
-    "seed": _wholes,
+    "scenes": _strings,
+    "object_type": _strings,
+    "objects": _integers,
+    "frames": _integers,
+    "engine": _strings,
+    "seed": _integers,
     "parameters": _parameters,
-    "split": _switch,
+    "split": _boolean,
 }
 SELECTION_KEYS: dict[str, Callable[[Any], Any]] = {
-    "algorithm": _texts,
-    "threads": _wholes,
-    "isa": _texts,
+    "algorithm": _strings,
+    "threads": _integers,
+    "isa": _strings,
     "parameters": _parameters,
 }
 CAMPAIGN_KEYS: dict[str, Callable[[Any], Any]] = {
-    "schema": _text,
-    "title": _text,
+    "schema": _string,
+    "title": _string,
     "recordings": _list,
     **SELECTION_KEYS,
     "algorithm": _list,
-    "plugin": _texts,
-    "device": _text,
-    "answer": _text,
+    "plugin": _strings,
+    "device": _string,
+    "answer": _string,
     "repetitions": _repetitions,
     "precision": _precision,
     "max_seconds": _number,
     "most_seconds": _number,  # its former name
-    "order_seed": _whole,
-    "warmup": _whole,
+    "order_seed": _integer,
+    "warmup": _integer,
     "time_limit": _number,
     "hard_limit": _number,
     "memory_limit": _number,
-    "check": _text,
-    "pin": _switch,
+    "check": _string,
+    "pin": _boolean,
 }

@@ -1,11 +1,12 @@
-"""How long the rest of a campaign will take. A simple model, documented in docs/campaigns.md:
+"""An estimate of a campaign's remaining time. The model is documented in docs/campaigns.md:
 
-- A frame of a case takes as long as the same variant took on the next smaller recording of the
-  series, times the ratio of their sizes; 0.2 µs a body if it was not run on any yet.
-- A case takes its frames, as often as it is repeated; one past the time limit takes three frames.
-- Beside that a case takes a tenth of a second, for its process, and what has been more so far, such as
-  checks, in proportion.
-- Baking takes as long per body and frame as it has so far, splitting and simulating apart.
+- A frame takes the time of the same variant on the next smaller recording of the series, scaled by
+  the number of bodies; 0.2 µs per body for a variant without results.
+- A case takes the time of its frames times its repetitions; beyond the time limit, three frames.
+- The overhead of a case is a tenth of a second for its process and a share of the measured time, for
+  checks and the like, taken from the finished cases.
+- Baking takes the time per body and frame of earlier baking; split and simulated recordings have
+  separate rates.
 """
 
 from __future__ import annotations
@@ -19,20 +20,20 @@ from typing import Any
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.plan import Recording
 
-SECONDS_PER_BODY = 2e-7  #: of a frame, before the variant has run
+SECONDS_PER_BODY = 2e-7  #: per frame, for a variant without results
 SECONDS_PER_CASE = 0.1
-BESIDE = 2.0  #: time in proportion to what is measured, before anything has run
-SPLITTING, SIMULATING = 4e-8, 4e-6  #: per body and frame, likewise
-FEWEST_SECONDS = 1.0  #: baking that takes less tells nothing about large recordings
+DEFAULT_OVERHEAD = 2.0  #: total time per measured time, before a case has finished
+SPLITTING, SIMULATING = 4e-8, 4e-6  #: initial rates: seconds per body and frame
+MIN_LEARNING_SECONDS = 1.0  #: shorter baking is no evidence for large recordings
 
 FRAMES_TO_TIMEOUT = 3
-FEWEST_AUTO_REPETITIONS = 5
-USUAL_TIME_LIMIT = 0.5
+MIN_AUTO_REPETITIONS = 5
+DEFAULT_TIME_LIMIT = 0.5
 
 
 @dataclass
 class _Work:
-    """What is being done: baking these recordings or, with variants, running them on one."""
+    """The current work: baking the recordings or, with variants, running them on a recording."""
 
     recordings: list[Recording]
     variants: list[str]
@@ -41,54 +42,60 @@ class _Work:
 
 
 class Estimate:
-    """Seconds that cases and recordings will take, corrected by those that they did take."""
+    """The predicted time of cases and recordings, corrected by the time of finished work."""
 
     def __init__(self, ledger: Ledger, options: dict[str, Any]) -> None:
         self._ledger = ledger
         repetitions = options.get("repetitions", 1)
         self._passes: int = options.get("warmup", 0) + (
-            FEWEST_AUTO_REPETITIONS if repetitions == "auto" else repetitions
+            MIN_AUTO_REPETITIONS if repetitions == "auto" else repetitions
         )
-        self._limit: float = options.get("time_limit", USUAL_TIME_LIMIT)
-        self._ran = self._measured = 0.0
-        self._rates = {True: SPLITTING, False: SIMULATING}  # by whether it is split
+        self._limit: float = options.get("time_limit", DEFAULT_TIME_LIMIT)
+        self._total = self._measured = 0.0
+        self._rates = {True: SPLITTING, False: SIMULATING}  # by whether the recording is split
         self._work = _Work([], [], 0, 0)
 
     @contextlib.contextmanager
     def baking(self, recordings: list[Recording]) -> Iterator[None]:
-        """Learns from how long these take."""
-        predicted = sum(map(self._of_bake, recordings))
+        """Updates the model with the time of the with block."""
+        predicted = sum(map(self._bake_seconds, recordings))
         with self._working(_Work(recordings, [], predicted, time.monotonic())) as work:
             yield
-        taken = time.monotonic() - work.begin
-        if predicted and taken > FEWEST_SECONDS:
-            for split in {one.source is not None for one in recordings}:
-                self._rates[split] *= taken / predicted
+        elapsed = time.monotonic() - work.begin
+        if predicted and elapsed > MIN_LEARNING_SECONDS:
+            for split in {recording.source is not None for recording in recordings}:
+                self._rates[split] *= elapsed / predicted
 
     @contextlib.contextmanager
     def running(self, recording: Recording, variants: list[str]) -> Iterator[None]:
-        """Learns from how long these take."""
-        predicted = sum(self._of_case(recording, one) for one in variants)
+        """Updates the model with the time of the with block."""
+        predicted = sum(self._case_seconds(recording, variant) for variant in variants)
         with self._working(_Work([recording], variants, predicted, time.monotonic())) as work:
             yield
-        self._ran += time.monotonic() - work.begin - SECONDS_PER_CASE * len(variants)
-        self._measured += sum(self._measured_in(recording, one) for one in variants)
+        self._total += time.monotonic() - work.begin - SECONDS_PER_CASE * len(variants)
+        self._measured += sum(self._measured_seconds(recording, variant) for variant in variants)
 
-    def left(self, unbaked: Iterable[Recording]) -> float:
-        """Of the whole campaign."""
+    def remaining(self, unbaked: Iterable[Recording]) -> float:
+        """The remaining seconds of the campaign."""
         if not self._ledger.to_run:
             return 0.0
         work = self._work
-        running = {(one, variant) for one in work.recordings for variant in work.variants}
+        running = {
+            (recording, variant) for recording in work.recordings for variant in work.variants
+        }
         cases = (
-            self._of_case(recording, variant)
+            self._case_seconds(recording, variant)
             for recording in self._ledger.recordings
             for variant in self._ledger.pending(recording)
             if (recording, variant) not in running
         )
-        bakes = (self._of_bake(one) for one in unbaked if one not in work.recordings)
-        under_way = max(0.0, work.predicted - (time.monotonic() - work.begin))
-        return under_way + sum(cases) + sum(bakes)
+        bakes = (
+            self._bake_seconds(recording)
+            for recording in unbaked
+            if recording not in work.recordings
+        )
+        current = max(0.0, work.predicted - (time.monotonic() - work.begin))
+        return current + sum(cases) + sum(bakes)
 
     @contextlib.contextmanager
     def _working(self, work: _Work) -> Iterator[_Work]:
@@ -99,26 +106,26 @@ class Estimate:
             self._work = _Work([], [], 0, 0)
 
     @property
-    def _beside(self) -> float:
-        return max(1.0, self._ran / self._measured) if self._measured else BESIDE
+    def _overhead(self) -> float:
+        return max(1.0, self._total / self._measured) if self._measured else DEFAULT_OVERHEAD
 
-    def _of_case(self, recording: Recording, variant: str) -> float:
-        return SECONDS_PER_CASE + self._beside * self._measured_in(recording, variant)
+    def _case_seconds(self, recording: Recording, variant: str) -> float:
+        return SECONDS_PER_CASE + self._overhead * self._measured_seconds(recording, variant)
 
-    def _measured_in(self, recording: Recording, variant: str) -> float:
-        """What the clocks of a case show."""
-        frame = self._per_body(recording, variant) * recording.objects
+    def _measured_seconds(self, recording: Recording, variant: str) -> float:
+        """The measured time of a case's frames."""
+        frame = self._seconds_per_body(recording, variant) * recording.objects
         frames = recording.frames * self._passes
         return frame * (frames if frame < self._limit else min(frames, FRAMES_TO_TIMEOUT))
 
-    def _per_body(self, recording: Recording, variant: str) -> float:
-        """Seconds of a frame, for each body."""
+    def _seconds_per_body(self, recording: Recording, variant: str) -> float:
+        """Seconds per frame and body."""
         known = self._ledger.times(recording.series, variant)
         if not known:
             return SECONDS_PER_BODY
-        objects = max((one for one in known if one <= recording.objects), default=min(known))
+        objects = max((size for size in known if size <= recording.objects), default=min(known))
         return known[objects] / max(objects, 1)
 
-    def _of_bake(self, recording: Recording) -> float:
+    def _bake_seconds(self, recording: Recording) -> float:
         rate = self._rates[recording.source is not None]
         return rate * recording.objects * recording.frames

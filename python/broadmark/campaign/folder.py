@@ -1,10 +1,10 @@
-"""The folder of a campaign: what lies where.
+"""The folder of a campaign and its layout.
 
     campaign.json                          a copy of the campaign file
     recordings/bullet seed=1/…             a folder for each engine, seed and parameters
-    runs/RECORDING/1.jsonl …               an attempt for each call of the program (attempts.py)
+    runs/RECORDING/1.jsonl …               an attempt per call of the program (attempts.py)
     results.json                           all finished cases
-    slurm/                                 job scripts and their output
+    slurm/                                 job scripts and logs
 """
 
 from __future__ import annotations
@@ -16,25 +16,25 @@ import pathlib
 from collections.abc import Callable, Iterator
 from typing import TextIO
 
-from broadmark.campaign.attempts import PART, outcome_of, read_attempt, variant_of
+from broadmark.campaign.attempts import PARTIAL_SUFFIX, outcome_of, read_attempt, variant_of
 from broadmark.campaign.description import Campaign, read_campaign
 from broadmark.campaign.ledger import Ledger
-from broadmark.campaign.plan import Recording, shrunk
+from broadmark.campaign.plan import Recording, incompatibility
 from broadmark.errors import InputError
-from broadmark.files import whole_file
+from broadmark.files import atomic_write
 
-KINDS = {
+SUBFOLDERS = {
     "aabbs": "Recordings_AABBs",
     "broadmark": "Recordings_Broadmark",
     "posrot": "Recordings_PositionRotation",
 }
-#: Those that a scene is run on: `bake` takes the first that can hold it.
-BOX_KINDS = ("aabbs", "broadmark")
+#: The formats of recordings that are run. `bake` uses the first format that can hold the scene.
+BOX_FORMATS = ("aabbs", "broadmark")
 
 
 class Folder:
-    """A campaign's folder. `names` are those that recordings' files begin with, such as
-    "FreeFall Cubes", by scene and object type."""
+    """A campaign's folder. `names` maps scene and object type to the prefix of recordings' file names,
+    such as "FreeFall Cubes"."""
 
     def __init__(self, path: pathlib.Path, names: dict[tuple[str, str], str]) -> None:
         self.path = path
@@ -49,69 +49,69 @@ class Folder:
         return self.path / "campaign.json"
 
     def require_same(self, campaign: Campaign) -> None:
-        """Raises InputError if the folder holds a campaign that this one does not contain."""
+        """Raises InputError unless `campaign` extends the campaign of an existing folder."""
         if not self.campaign.exists():
             return
-        change = shrunk(read_campaign(self.campaign), campaign)
-        if change:
+        difference = incompatibility(read_campaign(self.campaign), campaign)
+        if difference:
             raise InputError(
-                f"{self.path}: holds another campaign: {change}; a campaign may only grow in "
-                "recordings and variants: choose another --output"
+                f"{self.path}: holds another campaign: {difference}; recordings and variants may only "
+                "be added: choose another --output"
             )
 
-    def take(self, campaign: Campaign) -> None:
-        """Makes it the folder of this campaign."""
+    def claim(self, campaign: Campaign) -> None:
+        """Creates the folder and stores the campaign."""
         self.require_same(campaign)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise InputError(f"{self.path}: cannot be made: {error.strerror}") from None
+            raise InputError(f"{self.path}: cannot be created: {error.strerror}") from None
         if not self.campaign.exists() or self.campaign.read_text("utf-8") != campaign.text:
-            with whole_file(self.campaign) as file:
+            with atomic_write(self.campaign) as file:
                 file.write(campaign.text.encode())
 
-    def home(self, recording: Recording) -> pathlib.Path:
-        """Where `bake` puts a recording, into a folder of its kind."""
+    def bake_folder(self, recording: Recording) -> pathlib.Path:
+        """The output folder of `bake`, which adds a subfolder per format."""
         return self.path / "recordings" / recording.series.variation
 
     def file(self, recording: Recording) -> pathlib.Path:
-        """The file that a recording is run on, whether it is there or not."""
-        files = [self._file(recording, kind) for kind in BOX_KINDS]
+        """The path of the file to run, which may not exist."""
+        files = [self._path_of(recording, format_) for format_ in BOX_FORMATS]
         return next((file for file in files if file.exists()), files[0])
 
     def poses(self, recording: Recording) -> pathlib.Path:
-        """The file that a recording is split from, likewise."""
-        return self._file(recording, "posrot")
+        """The path of the file to split, which may not exist."""
+        return self._path_of(recording, "posrot")
 
     def is_baked(self, recording: Recording) -> bool:
-        there = self.file(recording).exists()
-        return there and (not recording.is_split or self.poses(recording).exists())
+        exists = self.file(recording).exists()
+        return exists and (not recording.is_split or self.poses(recording).exists())
 
-    def _file(self, recording: Recording, kind: str) -> pathlib.Path:
+    def _path_of(self, recording: Recording, format_: str) -> pathlib.Path:
         series = recording.series
         name = self._names[series.scene.lower(), series.object_type.lower()]
         stem = f"{name} N{recording.objects} F{recording.frames}frames"
-        return self.home(recording) / KINDS[kind] / f"{stem}.{kind}"
+        return self.bake_folder(recording) / SUBFOLDERS[format_] / f"{stem}.{format_}"
 
     def runs(self, recording: Recording) -> pathlib.Path:
         return self.path / "runs" / recording.name
 
     def attempts(self, recording: Recording) -> list[pathlib.Path]:
-        """The oldest first."""
+        """The paths of the attempts, the oldest first."""
         paths = self.runs(recording).glob("*.jsonl")
         return sorted(paths, key=lambda path: int(path.name.split(".")[0]))
 
     def load(self, recording: Recording, ledger: Ledger) -> None:
-        """Enters into the ledger what has been run on a recording."""
+        """Adds the finished cases of a recording to the ledger."""
         for path in self.attempts(recording):
             for line in read_attempt(path):
                 if line.kind == "case":
                     ledger.add(recording, variant_of(line.content), outcome_of(line.content))
 
     def new_attempt(self, recording: Recording) -> pathlib.Path:
-        """An empty file that is nobody else's."""
+        """Creates an empty file for an attempt. Safe against concurrent processes."""
         for number in itertools.count(len(self.attempts(recording)) + 1):
-            path = self.runs(recording) / f"{number}{PART}"
+            path = self.runs(recording) / f"{number}{PARTIAL_SUFFIX}"
             with contextlib.suppress(FileExistsError):
                 path.open("x").close()
                 return path
@@ -119,8 +119,8 @@ class Folder:
 
     @contextlib.contextmanager
     def lock(self, recording: Recording, waiting: Callable[[], None]) -> Iterator[TextIO]:
-        """Waits until no other process runs the recording, and tells when it has to. A program that
-        outlived the process that began it holds the lock, too, if it was given the file."""
+        """Locks the recording against other processes; calls `waiting` before it blocks. A program that
+        inherits the file keeps the lock until it ends, even after this process."""
         self.runs(recording).mkdir(parents=True, exist_ok=True)
         with open(self.runs(recording) / "lock", "w", encoding="utf-8") as file:
             try:
@@ -129,10 +129,10 @@ class Folder:
                 waiting()
                 fcntl.flock(file, fcntl.LOCK_EX)
             except OSError:
-                pass  # the file system knows no locks; attempts are still files of their own
+                pass  # the file system has no locks; attempts have unique files anyway
             yield file
 
 
-def recorders_of(recording: Recording) -> list[str] | None:
-    """The kinds that a recording is baked as; None: what suits the scene."""
+def recorder_options(recording: Recording) -> list[str] | None:
+    """The formats to bake a recording in; None: the default for the scene."""
     return ["aabbs", "posrot"] if recording.is_split else None

@@ -1,4 +1,4 @@
-"""Which cases of a campaign are finished, which the cap leaves out, and which are to be run."""
+"""The states of a campaign's cases: finished, past the cap, pending."""
 
 from __future__ import annotations
 
@@ -7,33 +7,36 @@ from dataclasses import dataclass
 
 from broadmark.campaign.plan import Recording, Series
 
-#: A wrong answer, or an algorithm that failed.
-WRONG = ("mismatch", "error")
+#: A wrong answer or a failed algorithm.
+FAILURE_STATUSES = ("mismatch", "error")
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a case ended."""
+    """The result of a case."""
 
     status: str
-    seconds_per_frame: float | None  #: None: no frame came to its end
+    seconds_per_frame: float | None  #: None: no frame finished
 
 
 class Ledger:
     """All cases of a campaign: each variant on each recording.
 
-    The cap: a variant that crossed a time limit is not run on larger recordings of the series.
+    The cap: a variant that exceeded a time limit is not run on larger recordings of the series.
     """
 
     def __init__(self, recordings: list[Recording], variants: list[str]) -> None:
         self.recordings = recordings
         self.variants = variants
-        self._outcomes: dict[Recording, dict[str, Outcome]] = {one: {} for one in recordings}
-        self._capped: dict[tuple[Series, str], int] = {}  # to the smallest number of bodies
+        self._outcomes: dict[Recording, dict[str, Outcome]] = {
+            recording: {} for recording in recordings
+        }
+        # The smallest number of bodies with a timeout.
+        self._capped: dict[tuple[Series, str], int] = {}
         self._times: dict[tuple[Series, str], dict[int, float]] = {}
 
     def add(self, recording: Recording, variant: str, outcome: Outcome) -> None:
-        """A case has ended."""
+        """Records the result of a case."""
         self._outcomes[recording][variant] = outcome
         key = recording.series, variant
         if outcome.seconds_per_frame:
@@ -45,29 +48,33 @@ class Ledger:
         return self._outcomes[recording].get(variant)
 
     def times(self, series: Series, variant: str) -> dict[int, float]:
-        """The seconds that a frame took, by number of bodies."""
+        """The seconds per frame, by number of bodies."""
         return self._times.get((series, variant), {})
 
     def cap(self, recording: Recording, variant: str) -> int | None:
-        """The number of bodies with which the variant crossed the limit, if that is why it is not
-        run on this recording."""
+        """The number of bodies at which the variant exceeded the time limit, if the cap excludes it from
+        this recording."""
         smallest = self._capped.get((recording.series, variant), recording.objects)
         if smallest >= recording.objects or self.outcome(recording, variant):
             return None
         return smallest
 
     def pending(self, recording: Recording) -> list[str]:
-        """The variants that are to be run on a recording."""
+        """The variants still to run on a recording."""
         return [
-            one
-            for one in self.variants
-            if not self.outcome(recording, one) and self.cap(recording, one) is None
+            variant
+            for variant in self.variants
+            if not self.outcome(recording, variant) and self.cap(recording, variant) is None
         ]
 
     def tally(self, recording: Recording) -> collections.Counter[str]:
-        """How many cases of a recording ended how; those past the cap are "not run"."""
-        counts = collections.Counter(one.status for one in self._outcomes[recording].values())
-        counts["not run"] = sum(self.cap(recording, one) is not None for one in self.variants)
+        """The number of a recording's cases by status; cases past the cap count as "not run"."""
+        counts = collections.Counter(
+            outcome.status for outcome in self._outcomes[recording].values()
+        )
+        counts["not run"] = sum(
+            self.cap(recording, variant) is not None for variant in self.variants
+        )
         counts["pending"] = len(self.pending(recording))
         return counts
 
@@ -77,12 +84,12 @@ class Ledger:
 
     @property
     def to_run(self) -> int:
-        return sum(len(self.pending(one)) for one in self.recordings)
+        return sum(len(self.pending(recording)) for recording in self.recordings)
 
-    def has_wrong(self, recordings: list[Recording]) -> bool:
-        """Whether a finished case of these gave a wrong answer or failed."""
+    def has_failures(self, recordings: list[Recording]) -> bool:
+        """Whether a finished case of the recordings failed or gave a wrong answer."""
         return any(
-            outcome.status in WRONG
+            outcome.status in FAILURE_STATUSES
             for recording in recordings
             for outcome in self._outcomes[recording].values()
         )

@@ -1,4 +1,4 @@
-"""What a campaign file is to the program: requests, and the cases and names that it makes of them."""
+"""The program's view of a campaign: run requests, and the variants and file names it derives."""
 
 from __future__ import annotations
 
@@ -14,36 +14,38 @@ from broadmark.errors import InputError
 from broadmark.program import as_options, call, request_file
 from broadmark.recordings import write_recording
 
-#: Options of a campaign that are part of its selections; the others tell how cases are measured.
-OF_SELECTIONS = ("plugin", "device", "answer")
+#: Campaign options that belong to every selection; the others set how cases are measured.
+SELECTION_OPTIONS = ("plugin", "device", "answer")
 
 
 def plugin_options(campaign: Campaign) -> list[str]:
-    """The program's options that load the campaign's libraries."""
-    return list(itertools.chain(*(("--plugin", one) for one in campaign.options.get("plugin", ()))))
+    """The options that load the campaign's plug-ins."""
+    return list(
+        itertools.chain(*(("--plugin", path) for path in campaign.options.get("plugin", ())))
+    )
 
 
 def selection_request(campaign: Campaign, selection: Selection) -> dict[str, Any]:
-    """What a run request says of the cases of a selection."""
+    """The part of a run request that selects cases."""
     return {
         "algorithm": selection.algorithms,
         "threads": selection.threads,
         "isa": selection.isas,
         "param": dict(selection.parameters),
-        **{name: campaign.options.get(name) for name in OF_SELECTIONS},
+        **{name: campaign.options.get(name) for name in SELECTION_OPTIONS},
     }
 
 
 def measuring_request(campaign: Campaign) -> dict[str, Any]:
-    """What a run request says of how each case is measured."""
+    """The part of a run request that sets how cases are measured."""
     options = campaign.options.items()
-    return {name: value for name, value in options if name not in OF_SELECTIONS}
+    return {name: value for name, value in options if name not in SELECTION_OPTIONS}
 
 
 def planned_variants(campaign: Campaign) -> dict[str, Selection]:
-    """Every variant once, with the first selection that has it. The program makes them."""
+    """The variants, listed by the program, each with the first selection that contains it."""
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
-        path = os.path.join(folder, "one.aabbs")
+        path = os.path.join(folder, "pair.aabbs")
         write_recording(path, [[[0, 0, 0, 1, 1, 1]]] * 2, name="X", object_type="X")
         variants: dict[str, Selection] = {}
         for selection in campaign.selections:
@@ -58,13 +60,13 @@ def planned_variants(campaign: Campaign) -> dict[str, Selection]:
 
 
 def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
-    """What files of recordings begin with, by scene and object type. The program checks what the
-    file says of recordings on the way."""
+    """The prefix of recordings' file names, by scene and object type. The program also validates the
+    campaign's recordings."""
     names: dict[tuple[str, str], str] = {}
     for block in campaign.blocks:
         try:
             listed = call(
-                *("bake", "--list", "--quiet", "--output", "recordings that are not there"),
+                *("bake", "--list", "--quiet", "--output", "nonexistent recordings"),
                 *as_options(scenes=block.scenes, object_type=block.object_types),
                 *as_options(objects=block.objects, frames=block.frames, seed=block.seeds),
                 *as_options(engine=",".join(filter(None, block.engines)) or None),
@@ -78,11 +80,11 @@ def recording_names(campaign: Campaign) -> dict[tuple[str, str], str]:
         found = re.findall(
             r"/(([^/ ]+) ([^/ ]+)) N\d+ F\d+frames.*\.(?:aabbs|broadmark)$", listed, re.MULTILINE
         )
-        names |= {(scene.lower(), kind.lower()): name for name, scene, kind in found}
+        names |= {(scene.lower(), object_type.lower()): name for name, scene, object_type in found}
     return names
 
 
 def filter_for(variants: list[str]) -> str:
-    """A regular expression that only the ids of these cases match."""
-    names = (re.sub(r"([.*+?^${}()|\[\]\\])", r"\\\1", one) for one in variants)
+    """A regular expression that matches only the ids of these variants' cases."""
+    names = (re.sub(r"([.*+?^${}()|\[\]\\])", r"\\\1", variant) for variant in variants)
     return f"/F[0-9]+/({'|'.join(names)})$"

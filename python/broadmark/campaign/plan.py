@@ -1,4 +1,4 @@
-"""The recordings of a campaign, as plain values: nothing is baked or looked up here."""
+"""The recordings of a campaign as plain values, without access to files or the program."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from broadmark.campaign.description import Block, Campaign, Value
 from broadmark.errors import InputError
 from broadmark.recordings import HEADER, RECORD_BYTES
 
-#: The engine `splitter` makes so many bodies of one.
-PARTS = 8
+#: The number of bodies that the engine `splitter` makes of each body.
+SPLIT_FACTOR = 8
 
 
 @dataclass(frozen=True)
 class Series:
-    """Recordings that differ in size only: the cap goes from one of them to the next."""
+    """The common settings of recordings that differ only in size. The cap applies within a series."""
 
     scene: str
     object_type: str
-    engine: str  #: "": the scene's own
+    engine: str  #: "": the scene's default
     seed: int
     parameters: tuple[tuple[str, Value], ...]
 
     @property
     def variation(self) -> str:
-        """All but scene and object type, as names of files and folders have it."""
+        """Engine, seed and parameters as part of file and folder names."""
         stated = [f"{name}={as_text(value)}" for name, value in self.parameters]
         text = " ".join([*filter(None, [self.engine]), f"seed={self.seed}", *stated])
         return text.replace("/", "_")
@@ -34,13 +34,13 @@ class Series:
 
 @dataclass(frozen=True)
 class Recording:
-    """A recording that the campaign runs its variants on."""
+    """A recording of the campaign."""
 
     series: Series
     objects: int
     frames: int
-    source: Recording | None  #: what it is split from; None: it is simulated
-    is_split: bool = False  #: another one is split from it, so its poses are recorded, too
+    source: Recording | None  #: the recording to split; None: simulated
+    is_split: bool = False  #: a source of other recordings: its poses are recorded, too
 
     @property
     def name(self) -> str:
@@ -51,68 +51,70 @@ class Recording:
 
     @property
     def bytes(self) -> int:
-        """On the disc."""
-        one = HEADER.itemsize + RECORD_BYTES * self.objects * (1 + self.frames)
-        return one * (2 if self.is_split else 1)
+        """The size on disk."""
+        file_bytes = HEADER.itemsize + RECORD_BYTES * self.objects * (1 + self.frames)
+        return file_bytes * (2 if self.is_split else 1)
 
 
 def planned_recordings(campaign: Campaign) -> list[Recording]:
-    """Every recording once, the smallest first. Raises InputError when a source is missing."""
-    made: dict[tuple[Series, int, int], Block] = {}
+    """The distinct recordings, the smallest first. Raises InputError for a missing source."""
+    planned: dict[tuple[Series, int, int], Block] = {}
     for block in campaign.blocks:
         for key in _combinations(block):
-            other = made.setdefault(key, block)
+            other = planned.setdefault(key, block)
             if other.split != block.split:
                 raise InputError(
-                    f"{campaign.path}: {block.where}: {_named(key)} is made by splitting and, in "
-                    "another block, by simulating: leave it out of one of them"
+                    f"{campaign.path}: {block.where}: {_name_of(key)} is split in this block and "
+                    "simulated in another: remove it from one of them"
                 )
-    sources = {key: _source(campaign, key, made) for key, block in made.items() if block.split}
+    sources = {
+        key: _source_key(campaign, key, planned) for key, block in planned.items() if block.split
+    }
     split = set(sources.values())
 
     def recording(key: tuple[Series, int, int]) -> Recording:
         source = recording(sources[key]) if key in sources else None
         return Recording(*key, source=source, is_split=key in split)
 
-    return sorted(map(recording, made), key=lambda one: one.objects)
+    return sorted(map(recording, planned), key=lambda recording: recording.objects)
 
 
 def levels(recordings: Iterable[Recording]) -> Iterator[tuple[int, list[Recording]]]:
-    """The recordings by their number of bodies, ascending."""
-    ordered = sorted(recordings, key=lambda one: one.objects)
-    for objects, same in itertools.groupby(ordered, key=lambda one: one.objects):
-        yield objects, list(same)
+    """The recordings grouped by their number of bodies, ascending."""
+    ordered = sorted(recordings, key=lambda recording: recording.objects)
+    for objects, group in itertools.groupby(ordered, key=lambda recording: recording.objects):
+        yield objects, list(group)
 
 
 def with_sources(recordings: Iterable[Recording]) -> list[Recording]:
-    """These and all that they are split from, sources first."""
+    """The recordings and all their sources, sources first."""
     needed: dict[Recording, None] = {}
 
-    def add(one: Recording) -> None:
-        if one.source:
-            add(one.source)
-        needed[one] = None
+    def add(recording: Recording) -> None:
+        if recording.source:
+            add(recording.source)
+        needed[recording] = None
 
-    for one in recordings:
-        add(one)
+    for recording in recordings:
+        add(recording)
     return list(needed)
 
 
-def shrunk(former: Campaign, campaign: Campaign) -> str:
-    """ "" if `campaign` is `former`, perhaps with more; else what has changed."""
+def incompatibility(former: Campaign, campaign: Campaign) -> str:
+    """The reason why `campaign` does not extend `former`; "" if it does."""
     for name in sorted(former.options.keys() | campaign.options.keys()):
         if former.options.get(name) != campaign.options.get(name):
-            return f"its '{name}' is {former.options.get(name)}, not {campaign.options.get(name)}"
-    now = {one.name for one in planned_recordings(campaign)}
+            return f"the '{name}' is {former.options.get(name)}, not {campaign.options.get(name)}"
+    names = {recording.name for recording in planned_recordings(campaign)}
     for recording in planned_recordings(former):
-        if recording.name not in now:
+        if recording.name not in names:
             return f"it has the recording '{recording.name}'"
     for old in former.selections:
         if not any(
             new.parameters == old.parameters
-            and _holds(new.algorithms, old.algorithms)
-            and _holds(new.threads, old.threads)
-            and _holds(new.isas, old.isas)
+            and _includes(new.algorithms, old.algorithms)
+            and _includes(new.threads, old.threads)
+            and _includes(new.isas, old.isas)
             for new in campaign.selections
         ):
             return f"it runs {', '.join(old.algorithms)} with other threads, isa or parameters"
@@ -120,11 +122,11 @@ def shrunk(former: Campaign, campaign: Campaign) -> str:
 
 
 def as_text(value: Value) -> str:
-    """A parameter's value as the command line has it."""
+    """A parameter's value as on the command line."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _holds(new: tuple[object, ...] | None, old: tuple[object, ...] | None) -> bool:
+def _includes(new: tuple[object, ...] | None, old: tuple[object, ...] | None) -> bool:
     return new == old if new is None or old is None else set(new) >= set(old)
 
 
@@ -139,24 +141,26 @@ def _combinations(block: Block) -> Iterator[tuple[Series, int, int]]:
                 yield series, objects, frames
 
 
-def _named(key: tuple[Series, int, int]) -> str:
+def _name_of(key: tuple[Series, int, int]) -> str:
     return Recording(*key, source=None).name
 
 
-def _source(
-    campaign: Campaign, key: tuple[Series, int, int], made: dict[tuple[Series, int, int], Block]
+def _source_key(
+    campaign: Campaign, key: tuple[Series, int, int], planned: dict[tuple[Series, int, int], Block]
 ) -> tuple[Series, int, int]:
-    """What a recording is split from."""
+    """The key of the recording to split."""
     series, objects, frames = key
-    where = f"{campaign.path}: {made[key].where}: {_named(key)}"
-    if objects % PARTS or objects == 0:
-        raise InputError(f"{where}: cannot be split: {objects} is no multiple of {PARTS}")
+    where = f"{campaign.path}: {planned[key].where}: {_name_of(key)}"
+    if objects % SPLIT_FACTOR or objects == 0:
+        raise InputError(f"{where}: cannot be split: {objects} is not a multiple of {SPLIT_FACTOR}")
     candidates = [
-        one for one in made if one[0] == series and one[1] == objects // PARTS and one[2] >= frames
+        source
+        for source in planned
+        if source[0] == series and source[1] == objects // SPLIT_FACTOR and source[2] >= frames
     ]
     if not candidates:
         raise InputError(
-            f"{where}: is split from one of {objects // PARTS} bodies and at least {frames} "
-            "frames: add that to a block with the same engine, seed and parameters"
+            f"{where}: requires a recording of {objects // SPLIT_FACTOR} bodies and at least "
+            f"{frames} frames: add it to a block with the same engine, seed and parameters"
         )
-    return min(candidates, key=lambda one: one[2])
+    return min(candidates, key=lambda source: source[2])

@@ -1,5 +1,5 @@
-"""What is shown on standard error while a campaign runs: one line that is drawn again on a terminal,
-else a line for each event."""
+"""The progress of a campaign on standard error: an updated line on a terminal, otherwise a line per
+event."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ERASE_LINE = "\r\033[K"
 
 
 class Progress:
-    """Cases finished, time that has passed, time left."""
+    """Shows finished cases, elapsed time and remaining time."""
 
     def __init__(
         self,
@@ -34,12 +34,12 @@ class Progress:
         self._terminal = sys.stderr.isatty()
         self._begin = time.monotonic()
         self._drawn = 0.0
-        self._latest = ""
-        self._left = (-math.inf, 0.0)  # when the time left was estimated, and how much it was
+        self._last_event = ""
+        self._estimated = (-math.inf, 0.0)  # time of the estimate, remaining seconds
 
     def event(self, text: str) -> None:
-        """Something that is worth a line."""
-        self._latest = text
+        """Shows an event."""
+        self._last_event = text
         if self._terminal:
             self.tick(now=True)
         else:
@@ -51,14 +51,14 @@ class Progress:
         self.event(f"{variant}{mean} {outcome.status}: {recording.name}")
 
     def tick(self, now: bool = False) -> None:
-        """Lets the clock of a terminal's line go on."""
+        """Updates the line on a terminal."""
         if self._terminal and (now or time.monotonic() - self._drawn > 0.5):
             self._drawn = time.monotonic()
             width = shutil.get_terminal_size().columns - 1  # a line that wraps cannot be erased
             self._print(ERASE_LINE + self._line()[:width])
 
-    def complain(self, text: str) -> None:
-        """A line that stays, also with --quiet."""
+    def report_error(self, text: str) -> None:
+        """Prints a permanent line, also with --quiet."""
         print((ERASE_LINE if self._terminal else "") + f"broadmark: {text}", file=sys.stderr)
 
     def end(self) -> None:
@@ -66,18 +66,18 @@ class Progress:
             self._print(ERASE_LINE)
 
     def _line(self) -> str:
-        done = self._ledger.finished
-        so_far = long_time(time.monotonic() - self._begin)
-        left = long_time(self._seconds_left())
-        total = done + self._ledger.to_run
-        return f"{done} of {total} cases, {so_far}, about {left} left  {self._latest}"
+        finished = self._ledger.finished
+        elapsed = long_time(time.monotonic() - self._begin)
+        remaining = long_time(self._seconds_left())
+        total = finished + self._ledger.to_run
+        return f"{finished} of {total} cases, {elapsed}, about {remaining} left  {self._last_event}"
 
     def _seconds_left(self) -> float:
-        """Estimated anew now and then only: meanwhile cases are measured on this machine."""
+        """Re-estimated only every few seconds: estimates would disturb the measured cases."""
         now = time.monotonic()
-        if now - self._left[0] > SECONDS_BETWEEN_ESTIMATES or not self._ledger.to_run:
-            self._left = now, self._estimate.left(self._unbaked())
-        return max(0.0, self._left[1] - (now - self._left[0]))
+        if now - self._estimated[0] > SECONDS_BETWEEN_ESTIMATES or not self._ledger.to_run:
+            self._estimated = now, self._estimate.remaining(self._unbaked())
+        return max(0.0, self._estimated[1] - (now - self._estimated[0]))
 
     def _print(self, text: str) -> None:
         if not self._quiet:
@@ -85,13 +85,13 @@ class Progress:
 
 
 def long_time(seconds: float) -> str:
-    """1:02:03."""
+    """A duration such as 1:02:03."""
     whole = round(seconds)
     return f"{whole // 3600}:{whole // 60 % 60:02}:{whole % 60:02}"
 
 
 def short_time(seconds: float) -> str:
-    """Three digits and a unit."""
+    """A time with three digits and a unit."""
     for unit, size in (("s", 1), ("ms", 1e-3), ("µs", 1e-6)):
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"

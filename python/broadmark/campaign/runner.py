@@ -1,5 +1,5 @@
-"""Bakes and runs what is missing, size by size: what the cap leaves out is known before the next
-size begins, and a recording that no variant needs any more is not even baked."""
+"""Bakes missing recordings and runs pending cases in ascending order of size. The cap is known before
+the next size begins, so a recording without pending variants is not baked."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import tempfile
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from broadmark.campaign.attempts import Tail, outcome_of, variant_of, whole
+from broadmark.campaign.attempts import Tail, completed_path, outcome_of, variant_of
 from broadmark.campaign.description import Campaign, Selection, Value
 from broadmark.campaign.estimate import Estimate
-from broadmark.campaign.folder import Folder, recorders_of
+from broadmark.campaign.folder import Folder, recorder_options
 from broadmark.campaign.ledger import Ledger
 from broadmark.campaign.options import (
     filter_for,
@@ -42,48 +42,50 @@ class Runner:
     variants: dict[str, Selection]
     estimate: Estimate
     progress: Progress
-    copy_to: str | None = None  #: a folder, for the time of a run
-    failed: bool = False  #: something could not be baked or run
+    copy_to: str | None = None  #: a folder for copies of recordings while they are run
+    failed: bool = False  #: a recording could not be baked or run
 
     def run(self, recordings: Iterable[Recording], bake_only: bool = False) -> None:
-        """What fails is told, and left out."""
+        """Bakes and runs the recordings. Failures are reported and skipped."""
         for _, level in levels(recordings):
             if not bake_only:
-                level = [one for one in level if self.ledger.pending(one)]
+                level = [recording for recording in level if self.ledger.pending(recording)]
             baked = self._bake(level)
             for recording in [] if bake_only else baked:
                 try:
                     self._run_recording(recording)
                 except (InputError, OSError) as error:
-                    self._fail(f"{recording.name}: {error}")
+                    self._report_failure(f"{recording.name}: {error}")
 
-    def _fail(self, message: str) -> None:
+    def _report_failure(self, message: str) -> None:
         self.failed = True
-        self.progress.complain(message)
+        self.progress.report_error(message)
 
     def _bake(self, recordings: list[Recording]) -> list[Recording]:
-        """Returns those that are as they should be: the program reads through what is there."""
+        """Bakes missing recordings, verifies existing ones and returns the valid ones."""
 
-        def together(one: Recording) -> tuple[int, str, bool]:
-            return one.objects, one.series.variation, one.is_split
+        def group_key(recording: Recording) -> tuple[int, str, bool]:
+            return recording.objects, recording.series.variation, recording.is_split
 
         failed: set[Recording] = set()
-        needed = sorted(with_sources(recordings), key=together)
-        for _, same in itertools.groupby(needed, key=together):
-            group = list(same)
-            missing = [one for one in group if not self.folder.is_baked(one)]
+        needed = sorted(with_sources(recordings), key=group_key)
+        for _, recordings_of_key in itertools.groupby(needed, key=group_key):
+            group = list(recordings_of_key)
+            missing = [recording for recording in group if not self.folder.is_baked(recording)]
             if missing:
                 self.progress.event(f"baking: {_names(missing)}")
             try:
                 with self.estimate.baking(missing):
-                    self._bake_together(group)
+                    self._bake_group(group)
             except InputError as error:
-                self._fail(f"{_names(group)}: {error}")
+                self._report_failure(f"{_names(group)}: {error}")
                 failed.update(group)
-        return [one for one in recordings if failed.isdisjoint(with_sources([one]))]
+        return [
+            recording for recording in recordings if failed.isdisjoint(with_sources([recording]))
+        ]
 
-    def _bake_together(self, recordings: list[Recording]) -> None:
-        """Recordings of one folder and of the same kinds."""
+    def _bake_group(self, recordings: list[Recording]) -> None:
+        """Bakes recordings with the same folder and formats by a single call."""
         with tempfile.TemporaryDirectory(prefix="broadmark-") as temporary:
             files = []
             for number, recording in enumerate(recordings):
@@ -93,8 +95,8 @@ class Runner:
                 "bake",
                 *itertools.chain(*(("--parameters", file) for file in files)),
                 *plugin_options(self.campaign),
-                *as_options(recorder=recorders_of(recordings[0]), quiet=True),
-                *("--output", str(self.folder.home(recordings[0]))),
+                *as_options(recorder=recorder_options(recordings[0]), quiet=True),
+                *("--output", str(self.folder.bake_folder(recordings[0]))),
                 tick=self.progress.tick,
             )
 
@@ -119,13 +121,15 @@ class Runner:
 
     def _run_recording(self, recording: Recording) -> None:
         def waiting() -> None:
-            self.progress.event(f"waiting for another process that runs it: {recording.name}")
+            self.progress.event(f"waiting for another process that runs {recording.name}")
 
-        with self.folder.lock(recording, waiting) as lock, self._at_hand(recording) as path:
-            self.folder.load(recording, self.ledger)  # another process may have run it meanwhile
+        with self.folder.lock(recording, waiting) as lock, self._local_copy(recording) as path:
+            self.folder.load(recording, self.ledger)  # another process may have run it
             for selection in self.campaign.selections:
                 pending = [
-                    one for one in self.ledger.pending(recording) if self.variants[one] == selection
+                    variant
+                    for variant in self.ledger.pending(recording)
+                    if self.variants[variant] == selection
                 ]
                 if pending:
                     self._run_cases(recording, path, selection, pending, lock.fileno())
@@ -133,7 +137,7 @@ class Runner:
     def _run_cases(
         self, recording: Recording, path: str, selection: Selection, pending: list[str], lock: int
     ) -> None:
-        """One call of the program, so that the repetitions of all these cases take turns."""
+        """Runs the cases by a single call, which interleaves their repetitions."""
         self.progress.event(f"running {len(pending)} cases: {recording.name}")
         attempt = self.folder.new_attempt(recording)
         tail = Tail(attempt)
@@ -160,29 +164,29 @@ class Runner:
                 accept=WITH_RESULTS,
                 keep_open=(lock,),
             )
-        attempt.rename(whole(attempt))
+        attempt.rename(completed_path(attempt))
 
     @contextlib.contextmanager
-    def _at_hand(self, recording: Recording) -> Iterator[str]:
-        """The recording's file, or a copy for the time of a run."""
+    def _local_copy(self, recording: Recording) -> Iterator[str]:
+        """The path of the recording's file, or of a temporary copy in `copy_to`."""
         file = self.folder.file(recording)
         if self.copy_to is None:
             yield str(file)
             return
-        place = os.path.expandvars(self.copy_to)
-        if "$" in place:
-            raise InputError(f"--copy-to: '{self.copy_to}': such a variable is not set")
+        copy_folder = os.path.expandvars(self.copy_to)
+        if "$" in copy_folder:
+            raise InputError(f"--copy-to: '{self.copy_to}': the variable is not set")
         try:
-            temporary = tempfile.TemporaryDirectory(dir=place, prefix="broadmark-")
+            temporary = tempfile.TemporaryDirectory(dir=copy_folder, prefix="broadmark-")
         except OSError as error:
-            raise InputError(f"--copy-to: '{place}': {error.strerror}") from None
-        with temporary as copies:
+            raise InputError(f"--copy-to: '{copy_folder}': {error.strerror}") from None
+        with temporary as temporary_folder:
             try:
-                copy = shutil.copy(file, copies)
+                copy = shutil.copy(file, temporary_folder)
             except OSError as error:
                 raise InputError(f"--copy-to: {file}: cannot be copied: {error}") from None
             yield copy
 
 
 def _names(recordings: list[Recording]) -> str:
-    return ", ".join(one.name for one in recordings)
+    return ", ".join(recording.name for recording in recordings)

@@ -1,14 +1,15 @@
-"""A campaign as jobs of Slurm.
+"""A campaign as Slurm jobs.
 
-For each size an array of jobs bakes and an array of jobs runs, a recording each; a last job merges.
-A job is this same command on one recording, which goes on where it was: a job that is requeued
+For every size, a job array bakes and a job array runs, with a task per recording; the last job
+merges. A task runs this command on one recording and resumes an earlier attempt, so a requeued job
 repeats no finished case.
 
-- A recording is run when it is baked, and when all smaller ones were run, as the cap goes by them.
-- One that is split is baked after those with an eighth of its bodies.
-- Runs have a node for themselves.
+- A recording is run after it is baked and after all smaller recordings have been run, because the
+  cap depends on them.
+- A split recording is baked after the recordings with an eighth of its bodies.
+- Runs have exclusive nodes.
 
-All of it is in the script `submit`, which can be read, changed and run by hand.
+The script `submit` submits the jobs; it can be read, changed and run by hand.
 """
 
 from __future__ import annotations
@@ -30,12 +31,12 @@ from broadmark.program import VARIABLE, find_program
 
 SUBMIT = """\
 #!/bin/bash
-# Submits the jobs of a campaign. If Slurm refuses one, none is left.
+# Submits the jobs of a campaign. If Slurm rejects a job, all are cancelled.
 set -eE
 cd -- "$(dirname -- "${BASH_SOURCE[0]}")"
 submitted=()
 trap '[ ${#submitted[@]} -eq 0 ] || scancel "${submitted[@]}"' ERR
-submit() {  # a variable for the job's number, then arguments of sbatch
+submit() {  # the variable for the job's number, then arguments for sbatch
   local job
   job=$(sbatch --parsable --requeue --open-mode=append --kill-on-invalid-dep=yes "${@:2}")
   printf -v "$1" %s "${job%%;*}"
@@ -45,7 +46,7 @@ submit() {  # a variable for the job's number, then arguments of sbatch
 
 JOB = """\
 #!/bin/bash
-# {what}
+# {summary}
 cd -- {here}
 export PYTHONPATH={package}${{PYTHONPATH:+:$PYTHONPATH}}
 export {variable}={program}
@@ -54,14 +55,14 @@ export {variable}={program}
 
 @dataclass
 class Job:
-    """A job, or an array of jobs with a recording each."""
+    """A job, or a job array with a task per recording."""
 
     name: str
-    what: str
-    arguments: list[str]  #: of the command
-    recordings: list[Recording] = field(default_factory=list)  #: empty: no array
-    after: list[tuple[str, Job]] = field(default_factory=list)  #: kind of dependency, and on what
-    options: list[str] = field(default_factory=list)  #: of sbatch
+    summary: str
+    arguments: list[str]  #: arguments of the command
+    recordings: list[Recording] = field(default_factory=list)  #: empty: not an array
+    after: list[tuple[str, Job]] = field(default_factory=list)  #: type and job of each dependency
+    options: list[str] = field(default_factory=list)  #: options of sbatch
 
     @property
     def variable(self) -> str:
@@ -69,14 +70,16 @@ class Job:
 
 
 def planned_jobs(folder: Folder, ledger: Ledger, copy_to: str | None) -> list[Job]:
-    """Jobs for all that is not finished, in an order in which they can be submitted."""
+    """The jobs for all unfinished cases, in the order of submission."""
     jobs: list[Job] = []
     bakes: dict[int, Job] = {}  # by size
-    run = None
-    for objects, level in levels(one for one in ledger.recordings if ledger.pending(one)):
+    previous_run = None
+    for objects, level in levels(filter(ledger.pending, ledger.recordings)):
         needs = []
         if not all(map(folder.is_baked, level)):
-            sources = {one.source.objects for one in level if one.source} & bakes.keys()
+            sources = {
+                recording.source.objects for recording in level if recording.source
+            } & bakes.keys()
             bakes[objects] = Job(
                 f"bake-{objects}",
                 f"Bakes recordings of {objects} bodies.",
@@ -86,9 +89,9 @@ def planned_jobs(folder: Folder, ledger: Ledger, copy_to: str | None) -> list[Jo
             )
             jobs.append(bakes[objects])
             needs.append(("aftercorr", bakes[objects]))
-        if run:
-            needs.append(("afterany", run))
-        run = Job(
+        if previous_run:
+            needs.append(("afterany", previous_run))
+        previous_run = Job(
             f"run-{objects}",
             f"Runs all variants on recordings of {objects} bodies.",
             ["--copy-to", copy_to] if copy_to else [],
@@ -96,20 +99,20 @@ def planned_jobs(folder: Folder, ledger: Ledger, copy_to: str | None) -> list[Jo
             after=needs,
             options=["--exclusive", "--mem=0"],
         )
-        jobs.append(run)
-    if run:
-        what = "Writes the results of all jobs as one file."
-        jobs.append(Job("merge", what, ["--merge"], after=[("afterany", run)]))
+        jobs.append(previous_run)
+    if previous_run:
+        summary = "Writes the results of all jobs as one file."
+        jobs.append(Job("merge", summary, ["--merge"], after=[("afterany", previous_run)]))
     return jobs
 
 
 def write(folder: Folder, jobs: list[Job], sbatch: str) -> pathlib.Path:
-    """Writes the jobs' scripts, and the one that submits them, whose path is returned."""
-    place = folder.path / "slurm"
-    place.mkdir(exist_ok=True)
+    """Writes the jobs' scripts and the script that submits them. Returns the path of the latter."""
+    slurm_folder = folder.path / "slurm"
+    slurm_folder.mkdir(exist_ok=True)
     for job in jobs:
-        write_text(os.fspath(place / f"{job.name}.sh"), _script(folder, job))
-    submit = place / "submit"
+        write_text(os.fspath(slurm_folder / f"{job.name}.sh"), _script(folder, job))
+    submit = slurm_folder / "submit"
     lines = [SUBMIT, *(_submission(job, sbatch) for job in jobs), 'echo "${submitted[*]}"\n']
     write_text(os.fspath(submit), "".join(lines))
     submit.chmod(0o755)
@@ -117,28 +120,32 @@ def write(folder: Folder, jobs: list[Job], sbatch: str) -> pathlib.Path:
 
 
 def submit(script: pathlib.Path) -> str:
-    """Runs the script that submits. Returns the jobs' numbers."""
-    done = subprocess.run(["bash", script], capture_output=True, text=True, check=False)
-    if done.returncode:
-        lines = done.stderr.strip().splitlines() or [f"it ended with status {done.returncode}"]
-        raise InputError(f"{script}: nothing is submitted: {lines[-1]}")
-    return done.stdout.strip()
+    """Runs the script `submit`. Returns the jobs' numbers."""
+    completed = subprocess.run(["bash", script], capture_output=True, text=True, check=False)
+    if completed.returncode:
+        lines = completed.stderr.strip().splitlines() or [
+            f"it ended with status {completed.returncode}"
+        ]
+        raise InputError(f"{script}: no job was submitted: {lines[-1]}")
+    return completed.stdout.strip()
 
 
 def _submission(job: Job, sbatch: str) -> str:
-    """The line that submits a job. The user's options come last: they win."""
+    """The line that submits a job. The user's options come last and take precedence."""
     array = [f"--array=0-{len(job.recordings) - 1}"] if job.recordings else []
     log = f"{job.name}.%a.log" if job.recordings else f"{job.name}.log"
     words = [*array, f"--output={log}", *job.options, *shlex.split(sbatch)]
-    after = ",".join(f"{kind}:${{{other.variable}}}" for kind, other in job.after)
-    dependency = f'--dependency="{after}" ' if after else ""
-    return f"submit {job.variable} {dependency}{shlex.join(words)} {job.name}.sh\n"
+    after = ",".join(
+        f"{condition}:${{{dependency.variable}}}" for condition, dependency in job.after
+    )
+    option = f'--dependency="{after}" ' if after else ""
+    return f"submit {job.variable} {option}{shlex.join(words)} {job.name}.sh\n"
 
 
 def _script(folder: Folder, job: Job) -> str:
-    """What a job does: this command, called as it was here."""
+    """The script of a job: this command in this environment."""
     text = JOB.format(
-        what=job.what,
+        summary=job.summary,
         here=shlex.quote(os.getcwd()),
         package=shlex.quote(os.fspath(pathlib.Path(broadmark.__file__).resolve().parents[1])),
         variable=VARIABLE,
@@ -148,6 +155,6 @@ def _script(folder: Folder, job: Job) -> str:
     command += ["--output", os.fspath(folder.path), "--quiet", *job.arguments]
     if not job.recordings:
         return f"{text}exec {shlex.join(command)}\n"
-    names = "".join(f"  {shlex.quote(one.name)}\n" for one in job.recordings)
+    names = "".join(f"  {shlex.quote(recording.name)}\n" for recording in job.recordings)
     task = '--recording "${recordings[SLURM_ARRAY_TASK_ID]}"'
     return f"{text}recordings=(\n{names})\nexec {shlex.join(command)} {task}\n"

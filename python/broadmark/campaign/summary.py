@@ -1,4 +1,4 @@
-"""How a campaign stands, as text."""
+"""The state of a campaign as a table."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ COLUMNS = ["ok", "timeout", "mismatch", "unsupported", "error", "not run", "pend
 def table(
     ledger: Ledger, recordings: list[Recording], is_baked: Callable[[Recording], bool]
 ) -> str:
-    """A row for each recording, and what the cap leaves out."""
+    """A row per recording, and a line per cap."""
     rows = [["recording", "file", *COLUMNS]]
     for recording in recordings:
         counts = ledger.tally(recording)
@@ -31,15 +31,15 @@ def table(
 
 
 def _caps(ledger: Ledger, recordings: list[Recording]) -> Iterator[str]:
-    """For each series and size which variants were not run beyond it."""
+    """A line per series and cap with the variants that were not run beyond it."""
     beyond: dict[str, list[str]] = {}
     for recording in recordings:
         series = recording.series
         for variant in ledger.variants:
             cap = ledger.cap(recording, variant)
             if cap is not None:
-                place = f"{series.scene} {series.object_type} {series.variation} beyond {cap}"
-                if variant not in beyond.setdefault(place, []):
-                    beyond[place].append(variant)
-    for place, variants in beyond.items():
-        yield f"not run, past the cap: {place}: {', '.join(variants)}"
+                limit = f"{series.scene} {series.object_type} {series.variation} beyond {cap}"
+                if variant not in beyond.setdefault(limit, []):
+                    beyond[limit].append(variant)
+    for limit, variants in beyond.items():
+        yield f"not run, past the cap: {limit}: {', '.join(variants)}"

@@ -1,10 +1,10 @@
 """The commands of `python3 -m broadmark`.
 
-A command is a module here: its docstring is the help, `add_options(parser)` declares options, and
-`main(options)` does the work and returns the exit status, or None for 0.
+Each command is a module: its docstring is the help, `add_options(parser)` declares the options, and
+`main(options)` runs the command and returns the exit status, or None for 0.
 """
 
-#: One line per command, in the order of the help.
+#: The commands in the order of the help.
 COMMANDS = [
     "read",
     "write",

@@ -1,7 +1,7 @@
-"""Runs a campaign: many cases that one file states, on this machine or as jobs of Slurm.
+"""Runs a campaign, many cases described in one file, on this machine or as Slurm jobs.
 
-Bakes what is missing, runs what is not finished, and writes all results as one file. After whatever
-interrupted it, the same command goes on. docs/campaigns.md describes the file.
+Bakes missing recordings, runs unfinished cases and writes all results to one file. After an
+interruption, the same command resumes the campaign. docs/campaigns.md describes the file.
 """
 
 from __future__ import annotations
@@ -32,31 +32,35 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         *("-o", "--output"),
         type=pathlib.Path,
         metavar="DIR",
-        help="folder for recordings and results (default: the file's name without .json, here)",
+        help="folder for recordings and results (default: the file's name without .json, in the current folder)",
     )
-    what = parser.add_mutually_exclusive_group()
-    what.add_argument("--list", action="store_true", help="show how it stands, run nothing")
-    what.add_argument("--bake", action="store_true", help="bake what is missing, run nothing")
-    what.add_argument(
-        "--merge", action="store_true", help="write the results there are, run nothing"
+    mode = parser.add_mutually_exclusive_group()
+    mode.add_argument(
+        "--list", action="store_true", help="show the state of the campaign, run nothing"
     )
-    parser.add_argument("--recording", metavar="NAME", help="only this one, named as by --list")
+    mode.add_argument("--bake", action="store_true", help="bake missing recordings, run nothing")
+    mode.add_argument(
+        "--merge", action="store_true", help="merge the existing results, run nothing"
+    )
+    parser.add_argument(
+        "--recording", metavar="NAME", help="only this recording, named as by --list"
+    )
     parser.add_argument(
         "--copy-to",
         metavar="DIR",
-        help="copy each recording there while it is run; may be '$TMPDIR'",
+        help="copy each recording to DIR before it is run; may be '$TMPDIR'",
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress")
+    parser.add_argument("--quiet", action="store_true", help="suppress progress output")
     parser.add_argument(
         "--slurm",
         action="store_true",
-        help="write jobs for Slurm and submit them; with --list: only write them",
+        help="write Slurm jobs and submit them; with --list, only write them",
     )
     parser.add_argument(
         "--sbatch",
         default="",
         metavar="OPTIONS",
-        help="options for all jobs: --sbatch='--partition=x --time=2:00:00'",
+        help="sbatch options for all jobs: --sbatch='--partition=x --time=2:00:00'",
     )
 
 
@@ -69,22 +73,27 @@ def main(options: argparse.Namespace) -> int:
     if options.list and not options.slurm:
         folder.require_same(campaign)
     else:
-        folder.take(campaign)
+        folder.claim(campaign)
     ledger = Ledger(recordings, list(variants))
-    concerned = {one.series for one in chosen}  # the cap goes by smaller recordings, too
+    # The cap depends on all smaller recordings of a series.
+    chosen_series = {recording.series for recording in chosen}
     for recording in recordings:
-        if recording.series in concerned:
+        if recording.series in chosen_series:
             folder.load(recording, ledger)
     estimate = Estimate(ledger, campaign.options)
 
-    def missing() -> list[Recording]:
-        return [one for one in chosen if ledger.pending(one) and not folder.is_baked(one)]
+    def missing_recordings() -> list[Recording]:
+        return [
+            recording
+            for recording in chosen
+            if ledger.pending(recording) and not folder.is_baked(recording)
+        ]
 
     if options.slurm:
-        return _hand_over(folder, ledger, options)
+        return _write_jobs(folder, ledger, options)
     failed = False
     if not options.list and not options.merge:
-        progress = Progress(ledger, estimate, missing, options.quiet)
+        progress = Progress(ledger, estimate, missing_recordings, options.quiet)
         runner = Runner(campaign, folder, ledger, variants, estimate, progress, options.copy_to)
         with _interruptible(progress, ledger):
             runner.run(chosen, bake_only=options.bake)
@@ -95,35 +104,37 @@ def main(options: argparse.Namespace) -> int:
         print(campaign.title)
     print(table(ledger, chosen, folder.is_baked))
     if options.list:
-        room = sum(one.bytes for one in missing()) / 1e9
+        gigabytes = sum(recording.bytes for recording in missing_recordings()) / 1e9
         print(
-            f"{ledger.finished} cases are finished, {ledger.to_run} are to be run; "
-            f"{len(missing())} recordings are to be baked, {room:.1f} GB; "
-            f"about {long_time(estimate.left(missing()))}"
+            f"{ledger.finished} cases are finished, {ledger.to_run} remain; "
+            f"{len(missing_recordings())} recordings remain to be baked, {gigabytes:.1f} GB; "
+            f"about {long_time(estimate.remaining(missing_recordings()))}"
         )
         return 0
-    return 1 if ledger.has_wrong(chosen) else 2 if failed else 0
+    return 1 if ledger.has_failures(chosen) else 2 if failed else 0
 
 
 def _chosen(recordings: list[Recording], options: argparse.Namespace) -> list[Recording]:
     if options.slurm and (options.recording or options.bake or options.merge):
-        raise InputError("--slurm: makes jobs of the whole campaign: only --list goes with it")
+        raise InputError(
+            "--slurm: jobs are for the whole campaign: --recording, --bake and --merge are not allowed"
+        )
     if options.recording is None:
         return recordings
-    chosen = [one for one in recordings if one.name == options.recording]
+    chosen = [recording for recording in recordings if recording.name == options.recording]
     if not chosen:
-        raise InputError(f"--recording: '{options.recording}' is none of those that --list shows")
+        raise InputError(f"--recording: '{options.recording}' is not a recording shown by --list")
     return chosen
 
 
-def _hand_over(folder: Folder, ledger: Ledger, options: argparse.Namespace) -> int:
+def _write_jobs(folder: Folder, ledger: Ledger, options: argparse.Namespace) -> int:
     jobs = slurm.planned_jobs(folder, ledger, options.copy_to)
     if not jobs:
-        print("nothing is left to run")
+        print("no case is left to run")
         return 0
     script = slurm.write(folder, jobs, options.sbatch)
     if options.list:
-        print(f"written: {script} and the jobs beside it")
+        print(f"written: {script} and its jobs")
     else:
         print(f"submitted: {slurm.submit(script)}")
     return 0
@@ -131,13 +142,15 @@ def _hand_over(folder: Folder, ledger: Ledger, options: argparse.Namespace) -> i
 
 @contextlib.contextmanager
 def _interruptible(progress: Progress, ledger: Ledger) -> Iterator[None]:
-    """Termination, as by Slurm, is an interruption; what is kept is told."""
-    former = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    """Handles termination, for example by Slurm, as an interruption. Reports the finished cases."""
+    previous_handler = signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         yield
     except KeyboardInterrupt:
-        progress.complain(f"{ledger.finished} cases are finished; the same command goes on")
+        progress.report_error(
+            f"{ledger.finished} cases are finished; rerun the same command to resume"
+        )
         raise
     finally:
-        signal.signal(signal.SIGTERM, former)
+        signal.signal(signal.SIGTERM, previous_handler)
         progress.end()

@@ -1,7 +1,7 @@
-"""Judges the paper's thirteen claims on results: holds, does not hold, not measured.
+"""Judges the paper's thirteen claims by results: holds, does not hold, not measured.
 
-Each verdict comes with its figures, or with what is missing. Cases are chosen as by `table2`. What is
-claimed of GPUs is judged only of results of a GPU.
+Each verdict is given with the figures, or with the missing results. Cases are chosen as by `table2`.
+Claims about GPUs require results of a GPU.
 """
 
 from __future__ import annotations
@@ -25,7 +25,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def main(options: argparse.Namespace) -> None:
     verdicts = []
     for machine, results in selection.by_machine(selection.read_selected(options)):
-        cubes, assorted = (Times(machine, results, kind) for kind in ("Cubes", "Assorted"))
+        cubes, assorted = (
+            Times(machine, results, object_type) for object_type in ("Cubes", "Assorted")
+        )
         judgements = judge(Evidence(cubes, assorted))
         verdicts.append(Verdicts(machine, cubes.conditions, judgements))
     write_text(options.output, FORMATS[options.format](verdicts))

@@ -1,7 +1,7 @@
-"""Draws the paper's figure 3: Gravity with more and more bodies, same camera, same frame.
+"""Draws the paper's figure 3: Gravity with increasing numbers of bodies, same camera, same frame.
 
-The program simulates and draws each part; 32,000 bodies take some minutes. Recordings that are given
-are drawn instead.
+The program simulates and draws each panel; 32,000 bodies take some minutes. Given recordings are
+drawn instead.
 """
 
 from __future__ import annotations
@@ -10,12 +10,14 @@ import argparse
 import pathlib
 
 from broadmark.errors import InputError
-from broadmark.paper.strip import Part, write_strip
+from broadmark.paper.strip import StripPanel, write_strip
 from broadmark.recordings import read_recording
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("recordings", nargs="*", metavar="RECORDING", help="drawn instead (.aabbs)")
+    parser.add_argument(
+        "recordings", nargs="*", metavar="RECORDING", help="recordings to draw instead (.aabbs)"
+    )
     parser.add_argument(
         "-o", "--output", required=True, metavar="FILE", help="the strip (.png, .svg, .pdf)"
     )
@@ -30,21 +32,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def main(options: argparse.Namespace) -> None:
-    parts = [_of_recording(path) for path in options.recordings]
-    if not parts:
-        parts = [_of_scene(options.scene, text) for text in options.objects.split(",")]
-    write_strip(options.output, parts, options.frame)
+    panels = [_recording_panel(path) for path in options.recordings]
+    if not panels:
+        panels = [_scene_panel(options.scene, text) for text in options.objects.split(",")]
+    write_strip(options.output, panels, options.frame)
     print(f"written: {options.output}")
 
 
-def _of_recording(path: str) -> Part:
+def _recording_panel(path: str) -> StripPanel:
     recording = read_recording(path)
     objects = recording.boxes.shape[-3]
-    return Part(path, f"{recording.name}, {objects:,} objects")
+    return StripPanel(path, f"{recording.name}, {objects:,} objects")
 
 
-def _of_scene(scene: str, objects: str) -> Part:
+def _scene_panel(scene: str, objects: str) -> StripPanel:
     if not objects.isdigit() or int(objects) == 0:
-        raise InputError(f"--objects '{objects}': is no number of bodies, such as 1000")
+        raise InputError(f"--objects '{objects}': expected a number of bodies, such as 1000")
     name = pathlib.PurePath(scene).stem
-    return Part(scene, f"{name.capitalize()}, {int(objects):,} objects", int(objects))
+    return StripPanel(scene, f"{name.capitalize()}, {int(objects):,} objects", int(objects))

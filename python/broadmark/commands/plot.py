@@ -1,6 +1,6 @@
 """Draws a plot of results: bars, violins, lines, scaling, memory, phases, pairs.
 
-Shown are cases with a time: complete, and every answer right. What is left out is told.
+Only complete cases without wrong answers are shown; the command reports the others.
 """
 
 from __future__ import annotations
@@ -14,51 +14,49 @@ from broadmark import selection
 from broadmark.drawing import check_format, draw
 from broadmark.errors import InputError
 from broadmark.plots import KINDS
-from broadmark.plots.cases import chosen
+from broadmark.plots.cases import timed_cases
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("kind", choices=list(KINDS), metavar="KIND", help="one of those below")
+    parser.add_argument("kind", choices=list(KINDS), metavar="KIND", help="kind of plot, see below")
     parser.epilog = "kinds:\n" + "\n".join(
         f"  {name:9} {function.__doc__}" for name, function in KINDS.items()
     )
     selection.add_options(parser)
     parser.add_argument(
-        "-o", "--output", required=True, metavar="FILE", help="the picture (.svg, .pdf, .png)"
+        "-o", "--output", required=True, metavar="FILE", help="the image (.svg, .pdf, .png)"
     )
-    parser.add_argument("--scene", metavar="NAME[,NAME…]", help="of these scenes only")
+    parser.add_argument("--scene", metavar="NAME[,NAME…]", help="only these scenes")
     parser.add_argument(
-        "--algorithm", metavar="ID[,ID…]", help="of these algorithms only; patterns such as 'sap*'"
+        "--algorithm", metavar="ID[,ID…]", help="only these algorithms; patterns such as 'sap*'"
     )
-    parser.add_argument("--objects", metavar="N[,N…]", help="of these numbers of bodies only")
-    parser.add_argument("--log", action="store_true", help="logarithmic axes of times")
+    parser.add_argument("--objects", metavar="N[,N…]", help="only these numbers of bodies")
+    parser.add_argument("--log", action="store_true", help="use logarithmic time axes")
 
 
 def main(options: argparse.Namespace) -> None:
     check_format(options.output)
-    machine, results = selection.one_machine(selection.read_selected(options))
-    results = results.select(_wanted(results.cases, options))
+    machine, results = selection.single_machine(selection.read_selected(options))
+    results = results.select(_selected(results.cases, options))
     if not len(results.cases):
-        raise InputError(
-            "no case is left: no case has all that --scene, --algorithm, --objects ask"
-        )
-    cases = chosen(results, log=options.log, note=machine)
+        raise InputError("no case is left: no case matches --scene, --algorithm and --objects")
+    cases = timed_cases(results, log=options.log, note=machine)
     missing = results.cases.drop(cases.table.index)
     if len(missing):
         counts = missing["status"].replace("ok", "incomplete").value_counts()
-        found = ", ".join(f"{count} {status}" for status, count in counts.items())
-        print(f"cases without a time are left out: {found}", file=sys.stderr)
+        summary = ", ".join(f"{count} {status}" for status, count in counts.items())
+        print(f"cases without a time are not shown: {summary}", file=sys.stderr)
     draw([options.output], lambda: KINDS[options.kind](cases))
     print(f"written: {options.output}")
 
 
-def _wanted(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
-    wanted = pd.Series(True, cases.index)
+def _selected(cases: pd.DataFrame, options: argparse.Namespace) -> pd.Series:
+    mask = pd.Series(True, cases.index)
     for option, column in (
         (options.scene, "scene"),
         (options.algorithm, "algorithm"),
         (options.objects, "objects"),
     ):
         if option is not None:
-            wanted &= selection.match_names(cases[column].astype(str), option)
-    return wanted
+            mask &= selection.match_names(cases[column].astype(str), option)
+    return mask

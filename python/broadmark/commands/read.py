@@ -1,6 +1,6 @@
-"""Shows results files as a table, or writes them as one CSV table.
+"""Shows results files as a table, or writes them as CSV.
 
-Reads JSON and JSON Lines of any version, several files at once.
+Reads several files of any version, JSON or JSON Lines.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ COLUMNS = [
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     selection.add_options(parser)
-    parser.add_argument("--csv", metavar="FILE", help="write all columns of the cases")
-    parser.add_argument("--csv-frames", metavar="FILE", help="write a row per frame")
+    parser.add_argument("--csv", metavar="FILE", help="write all columns of the cases as CSV")
+    parser.add_argument("--csv-frames", metavar="FILE", help="write a row per frame as CSV")
 
 
 def main(options: argparse.Namespace) -> None:

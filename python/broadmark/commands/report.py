@@ -1,7 +1,7 @@
-"""Writes results as one HTML page: tables, charts and pictures, without network.
+"""Writes results as a self-contained HTML page with tables, charts and pictures.
 
-The page opens anywhere, can be filtered and sorted, and shows results of several machines side by
-side. Charts are drawn by d3 (Debian's package node-d3), pictures by the program broadmark.
+The page needs no network, can be filtered and sorted, and compares the results of several machines.
+Charts are drawn by d3 (Debian's package node-d3), pictures by the program broadmark.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--pictures",
         action=argparse.BooleanOptionalAction,
         default=True,
-        help="of the scenes, drawn by the program (default: if it is found)",
+        help="include pictures of the scenes, drawn by the program (default: if it is found)",
     )
 
 

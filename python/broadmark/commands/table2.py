@@ -1,9 +1,9 @@
-"""Makes the paper's Table 2 of results: our seconds per frame beside the paper's.
+"""Makes the paper's Table 2 from results: seconds per frame, measured and from the paper.
 
-A row per algorithm, in a block per scene; a second block has the ratios to CGAL's time, which carry
-over between machines. An algorithm is shown up to the first size that takes it more than 0.5 s a
-frame. Where it ran with several numbers of threads or instruction sets, its time is that with the
-most threads and the widest instructions. Each machine has tables of its own.
+There is a block per scene with a row per algorithm; a second block has the ratios to CGAL's time,
+which are comparable between machines. An algorithm is shown up to the first size at which a frame
+takes more than 0.5 s. Among several numbers of threads and instruction sets, the case with the most
+threads and the widest instruction set is shown. Each machine has its own tables.
 """
 
 from __future__ import annotations

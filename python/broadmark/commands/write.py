@@ -1,7 +1,7 @@
 """Writes an array of boxes as a recording (.aabbs).
 
-The array is a numpy file (.npy) of the shape (F + 1, n, 2, 3) or (F + 1, n, 6): for the initial pose
-and each frame the min and max corner of each body.
+The array is a numpy file (.npy) of shape (F + 1, n, 2, 3) or (F + 1, n, 6): the min and max corners
+of each body in the initial pose and in each frame.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from broadmark.recordings import write_recording
 def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("array", metavar="FILE.npy", help="the boxes")
     parser.add_argument("-o", "--output", required=True, metavar="FILE.aabbs", help="the recording")
-    parser.add_argument("--name", default="Custom", help="of the scene (default: %(default)s)")
+    parser.add_argument("--name", default="Custom", help="name of the scene (default: %(default)s)")
     parser.add_argument("--object-type", default="Boxes", help="default: %(default)s")
 
 

@@ -1,4 +1,4 @@
-"""The paper's scenes and algorithms: our ids, how it draws them, and the numbers of its Table 2."""
+"""The paper's scenes and algorithms with our ids and the paper's styles, and its Table 2."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 from broadmark.palette import light
 
-#: An algorithm is shown up to the first size at which a frame takes longer.
+#: The time per frame up to which larger sizes are shown.
 CAP_SECONDS = 0.5
 
-#: The figures' axes: thousands of objects, seconds.
-MOST_THOUSANDS, MOST_SECONDS = 1024, 0.55
+#: The ends of the figures' axes: thousands of objects, seconds.
+MAX_THOUSANDS, MAX_SECONDS = 1024, 0.55
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Scene:
 
     name: str  #: in recordings and in Table 2
     title: str
-    figure: int  #: that shows its times
+    figure: int  #: the number of the figure with its times
 
 
 SCENES = [
@@ -37,10 +37,10 @@ class Algorithm:
     """A column of Table 2 and a line of the figures."""
 
     name: str
-    id: str  #: ours
-    colour: str  #: says where the implementation is from
-    marker: str  #: says the algorithm
-    filled: bool  #: says the variant
+    id: str  #: our id
+    colour: str  #: by the origin of the implementation
+    marker: str  #: by the algorithm
+    filled: bool  #: by the variant
     panel: str  #: SINGLE or PARALLEL
     line: str = "-"
 

@@ -1,7 +1,8 @@
-"""What the paper claims, judged on results: a sentence and a function for each claim.
+"""The paper's claims, judged by results: a sentence and a function for each claim.
 
-A claim has parts. It does not hold if one of them does not; else it is not measured if one is not;
-else it holds. Of what "hardly changes" the paper's own numbers are up to 1.75 apart: HARDLY allows 2.
+A claim has parts. It does not hold if a part does not hold; otherwise it is not measured if a part is
+not measured; otherwise it holds. Numbers of the paper that "hardly change" differ by factors of up to
+1.75, so HARDLY allows 2.
 """
 
 from __future__ import annotations
@@ -9,17 +10,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from broadmark.paper.algorithms import ALGORITHMS, MOST_SECONDS, SINGLE, is_gpu
-from broadmark.paper.evidence import TOLERANCE, Evidence, Part
+from broadmark.paper.algorithms import ALGORITHMS, MAX_SECONDS, SINGLE, is_gpu
+from broadmark.paper.evidence import TOLERANCE, Evidence, PartVerdict
 
 HARDLY = 2.0
 
 HOLDS, FAILS, UNKNOWN = "holds", "does not hold", "not measured"
 
 TERMS = (
-    f"A number counts as reproduced within a factor of {TOLERANCE:g}, what hardly changes within "
-    f"{HARDLY:g}. The cap is {MOST_SECONDS:g} s a frame, the top of the paper's figures. Figures are "
-    "those at the largest size that all algorithms of a comparison reach."
+    f"A number counts as reproduced within a factor of {TOLERANCE:g}, as hardly changed within a "
+    f"factor of {HARDLY:g}. The cap is {MAX_SECONDS:g} s per frame, the top of the paper's figures. "
+    "The figures are those at the largest size that all algorithms of a comparison reach."
 )
 
 SINGLES = [algorithm.name for algorithm in ALGORITHMS if algorithm.panel == SINGLE]
@@ -31,30 +32,30 @@ FASTEST = ["GPU LBVH", "GPU Grid"]
 
 
 def _without(names: list[str], *others: list[str]) -> list[str]:
-    return [name for name in names if not any(name in some for some in others)]
+    return [name for name in names if not any(name in other for other in others)]
 
 
-def slowest(e: Evidence) -> list[Part]:
+def slowest(e: Evidence) -> list[PartVerdict]:
     return e.faster("Brownian", _without(SINGLES, SLOWEST), SLOWEST)
 
 
-def gains_of_vectors_and_threads(e: Evidence) -> list[Part]:
+def gains_of_vectors_and_threads(e: Evidence) -> list[PartVerdict]:
     return [
         e.gain_up_to("Brownian", ["BF ST"], ["BF MT"], 40),
         e.gain_up_to("Brownian", ["SAP ST"], ["SAP MT"], 12),
     ]
 
 
-def next_slowest(e: Evidence) -> list[Part]:
+def next_slowest(e: Evidence) -> list[PartVerdict]:
     order = e.faster("Brownian", _without(SINGLES, SLOWEST, NEXT), NEXT)
     return [*order, e.gain_up_to("Brownian", NEXT, ["DBVT D", "CGAL"], 3)]
 
 
-def tracy_threads(e: Evidence) -> list[Part]:
+def tracy_threads(e: Evidence) -> list[PartVerdict]:
     return [e.gain("Brownian", "Tracy ST", "Tracy MT", 2.2, 2.2)]
 
 
-def grids(e: Evidence) -> list[Part]:
+def grids(e: Evidence) -> list[PartVerdict]:
     bf, sap = ("Grid BF ST", "Grid BF MT"), ("Grid SAP ST", "Grid SAP MT")
     return [
         *(part for i in (0, 1) for part in e.faster("Brownian", [sap[i]], [bf[i]])),
@@ -62,11 +63,11 @@ def grids(e: Evidence) -> list[Part]:
     ]
 
 
-def kd_like_grid_sap(e: Evidence) -> list[Part]:
+def kd_like_grid_sap(e: Evidence) -> list[PartVerdict]:
     return [e.gain("Brownian", "Grid SAP ST", "KD", 1, 1)]
 
 
-def gpu_fastest(e: Evidence) -> list[Part]:
+def gpu_fastest(e: Evidence) -> list[PartVerdict]:
     names = [algorithm.name for algorithm in ALGORITHMS]
     return [
         *e.faster("Brownian", FASTEST, _without(names, FASTEST)),
@@ -75,7 +76,7 @@ def gpu_fastest(e: Evidence) -> list[Part]:
     ]
 
 
-def free_fall_favours(e: Evidence) -> list[Part]:
+def free_fall_favours(e: Evidence) -> list[PartVerdict]:
     gain = ["AxisSweep", "Tracy ST", "DBVT F", "KD"]
     lose = ["Grid BF ST", "Grid SAP ST", "CGAL", "DBVT D"]
     same = [*SLOWEST, *GPUS]
@@ -86,41 +87,41 @@ def free_fall_favours(e: Evidence) -> list[Part]:
     ]
 
 
-def free_fall_a_million(e: Evidence) -> list[Part]:
+def free_fall_a_million(e: Evidence) -> list[PartVerdict]:
     return [
         e.reaches_a_million("FreeFall", "DBVT F", True),
         *e.faster("FreeFall", ["KD"], GPUS),
     ]
 
 
-def gravity_hardest(e: Evidence) -> list[Part]:
+def gravity_hardest(e: Evidence) -> list[PartVerdict]:
     return [
         *(e.reaches_a_million("Gravity", name, False) for name in ON_CPU),
         *(e.changes("Gravity", name, 1 / HARDLY, HARDLY) for name in FASTEST),
     ]
 
 
-def gpu_sap_fails(e: Evidence) -> list[Part]:
+def gpu_sap_fails(e: Evidence) -> list[PartVerdict]:
     return [e.fails_above("GPU SAP", 512_000)]
 
 
-def extra_pairs(e: Evidence) -> list[Part]:
+def extra_pairs(e: Evidence) -> list[PartVerdict]:
     return [e.extra_pairs("AxisSweep", 0.05), e.extra_pairs("KD", 0.05)]
 
 
-def assorted_objects(e: Evidence) -> list[Part]:
+def assorted_objects(e: Evidence) -> list[PartVerdict]:
     return [
-        *(p for name in ("DBVT F", "DBVT D") for p in e.assorted_takes(name, 2, 3)),
-        *(p for name in ("KD", "Tracy ST", "CGAL") for p in e.assorted_takes(name, 1.2, 1.4)),
+        *(part for name in ("DBVT F", "DBVT D") for part in e.assorted_takes(name, 2, 3)),
+        *(part for name in ("KD", "Tracy ST", "CGAL") for part in e.assorted_takes(name, 1.2, 1.4)),
     ]
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the paper, and how it is judged."""
+    """A sentence of the paper and the function that judges it."""
 
     sentence: str
-    parts: Callable[[Evidence], list[Part]]
+    parts: Callable[[Evidence], list[PartVerdict]]
 
 
 #: In the paper's order.
@@ -168,16 +169,16 @@ CLAIMS = [
 
 @dataclass(frozen=True)
 class Judgement:
-    """A claim, judged on the results of one machine."""
+    """A claim, judged by the results of one machine."""
 
     number: int
     claim: str
     verdict: str
-    parts: list[Part]
+    parts: list[PartVerdict]
 
 
 def judge(evidence: Evidence) -> list[Judgement]:
-    """All claims."""
+    """Judges all claims."""
     judgements = []
     for number, claim in enumerate(CLAIMS, 1):
         parts = claim.parts(evidence)

@@ -1,15 +1,15 @@
-"""What results say to the parts of the paper's claims: comparisons, ratios, limits.
+"""Judges the parts of the paper's claims by results: comparisons, ratios, limits.
 
-Figures are taken at the largest size at which everything that a part needs has a time. GPU algorithms
-that ran on a CPU say nothing about GPUs: what needs them is not measured.
+A part is judged at the largest size at which all its algorithms have a time. Results of GPU algorithms
+on a CPU are no evidence about GPUs: such parts are not measured.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-from broadmark.paper.algorithms import BY_NAME, MOST_SECONDS, SCENES, is_gpu
-from broadmark.paper.times import Place, Times
+from broadmark.paper.algorithms import BY_NAME, MAX_SECONDS, SCENES, is_gpu
+from broadmark.paper.times import Measurement, Times
 
 #: A number counts as reproduced within this factor.
 TOLERANCE = 1.25
@@ -18,71 +18,79 @@ MILLION = 1_000_000
 
 
 @dataclass(frozen=True)
-class Part:
-    """A part of a claim, judged: True, False, or None if it is not measured."""
+class PartVerdict:
+    """The verdict on a part of a claim. `holds` is None if the part is not measured."""
 
     holds: bool | None
     subject: str
-    figures: str  #: or why it is not measured
+    figures: str  #: or the reason why it is not measured
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """Results of one machine, asked in the paper's names."""
+    """Results of one machine, by the paper's names of algorithms."""
 
     cubes: Times
     assorted: Times
 
     def common(self, scene: str, *names: str) -> list[tuple[int, list[float]]]:
-        """The sizes at which all of these have a time, the largest first, with the times."""
+        """The sizes at which all algorithms have a time, the largest first, with the times."""
         found = []
         for objects in reversed(self.cubes.sizes(scene)):
-            places = [self._place(self.cubes, scene, objects, name) for name in names]
-            times = [place.seconds for place in places if place and place.seconds is not None]
+            measurements = [self._measurement(self.cubes, scene, objects, name) for name in names]
+            times = [
+                measurement.seconds
+                for measurement in measurements
+                if measurement and measurement.seconds is not None
+            ]
             if len(times) == len(names):
                 found.append((objects, times))
         return found
 
-    def _place(self, times: Times, scene: str, objects: int, name: str) -> Place | None:
+    def _measurement(self, times: Times, scene: str, objects: int, name: str) -> Measurement | None:
         if self._lacks_gpu(name):
             return None
-        return times.places.get((scene, objects, BY_NAME[name].id))
+        return times.measurements.get((scene, objects, BY_NAME[name].id))
 
     def _lacks_gpu(self, name: str) -> bool:
         return is_gpu(BY_NAME[name]) and self.cubes.device.endswith("(a CPU)")
 
-    def missing(self, scene: str, *names: str) -> Part:
-        """The part that cannot be judged, and why."""
+    def missing(self, scene: str, *names: str) -> PartVerdict:
+        """The verdict "not measured" with its reason."""
         lacking = [name for name in names if self._lacks_gpu(name)]
         if lacking:
             why = f"there is no GPU: the OpenCL device is {self.cubes.device}"
-            return Part(None, ", ".join(lacking), why)
+            return PartVerdict(None, ", ".join(lacking), why)
         sizes = self.cubes.sizes(scene)
-        never = [n for n in names if not any(self._place(self.cubes, scene, s, n) for s in sizes)]
+        never = [
+            n for n in names if not any(self._measurement(self.cubes, scene, s, n) for s in sizes)
+        ]
         where = TITLES[scene]
         if never:
-            return Part(None, ", ".join(never), f"not in these results of {where}")
-        return Part(None, ", ".join(names), f"no size of {where} at which all have a time")
+            return PartVerdict(None, ", ".join(never), f"not in these results of {where}")
+        return PartVerdict(None, ", ".join(names), f"no size of {where} at which all have a time")
 
-    # Parts of claims.
+    # The parts of claims.
 
-    def faster(self, scene: str, fast: list[str], slow: list[str]) -> list[Part]:
+    def faster(self, scene: str, fast: list[str], slow: list[str]) -> list[PartVerdict]:
         """Each of `fast` takes less time than each of `slow`."""
-        pairs = [(one, other) for one in fast for other in slow]
-        parts: list[Part] = []
+        pairs = [(faster, slower) for faster in fast for slower in slow]
+        parts: list[PartVerdict] = []
         missing: list[str] = []
-        for one, other in pairs:
-            found = self.common(scene, one, other)
+        for faster, slower in pairs:
+            found = self.common(scene, faster, slower)
             if not found:
-                missing += [name for name in (one, other) if name not in missing]
+                missing += [name for name in (faster, slower) if name not in missing]
             elif found[0][1][0] >= found[0][1][1]:
                 objects, (first, second) = found[0]
-                figures = f"{_seconds(first)}, {other} {_seconds(second)}"
-                parts.append(Part(False, one, f"{figures} {_at(scene, objects)}"))
+                figures = f"{_seconds(first)}, {slower} {_seconds(second)}"
+                parts.append(PartVerdict(False, faster, f"{figures} {_at(scene, objects)}"))
         if missing:
             parts.append(self.missing(scene, *missing))
         if not parts:
-            parts.append(Part(True, _and(fast), f"faster than {_and(slow)} in {TITLES[scene]}"))
+            parts.append(
+                PartVerdict(True, _and(fast), f"faster than {_and(slow)} in {TITLES[scene]}")
+            )
         return parts
 
     def gain(
@@ -93,12 +101,12 @@ class Evidence:
         low: float,
         high: float,
         also: list[str] | None = None,
-    ) -> Part:
-        """`fast` is `low` to `high` times as fast as `slow`, at a size that `also` reach."""
+    ) -> PartVerdict:
+        """`fast` is `low` to `high` times as fast as `slow`, at a size where `also` have times."""
         for objects, (first, second, *_) in self.common(scene, slow, fast, *(also or [])):
-            if min(first, second) > 0:  # zero: rounded
+            if min(first, second) > 0:  # 0: rounded
                 ratio = first / second
-                return Part(
+                return PartVerdict(
                     low / TOLERANCE <= ratio <= high * TOLERANCE,
                     fast,
                     f"{_number(ratio)} times as fast as {slow} {_at(scene, objects)}"
@@ -106,93 +114,103 @@ class Evidence:
                 )
         return self.missing(scene, slow, fast, *(also or []))
 
-    def gain_up_to(self, scene: str, slow: list[str], fast: list[str], most: float) -> Part:
-        """The largest ratio of any two, over all sizes, is `most`."""
+    def gain_up_to(
+        self, scene: str, slow: list[str], fast: list[str], expected: float
+    ) -> PartVerdict:
+        """The largest speed-up of `fast` over `slow`, over all sizes, is `expected`."""
         ratios = [
-            (times[0] / times[1], objects, one, other)
-            for one in slow
-            for other in fast
-            for objects, times in self.common(scene, one, other)
+            (times[0] / times[1], objects, slower, faster)
+            for slower in slow
+            for faster in fast
+            for objects, times in self.common(scene, slower, faster)
             if times[1] > 0
         ]
         if not ratios:
             return self.missing(scene, *slow, *fast)
-        ratio, objects, one, other = max(ratios)
-        return Part(
-            most / TOLERANCE <= ratio <= most * TOLERANCE,
-            other,
-            f"up to {_number(ratio)} times as fast as {one} {_at(scene, objects)}"
-            + self._threads(scene, objects, other),
+        ratio, objects, slower, faster = max(ratios)
+        return PartVerdict(
+            expected / TOLERANCE <= ratio <= expected * TOLERANCE,
+            faster,
+            f"up to {_number(ratio)} times as fast as {slower} {_at(scene, objects)}"
+            + self._threads(scene, objects, faster),
         )
 
     def _threads(self, scene: str, objects: int, name: str) -> str:
-        place = self._place(self.cubes, scene, objects, name)
-        return f" ({place.threads} threads)" if place and place.threads > 1 else ""
+        measurement = self._measurement(self.cubes, scene, objects, name)
+        return (
+            f" ({measurement.threads} threads)" if measurement and measurement.threads > 1 else ""
+        )
 
-    def changes(self, scene: str, name: str, low: float, high: float) -> Part:
-        """Its time in `scene` is `low` to `high` times that in Brownian, both exclusive."""
-        there = dict(self.common(scene, name))
+    def changes(self, scene: str, name: str, low: float, high: float) -> PartVerdict:
+        """The time in `scene` is `low` to `high` (both exclusive) times the time in Brownian."""
+        scene_times = dict(self.common(scene, name))
         for objects, (brownian,) in self.common("Brownian", name):
-            if objects in there and brownian > 0:
-                ratio = there[objects][0] / brownian
+            if objects in scene_times and brownian > 0:
+                ratio = scene_times[objects][0] / brownian
                 figures = f"{_number(ratio)} times its time in Brownian {_at(scene, objects)}"
-                return Part(low < ratio < high, name, figures)
+                return PartVerdict(low < ratio < high, name, figures)
         return self.missing(scene, name)
 
-    def reaches_a_million(self, scene: str, name: str, expected: bool) -> Part:
-        """Whether it stays within the cap up to a million objects is as expected."""
+    def reaches_a_million(self, scene: str, name: str, expected: bool) -> PartVerdict:
+        """Whether the algorithm stays within the cap up to a million objects, as `expected`."""
         for objects in reversed(self.cubes.sizes(scene)):
-            place = self._place(self.cubes, scene, objects, name)
-            if place is None or place.status not in ("ok", "timeout"):
+            measurement = self._measurement(self.cubes, scene, objects, name)
+            if measurement is None or measurement.status not in ("ok", "timeout"):
                 continue
-            seconds = place.seconds
-            if seconds is not None and seconds <= MOST_SECONDS and objects >= MILLION:
-                return Part(expected, name, f"{_seconds(seconds)} {_at(scene, objects)}")
-            if place.past_the_cap:
+            seconds = measurement.seconds
+            if seconds is not None and seconds <= MAX_SECONDS and objects >= MILLION:
+                return PartVerdict(expected, name, f"{_seconds(seconds)} {_at(scene, objects)}")
+            if measurement.exceeds_cap:
                 time = "timeout" if seconds is None else _seconds(seconds)
-                return Part(not expected, name, f"past the cap: {time} {_at(scene, objects)}")
+                return PartVerdict(
+                    not expected, name, f"past the cap: {time} {_at(scene, objects)}"
+                )
             break
         why = f"neither a million objects in {TITLES[scene]} nor past the cap before"
-        return Part(None, name, why)
+        return PartVerdict(None, name, why)
 
-    def fails_above(self, name: str, most: int) -> Part:
-        """It has no right answers with more than `most` objects."""
+    def fails_above(self, name: str, limit: int) -> PartVerdict:
+        """The algorithm fails with more than `limit` objects."""
         above = [
-            (objects, place.status)
-            for (_, objects, id_), place in sorted(self.cubes.places.items())
-            if id_ == BY_NAME[name].id and objects > most and place.status != "timeout"
+            (objects, measurement.status)
+            for (_, objects, id_), measurement in sorted(self.cubes.measurements.items())
+            if id_ == BY_NAME[name].id and objects > limit and measurement.status != "timeout"
         ]
         if not above:
-            return Part(None, name, f"no case of more than {most:,} objects")
+            return PartVerdict(None, name, f"no case of more than {limit:,} objects")
         objects, status = min(above, key=lambda case: case[1] != "ok")
-        return Part(status != "ok", name, f"{status} at {objects:,}")
+        return PartVerdict(status != "ok", name, f"{status} at {objects:,}")
 
-    def extra_pairs(self, name: str, share: float) -> Part:
-        """It reports pairs that do not overlap, this share of those that do."""
+    def extra_pairs(self, name: str, share: float) -> PartVerdict:
+        """The algorithm reports non-overlapping pairs, `share` of the number of overlapping pairs."""
         shares = [
-            place.extra_share
-            for (_, _, id_), place in self.cubes.places.items()
-            if id_ == BY_NAME[name].id and place.status == "ok" and place.extra_share is not None
+            measurement.extra_share
+            for (_, _, id_), measurement in self.cubes.measurements.items()
+            if id_ == BY_NAME[name].id
+            and measurement.status == "ok"
+            and measurement.extra_share is not None
         ]
         if not shares:
-            return Part(None, name, "no case with checked answers")
+            return PartVerdict(None, name, "no case with checked answers")
         mean = sum(shares) / len(shares)
         fits = share / TOLERANCE <= mean <= share * TOLERANCE
-        return Part(fits, name, f"{100 * mean:.1f} % more, mean of {len(shares)} cases")
+        return PartVerdict(fits, name, f"{100 * mean:.1f} % more, mean of {len(shares)} cases")
 
-    def assorted_takes(self, name: str, low: float, high: float) -> list[Part]:
-        """With assorted objects it takes `low` to `high` times as long as with cubes."""
+    def assorted_takes(self, name: str, low: float, high: float) -> list[PartVerdict]:
+        """Assorted objects take `low` to `high` times as long as cubes."""
         parts = []
         for scene in TITLES:
             for objects, (cubes,) in self.common(scene, name):
-                place = self._place(self.assorted, scene, objects, name)
-                if place and place.seconds and cubes > 0:
-                    ratio = place.seconds / cubes
+                measurement = self._measurement(self.assorted, scene, objects, name)
+                if measurement and measurement.seconds and cubes > 0:
+                    ratio = measurement.seconds / cubes
                     fits = low / TOLERANCE <= ratio <= high * TOLERANCE
                     figures = f"{_number(ratio)} times as long {_at(scene, objects)}"
-                    parts.append(Part(fits, name, figures))
+                    parts.append(PartVerdict(fits, name, figures))
                     break
-        return parts or [Part(None, name, "no assorted objects beside as many cubes")]
+        return parts or [
+            PartVerdict(None, name, "no results of equally many assorted objects and cubes")
+        ]
 
 
 TITLES = {scene.name: scene.title for scene in SCENES}

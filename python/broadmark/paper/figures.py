@@ -1,8 +1,8 @@
-"""The paper's figures 5, 6 and 7: mean seconds of a frame over thousands of objects, a figure per
-scene, with a panel for the single-threaded algorithms and one for the multi-threaded and those on a
-GPU. The fastest single-threaded one is drawn among the parallel ones, too.
+"""The paper's figures 5, 6 and 7: mean seconds per frame over thousands of objects. Each scene has a
+figure with two panels: single-threaded algorithms, and multi-threaded and GPU algorithms. The second
+panel also shows the fastest single-threaded algorithm.
 
-Linear axes, as in the paper, show where algorithms meet the cap; logarithmic ones show small sizes.
+Linear axes, as in the paper, show where algorithms reach the cap; logarithmic axes show small sizes.
 """
 
 from __future__ import annotations
@@ -19,28 +19,29 @@ from broadmark.palette import light
 from broadmark.paper.algorithms import (
     BY_ID,
     CAP_SECONDS,
-    MOST_SECONDS,
-    MOST_THOUSANDS,
+    MAX_SECONDS,
+    MAX_THOUSANDS,
     PARALLEL,
     SINGLE,
     Scene,
     table2,
 )
-from broadmark.paper.times import Place, Times
+from broadmark.paper.times import Measurement, Times
 
 PAPER_STYLES = {
-    one.id: Style(one.colour, one.marker, one.filled, one.line) for one in BY_ID.values()
+    algorithm.id: Style(algorithm.colour, algorithm.marker, algorithm.filled, algorithm.line)
+    for algorithm in BY_ID.values()
 }
 
 Points = list[tuple[float, float]]  #: thousands of objects, seconds
 
 
 @dataclass(frozen=True)
-class Look:
-    """What the options ask for."""
+class FigureOptions:
+    """The options of a figure."""
 
-    paper: bool = False  #: the paper's curves behind ours
-    full_range: bool = False  #: the paper's range of objects, however few were measured
+    paper: bool = False  #: draw the paper's curves behind ours
+    full_range: bool = False  #: use the paper's range of objects
     log: bool = False
 
 
@@ -51,7 +52,7 @@ class Curve:
     algorithm: str
     parallel: bool
     points: Points
-    timeout: tuple[float, float] | None  #: where it crossed the time limit: no time is known there
+    timeout: tuple[float, float] | None  #: the point of a timeout, at the time limit
 
     @property
     def label(self) -> str:
@@ -60,12 +61,16 @@ class Curve:
 
 
 def curves(times: Times, scene: str) -> list[Curve]:
-    """Ours, in the order of Table 2, then our own."""
+    """The measured curves: the paper's algorithms in the order of Table 2, then others."""
     found = []
-    for algorithm in [*BY_ID, *times.own]:
+    for algorithm in [*BY_ID, *times.other_algorithms]:
         shown = times.shown(scene, algorithm)
         points = [(n / 1000, p.seconds) for n, p in shown.items() if p.seconds]
-        timeout = [(n / 1000, place.limit) for n, place in shown.items() if _timed_out(place)][:1]
+        timeout = [
+            (n / 1000, measurement.limit)
+            for n, measurement in shown.items()
+            if _timed_out(measurement)
+        ][:1]
         if points or timeout:
             parallel = (
                 BY_ID[algorithm].panel == PARALLEL
@@ -76,62 +81,72 @@ def curves(times: Times, scene: str) -> list[Curve]:
     return found
 
 
-def _timed_out(place: Place) -> bool:
-    return place.status == "timeout" and place.limit <= MOST_SECONDS
+def _timed_out(measurement: Measurement) -> bool:
+    return measurement.status == "timeout" and measurement.limit <= MAX_SECONDS
 
 
 def paper_curves(scene: str, log: bool) -> list[Curve]:
-    """The paper's; on logarithmic axes without what is rounded to a single digit or nothing."""
-    least = 0.015 if log else 0
+    """The paper's curves; on logarithmic axes without times that are rounded to 0.00 or 0.01 s."""
+    min_seconds = 0.015 if log else 0
     found = []
     for algorithm in BY_ID.values():
         points = [
             (objects / 1000, seconds)
             for (name, objects, id_), seconds in sorted(table2().items())
-            if (name, id_) == (scene, algorithm.id) and seconds >= least
+            if (name, id_) == (scene, algorithm.id) and seconds >= min_seconds
         ]
         found.append(Curve(algorithm.id, algorithm.panel == PARALLEL, points, None))
     return found
 
 
-def fastest_single(ours: list[Curve]) -> Curve | None:
-    """The single-threaded algorithm with the least time at the largest size that any reaches within
-    the cap; where several are equal there, at the next smaller one, and so on."""
-    within = {
+def fastest_single(measured_curves: list[Curve]) -> Curve | None:
+    """The single-threaded algorithm with the least time at the largest size within the cap. Ties are
+    resolved at the next smaller size, and so on."""
+    times_within_cap = {
         curve.algorithm: {n: s for n, s in curve.points if s <= CAP_SECONDS}
-        for curve in ours
+        for curve in measured_curves
         if not curve.parallel
     }
-    sizes = sorted({n for points in within.values() for n in points}, reverse=True)
+    sizes = sorted({n for points in times_within_cap.values() for n in points}, reverse=True)
     if not sizes:
         return None
-    best = min(within, key=lambda a: [within[a].get(n, math.inf) for n in sizes])
-    return next(curve for curve in ours if curve.algorithm == best)
+    best = min(
+        times_within_cap, key=lambda a: [times_within_cap[a].get(n, math.inf) for n in sizes]
+    )
+    return next(curve for curve in measured_curves if curve.algorithm == best)
 
 
-def figure(times: Times, scene: Scene, look: Look) -> Figure:
+def figure(times: Times, scene: Scene, options: FigureOptions) -> Figure:
     """Figure 5, 6 or 7."""
-    ours = curves(times, scene.name)
-    theirs = paper_curves(scene.name, look.log) if look.paper else []
-    looks = {**PAPER_STYLES, **styles({id_: times.families[id_] for id_ in times.own})}
+    measured_curves = curves(times, scene.name)
+    reference_curves = paper_curves(scene.name, options.log) if options.paper else []
+    style_of = {
+        **PAPER_STYLES,
+        **styles({id_: times.families[id_] for id_ in times.other_algorithms}),
+    }
     result = Figure(figsize=(9.8, 4.6), layout="constrained")
-    result.suptitle(f"{scene.title}: mean time of a frame")
+    result.suptitle(f"{scene.title}: mean time per frame")
     panels = result.subplots(1, 2, sharey=True)
     for axes, panel in zip(panels, (SINGLE, PARALLEL)):
         axes.set_title(panel[0].upper() + panel[1:], loc="left")
         axes.set_xlabel("thousands of objects")
-        for curve in _in_panel(theirs, panel):
-            style = {**looks[curve.algorithm].of_line(), "marker": "", "linewidth": 2.2}
+        for curve in _panel_curves(reference_curves, panel):
+            style = {**style_of[curve.algorithm].line_properties(), "marker": "", "linewidth": 2.2}
             axes.plot(*zip(*curve.points), **style, alpha=0.25, zorder=1.5)
-        drawn = _in_panel(ours, panel)
+        drawn = _panel_curves(measured_curves, panel)
         for curve in drawn:
-            _draw(axes, curve, looks[curve.algorithm])
-        if theirs:
+            _draw(axes, curve, style_of[curve.algorithm])
+        if reference_curves:
             axes.plot(
-                [], [], color=light("faint"), linewidth=2.2, alpha=0.5, label="faint: the paper’s"
+                [],
+                [],
+                color=light("faint"),
+                linewidth=2.2,
+                alpha=0.5,
+                label="faint: the paper’s curves",
             )
         if any(curve.timeout for curve in drawn):
-            axes.plot([], [], "x", color=light("faint"), label="time limit crossed")
+            axes.plot([], [], "x", color=light("faint"), label="time limit exceeded")
         axes.legend(
             loc="upper center",
             bbox_to_anchor=(0.5, -0.14),
@@ -139,15 +154,15 @@ def figure(times: Times, scene: Scene, look: Look) -> Figure:
             columnspacing=1.2,
             handlelength=2.6,
         )
-        _set_axes(axes, ours, look)
-    panels[0].set_ylabel("time per frame" if look.log else "seconds per frame")
+        _set_axes(axes, measured_curves, options)
+    panels[0].set_ylabel("time per frame" if options.log else "seconds per frame")
     notes = [times.machine, *times.conditions]
     result.supxlabel("; ".join(notes), fontsize=6.5, color=light("faint"))
     return result
 
 
-def _in_panel(all_curves: list[Curve], panel: str) -> list[Curve]:
-    """The curves of a panel; the fastest single-threaded one is among the parallel ones, too."""
+def _panel_curves(all_curves: list[Curve], panel: str) -> list[Curve]:
+    """The curves of a panel. The parallel panel includes the fastest single-threaded algorithm."""
     drawn = [curve for curve in all_curves if curve.parallel == (panel == PARALLEL)]
     best = fastest_single(all_curves) if panel == PARALLEL else None
     return drawn + ([best] if best else [])
@@ -155,30 +170,32 @@ def _in_panel(all_curves: list[Curve], panel: str) -> list[Curve]:
 
 def _draw(axes: Any, curve: Curve, style: Style) -> None:
     x, y = zip(*curve.points) if curve.points else ((), ())
-    axes.plot(x, y, **style.of_line(), label=curve.label)
+    axes.plot(x, y, **style.line_properties(), label=curve.label)
     if curve.timeout:
         last = curve.points[-1:] + [curve.timeout]
         axes.plot(*zip(*last), color=style.colour, linestyle=":", linewidth=0.9)
         axes.plot(*curve.timeout, "x", color=style.colour, markersize=6, zorder=3)
 
 
-def _set_axes(axes: Any, ours: list[Curve], look: Look) -> None:
-    measured = [n for curve in ours for n, _ in [*curve.points, *filter(None, [curve.timeout])]]
-    full = look.paper or look.full_range
-    most = max([*measured, MOST_THOUSANDS] if full else measured)
-    if look.log:
+def _set_axes(axes: Any, measured_curves: list[Curve], options: FigureOptions) -> None:
+    measured = [
+        n for curve in measured_curves for n, _ in [*curve.points, *filter(None, [curve.timeout])]
+    ]
+    full = options.paper or options.full_range
+    max_thousands = max([*measured, MAX_THOUSANDS] if full else measured)
+    if options.log:
         log_scale(axes, "x")
         log_scale(axes, "y", "s")
-        axes.set_xlim(min(measured) / 1.15, most * 1.15)
-        axes.set_ylim(top=MOST_SECONDS)
-        ticks = [2.0**k for k in range(-10, 20) if min(measured) <= 2.0**k <= most]
+        axes.set_xlim(min(measured) / 1.15, max_thousands * 1.15)
+        axes.set_ylim(top=MAX_SECONDS)
+        ticks = [2.0**k for k in range(-10, 20) if min(measured) <= 2.0**k <= max_thousands]
         axes.set_xticks(ticks)
         axes.xaxis.set_minor_locator(NullLocator())
         axes.grid(True, which="minor", axis="y", linewidth=0.25)
     else:
-        axes.set(xlim=(0, most * 1.02), ylim=(0, MOST_SECONDS))  # the last marker is whole
-        if most == MOST_THOUSANDS:
-            axes.set_xticks(range(0, MOST_THOUSANDS + 1, 128))
+        axes.set(xlim=(0, max_thousands * 1.02), ylim=(0, MAX_SECONDS))  # room for the last marker
+        if max_thousands == MAX_THOUSANDS:
+            axes.set_xticks(range(0, MAX_THOUSANDS + 1, 128))
         else:
             axes.xaxis.set_major_locator(MaxNLocator(8))
     axes.axhline(CAP_SECONDS, color=light("border"), linewidth=0.7, zorder=1)

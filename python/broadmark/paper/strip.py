@@ -1,4 +1,4 @@
-"""The paper's figure 3: a strip of one scene with more and more bodies, same camera, same frame."""
+"""The paper's figure 3: a scene with increasing numbers of bodies, same camera, same frame."""
 
 from __future__ import annotations
 
@@ -15,36 +15,36 @@ from matplotlib.figure import Figure
 from broadmark.drawing import check_format, draw
 from broadmark.program import as_options, call
 
-SIDE = 640  #: pixels of a picture
+SIDE = 640  #: the size of a picture in pixels
 
 
 @dataclass(frozen=True)
-class Part:
-    """A picture of the strip: a source of the program, and what to simulate if it is a scene."""
+class StripPanel:
+    """A panel of the strip: a source for the program, and the number of bodies for a scene."""
 
     source: str
     caption: str
     objects: int | None = None
 
 
-def write_strip(path: str, parts: list[Part], frame: int) -> None:
-    """Has the program draw every part, and joins the pictures."""
+def write_strip(path: str, panels: list[StripPanel], frame: int) -> None:
+    """Draws every panel by the program and joins the pictures."""
     check_format(path)
     with tempfile.TemporaryDirectory(prefix="broadmark-") as folder:
-        pictures = [_picture(part, frame, folder) for part in parts]
-        draw([path], lambda: _strip(pictures, [part.caption for part in parts]))
+        pictures = [_picture(panel, frame, folder) for panel in panels]
+        draw([path], lambda: _strip(pictures, [panel.caption for panel in panels]))
 
 
-def _picture(part: Part, frame: int, folder: str) -> pathlib.Path:
-    print(f"drawing {part.caption}, frame {frame}", file=sys.stderr, flush=True)
+def _picture(panel: StripPanel, frame: int, folder: str) -> pathlib.Path:
+    print(f"drawing {panel.caption}, frame {frame}", file=sys.stderr, flush=True)
     files = pathlib.Path(tempfile.mkdtemp(dir=folder))
-    simulated = {"objects": part.objects, "frames": frame} if part.objects else {}
+    simulated = {"objects": panel.objects, "frames": frame} if panel.objects else {}
     call(
-        *("--headless", part.source, "--quiet", "--algorithm", "none"),
+        *("--headless", panel.source, "--quiet", "--algorithm", "none"),
         *as_options(**simulated, frame=frame, size=f"{SIDE}x{SIDE}"),
-        *("--screenshot", os.fspath(files / "part.png")),
+        *("--screenshot", os.fspath(files / "panel.png")),
     )
-    return files / "part.png"
+    return files / "panel.png"
 
 
 def _strip(pictures: list[pathlib.Path], captions: list[str]) -> Figure:

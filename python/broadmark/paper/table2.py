@@ -1,9 +1,9 @@
-"""The paper's Table 2 from our results, ours beside theirs, as text, Markdown, CSV or LaTeX.
+"""The paper's Table 2 from our results, with the paper's numbers, as text, Markdown, CSV or LaTeX.
 
-Turned, because there are more algorithms here than there were columns: a block per scene, a row per
-algorithm, and for each number of objects our seconds per frame and the paper's. A second block tells
-how many times CGAL's time that is: CGAL's library is the same for both, so these ratios carry over
-from machine to machine. The paper's times are rounded to 0.01 s, so ratios of small ones are left out.
+The table is transposed, because there are more algorithms than in the paper: a block per scene, a row
+per algorithm, and for each number of objects our seconds per frame and the paper's. A second block has
+the ratios to CGAL's time: both use the same CGAL library, so these ratios are comparable between
+machines. The paper's times are rounded to 0.01 s, so ratios of short times are left out.
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from dataclasses import dataclass, field
 from broadmark.paper.algorithms import BY_ID, CAP_SECONDS, SCENES, Scene, table2
 from broadmark.paper.times import Times
 
-YARDSTICK = "cgal"
+REFERENCE = "cgal"
 
-#: The paper's times below which a ratio would be one of rounding: CGAL's and the other's.
-LEAST_OF_YARDSTICK, LEAST_OF_OTHERS = 0.05, 0.02
+#: The paper's times, CGAL's and others, below which rounding would dominate a ratio.
+MIN_REFERENCE_SECONDS, MIN_OTHER_SECONDS = 0.05, 0.02
 
 PAST_THE_CAP = "–"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """An algorithm in a scene of one size, measured by us, by the paper, or by neither."""
+    """A cell: an algorithm in a scene of one size, with our and the paper's result, if any."""
 
     scene: str
     objects: int
     algorithm: str
-    status: str  #: of our case; PAST_THE_CAP: at a smaller size; "": none
+    status: str  #: of our case; PAST_THE_CAP: past the cap at a smaller size; "": no case
     seconds: float | None
     paper_seconds: float | None
     ratio: float | None  #: to CGAL's time
@@ -39,43 +39,43 @@ class Entry:
 
 
 def entries(times: Times, scene: str) -> list[list[Entry]]:
-    """A row for each algorithm, an entry in it for each number of objects that we ran."""
-    ids = [*BY_ID, *times.own]
+    """A row per algorithm with an entry per measured number of objects."""
+    ids = [*BY_ID, *times.other_algorithms]
     return [[_entry(times, scene, n, algorithm) for n in times.sizes(scene)] for algorithm in ids]
 
 
 def _entry(times: Times, scene: str, objects: int, algorithm: str) -> Entry:
     shown = times.shown(scene, algorithm)
-    place = shown.get(objects)
-    past = any(one.past_the_cap for n, one in shown.items() if n < objects)
-    seconds = place.seconds if place else None
-    yardstick = times.shown(scene, YARDSTICK).get(objects)
-    theirs = table2().get((scene, objects, algorithm))
-    their_yardstick = table2().get((scene, objects, YARDSTICK), 0)
-    rounded = their_yardstick < LEAST_OF_YARDSTICK or (theirs or 0) < LEAST_OF_OTHERS
+    measurement = shown.get(objects)
+    past = any(smaller.exceeds_cap for size, smaller in shown.items() if size < objects)
+    seconds = measurement.seconds if measurement else None
+    reference = times.shown(scene, REFERENCE).get(objects)
+    paper_seconds = table2().get((scene, objects, algorithm))
+    paper_reference = table2().get((scene, objects, REFERENCE), 0)
+    rounded = paper_reference < MIN_REFERENCE_SECONDS or (paper_seconds or 0) < MIN_OTHER_SECONDS
     return Entry(
         scene,
         objects,
         algorithm,
-        place.status if place else PAST_THE_CAP if past else "",
+        measurement.status if measurement else PAST_THE_CAP if past else "",
         seconds,
-        theirs,
-        seconds / yardstick.seconds if seconds and yardstick and yardstick.seconds else None,
-        None if theirs is None or rounded else theirs / their_yardstick,
+        paper_seconds,
+        seconds / reference.seconds if seconds and reference and reference.seconds else None,
+        None if paper_seconds is None or rounded else paper_seconds / paper_reference,
     )
 
 
-# As text, Markdown and LaTeX: grids of cells.
+# Text, Markdown and LaTeX: grids of cells.
 
 
 @dataclass(frozen=True)
 class Grid:
-    """A block of the table, its cells as they are printed."""
+    """A block of the table with formatted cells."""
 
     title: str
-    #: Of each number of objects its columns: "ours", and "paper" where the paper has that number.
+    #: The columns by number of objects: "ours", and "paper" if the paper has this number.
     columns: list[tuple[int, list[str]]]
-    rows: list[tuple[str, str, list[str]]]  #: the paper's name, ours, cells
+    rows: list[tuple[str, str, list[str]]]  #: the paper's name, our id, cells
 
 
 @dataclass(frozen=True)
@@ -89,8 +89,8 @@ class Page:
 
 def _page(times: Times) -> Page:
     notes = [
-        f"“{PAST_THE_CAP}”: crossed {CAP_SECONDS} s a frame at a smaller size. A word: the status "
-        "of our case. Blank: not measured.",
+        f"“{PAST_THE_CAP}”: exceeded {CAP_SECONDS} s per frame at a smaller size. A word is the "
+        "status of our case. A blank cell was not measured.",
     ]
     notes += [f"{line}." for line in times.conditions]
     page = Page(times.machine, notes)
@@ -101,7 +101,7 @@ def _page(times: Times) -> Page:
 
 
 def _grids(times: Times, scene: Scene) -> list[Grid]:
-    rows = [row for row in entries(times, scene.name) if _is_known(row)]
+    rows = [row for row in entries(times, scene.name) if _has_result(row)]
     paper_sizes = {objects for name, objects, _ in table2() if name == scene.name}
     columns = [
         (entry.objects, ["ours", "paper"] if entry.objects in paper_sizes else ["ours"])
@@ -126,7 +126,7 @@ def _grids(times: Times, scene: Scene) -> list[Grid]:
     return blocks
 
 
-def _is_known(row: list[Entry]) -> bool:
+def _has_result(row: list[Entry]) -> bool:
     return any(entry.status or entry.paper_seconds is not None for entry in row)
 
 
@@ -145,14 +145,14 @@ def _ratio(ratio: float | None) -> str:
 
 
 def _two_digits(value: float, decimals: int) -> str:
-    """Two significant digits and at least so many decimals, without an exponent."""
+    """At least two significant digits and `decimals` decimals, without an exponent."""
     while decimals < 9 and 0 < value * 10**decimals < 9.95:
         decimals += 1
     return f"{value:.{decimals}f}"
 
 
 def as_text(pages: list[Page]) -> str:
-    """For a terminal."""
+    """The tables for a terminal."""
     blocks = []
     for page in pages:
         blocks.append(page.title)
@@ -170,15 +170,15 @@ def as_text(pages: list[Page]) -> str:
 
 
 def as_markdown(pages: list[Page]) -> str:
-    """For a README."""
+    """The tables in Markdown."""
     blocks = []
     for page in pages:
         blocks.append(f"## {_escaped_markdown(page.title)}")
         for grid in page.grids:
-            heads = ["paper’s name", "algorithm"]
+            headings = ["paper’s name", "algorithm"]
             for objects, names in grid.columns:
-                heads += [f"{objects:,} {name}" for name in names]
-            lines = ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads)]
+                headings += [f"{objects:,} {name}" for name in names]
+            lines = ["| " + " | ".join(headings) + " |", "|" + "---|" * len(headings)]
             for name, id_, cells in grid.rows:
                 row = [name, f"`{id_}`", *cells]
                 lines.append("| " + " | ".join(map(_escaped_markdown, row)) + " |")
@@ -192,8 +192,10 @@ def _escaped_markdown(text: str) -> str:
 
 
 def as_latex(pages: list[Page]) -> str:
-    """For a paper: tables that need the package booktabs."""
-    blocks = [r"% \usepackage{booktabs}; wide ones: \begin{sidewaystable} of the package rotating"]
+    """The tables in LaTeX; they require the package booktabs."""
+    blocks = [
+        r"% \usepackage{booktabs}; for wide tables: \begin{sidewaystable} of the package rotating"
+    ]
     for page in pages:
         for grid in page.grids:
             blocks.append("\n".join(_latex_table(page, grid)))
@@ -236,7 +238,7 @@ def _escaped_latex(text: str) -> str:
     return "".join(LATEX.get(character, character) for character in text)
 
 
-# As CSV: an entry per row.
+# CSV: a row per entry.
 
 CSV_COLUMNS = [
     *("machine", "scene", "objects", "algorithm", "paper_algorithm", "status"),
@@ -266,10 +268,10 @@ def _csv_row(machine: str, entry: Entry) -> list[object]:
     ]
 
 
-#: One line per format.
+#: The formats and their functions.
 FORMATS: dict[str, Callable[[list[Times]], str]] = {
-    "text": lambda times: as_text([_page(one) for one in times]),
-    "markdown": lambda times: as_markdown([_page(one) for one in times]),
+    "text": lambda times: as_text([_page(machine_times) for machine_times in times]),
+    "markdown": lambda times: as_markdown([_page(machine_times) for machine_times in times]),
     "csv": _as_csv,
-    "latex": lambda times: as_latex([_page(one) for one in times]),
+    "latex": lambda times: as_latex([_page(machine_times) for machine_times in times]),
 }

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from broadmark.paper.claims import FAILS, HOLDS, TERMS, UNKNOWN, Judgement
-from broadmark.paper.evidence import Part
+from broadmark.paper.evidence import PartVerdict
 
 MARKS = {True: "+", False: "–", None: "?"}
 WIDTH = 100
@@ -25,13 +25,15 @@ class Verdicts:
 
     @property
     def summary(self) -> str:
-        """How many of each."""
-        found = [judgement.verdict for judgement in self.judgements]
-        return ", ".join(f"{one}: {found.count(one)}" for one in (HOLDS, FAILS, UNKNOWN))
+        """The number of claims by verdict."""
+        verdicts = [judgement.verdict for judgement in self.judgements]
+        return ", ".join(
+            f"{verdict}: {verdicts.count(verdict)}" for verdict in (HOLDS, FAILS, UNKNOWN)
+        )
 
 
-def _lines(parts: list[Part]) -> list[str]:
-    """What decided first; subjects of which the same is to be said in one line."""
+def _lines(parts: list[PartVerdict]) -> list[str]:
+    """Failed parts first; subjects with the same figures share a line."""
     subjects: dict[tuple[bool | None, str], list[str]] = {}
     for part in sorted(parts, key=lambda part: [False, None, True].index(part.holds)):
         known = subjects.setdefault((part.holds, part.figures), [])
@@ -43,10 +45,10 @@ def _lines(parts: list[Part]) -> list[str]:
 
 
 def _as_text(all_verdicts: list[Verdicts]) -> str:
-    lines = textwrap.wrap(TERMS + " Marks: + as claimed, – not so, ? not measured.", WIDTH)
-    for one in all_verdicts:
-        lines += ["", "; ".join([one.machine, *one.conditions]), one.summary]
-        for judgement in one.judgements:
+    lines = textwrap.wrap(TERMS + " Marks: + holds, – does not hold, ? not measured.", WIDTH)
+    for verdicts in all_verdicts:
+        lines += ["", "; ".join([verdicts.machine, *verdicts.conditions]), verdicts.summary]
+        for judgement in verdicts.judgements:
             head = f"{judgement.number:2}  {judgement.verdict:13}  "
             indent = " " * len(head)
             lines += ["", *textwrap.wrap(head + judgement.claim, WIDTH, subsequent_indent=indent)]
@@ -57,22 +59,29 @@ def _as_text(all_verdicts: list[Verdicts]) -> str:
 
 def _as_markdown(all_verdicts: list[Verdicts]) -> str:
     blocks = [TERMS]
-    for one in all_verdicts:
+    for verdicts in all_verdicts:
         rows = ["| | claim | verdict | figures |", "|---|---|---|---|"]
-        for judgement in one.judgements:
+        for judgement in verdicts.judgements:
             figures = "<br>".join(_lines(judgement.parts))
             cells = [str(judgement.number), judgement.claim, judgement.verdict, figures]
             rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-        blocks += [f"## {one.machine}", "; ".join([*one.conditions, one.summary]), "\n".join(rows)]
+        blocks += [
+            f"## {verdicts.machine}",
+            "; ".join([*verdicts.conditions, verdicts.summary]),
+            "\n".join(rows),
+        ]
     return "\n\n".join(blocks) + "\n"
 
 
 def _as_json(all_verdicts: list[Verdicts]) -> str:
-    document = {"terms": TERMS, "machines": [dataclasses.asdict(one) for one in all_verdicts]}
+    document = {
+        "terms": TERMS,
+        "machines": [dataclasses.asdict(verdicts) for verdicts in all_verdicts],
+    }
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
-#: One line per format.
+#: The formats and their functions.
 FORMATS: dict[str, Callable[[list[Verdicts]], str]] = {
     "text": _as_text,
     "markdown": _as_markdown,

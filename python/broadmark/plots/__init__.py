@@ -1,4 +1,4 @@
-"""Plots of results. A kind is a function here and a line in KINDS; its module tells what it shows."""
+"""Plots of results. Each kind is a module with a function that is listed in KINDS."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from broadmark.plots.memory import memory
 from broadmark.plots.scaling import scaling
 from broadmark.plots.violins import violins
 
-#: One line per kind: its function, whose docstring is the help.
+#: The kinds and their functions. The docstring of a function is its help.
 KINDS: dict[str, Callable[[Cases], Figure]] = {
     "bars": bars,
     "violins": violins,

@@ -1,4 +1,4 @@
-"""Bars: the mean time of a frame by scene, number of bodies and algorithm."""
+"""Bars: the mean time per frame by scene, number of bodies and algorithm."""
 
 from __future__ import annotations
 
@@ -14,27 +14,30 @@ from broadmark.plots.panels import by_scene_and_size, label_rows
 
 
 def bars(cases: Cases) -> Figure:
-    """mean time of a frame, by scene and number of bodies; lines are 95 % intervals"""
-    looks = cases.looks
-    rows = {label: row for row, label in enumerate(looks)}
+    """mean time per frame, by scene and number of bodies, with 95 % confidence intervals"""
+    styles = cases.styles
+    rows = {label: row for row, label in enumerate(styles)}
 
-    def paint(axes: Any, part: pd.DataFrame) -> None:
-        y = part["label"].map(rows)
-        milliseconds = part["seconds_per_frame"] * 1e3
-        colours = [looks[label].colour for label in part["label"]]
+    def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        y = panel_cases["label"].map(rows)
+        milliseconds = panel_cases["seconds_per_frame"] * 1e3
+        colours = [styles[label].colour for label in panel_cases["label"]]
         axes.barh(y, milliseconds, height=0.75, color=colours)
-        known = part["ci95_low_seconds"].notna()
-        if known.any():
+        has_interval = panel_cases["ci95_low_seconds"].notna()
+        if has_interval.any():
             low, high = (
-                part.loc[known, f"ci95_{end}_seconds"].astype(float) * 1e3
+                panel_cases.loc[has_interval, f"ci95_{end}_seconds"].astype(float) * 1e3
                 for end in ("low", "high")
             )
-            axes.hlines(y[known], low.clip(lower=0), high, color=light("text"), linewidth=0.8)
+            axes.hlines(
+                y[has_interval], low.clip(lower=0), high, color=light("text"), linewidth=0.8
+            )
         if cases.log:
             log_scale(axes, "x")
             axes.set_xlim(milliseconds.min() / 2, milliseconds.max() * 1.5)
         else:
-            axes.set_xlim(0, milliseconds.max() * 1.25)  # intervals of few repetitions are cut
+            # Clips the wide intervals of few repetitions.
+            axes.set_xlim(0, milliseconds.max() * 1.25)
         for row, value in zip(y, milliseconds):
             axes.annotate(
                 f"{value:.3g}",

@@ -1,4 +1,4 @@
-"""Frame by frame: lines, phases stacked, and time against pairs. Times are means over repetitions."""
+"""Times by frame: lines, stacked phases, and time against pairs. Times are means over repetitions."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from broadmark.plots.cases import Cases
 from broadmark.plots.panels import by_scene, by_scene_and_size
 from broadmark.results import PHASES, TRANSFERS
 
-#: Points above which a scatter plot is a picture in an SVG or PDF, which would be too large.
-MOST_POINTS = 20_000
+#: The number of points above which a scatter plot is rasterised in SVG and PDF to limit their size.
+MAX_VECTOR_POINTS = 20_000
 
 
 def frames(cases: Cases) -> Figure:
-    """time of each frame, a line per algorithm"""
-    looks = cases.looks
+    """time of each frame, with a line per algorithm"""
+    styles = cases.styles
 
-    def paint(axes: Any, part: pd.DataFrame) -> None:
-        for number, (case, label) in enumerate(part["label"].items()):
+    def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        for number, (case, label) in enumerate(panel_cases["label"].items()):
             means = cases.mean_frames(case)
-            every = max(1, len(means) // 8)
-            style = {**looks[label].of_line(), "markersize": 3.5, "linewidth": 0.9}
-            marks = (number * every // 5 % every, every)  # not all at the same frames
+            spacing = max(1, len(means) // 8)
+            style = {**styles[label].line_properties(), "markersize": 3.5, "linewidth": 0.9}
+            mark_every = (number * spacing // 5 % spacing, spacing)  # staggered
             axes.plot(
-                means["frame"], means["total_ns"] / 1e6, **style, markevery=marks, label=label
+                means["frame"], means["total_ns"] / 1e6, **style, markevery=mark_every, label=label
             )
         _scale_y(axes, cases.log)
 
@@ -39,14 +39,14 @@ def frames(cases: Cases) -> Figure:
 
 
 def pairs(cases: Cases) -> Figure:
-    """time of each frame against its pairs, all numbers of bodies together"""
-    looks = cases.looks
-    rasterized = len(cases.table) * cases.table["frames"].max() > MOST_POINTS
+    """time of each frame against its pairs, for all numbers of bodies"""
+    styles = cases.styles
+    rasterized = len(cases.table) * cases.table["frames"].max() > MAX_VECTOR_POINTS
 
-    def paint(axes: Any, part: pd.DataFrame) -> None:
-        for case, label in part["label"].items():
+    def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        for case, label in panel_cases["label"].items():
             means = cases.mean_frames(case)
-            style = {**looks[label].of_points(), "markersize": 2.5, "markeredgewidth": 0.6}
+            style = {**styles[label].point_properties(), "markersize": 2.5, "markeredgewidth": 0.6}
             axes.plot(
                 means["pairs"], means["total_ns"] / 1e6, **style, label=label, rasterized=rasterized
             )
@@ -62,15 +62,17 @@ def pairs(cases: Cases) -> Figure:
 
 
 def phases(cases: Cases) -> Figure:
-    """phases of each frame of one case, stacked"""
+    """stacked phases of each frame of a case"""
     if len(cases.table) != 1:
         ids = ", ".join(cases.table["id"].iloc[:3]) + (", …" if len(cases.table) > 3 else "")
         raise InputError(
-            f"phases shows one case, {len(cases.table)} are left: {ids}: choose with --scene, "
-            "--objects, --algorithm or --filter"
+            f"phases requires a single case, but {len(cases.table)} are left: {ids}: choose with "
+            "--scene, --objects, --algorithm or --filter"
         )
     if cases.log:
-        raise InputError("phases are stacked: a logarithmic axis would mislead: leave out --log")
+        raise InputError(
+            "phases are stacked, which a logarithmic axis would distort: leave out --log"
+        )
     case = cases.table.iloc[0]
     means = cases.mean_frames(case.name)
 
@@ -84,7 +86,7 @@ def phases(cases: Cases) -> Figure:
         )
         transfers = sum(means[f"{phase}_ns"] for phase in TRANSFERS) / 1e6
         if transfers.any():
-            label = f"of these {' and '.join(TRANSFERS)}"
+            label = f"including {' and '.join(TRANSFERS)}"
             axes.plot(means["frame"], transfers, color=light("text"), linewidth=0.8, label=label)
         axes.set(xlim=(means["frame"].min(), means["frame"].max()), ylim=(0, None))
         handles, names = axes.get_legend_handles_labels()

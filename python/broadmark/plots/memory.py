@@ -1,4 +1,4 @@
-"""Memory: the mean time of a frame against the memory that it takes."""
+"""Memory: the mean time per frame against peak memory."""
 
 from __future__ import annotations
 
@@ -12,21 +12,23 @@ from broadmark.errors import InputError
 from broadmark.plots.cases import Cases
 from broadmark.plots.panels import by_scene_and_size
 
-#: Bytes that the system counts memory in: a small case may take less, and a logarithm has no 0.
-PAGE = 4096
+#: The page size, the smallest memory shown: a small case may use less, down to 0.
+PAGE_BYTES = 4096
 
 
 def memory(cases: Cases) -> Figure:
-    """mean time of a frame against peak memory, both logarithmic: the best are at the lower left"""
-    looks = cases.looks
+    """mean time per frame against peak memory, with logarithmic axes; the lower left is best"""
+    styles = cases.styles
     if not cases.table["peak_bytes"].notna().any():
-        raise InputError("no case with its memory is left: it is unknown of runs with --in-process")
+        raise InputError(
+            "no case with peak memory is left: runs with --in-process do not measure memory"
+        )
 
-    def paint(axes: Any, part: pd.DataFrame) -> None:
-        for _, case in part[part["peak_bytes"].notna()].iterrows():
-            style = looks[case["label"]].of_points()
+    def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        for _, case in panel_cases[panel_cases["peak_bytes"].notna()].iterrows():
+            style = styles[case["label"]].point_properties()
             axes.plot(
-                max(case["peak_bytes"], PAGE),
+                max(case["peak_bytes"], PAGE_BYTES),
                 case["seconds_per_frame"],
                 **style,
                 label=case["label"],
@@ -35,5 +37,5 @@ def memory(cases: Cases) -> Figure:
         log_scale(axes, "y", "s")
 
     return by_scene_and_size(
-        cases, paint, size=(2.8, 2.4), x="peak memory", y="time of a frame", legend=True
+        cases, paint, size=(2.8, 2.4), x="peak memory", y="time per frame", legend=True
     )

@@ -1,4 +1,4 @@
-"""Figures of several panels with one legend below them."""
+"""Figures of several panels with a common legend below."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Painter = Callable[[Any, pd.DataFrame], None]
 NOTE = {"fontsize": 6.5, "color": light("faint")}
 
 
-def by_scene_and_size(cases: Cases, paint: Painter, **about: Any) -> Figure:
-    """A row of panels for each scene, in it a panel for each number of bodies."""
+def by_scene_and_size(cases: Cases, paint: Painter, **options: Any) -> Figure:
+    """A row of panels per scene with a panel per number of bodies."""
     table = cases.table
     rows = [
         [
@@ -31,18 +31,18 @@ def by_scene_and_size(cases: Cases, paint: Painter, **about: Any) -> Figure:
         ]
         for scene in table["panel"].unique()
     ]
-    return _panels(cases, rows, paint, **about)
+    return _panels(cases, rows, paint, **options)
 
 
-def by_scene(cases: Cases, paint: Painter, *, stacked: bool = False, **about: Any) -> Figure:
-    """A panel for each scene, beside or below each other."""
+def by_scene(cases: Cases, paint: Painter, *, stacked: bool = False, **options: Any) -> Figure:
+    """A panel per scene, in a row or stacked."""
     scenes = cases.table["panel"].unique()
     row = [(scene, cases.table[cases.table["panel"] == scene]) for scene in scenes]
-    return _panels(cases, [[panel] for panel in row] if stacked else [row], paint, **about)
+    return _panels(cases, [[panel] for panel in row] if stacked else [row], paint, **options)
 
 
 def label_rows(axes: Any, labels: list[str]) -> None:
-    """Rows instead of a y axis: a label at 0, 1, …, from above."""
+    """Labels rows at 0, 1, …, from the top, instead of a y axis."""
     axes.grid(False, axis="y")
     axes.set_yticks(range(len(labels)), labels, fontsize=7)
     axes.set_ylim(len(labels) - 0.4, -0.6)
@@ -59,23 +59,23 @@ def _panels(
     legend: bool,
     **sharing: Any,
 ) -> Figure:
-    """`size` is of a panel, in inches; `x` and `y` are the axes' labels; `sharing` is for subplots."""
+    """`size` is a panel's size in inches; `x` and `y` are axis labels; subplots() gets `sharing`."""
     width = max(size[0] * len(rows[0]) + 0.4, 4)
     height = size[1] * len(rows) + 0.3
-    labels = list(cases.looks) if legend else []
+    labels = list(cases.styles) if legend else []
     columns = max(1, min(int(width / 1.45), len(labels)))
-    below = 0.32 + 0.17 * math.ceil(len(labels) / columns)
-    figure = Figure(figsize=(width, height + below), layout="constrained")
-    upper, lower = figure.subfigures(2, 1, height_ratios=[height, below])
+    legend_height = 0.32 + 0.17 * math.ceil(len(labels) / columns)
+    figure = Figure(figsize=(width, height + legend_height), layout="constrained")
+    upper, lower = figure.subfigures(2, 1, height_ratios=[height, legend_height])
     grid = upper.subplots(len(rows), len(rows[0]), squeeze=False, **sharing)
     handles: dict[str, Any] = {}
     for row, axes_of_row in zip(rows, grid):
-        for (title, part), axes in zip(row, axes_of_row):
+        for (title, panel_cases), axes in zip(row, axes_of_row):
             axes.set_title(title, loc="left")
-            if not len(part):
+            if not len(panel_cases):
                 axes.set_axis_off()
                 continue
-            paint(axes, part)
+            paint(axes, panel_cases)
             handles |= {line.get_label(): line for line in axes.get_lines()}
     for axes in grid[-1]:
         axes.set_xlabel(x)
@@ -83,6 +83,6 @@ def _panels(
         axes.set_ylabel(y)
     if legend:
         shown = [label for label in labels if label in handles]
-        lower.legend([handles[one] for one in shown], shown, loc="upper center", ncol=columns)
-    lower.text(0.5, 0.06 / below, cases.note, ha="center", va="bottom", **NOTE)
+        lower.legend([handles[label] for label in shown], shown, loc="upper center", ncol=columns)
+    lower.text(0.5, 0.06 / legend_height, cases.note, ha="center", va="bottom", **NOTE)
     return figure

@@ -1,4 +1,4 @@
-"""Violins: how the times of frames are distributed."""
+"""Violins: the distribution of frame times."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from broadmark.plots.panels import by_scene_and_size, label_rows
 
 
 def violins(cases: Cases) -> Figure:
-    """distribution of the times of all frames; a dash marks the median"""
-    looks = cases.looks
-    rows = {label: row for row, label in enumerate(looks)}
+    """distribution of all frame times; a dash marks the median"""
+    styles = cases.styles
+    rows = {label: row for row, label in enumerate(styles)}
     times = {
         case: frames["total_ns"].to_numpy() / 1e6
         for case, frames in cases.results.frames.groupby("case")
         if case in cases.table.index
     }
 
-    def paint(axes: Any, part: pd.DataFrame) -> None:
-        for case, label in part["label"].items():
+    def paint(axes: Any, panel_cases: pd.DataFrame) -> None:
+        for case, label in panel_cases["label"].items():
             values = np.log10(times[case]) if cases.log else times[case]
-            body = axes.violinplot(
+            violin = axes.violinplot(
                 [values], [rows[label]], vert=False, widths=0.9, showextrema=False
             )
-            body["bodies"][0].set(facecolor=looks[label].colour, alpha=0.75, linewidth=0)
+            violin["bodies"][0].set(facecolor=styles[label].colour, alpha=0.75, linewidth=0)
             axes.plot(np.median(values), rows[label], "|", color=light("text"), markersize=5)
         if cases.log:
             axes.xaxis.set_major_locator(MaxNLocator(integer=True))
@@ -41,5 +41,5 @@ def violins(cases: Cases) -> Figure:
 
     size = (2.4, 0.6 + 0.17 * len(rows))
     return by_scene_and_size(
-        cases, paint, size=size, x="milliseconds a frame", y="", legend=False, sharey=True
+        cases, paint, size=size, x="milliseconds per frame", y="", legend=False, sharey=True
     )

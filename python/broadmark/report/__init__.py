@@ -1,8 +1,8 @@
-"""The report: results files as one HTML page that needs no network.
+"""The report: results files as a self-contained HTML page.
 
-`data` turns results into what the page holds, with the help of `labels` (what tells recordings and
-variants apart), `rerun` (commands that run a case again), `timelines` (times frame by frame) and
-`pictures` (of the scenes). `page` puts that, d3 and the files of `web` into one file.
+`data` converts results to the data of the page, using `labels` (short names of recordings and
+variants), `rerun` (commands that run a case again), `timelines` (times by frame) and `pictures` (of
+the scenes). `page` combines the data, d3 and the files of `web` in one file.
 """
 
 from broadmark.report.page import write_report

@@ -1,7 +1,7 @@
-"""What the page holds: results as plain values, written as JSON.
+"""The data of the page: results as plain values, written as JSON.
 
-A case is a row over columns. A column of texts is a list of the different ones and their numbers:
-ten thousand cases have few different algorithms, reasons or commands.
+Cases are stored by columns. A column of texts is dictionary-encoded as a list of distinct texts and a
+list of indices: ten thousand cases have few distinct algorithms, reasons or commands.
 """
 
 from __future__ import annotations
@@ -15,12 +15,15 @@ from broadmark.palette import curves_of
 from broadmark.report import labels, rerun
 from broadmark.results import COLUMNS, Results
 
-#: Columns that the page takes as they are in `Results.cases`; others are of the recording.
-OF_CASES = [column for column in COLUMNS if not column["path"].startswith("recording/")]
-NUMBERS = [column["key"] for column in OF_CASES if column["kind"] == "number"]
-TEXTS = [column["key"] for column in OF_CASES if column["kind"] == "text"] + ["warnings", "file"]
+#: The columns of cases, copied from `Results.cases`; the others belong to the recording.
+CASE_COLUMNS = [column for column in COLUMNS if not column["path"].startswith("recording/")]
+NUMBERS = [column["key"] for column in CASE_COLUMNS if column["kind"] == "number"]
+TEXTS = [column["key"] for column in CASE_COLUMNS if column["kind"] == "text"] + [
+    "warnings",
+    "file",
+]
 
-#: The machine's facts: title and key of its environment.
+#: The facts of a machine: title and key in the environment.
 FACTS = [
     ("Processor", "cpu"),
     ("Cores", "logical_cores"),
@@ -34,28 +37,28 @@ FACTS = [
     ("Compiler flags", "compiler_flags"),
     ("Build type", "build_type"),
     ("Program version", "version"),
-    ("Load when it began", "load_average"),
+    ("Load at the start", "load_average"),
 ]
 
 
 def page_data(results: Results) -> dict[str, Any]:
-    """The data of the page, but for times frame by frame and pictures.
+    """The data of the page, without times by frame and pictures.
 
-    Raises no error for odd texts: whatever stands in a results file is only text here.
+    Accepts any text of a results file.
     """
     cases, details = results.cases, results.details
     machines = [int(number) for number in cases.get("environment", [])]
     files = [str(file) for file in cases.get("file", [])]
-    recordings, of_case = _recordings(details, files)
+    recordings, recording_indices = _recordings(details, files)
     variants = labels.variant_labels(details, machines)
     columns: dict[str, Any] = {name: _numbers(cases[name]) for name in NUMBERS if name in cases}
     columns |= {name: _texts(cases[name]) for name in TEXTS if name in cases}
     columns["machine"] = machines
-    columns["recording"] = of_case
+    columns["recording"] = recording_indices
     columns["variant"] = _texts(variants)
     columns["isa"] = _texts(case["isa"] if case.get("vectorised") else "" for case in details)
     columns["checked"] = [int(bool(case["checked"])) for case in details]
-    columns["complete"] = [int(one) for one in cases.get("complete", [])]
+    columns["complete"] = [int(complete) for complete in cases.get("complete", [])]
     columns["frames_run"] = [max(map(len, case["frames"]["total"]), default=0) for case in details]
     columns["counted"] = _texts(map(_counted, details))
     for part, words in (("variant", rerun.variant_words), ("condition", rerun.condition_words)):
@@ -78,53 +81,63 @@ def page_data(results: Results) -> dict[str, Any]:
 def _recordings(
     details: list[dict[str, Any]], files: list[str]
 ) -> tuple[list[dict[str, Any]], list[int]]:
-    """The different recordings, and the number of each case's."""
+    """The distinct recordings, and the index of each case's recording."""
     recordings: list[dict[str, Any]] = []
     sources: list[Any] = []
     known: dict[Any, int] = {}
-    of_case = []
+    recording_indices = []
     for case, file in zip(details, files):
-        one = case["recording"]
-        source = "" if one["hash"] else str(one["source"])
-        key = (one["hash"], source, one["name"], one["object_type"], one["objects"], one["frames"])
+        recording = case["recording"]
+        source = "" if recording["hash"] else str(recording["source"])
+        key = (
+            recording["hash"],
+            source,
+            recording["name"],
+            recording["object_type"],
+            recording["objects"],
+            recording["frames"],
+        )
         if key not in known:
             known[key] = len(recordings)
-            words = rerun.source_words(one, file)
-            sources.append(one["source"])
+            words = rerun.source_words(recording, file)
+            sources.append(recording["source"])
             recordings.append(
                 {
-                    "scene": str(one["name"]),
-                    "object_type": str(one["object_type"]),
-                    "objects": int(one["objects"]),
-                    "frames": int(one["frames"]),
-                    "hash": str(one["hash"]),
-                    "file": "" if isinstance(one["source"], dict) else str(one["source"]),
+                    "scene": str(recording["name"]),
+                    "object_type": str(recording["object_type"]),
+                    "objects": int(recording["objects"]),
+                    "frames": int(recording["frames"]),
+                    "hash": str(recording["hash"]),
+                    "file": ""
+                    if isinstance(recording["source"], dict)
+                    else str(recording["source"]),
                     "words": words,
                     "command": shlex.join(words),
                 }
             )
-        of_case.append(known[key])
+        recording_indices.append(known[key])
     labels.add_settings(recordings, sources)
-    return recordings, of_case
+    return recordings, recording_indices
 
 
 def _counted(case: dict[str, Any]) -> str:
-    """What the algorithm counted, a line each."""
-    both = {**case.get("counters", {}), **case.get("setup", {})}
-    return "\n".join(f"{name}: {_rounded(value)}" for name, value in both.items())
+    """The algorithm's counters, a line each."""
+    counters = {**case.get("counters", {}), **case.get("setup", {})}
+    return "\n".join(f"{name}: {_rounded(value)}" for name, value in counters.items())
 
 
 def _varying_parameters(details: list[dict[str, Any]]) -> dict[str, Any]:
-    """Parameters of which an algorithm has several values, as columns; "": it has none."""
+    """The parameters with several values for an algorithm, as columns; "": not set."""
     groups = ((case["algorithm"], case["params"]) for case in details)
     names = sorted({name for names in labels.varying(groups).values() for name in names})
     return {name: _texts(case["params"].get(name, "") for case in details) for name in names}
 
 
 def _wrong_frames(details: list[dict[str, Any]]) -> dict[int, list[int]]:
-    """The first frames with a wrong answer of each case that has any."""
+    """The first frames with wrong answers, by case."""
     frames = {
-        i: sorted({d["frame"] for d in case["differences"]}) for i, case in enumerate(details)
+        i: sorted({difference["frame"] for difference in case["differences"]})
+        for i, case in enumerate(details)
     }
     return {i: numbers[:100] for i, numbers in frames.items() if numbers}
 
@@ -152,9 +165,9 @@ def _run(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _texts(values: Iterable[Any]) -> dict[str, Any]:
-    different: dict[str, int] = {}
-    codes = [different.setdefault(str(value), len(different)) for value in values]
-    return {"texts": list(different), "codes": codes}
+    indices: dict[str, int] = {}
+    codes = [indices.setdefault(str(value), len(indices)) for value in values]
+    return {"texts": list(indices), "codes": codes}
 
 
 def _numbers(values: Iterable[Any]) -> list[Any]:
@@ -162,7 +175,7 @@ def _numbers(values: Iterable[Any]) -> list[Any]:
 
 
 def _rounded(value: Any) -> Any:
-    """Five digits are more than a page shows; what is not known is None."""
+    """The value with five significant digits, more than the page shows; None if unknown."""
     if not isinstance(value, (int, float)):
         return None if value is None else str(value)
     if not math.isfinite(value):

@@ -1,7 +1,7 @@
-"""What tells recordings and variants apart, in as few words as will do.
+"""Short unique labels of recordings and variants.
 
-A variant is named as the program prints it, `kd-mt/avx2/t2/margin=0.1`, but for what all cases of
-its algorithm share. A recording has a setting, `seed=2`, if there are others of its scene.
+A variant's label is its name in the program, `kd-mt/avx2/t2/margin=0.1`, without the parts that all
+cases of its algorithm share. A recording has a setting, `seed=2`, if its scene has several recordings.
 """
 
 from __future__ import annotations
@@ -11,26 +11,26 @@ from collections import defaultdict
 from collections.abc import Hashable, Iterable
 from typing import Any
 
-#: Have columns of their own.
-_KNOWN = ("objects", "object_type", "frames", "scene_file")
+#: Parameters with their own columns.
+_COLUMN_PARAMETERS = ("objects", "object_type", "frames", "scene_file")
 
 
 def varying(groups: Iterable[tuple[Hashable, dict[str, Any]]]) -> dict[Hashable, list[str]]:
-    """Of each group of parameters the names of those that have several values."""
+    """The names of the parameters with several values, by group."""
     values: dict[Hashable, dict[str, set[str]]] = defaultdict(lambda: defaultdict(set))
     for group, parameters in groups:
         for name, value in parameters.items():
             values[group][name].add(str(value))
     return {
-        group: [name for name, different in names.items() if len(different) > 1]
+        group: [name for name, distinct in names.items() if len(distinct) > 1]
         for group, names in values.items()
     }
 
 
 def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str]:
-    """A name for the variant of each case.
+    """The label of each case's variant.
 
-    What differs only between machines, such as the widest instruction set, is not part of it.
+    Traits that differ only between machines, such as the widest instruction set, are omitted.
     """
 
     def traits(case: dict[str, Any]) -> dict[str, Any]:
@@ -50,58 +50,70 @@ def variant_labels(cases: list[dict[str, Any]], machines: list[int]) -> list[str
             names[str(algorithm)].update(keys)
 
     def label(case: dict[str, Any]) -> str:
-        told = names[str(case["algorithm"])]
+        varying_traits = names[str(case["algorithm"])]
         plugin = os.path.basename(case.get("plugin") or "")
         parts = [
-            f"{plugin}:{case['algorithm']}" if " plugin" in told and plugin else case["algorithm"]
+            f"{plugin}:{case['algorithm']}"
+            if " plugin" in varying_traits and plugin
+            else case["algorithm"]
         ]
-        if " isa" in told:
+        if " isa" in varying_traits:
             parts.append(case["isa"])
-        if " threads" in told:
+        if " threads" in varying_traits:
             parts.append(f"t{case['threads']}")
-        if " device" in told and case.get("device"):
+        if " device" in varying_traits and case.get("device"):
             parts.append(case["device"])
-        if " answer" in told:
+        if " answer" in varying_traits:
             parts.append(case.get("answer", "pairs"))
-        parts += [f"{name}={value}" for name, value in case["params"].items() if name in told]
+        parts += [
+            f"{name}={value}" for name, value in case["params"].items() if name in varying_traits
+        ]
         return "/".join(map(str, parts))
 
     return [label(case) for case in cases]
 
 
 def add_settings(recordings: list[dict[str, Any]], sources: list[Any]) -> None:
-    """Gives each recording its `parameters`, those that vary within its scene, and its `setting`."""
-    scenes = [(one["scene"], one["object_type"]) for one in recordings]
-    different = varying(
+    """Adds `parameters`, those that vary within the scene, and `setting` to each recording."""
+    scenes = [(recording["scene"], recording["object_type"]) for recording in recordings]
+    varying_names = varying(
         (scene, source) for scene, source in zip(scenes, sources) if isinstance(source, dict)
     )
-    for one, scene, source in zip(recordings, scenes, sources):
-        keys = [key for key in different.get(scene, []) if key not in _KNOWN]
-        told = {key: source[key] for key in keys if isinstance(source, dict) and key in source}
-        one["parameters"] = told
-        one["setting"] = ", ".join(f"{key}={value}" for key, value in told.items())
-    clashing = [alike[0] for alike in _alike(recordings)]
-    series = {_series(one) for one in clashing}
-    frames = varying((_series(one), {"frames": one["frames"]}) for one in recordings)
-    for one in [one for one in recordings if _series(one) in series and frames[_series(one)]]:
-        _add(one, f"{one['frames']} frames")
-    for alike in _alike(recordings):
-        for one in alike:
-            _add(one, f"recording {one['hash'][:6]}")
+    for recording, scene, source in zip(recordings, scenes, sources):
+        keys = [key for key in varying_names.get(scene, []) if key not in _COLUMN_PARAMETERS]
+        parameters = {
+            key: source[key] for key in keys if isinstance(source, dict) and key in source
+        }
+        recording["parameters"] = parameters
+        recording["setting"] = ", ".join(f"{key}={value}" for key, value in parameters.items())
+    ambiguous = [group[0] for group in _ambiguous_groups(recordings)]
+    series = {_series(recording) for recording in ambiguous}
+    frames = varying(
+        (_series(recording), {"frames": recording["frames"]}) for recording in recordings
+    )
+    for recording in [
+        recording
+        for recording in recordings
+        if _series(recording) in series and frames[_series(recording)]
+    ]:
+        _append_setting(recording, f"{recording['frames']} frames")
+    for group in _ambiguous_groups(recordings):
+        for recording in group:
+            _append_setting(recording, f"recording {recording['hash'][:6]}")
 
 
 def _series(recording: dict[str, Any]) -> tuple[str, str, str]:
-    """Recordings of one series differ in the number of bodies."""
+    """The key of a series: recordings that differ only in the number of bodies."""
     return recording["scene"], recording["object_type"], recording["setting"]
 
 
-def _alike(recordings: list[dict[str, Any]]) -> list[list[dict[str, Any]]]:
-    """Recordings that nothing tells apart yet."""
+def _ambiguous_groups(recordings: list[dict[str, Any]]) -> list[list[dict[str, Any]]]:
+    """Groups of recordings with the same label."""
     groups: dict[Hashable, list[dict[str, Any]]] = defaultdict(list)
-    for one in recordings:
-        groups[(_series(one), one["objects"])].append(one)
+    for recording in recordings:
+        groups[(_series(recording), recording["objects"])].append(recording)
     return [group for group in groups.values() if len(group) > 1]
 
 
-def _add(recording: dict[str, Any], words: str) -> None:
-    recording["setting"] = ", ".join(filter(None, [recording["setting"], words]))
+def _append_setting(recording: dict[str, Any], text: str) -> None:
+    recording["setting"] = ", ".join(filter(None, [recording["setting"], text]))

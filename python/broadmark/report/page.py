@@ -1,7 +1,7 @@
 """The page: template, styles, d3, scripts and data in one file.
 
-Nothing in it may be fetched or run but what stands in it: a Content-Security-Policy names the hash of
-every script and style. Data is JSON in an element that is not run, and scripts show it as text only.
+A Content-Security-Policy with the hash of every script and style forbids all other resources. The data
+is JSON in an inert element, and scripts insert it only as text.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ import string
 from typing import Any
 
 from broadmark.errors import InputError
-from broadmark.files import whole_file
+from broadmark.files import atomic_write
 from broadmark.palette import DARK, LIGHT, css
 from broadmark.report.data import page_data
 from broadmark.report.pictures import draw_pictures
-from broadmark.report.timelines import points_of_a_case, timeline
+from broadmark.report.timelines import points_per_case, timeline
 from broadmark.results import Results
 
 FOLDER = pathlib.Path(__file__).parent / "web"
@@ -29,7 +29,7 @@ FOLDER = pathlib.Path(__file__).parent / "web"
 D3 = pathlib.Path("/usr/share/nodejs/d3/dist/d3.min.js")
 D3_LICENCE = pathlib.Path("/usr/share/doc/node-d3/copyright")
 
-#: The page's own scripts, each after what it needs to begin with.
+#: The page's scripts in dependency order.
 SCRIPTS = [
     *("format", "elements", "cases", "ranking", "filters", "tooltip", "panels", "timeline"),
     *("details", "table", "summary", "ratios", "scaling", "memory", "frames", "failures", "main"),
@@ -39,23 +39,23 @@ SCRIPTS = [
 def write_report(
     results: Results, path: str | os.PathLike[str], *, title: str = "", pictures: bool = True
 ) -> list[str]:
-    """Writes the page, and returns what it lacks: a sentence each.
+    """Writes the page and returns notes on missing parts, a sentence each.
 
-    `pictures`: draws the scenes, where the program `broadmark` is found. Raises InputError if there
-    is no d3 or the file cannot be written; then there is no new file.
+    `pictures`: draws the scenes if the program `broadmark` is found. Raises InputError, without a new
+    file, if d3 is missing or the file cannot be written.
     """
-    d3, licence = _text_of(D3), _text_of(D3_LICENCE)
-    points = points_of_a_case(len(results.details))
+    d3, licence = _read_text(D3), _read_text(D3_LICENCE)
+    points = points_per_case(len(results.details))
     try:
         data = page_data(results)
         lines = "\n".join(timeline(case, points) for case in results.details)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise InputError(
-            f"the results are not as docs/results.md has them: {type(error).__name__} {error}"
+            f"the results do not match docs/results.md: {type(error).__name__} {error}"
         ) from None
     notes: list[str] = []
     drawn: list[dict[str, Any]] = []
-    words = [one.pop("words") for one in data["recordings"]]
+    words = [recording.pop("words") for recording in data["recordings"]]
     if pictures:
         drawn, notes = draw_pictures(data["recordings"], words)
     data |= {
@@ -65,7 +65,7 @@ def write_report(
         "picture_notes": notes,
         "licence": licence,
     }
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(_page(data, lines, d3).encode("utf-8", "replace"))
     return notes
 
@@ -73,9 +73,10 @@ def write_report(
 def _page(data: dict[str, Any], timelines: str, d3: str) -> str:
     style = f":root {{ color-scheme: light; {css(LIGHT)} }}\n"
     style += (FOLDER / "report.css").read_text("utf-8")
-    dark = f":root {{ color-scheme: dark; {css(DARK)} }}"  # if the style element's media says so
-    own = "\n".join((FOLDER / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
-    script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
+    # The media attribute of the style element enables the dark theme.
+    dark = f":root {{ color-scheme: dark; {css(DARK)} }}"
+    scripts = "\n".join((FOLDER / f"{name}.js").read_text("utf-8") for name in SCRIPTS)
+    script = f'(() => {{\n"use strict";\n{scripts}\n}})();\n'
     template = string.Template((FOLDER / "page.html").read_text("utf-8"))
     return template.substitute(
         policy=(
@@ -93,7 +94,7 @@ def _page(data: dict[str, Any], timelines: str, d3: str) -> str:
 
 
 def _json(data: Any) -> str:
-    """JSON in which no element can end or begin."""
+    """JSON without < and >, so that the text cannot end its element."""
     text = json.dumps(data, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e")
 
@@ -107,10 +108,10 @@ def _hash(script: str) -> str:
     return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
-def _text_of(path: pathlib.Path) -> str:
+def _read_text(path: pathlib.Path) -> str:
     try:
         return path.read_text("utf-8")
     except OSError:
         raise InputError(
-            f"{path}: is not there: install Debian's package node-d3, whose charts the report uses"
+            f"{path} was not found: the report's charts require Debian's package node-d3"
         ) from None

@@ -1,7 +1,7 @@
 """Pictures of the scenes, drawn by the program `broadmark`.
 
-One for each scene and object type: its largest recording that is quickly drawn. A recording that is
-no file here is simulated again, as far as the frame that is drawn.
+Each scene and object type has a picture of its largest recording that can be drawn quickly. A
+recording without a file is simulated again up to the frame of the picture.
 """
 
 from __future__ import annotations
@@ -20,73 +20,74 @@ from broadmark.errors import InputError
 from broadmark.program import call, find_program
 from broadmark.recordings import Recording, read_recording
 
-MOST_PICTURES = 12
-MOST_BODIES = 200_000  #: that are drawn
-MOST_SIMULATED = 200_000  #: bodies times frames: some seconds
-LATEST_FRAME = 60
+MAX_PICTURES = 12
+MAX_BODIES = 200_000  #: of a recording file
+MAX_SIMULATED_BOXES = 200_000  #: bodies times frames, some seconds of simulation
+MAX_FRAME = 60
 SIZE = "480x360"
 
 
 def draw_pictures(
     recordings: list[dict[str, Any]], sources: list[list[str]]
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """Pictures (recording, caption, uri) and, for scenes without one, why: a sentence each.
+    """The pictures (recording, frame, uri), and a sentence for each scene without a picture.
 
-    `sources` are the words of the command line that open each recording.
+    `sources` are the command-line arguments that open each recording.
     """
     try:
         find_program()
     except InputError as error:
         return [], [f"No pictures of the scenes: {error}."]
     scenes = list(_by_scene(recordings))
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as side_by_side:
-        found = list(
-            side_by_side.map(
-                lambda scene: _first_drawn(scene[1], recordings, sources), scenes[:MOST_PICTURES]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as executor:
+        results = list(
+            executor.map(
+                lambda scene: _first_drawn(scene[1], recordings, sources), scenes[:MAX_PICTURES]
             )
         )
-    found += [f"{MOST_PICTURES} are enough"] * (len(scenes) - len(found))
-    pictures = [one for one in found if isinstance(one, dict)]
+    results += [f"the limit of {MAX_PICTURES} pictures is reached"] * (len(scenes) - len(results))
+    pictures = [result for result in results if isinstance(result, dict)]
     notes = [
         f"{scene}: no picture: {reason}."
-        for (scene, _), reason in zip(scenes, found)
+        for (scene, _), reason in zip(scenes, results)
         if isinstance(reason, str)
     ]
     return pictures, notes
 
 
 def _first_drawn(
-    numbers: list[int], recordings: list[dict[str, Any]], sources: list[list[str]]
+    indices: list[int], recordings: list[dict[str, Any]], sources: list[list[str]]
 ) -> dict[str, Any] | str:
-    """A picture of the first of these recordings that can be drawn, or why there is none."""
+    """The picture of the first recording that can be drawn, or the reason for its absence."""
     reason = "too large to be drawn quickly"
-    for number in numbers:
-        if not _is_quick(recordings[number], sources[number]):
+    for index in indices:
+        if not _is_quick(recordings[index], sources[index]):
             continue
-        frame = min(LATEST_FRAME, recordings[number]["frames"])
+        frame = min(MAX_FRAME, recordings[index]["frames"])
         try:
-            uri = _drawn(recordings[number], sources[number], frame)
+            uri = _drawn(recordings[index], sources[index], frame)
         except InputError as error:
             reason = textwrap.shorten(str(error), 120, placeholder=" …")
             continue
-        return {"recording": number, "frame": frame, "uri": uri}
+        return {"recording": index, "frame": frame, "uri": uri}
     return reason
 
 
 def _by_scene(recordings: list[dict[str, Any]]) -> Iterator[tuple[str, list[int]]]:
-    """Scene and object type, with the numbers of their recordings, the largest first."""
+    """Scene and object type with the indices of their recordings, the largest first."""
     scenes: dict[str, list[int]] = {}
-    for number, one in enumerate(recordings):
-        scenes.setdefault(f"{one['scene']} {one['object_type']}", []).append(number)
-    for scene, numbers in scenes.items():
-        yield scene, sorted(numbers, key=lambda number: -int(recordings[number]["objects"]))
+    for index, recording in enumerate(recordings):
+        scene = f"{recording['scene']} {recording['object_type']}"
+        scenes.setdefault(scene, []).append(index)
+    for scene, indices in scenes.items():
+        yield scene, sorted(indices, key=lambda index: -int(recordings[index]["objects"]))
 
 
 def _is_quick(recording: dict[str, Any], source: list[str]) -> bool:
     if recording["file"]:
-        return recording["objects"] <= MOST_BODIES and pathlib.Path(source[0]).exists()
-    frames = min(LATEST_FRAME, recording["frames"])
-    return bool(recording["objects"] * frames <= MOST_SIMULATED)
+        return recording["objects"] <= MAX_BODIES and pathlib.Path(source[0]).exists()
+    frames = min(MAX_FRAME, recording["frames"])
+    return bool(recording["objects"] * frames <= MAX_SIMULATED_BOXES)
 
 
 def _drawn(recording: dict[str, Any], source: list[str], frame: int) -> str:
@@ -109,10 +110,10 @@ def _drawn(recording: dict[str, Any], source: list[str], frame: int) -> str:
 
 
 def _check_same(recording: dict[str, Any], path: str) -> None:
-    """Raises InputError if the file has become another recording."""
-    there = read_recording(path)
-    if not isinstance(there, Recording):
+    """Raises InputError if the file now holds another recording."""
+    current = read_recording(path)
+    if not isinstance(current, Recording):
         return
     shape = (recording["frames"] + 1, recording["objects"])
-    if there.boxes.shape[:2] != shape:
-        raise InputError(f"{path} is another recording now")
+    if current.boxes.shape[:2] != shape:
+        raise InputError(f"{path} now holds another recording")

@@ -1,7 +1,7 @@
 """Commands that run a case again, quoted for the shell.
 
-A command has three parts, each the same for many cases: what ran on (`source_words`), what ran
-(`variant_words`) and how it was measured (`condition_words`).
+A command has three parts that many cases share: the source (`source_words`), the variant
+(`variant_words`) and the measuring conditions (`condition_words`).
 """
 
 from __future__ import annotations
@@ -11,18 +11,18 @@ from typing import Any
 
 from broadmark.program import as_options
 
-#: Parameters of a simulation that are options of the program; others are given with --param.
+#: Parameters of a simulation that have their own options; others are passed with --param.
 OPTIONS = ("objects", "object_type", "frames", "seed", "density", "engine")
 
 
 def stated_path(results_file: str, stated: str) -> str:
-    """Where a file is that a results file names: there, or beside the results file."""
-    beside = pathlib.Path(results_file).parent / stated
-    return str(beside) if not pathlib.Path(stated).exists() and beside.exists() else stated
+    """The path of a file named in a results file: as stated, or relative to the results file."""
+    relative = pathlib.Path(results_file).parent / stated
+    return str(relative) if not pathlib.Path(stated).exists() and relative.exists() else stated
 
 
 def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
-    """The recording file that a case ran on, or the simulation with all its parameters."""
+    """The recording file of a case, or its simulation with all parameters."""
     source = recording["source"]
     if not isinstance(source, dict):
         return [stated_path(results_file, str(source))]
@@ -34,7 +34,7 @@ def source_words(recording: dict[str, Any], results_file: str) -> list[str]:
 
 
 def variant_words(case: dict[str, Any]) -> list[str]:
-    """Algorithm, threads, instruction set, answer and parameters of a case."""
+    """The options for algorithm, threads, instruction set, answer and parameters of a case."""
     algorithm = case["algorithm"]
     return as_options(
         plugin=case.get("plugin") or None,
@@ -48,7 +48,7 @@ def variant_words(case: dict[str, Any]) -> list[str]:
 
 
 def condition_words(case: dict[str, Any]) -> list[str]:
-    """Check, repetitions and limits of a case."""
+    """The options for check, repetitions and limits of a case."""
     conditions = case.get("conditions", {})
     in_process = conditions.get("in_process", False)
     return as_options(
@@ -63,6 +63,6 @@ def condition_words(case: dict[str, Any]) -> list[str]:
 
 
 def again_words(case: dict[str, Any], results_file: str) -> list[str]:
-    """Runs a case again from its results file, which checks that the recording is the same."""
+    """Arguments that run a case again from its results file, which verifies the recording."""
     plugin = as_options(plugin=case.get("plugin") or None)
     return [results_file, "--case", str(case["id"]), *plugin]

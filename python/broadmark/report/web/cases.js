@@ -1,4 +1,4 @@
-// The data: a case is an object with the columns of a row.
+// The cases: objects with a property per column.
 
 const data = JSON.parse(byId("data").textContent);
 const { machines, recordings } = data;
@@ -6,69 +6,70 @@ const cases = readCases();
 
 function readCases() {
   const { columns } = data;
-  const made = columns.machine.map((_, i) => ({ index: i }));
+  const result = columns.machine.map((_, i) => ({ index: i }));
   for (const [name, column] of Object.entries(columns)) {
-    if (Array.isArray(column)) made.forEach((one, i) => { one[name] = column[i]; });
-    else made.forEach((one, i) => { one[name] = column.texts[column.codes[i]]; });
+    if (Array.isArray(column)) result.forEach((testCase, i) => { testCase[name] = column[i]; });
+    else result.forEach((testCase, i) => { testCase[name] = column.texts[column.codes[i]]; });
   }
-  for (const one of made) {
-    one.on = recordings[one.recording];
-    one.wrong_frames = ownOf(data.wrong_frames, one.index) || [];
+  for (const testCase of result) {
+    testCase.recording = recordings[testCase.recording];
+    testCase.wrong_frames = ownProperty(data.wrong_frames, testCase.index) || [];
   }
-  return made;
+  return result;
 }
 
-recordings.forEach((one, i) => {
-  one.index = i;
-  one.series = [one.scene, one.object_type].join(" ") + (one.setting ? `, ${one.setting}` : "");
-  one.title = `${one.series}, ${plural(one.objects, "body", "bodies")}`;
+recordings.forEach((recording, i) => {
+  recording.index = i;
+  recording.series = `${recording.scene} ${recording.object_type}`
+    + (recording.setting ? `, ${recording.setting}` : "");
+  recording.title = `${recording.series}, ${plural(recording.objects, "body", "bodies")}`;
 });
 
-// What the program's results have of a case, as its own table of columns says.
+// The columns of a case in the program's results.
 const kFields = data.fields;
-const valueOf = (field, one) => (field.key in one ? one[field.key] : one.on[field.key]);
+const valueOf = (field, testCase) => (field.key in testCase ? testCase : testCase.recording)[field.key];
 
-function textOfField(field, one) {
-  if (field.known === "checked" && !one.checked) return "not checked";
-  const value = valueOf(field, one);
-  if (field.kind === "text") return value || kNothing;
+function textOfField(field, testCase) {
+  if (field.known === "checked" && !testCase.checked) return "not checked";
+  const value = valueOf(field, testCase);
+  if (field.kind === "text") return value || kNoValue;
   return field.unit === "seconds" ? time(value) : field.unit === "bytes" ? bytes(value) : count(value);
 }
 
-// The times that cases can be compared by.
+// The times that cases are compared by.
 const kMeasures = ["seconds_per_frame", "median_seconds", "p95_seconds", "p99_seconds"]
   .map((key) => [key, kFields.find((field) => field.key === key).title]);
 
-const isSelfCheck = (one) => one.family === "self-check";
+const isSelfCheck = (c) => c.family === "self-check";
 
-// A wrong answer has no time to compare.
-const isTimed = (one) => one.status === "ok" && one[view.measure] > 0;
+// Cases with wrong answers are not compared.
+const isTimed = (c) => c.status === "ok" && c[view.measure] > 0;
 
-// What a case is called where its recording is known, and where not.
-const nameOf = (one) => one.variant;
-const fullName = (one) => `${one.variant} on ${one.on.title}`;
+// The name of a case, without and with its recording.
+const nameOf = (c) => c.variant;
+const fullName = (c) => `${c.variant} on ${c.recording.title}`;
 
-function statusOf(one) {
-  if (one.status !== "ok" || one.complete) return one.status;
-  return `ok, ${one.repetitions} of ${one.repetitions_asked} repetitions`;
+function statusOf(testCase) {
+  if (testCase.status !== "ok" || testCase.complete) return testCase.status;
+  return `ok, ${testCase.repetitions} of ${testCase.repetitions_asked} repetitions`;
 }
 
 const kPhases = [["update_objects", "update objects"], ["clean_cache", "clean cache"],
                  ["update_structures", "update structures"], ["search_overlaps", "search overlaps"]];
 
-// Times in nanoseconds per phase and point, and pairs; null if a case has none.
+// Times in nanoseconds per phase and point, and pairs; null for a case without times.
 let timelineLines = null;
 
-function timelineOf(one) {
+function timelineOf(testCase) {
   timelineLines = timelineLines || byId("timelines").textContent.split("\n");
-  const line = timelineLines[one.index];
+  const line = timelineLines[testCase.index];
   if (!line) return null;
-  const raw = Uint8Array.from(atob(line), (letter) => letter.charCodeAt(0));
+  const raw = Uint8Array.from(atob(line), (character) => character.charCodeAt(0));
   const values = new Float32Array(raw.buffer);
   const points = values.length / (kPhases.length + 1);
   const row = (i) => values.subarray(i * points, (i + 1) * points);
   return { points, phases: kPhases.map((_, i) => row(i)), pairs: row(kPhases.length) };
 }
 
-// What the page shows now.
-const view = { measure: "seconds_per_frame", everyVariant: false, chosen: null, printing: false };
+// The state of the view.
+const view = { measure: "seconds_per_frame", allVariants: false, chosen: null, printing: false };

@@ -1,13 +1,13 @@
-// The panel of a case: its figures, its frames, and the commands that run it again.
+// The details of a case: figures, frames and the commands that run it again.
 
-function showDetails(some) {
+function showDetails(selected) {
   hideTooltip();
   const dialog = byId("details");
-  if (some.length === 1) fillDetails(dialog, some[0]);
-  else fillList(dialog, some);
+  if (selected.length === 1) fillDetails(dialog, selected[0]);
+  else fillList(dialog, selected);
   if (!dialog.open) dialog.showModal();
   dialog.scrollTop = 0;
-  if (some.length === 1) drawTimeline(dialog.querySelector("figure"), some[0]);
+  if (selected.length === 1) drawTimeline(dialog.querySelector("figure"), selected[0]);
 }
 
 function dialogHead(title, subtitle) {
@@ -16,67 +16,67 @@ function dialogHead(title, subtitle) {
     button("Close", () => byId("details").close(), { "aria-label": "Close details" }));
 }
 
-function fillList(dialog, some) {
+function fillList(dialog, selected) {
   dialog.replaceChildren(
-    dialogHead(plural(some.length, "case"), some[0].on.title),
-    element("ul", { class: "plain" }, some.map((one) => element("li", {},
-      button(nameOf(one), () => showDetails([one]), { class: "link" }), " ", statusMark(one.status),
-      one.reason ? element("div", { class: "muted" }, one.reason) : null))));
+    dialogHead(plural(selected.length, "case"), selected[0].recording.title),
+    element("ul", { class: "plain" }, selected.map((c) => element("li", {},
+      button(nameOf(c), () => showDetails([c]), { class: "link" }), " ", statusMark(c.status),
+      c.reason ? element("div", { class: "muted" }, c.reason) : null))));
 }
 
-function fillDetails(dialog, one) {
+function fillDetails(dialog, testCase) {
   const parts = element("div", {},
-    dialogHead(nameOf(one), one.on.title),
-    element("p", {}, statusMark(one.status), one.reason ? `: ${one.reason}` : "",
-            one.complete ? "" : ` (${statusOf(one)})`),
-    one.warnings.split("; ").filter(Boolean).map((text) => element("p", { class: "notice" }, text)),
-    facts("figures", figuresOf(one)),
+    dialogHead(nameOf(testCase), testCase.recording.title),
+    element("p", {}, statusMark(testCase.status), testCase.reason ? `: ${testCase.reason}` : "",
+            testCase.complete ? "" : ` (${statusOf(testCase)})`),
+    testCase.warnings.split("; ").filter(Boolean).map((text) => element("p", { class: "notice" }, text)),
+    facts("figures", figuresOf(testCase)),
     element("figure", {}),
     element("h3", {}, "Run it again"),
-    element("p", { class: "muted" }, "In the folder that this page was written from; files are named as seen from there."),
-    copyable("From its results file, which checks that the recording is the same",
-             joined("broadmark --headless", one.again_command, one.condition_command), "again"),
-    one.wrong_frames.length ? copyable("The smallest recording that shows the fault",
-      joined("broadmark --headless", one.again_command, "--export-case small.aabbs"), "export") : null,
-    copyable("By itself", joined("broadmark --headless", one.on.command, one.variant_command, one.condition_command), "command"),
-    copyable("Hash of the recording", one.on.hash || kNothing, "hash"),
-    copyable("Case", one.id, "id"),
-    element("h3", {}, "Particulars"),
-    facts("particulars", particularsOf(one)));
+    element("p", { class: "muted" }, "Run these commands in the folder in which this page was written; paths are relative to it."),
+    copyable("From its results file, which verifies the recording",
+             joined("broadmark --headless", testCase.again_command, testCase.condition_command), "again"),
+    testCase.wrong_frames.length ? copyable("Export the smallest recording that shows the fault",
+      joined("broadmark --headless", testCase.again_command, "--export-case small.aabbs"), "export") : null,
+    copyable("Without the results file", joined("broadmark --headless", testCase.recording.command, testCase.variant_command, testCase.condition_command), "command"),
+    copyable("Hash of the recording", testCase.recording.hash || kNoValue, "hash"),
+    copyable("Case", testCase.id, "id"),
+    element("h3", {}, "Other values"),
+    facts("particulars", particularsOf(testCase)));
   dialog.replaceChildren(parts);
 }
 
 const joined = (...words) => words.filter(Boolean).join(" ");
 
-function figuresOf(one) {
-  const interval = one.ci95_low_seconds === null ? null
-    : `${time(Math.max(0, one.ci95_low_seconds))} to ${time(one.ci95_high_seconds)}`;
-  const better = lastRunsOn(one).filter((other) => isTimed(other) && !isSelfCheck(other))
+function figuresOf(testCase) {
+  const interval = testCase.ci95_low_seconds === null ? null
+    : `${time(Math.max(0, testCase.ci95_low_seconds))} to ${time(testCase.ci95_high_seconds)}`;
+  const best = lastRunsOn(testCase).filter((other) => isTimed(other) && !isSelfCheck(other))
     .sort((a, b) => a.seconds_per_frame - b.seconds_per_frame)[0];
-  const shown = one.seconds_per_frame !== null;
-  const beside = [
-    ["95 % interval", interval || (shown ? "one repetition" : kNothing)],
-    ["to the best here", shown && better && one.status === "ok" && !isSelfCheck(one)
-      ? `${ratio(one.seconds_per_frame / better.seconds_per_frame)} × ${better.variant}` : kNothing],
+  const hasMean = testCase.seconds_per_frame !== null;
+  const meanFacts = [
+    ["95 % interval", interval || (hasMean ? "single repetition" : kNoValue)],
+    ["ratio to the best", hasMean && best && testCase.status === "ok" && !isSelfCheck(testCase)
+      ? `${ratio(testCase.seconds_per_frame / best.seconds_per_frame)} × ${best.variant}` : kNoValue],
   ];
   return kFields.filter((field) => field.figure).flatMap((field) => [
-    [field.title, textOfField(field, one)], ...(field.key === "seconds_per_frame" ? beside : [])]);
+    [field.title, textOfField(field, testCase)], ...(field.key === "seconds_per_frame" ? meanFacts : [])]);
 }
 
-function lastRunsOn(one) {
-  return cases.filter((other) => other.machine === one.machine && other.recording === one.recording && !other.superseded);
+function lastRunsOn(testCase) {
+  return cases.filter((other) => other.machine === testCase.machine && other.recording === testCase.recording && !other.superseded);
 }
 
-function particularsOf(one) {
-  const measured = kFields.filter((field) => field.particular && valueOf(field, one))
-    .map((field) => [field.title, textOfField(field, one)]);
+function particularsOf(testCase) {
+  const fields = kFields.filter((field) => field.particular && valueOf(field, testCase))
+    .map((field) => [field.title, textOfField(field, testCase)]);
   return [
-    ["machine", machines[one.machine].name], ["algorithm", one.algorithm], ["family", one.family],
-    ["parameters", one.params.replaceAll(";", ", ") || "none"], ["threads", one.threads],
-    ["instruction set", one.isa || "does not depend on it"], ["device", one.device],
-    ["repetitions", one.repetitions_asked === null ? one.repetitions : `${one.repetitions} of ${one.repetitions_asked}`],
-    ["frames", `${count(one.frames_run)} of ${count(one.on.frames)}`], ...measured,
-    ["counted", one.counted.replaceAll("\n", ", ")], ["results file", one.file],
+    ["machine", machines[testCase.machine].name], ["algorithm", testCase.algorithm], ["family", testCase.family],
+    ["parameters", testCase.params.replaceAll(";", ", ") || "none"], ["threads", testCase.threads],
+    ["instruction set", testCase.isa || "not vectorised"], ["device", testCase.device],
+    ["repetitions", testCase.repetitions_asked === null ? testCase.repetitions : `${testCase.repetitions} of ${testCase.repetitions_asked}`],
+    ["frames", `${count(testCase.frames_run)} of ${count(testCase.recording.frames)}`], ...fields,
+    ["counters", testCase.counted.replaceAll("\n", ", ")], ["results file", testCase.file],
   ].filter(([, value]) => value !== "" && value !== null);
 }
 
@@ -85,10 +85,10 @@ function facts(name, pairs) {
     element("div", {}, element("dt", {}, title), element("dd", {}, String(value))))));
 }
 
-// A text with a button that copies it.
+// A text with a copy button.
 function copyable(title, text, name) {
-  // A line breaks between options, never in the dashes of one.
-  const words = text.split(/ (?=--)/).flatMap((word) => [" ", element("span", {}, word)]).slice(1);
+  // Lines break only between options.
+  const words = text.split(/ (?=--)/).flatMap((option) => [" ", element("span", {}, option)]).slice(1);
   const code = element("code", { "data-name": name }, words);
   return element("div", { class: "copyable" }, element("div", { class: "muted" }, title),
     element("div", { class: "row" }, code, button("Copy", (event) => copy(code, event.target),
@@ -99,10 +99,10 @@ async function copy(code, pressed) {
   getSelection().selectAllChildren(code);
   try {
     await navigator.clipboard.writeText(code.textContent);
-  } catch (error) {  // no permission, or a page opened from a file
+  } catch (error) {  // without permission, or for a page opened from a file
     document.execCommand("copy");
   }
   pressed.textContent = "Copied";
-  speak("copied");
+  announce("copied");
   setTimeout(() => { pressed.textContent = "Copy"; }, 1500);
 }

@@ -1,45 +1,45 @@
-// Frame by frame: the timeline of a chosen case.
+// Time by frame: the timeline of a selected case.
 
 function drawFrames(body) {
-  const some = shown.filter((one) => one.frames_run > 0);
+  const timed = shown.filter((c) => c.frames_run > 0);
   body.replaceChildren();
-  if (!some.length) { body.append(element("p", { class: "empty" }, "No case with times is left by the filters.")); return; }
-  if (!some.includes(view.chosen)) view.chosen = defaultCase(some);
+  if (!timed.length) { body.append(element("p", { class: "empty" }, "No case with times matches the filters.")); return; }
+  if (!timed.includes(view.chosen)) view.chosen = defaultCase(timed);
   const chosen = view.chosen;
-  const here = some.filter((one) => one.machine === chosen.machine);
-  const on = here.filter((one) => one.recording === chosen.recording);
-  const pick = (list, same) => (i) => {
-    const wanted = same(list[i]);
-    view.chosen = wanted.find((one) => one.variant === chosen.variant) || wanted[0];
+  const here = timed.filter((c) => c.machine === chosen.machine);
+  const candidates = here.filter((c) => c.recording === chosen.recording);
+  const select = (list, casesOf) => (i) => {
+    const matching = casesOf(list[i]);
+    view.chosen = matching.find((c) => c.variant === chosen.variant) || matching[0];
     drawFrames(body);
   };
-  const allMachines = machinesShown().filter((machine) => some.some((one) => one.machine === machine));
-  const allRecordings = distinct(here.map((one) => one.on)).sort(byRecording);
+  const allMachines = machinesShown().filter((machine) => timed.some((c) => c.machine === machine));
+  const allRecordings = distinct(here.map((c) => c.recording)).sort(byRecording);
   const row = element("div", { class: "row choices" });
   if (allMachines.length > 1) {
     row.append(choice("Machine", allMachines.map((machine) => machines[machine].name), allMachines.indexOf(chosen.machine),
-      pick(allMachines, (machine) => preferSame(some.filter((one) => one.machine === machine), chosen))));
+      select(allMachines, (machine) => preferSame(timed.filter((c) => c.machine === machine), chosen))));
   }
   row.append(
-    choice("Recording", allRecordings.map((one) => one.title), allRecordings.indexOf(chosen.on),
-           pick(allRecordings, (on) => here.filter((one) => one.on === on))),
-    choice("Case", on.map((one) => (one.superseded ? `${one.variant} (${one.file}, run again later)` : one.variant)),
-           on.indexOf(chosen), (i) => { view.chosen = on[i]; drawFrames(body); }),
+    choice("Recording", allRecordings.map((recording) => recording.title), allRecordings.indexOf(chosen.recording),
+           select(allRecordings, (recording) => here.filter((c) => c.recording === recording))),
+    choice("Case", candidates.map((c) => (c.superseded ? `${c.variant} (${c.file}, run again later)` : c.variant)),
+           candidates.indexOf(chosen), (i) => { view.chosen = candidates[i]; drawFrames(body); }),
     button("Details", () => showDetails([view.chosen])));
   const figure = element("figure", {});
   body.append(row, figure);
   drawTimeline(figure, chosen);
 }
 
-function preferSame(some, chosen) {
-  const same = some.filter((one) => one.recording === chosen.recording);
-  return same.length ? same : some;
+function preferSame(candidates, chosen) {
+  const same = candidates.filter((c) => c.recording === chosen.recording);
+  return same.length ? same : candidates;
 }
 
-// The fastest on the largest recording.
-function defaultCase(some) {
-  const largest = d3.max(some, (one) => one.on.objects);
-  const there = some.filter((one) => one.on.objects === largest && !isSelfCheck(one));
-  const timed = there.filter(isTimed).sort((a, b) => a[view.measure] - b[view.measure]);
-  return timed[0] || there[0] || some[0];
+// The fastest case on the largest recording.
+function defaultCase(candidates) {
+  const largest = d3.max(candidates, (c) => c.recording.objects);
+  const largestCases = candidates.filter((c) => c.recording.objects === largest && !isSelfCheck(c));
+  const timed = largestCases.filter(isTimed).sort((a, b) => a[view.measure] - b[view.measure]);
+  return timed[0] || largestCases[0] || candidates[0];
 }

@@ -1,15 +1,15 @@
-// Puts the page together: sections are drawn when they come near the screen, or to be printed.
+// Starts the page. Sections are drawn when they come near the viewport, or for printing.
 
 const kSections = { ratios: drawRatios, scaling: drawScaling, memory: drawMemory, frames: drawFrames,
                     failures: drawFailures, cases: drawCases };
 
-// Draws everything anew, what is not on the screen when it comes there.
+// Redraws the sections, those outside the viewport when they come near it.
 function refresh() {
   hideTooltip();
   for (const [name, draw] of Object.entries(kSections)) {
     const body = byId(name).querySelector(".body");
     body.setAttribute("aria-busy", "true");
-    drawWhenSeen(body, () => {
+    drawWhenVisible(body, () => {
       draw(body);
       highlight(pinned);
       body.removeAttribute("aria-busy");
@@ -18,18 +18,18 @@ function refresh() {
 }
 
 const systemDark = matchMedia("(prefers-color-scheme: dark)");
-let theme = null;  // the reader's choice, or the system's
+let theme = null;  // "dark" or "light"; null: the system's theme
 
-function useTheme(chosen) {
-  theme = chosen;
+function setTheme(selected) {
+  theme = selected;
   const dark = theme ? theme === "dark" : systemDark.matches;
   byId("dark").media = { dark: "screen", light: "not all" }[theme] || "screen and (prefers-color-scheme: dark)";
   byId("theme").textContent = dark ? "Light" : "Dark";
   byId("theme").setAttribute("aria-label", dark ? "Light colours" : "Dark colours");
-  byId("theme").onclick = () => useTheme(dark ? "light" : "dark");
+  byId("theme").onclick = () => setTheme(dark ? "light" : "dark");
 }
 
-function usePrinting(printing) {
+function setPrinting(printing) {
   view.printing = printing;
   for (const closed of document.querySelectorAll(printing ? "details.more:not([open])" : "[data-opened]")) {
     closed.open = printing;
@@ -42,19 +42,19 @@ function usePrinting(printing) {
 drawSummary();
 makeFilters();
 showFilters();
-useTheme(null);
+setTheme(null);
 refresh();
 
-systemDark.addEventListener("change", () => useTheme(theme));
+systemDark.addEventListener("change", () => setTheme(theme));
 byId("print").addEventListener("click", () => print());
-addEventListener("beforeprint", () => usePrinting(true));
-addEventListener("afterprint", () => usePrinting(false));
-byId("details").addEventListener("click", (event) => {  // outside the panel
+addEventListener("beforeprint", () => setPrinting(true));
+addEventListener("afterprint", () => setPrinting(false));
+byId("details").addEventListener("click", (event) => {  // a click on the backdrop
   if (event.target === byId("details")) byId("details").close();
 });
 let width = innerWidth;
 addEventListener("resize", () => {
-  if (innerWidth === width || view.printing) return;  // a phone's bars only change the height
+  if (innerWidth === width || view.printing) return;  // the bars of mobile browsers change only the height
   width = innerWidth;
   refresh();
 });

@@ -1,31 +1,31 @@
-// Charts of points: logarithmic axes, lines, intervals, gaps below the plot. All points of a chart are
-// one stop of the Tab key; arrow keys go on from there.
+// Scatter charts with logarithmic axes, lines, intervals, and gaps below the plot. A chart is a single
+// tab stop; arrow keys move between its points.
 
 const kSymbols = [d3.symbolCircle, d3.symbolSquare, d3.symbolTriangle, d3.symbolDiamond, d3.symbolStar,
                   d3.symbolWye, d3.symbolCross];
 const kDashes = ["", "6 3", "2 3", "9 3 2 3"];
-let pinned = null;  // the variant whose button in a legend is pressed
+let pinned = null;  // the variant selected in a legend
 
-const kReach = 26;  // pixels from which the pointer finds a point
+const kHitRadius = 26;  // in pixels
 
-// Colour: family; shape: algorithm among those of a colour; solid: several threads; dashes: parameters.
+// Colour: family; symbol: algorithm within a colour; filled: several threads; dashes: parameters.
 const styles = new Map();
 {
   const algorithms = new Map(Object.values(data.curves).map((curve) => [curve, []]));
-  const alike = new Map();
-  for (const one of cases) {
-    if (styles.has(one.variant)) continue;
-    const curve = data.curves[one.family];
-    const sharing = algorithms.get(curve);
-    if (!sharing.includes(one.algorithm)) sharing.push(one.algorithm);
-    const symbol = sharing.indexOf(one.algorithm) % kSymbols.length;
-    const key = `${curve} ${symbol} ${one.threads > 1}`;
-    alike.set(key, (alike.get(key) ?? -1) + 1);
-    styles.set(one.variant, {
+  const styleCounts = new Map();
+  for (const testCase of cases) {
+    if (styles.has(testCase.variant)) continue;
+    const curve = data.curves[testCase.family];
+    const familyAlgorithms = algorithms.get(curve);
+    if (!familyAlgorithms.includes(testCase.algorithm)) familyAlgorithms.push(testCase.algorithm);
+    const symbol = familyAlgorithms.indexOf(testCase.algorithm) % kSymbols.length;
+    const key = `${curve} ${symbol} ${testCase.threads > 1}`;
+    styleCounts.set(key, (styleCounts.get(key) ?? -1) + 1);
+    styles.set(testCase.variant, {
       colour: `var(--curve-${curve})`,
       symbol: kSymbols[symbol],
-      solid: one.threads > 1,
-      dash: kDashes[alike.get(key) % kDashes.length],
+      filled: testCase.threads > 1,
+      dash: kDashes[styleCounts.get(key) % kDashes.length],
     });
   }
 }
@@ -33,10 +33,10 @@ const styles = new Map();
 function drawSymbol(node, style) {
   return node.append("path").attr("class", "symbol")
     .attr("d", d3.symbol().type(style.symbol).size(46)())
-    .style("stroke", style.colour).style("fill", style.solid ? style.colour : "var(--page)");
+    .style("stroke", style.colour).style("fill", style.filled ? style.colour : "var(--page)");
 }
 
-// The part of a logarithmic axis that values need, rounded outward.
+// The domain of a logarithmic axis for some values, with a margin.
 function logDomain(values) {
   const [low, high] = d3.extent(values);
   if (low === undefined) return [1, 10];
@@ -44,10 +44,10 @@ function logDomain(values) {
 }
 
 function decades([low, high]) {
-  const few = high / low < 200 ? [1, 2, 5] : [1];
+  const digits = high / low < 200 ? [1, 2, 5] : [1];
   const ticks = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.log10(high); ++power) {
-    for (const digit of few) ticks.push(digit * 10 ** power);
+    for (const digit of digits) ticks.push(digit * 10 ** power);
   }
   return ticks.filter((tick) => tick >= low && tick <= high);
 }
@@ -59,7 +59,7 @@ function powersOfTwo([low, high]) {
   return ticks;
 }
 
-// Leaves out ticks that would overlap.
+// Omits ticks that would overlap.
 function spaced(ticks, scale, distance) {
   let last = -Infinity;
   return ticks.filter((tick) => {
@@ -70,9 +70,9 @@ function spaced(ticks, scale, distance) {
 }
 
 // chart: kind, title, machine, x and y {domain, ticks, format, title}, series [{variant,
-// points: [{x, y, low, high, one}]}] with null points where a line breaks, gaps [{x, status, cases}],
-// front: points joined by a line of their own, labels: [{x, y, text}], note, empty: what to say if there
-// is nothing to draw.
+// points: [{x, y, low, high, testCase}]}] with null points where a line breaks, gaps [{x, status,
+// cases}], front: the points of the Pareto front, labels: [{x, y, text}], note, empty: the text of an
+// empty chart.
 function drawPanel(container, chart) {
   const title = element("h4", {}, chart.title);
   if (machines.length > 1) title.append(element("div", { class: "muted" }, machines[chart.machine].name));
@@ -105,7 +105,7 @@ function drawPlot(container, chart, gaps) {
   const clamp = (value) => Math.min(height - margin.bottom, Math.max(margin.top, y(value)));
   for (const series of chart.series) {
     const style = styles.get(series.variant);
-    const group = svg.append("g").attr("class", series.variant === pinned ? "series lit" : "series").attr("data-variant", series.variant);
+    const group = svg.append("g").attr("class", series.variant === pinned ? "series highlighted" : "series").attr("data-variant", series.variant);
     if (chart.lines) {
       group.append("path").attr("class", "line").style("stroke", style.colour)
         .style("stroke-dasharray", style.dash)
@@ -118,17 +118,17 @@ function drawPlot(container, chart, gaps) {
           .attr("d", `M${at[0]},${point.low > 0 ? clamp(point.low) : clamp(chart.y.domain[0])}V${clamp(point.high)}`);
       }
       const node = drawSymbol(group, style).attr("transform", `translate(${at})`).node();
-      targets.push({ node, at, series: series.variant, cases: [point.one], lines: caseLines(point.one) });
+      targets.push({ node, at, series: series.variant, cases: [point.testCase], lines: caseLines(point.testCase) });
     }
   }
-  for (const { x: atX, y: atY, text } of chart.labels || []) {  // below and left of the front is nothing
+  for (const { x: atX, y: atY, text } of chart.labels || []) {  // the area below and left of the front is free
     const room = x(atX) - margin.left > 7 * text.length;
     svg.append("text").attr("class", "point-label").attr("x", x(atX) + (room ? -6 : 0)).attr("y", y(atY) + 16)
       .attr("text-anchor", room ? "end" : "start").text(text);
   }
   drawGaps(svg, chart, statuses, { x, width, height, margin }, targets);
   container.append(svg.node());
-  makeReachable(svg.node(), targets);
+  addInteraction(svg.node(), targets);
 }
 
 function drawAxes(svg, { x: xAxis, y: yAxis }, { x, y, width, height, margin }) {
@@ -149,15 +149,15 @@ function drawAxes(svg, { x: xAxis, y: yAxis }, { x, y, width, height, margin }) 
     .attr("text-anchor", "middle").text(xAxis.title);
 }
 
-// One row for each status: how many have it, at each place.
+// A row per status with the number of cases at each x.
 function drawGaps(svg, chart, statuses, { x, height, margin }, targets) {
   statuses.forEach((status, row) => {
     const at = height - margin.bottom + 42 + 16 * row;
     svg.append("text").attr("class", `gap-title ${status}`).attr("x", margin.left - 7).attr("y", at)
-      .attr("dy", "0.32em").attr("text-anchor", "end").text(ownOf(kShortStatus, status) || status);
-    for (const gap of chart.gaps.filter((one) => one.status === status)) {
+      .attr("dy", "0.32em").attr("text-anchor", "end").text(ownProperty(kShortStatus, status) || status);
+    for (const gap of chart.gaps.filter((other) => other.status === status)) {
       const node = svg.append("text").attr("class", `gap ${status}`).attr("x", x(gap.x)).attr("y", at)
-        .attr("dy", "0.32em").attr("text-anchor", "middle").text(`${ownOf(kStatusMarks, status) || "!"}\u202f${gap.cases.length}`)
+        .attr("dy", "0.32em").attr("text-anchor", "middle").text(`${ownProperty(kStatusMarks, status) || "!"}\u202f${gap.cases.length}`)
         .node();
       targets.push({
         node, at: [x(gap.x), at], series: status, cases: gap.cases,
@@ -171,15 +171,15 @@ function drawGaps(svg, chart, statuses, { x, height, margin }, targets) {
 
 const kShortStatus = { unsupported: "unsupp.", mismatch: "mismatch", timeout: "timeout", error: "error" };
 
-function makeReachable(svg, targets) {
+function addInteraction(svg, targets) {
   let current = null;
   const enter = (target) => {
     if (current && current !== target) leave();
     current = target;
-    target.node.classList.add("lit");
+    target.node.classList.add("highlighted");
   };
   const leave = () => {
-    if (current) current.node.classList.remove("lit");
+    if (current) current.node.classList.remove("highlighted");
     current = null;
     hideTooltip();
   };
@@ -209,9 +209,9 @@ function makeReachable(svg, targets) {
     const box = svg.getBoundingClientRect();
     const scale = svg.viewBox.baseVal.width / box.width;
     const [px, py] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
-    const away = (target) => Math.hypot(target.at[0] - px, target.at[1] - py);
-    const nearest = targets[d3.scan(targets, (a, b) => away(a) - away(b))];
-    return nearest && away(nearest) < kReach ? nearest : null;
+    const distance = (target) => Math.hypot(target.at[0] - px, target.at[1] - py);
+    const nearest = targets[d3.scan(targets, (a, b) => distance(a) - distance(b))];
+    return nearest && distance(nearest) < kHitRadius ? nearest : null;
   };
   svg.addEventListener("pointermove", (event) => {
     const found = find(event);
@@ -227,65 +227,65 @@ function makeReachable(svg, targets) {
   });
 }
 
-// Left and right: along a line; up and down: the next above or below at the same place, or anywhere.
+// Left and right prefer points of the same series, up and down points at the same x.
 function neighbour(targets, here, key) {
   const along = key === "ArrowLeft" || key === "ArrowRight";
   const sign = key === "ArrowRight" || key === "ArrowDown" ? 1 : -1;
   const axis = along ? 0 : 1;
-  const ahead = targets.filter((one) => one !== here && sign * (one.at[axis] - here.at[axis]) > 0);
-  const preferred = ahead.filter((one) => (along ? one.series === here.series
-    : Math.abs(one.at[0] - here.at[0]) < 1));
-  const some = preferred.length ? preferred : ahead;
-  const away = (one) => Math.hypot(one.at[0] - here.at[0], one.at[1] - here.at[1]);
-  return some[d3.scan(some, (a, b) => away(a) - away(b))];
+  const ahead = targets.filter((target) => target !== here && sign * (target.at[axis] - here.at[axis]) > 0);
+  const preferred = ahead.filter((target) => (along ? target.series === here.series
+    : Math.abs(target.at[0] - here.at[0]) < 1));
+  const candidates = preferred.length ? preferred : ahead;
+  const distance = (target) => Math.hypot(target.at[0] - here.at[0], target.at[1] - here.at[1]);
+  return candidates[d3.scan(candidates, (a, b) => distance(a) - distance(b))];
 }
 
-// A button for each series: its name and sign; pointed at or pressed it stands out in all charts.
+// A button per series with its name and symbol. Hovering, focus or a click highlights the series.
 function drawLegend(variants) {
   const families = d3.nest().key((variant) => styles.get(variant).colour).entries(variants);
   return element("div", { class: "legend", role: "group", "aria-label": "Legend" }, families.map((family) => (
     element("span", { class: "family" }, family.values.map((variant) => {
-      const made = button("", () => pin(variant, made), { "aria-pressed": String(variant === pinned) });
-      const svg = d3.select(made).append("svg").attr("viewBox", "-14 -8 28 16").attr("width", 28)
+      const node = button("", () => pin(variant, node), { "aria-pressed": String(variant === pinned) });
+      const svg = d3.select(node).append("svg").attr("viewBox", "-14 -8 28 16").attr("width", 28)
         .attr("height", 16).attr("aria-hidden", "true");
       const style = styles.get(variant);
       svg.append("path").attr("d", "M-13,0H13").attr("class", "line").style("stroke", style.colour)
         .style("stroke-dasharray", style.dash);
       drawSymbol(svg, style);
-      made.append(variant);
-      for (const [event, lit] of [["pointerenter", variant], ["focus", variant], ["pointerleave", null], ["blur", null]]) {
-        made.addEventListener(event, () => highlight(lit || pinned));
+      node.append(variant);
+      for (const [event, highlighted] of [["pointerenter", variant], ["focus", variant], ["pointerleave", null], ["blur", null]]) {
+        node.addEventListener(event, () => highlight(highlighted || pinned));
       }
-      return made;
+      return node;
     })))));
 }
 
-function pin(variant, made) {
+function pin(variant, pressed) {
   pinned = pinned === variant ? null : variant;
   for (const other of document.querySelectorAll(".legend button")) other.setAttribute("aria-pressed", "false");
-  made.setAttribute("aria-pressed", String(pinned === variant));
+  pressed.setAttribute("aria-pressed", String(pinned === variant));
   highlight(pinned);
 }
 
 function highlight(variant) {
-  document.body.classList.toggle("lit", variant !== null);
+  document.body.classList.toggle("highlighted", variant !== null);
   for (const series of document.querySelectorAll(".series")) {
-    series.classList.toggle("lit", series.dataset.variant === variant);
+    series.classList.toggle("highlighted", series.dataset.variant === variant);
   }
 }
 
-// The charts of some series (scene, object type, setting): a row each, a column per machine.
-function drawGrid(body, serieses, draw) {
-  const wanted = machinesShown();
-  body.append(element("div", { class: `charts ${wanted.length > 1 ? "by-machine" : ""}` }, serieses.flatMap((series) => (
-    wanted.map((machine) => {
+// A grid of charts: a row per series (scene, object type, setting), a column per machine.
+function drawGrid(body, seriesNames, draw) {
+  const shownMachines = machinesShown();
+  body.append(element("div", { class: `charts ${shownMachines.length > 1 ? "by-machine" : ""}` }, seriesNames.flatMap((series) => (
+    shownMachines.map((machine) => {
       const panel = element("figure", { class: "panel-chart" });
-      drawWhenSeen(panel, () => draw(panel, series, machine));
+      drawWhenVisible(panel, () => draw(panel, series, machine));
       return panel;
     })))));
-  body.querySelector(".charts").style.setProperty("--machines", wanted.length);
+  body.querySelector(".charts").style.setProperty("--machines", shownMachines.length);
 }
 
 function machinesShown() {
-  return distinct(shown.map((one) => one.machine)).sort((a, b) => a - b);
+  return distinct(shown.map((c) => c.machine)).sort((a, b) => a - b);
 }

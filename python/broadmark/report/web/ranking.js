@@ -1,69 +1,64 @@
-// Ratios to the best: within one machine and one recording, never across machines.
+// Ratios to the best, per machine and recording, never across machines.
 
-// The last run of each case, by machine, recording and variant: charts show no other.
+// The last run of each case, by machine, recording and variant. Charts show only these.
 const lastRuns = new Map();
-const keyOf = (machine, recording, variant) => `${machine} ${recording} ${variant}`;
+const keyOf = (machine, recording, variant) => `${machine} ${recording.index} ${variant}`;
 
-function takeLastRuns(some) {
+function markLastRuns(candidates) {
   lastRuns.clear();
-  for (const one of some) lastRuns.set(keyOf(one.machine, one.recording, one.variant), one);
-  for (const one of cases) one.superseded = findCase(one.machine, one.recording, one.variant) !== one;
+  for (const testCase of candidates) lastRuns.set(keyOf(testCase.machine, testCase.recording, testCase.variant), testCase);
+  for (const testCase of cases) testCase.superseded = findCase(testCase.machine, testCase.recording, testCase.variant) !== testCase;
 }
 
 const findCase = (machine, recording, variant) => lastRuns.get(keyOf(machine, recording, variant));
 
-takeLastRuns(cases);
+markLastRuns(cases);
 
 const distinct = (values) => [...new Set(values)];
 
-// Variants and recordings of these cases on a machine, with a ratio or the reason for none in each
-// cell. A gap counts as twice the slowest in the geometric mean, so that leaving out what is hard
-// wins nothing.
-function rank(some, machine) {
-  const own = some.filter((one) => one.machine === machine && !isSelfCheck(one) && !one.superseded);
-  const on = distinct(own.map((one) => one.recording)).map((number) => recordings[number]);
-  on.sort(byRecording);
-  const rows = distinct(own.map((one) => one.variant)).map((variant) => ({ variant, cells: [] }));
-  const compared = [];
-  for (const recording of on) {
-    const column = rows.map(({ variant }) => findCase(machine, recording.index, variant));
-    const times = column.filter((one) => one && isTimed(one)).map((one) => one[view.measure]);
+// Variants and recordings of the cases on a machine, with a ratio or its absence in each cell. A gap
+// counts as twice the slowest in the geometric mean, so that leaving out hard cases is no advantage.
+function rank(candidates, machine) {
+  const own = candidates.filter((c) => c.machine === machine && !isSelfCheck(c) && !c.superseded);
+  const ranked = distinct(own.map((c) => c.recording)).sort(byRecording);
+  const rows = distinct(own.map((c) => c.variant)).map((variant) => ({ variant, cells: [] }));
+  for (const recording of ranked) {
+    const column = rows.map(({ variant }) => findCase(machine, recording, variant));
+    const times = column.filter((c) => c && isTimed(c)).map((c) => c[view.measure]);
     const best = Math.min(...times);
-    const punished = 2 * Math.max(...times) / best;
-    if (times.length) compared.push(recording);
-    column.forEach((one, i) => {
-      const timed = one && isTimed(one);
-      rows[i].cells.push({ one, recording, ratio: timed ? one[view.measure] / best : null, punished });
+    const penalty = 2 * Math.max(...times) / best;
+    column.forEach((testCase, i) => {
+      const timed = testCase && isTimed(testCase);
+      rows[i].cells.push({ testCase, recording, ratio: timed ? testCase[view.measure] / best : null, penalty });
     });
   }
   for (const row of rows) {
-    const counted = row.cells.filter((cell) => Number.isFinite(cell.punished));
+    const counted = row.cells.filter((cell) => Number.isFinite(cell.penalty));
     row.gaps = counted.filter((cell) => cell.ratio === null).length;
-    row.of = counted.length;
-    row.mean = counted.length === 0 || row.gaps === row.of ? null
-      : Math.exp(d3.mean(counted, (cell) => Math.log(cell.ratio || cell.punished)));
-    row.any = row.cells.find((cell) => cell.one).one;
+    row.recordingCount = counted.length;
+    row.mean = counted.length === 0 || row.gaps === row.recordingCount ? null
+      : Math.exp(d3.mean(counted, (cell) => Math.log(cell.ratio || cell.penalty)));
+    row.family = row.cells.find((cell) => cell.testCase).testCase.family;
   }
   rows.sort((a, b) => (a.mean || Infinity) - (b.mean || Infinity) || (a.variant < b.variant ? -1 : 1));
-  return { machine, recordings: on, rows };
+  return { machine, recordings: ranked, rows };
 }
 
 function byRecording(a, b) {
-  const text = (one) => [one.scene, one.object_type, one.setting].join("\0");
+  const text = (recording) => [recording.scene, recording.object_type, recording.setting].join("\0");
   return text(a) < text(b) ? -1 : text(a) > text(b) ? 1 : a.objects - b.objects || a.index - b.index;
 }
 
-// The best variant of each family, over all machines that are shown.
+// The best variant of each family, over all machines shown.
 function bestOfFamilies(rankings) {
   const best = new Map();
   for (const { rows } of rankings) {
     for (const row of rows) {
-      const { family } = row.any;
-      const known = best.get(family);
+      const known = best.get(row.family);
       if (!known || (row.mean || Infinity) < known.mean) {
-        best.set(family, { variant: row.variant, mean: row.mean || Infinity });
+        best.set(row.family, { variant: row.variant, mean: row.mean || Infinity });
       }
     }
   }
-  return new Set([...best.values()].map((one) => one.variant));
+  return new Set([...best.values()].map((entry) => entry.variant));
 }

@@ -1,56 +1,56 @@
-// Ratios to the best: a table per machine, variants by recordings.
+// Ratios to the best: a table per machine with a row per variant and a column per recording.
 
-const kSteps = [1.0005, 1.25, 2, 4, 8, 16, 64, Infinity];
-const kMostColumns = 20;  // beside each other; the others are a button away
-const kMostRows = 60;
+const kRatioLimits = [1.0005, 1.25, 2, 4, 8, 16, 64, Infinity];
+const kMaxColumns = 20;  // per page
+const kMaxRows = 60;
 const kPrintedColumns = 12;
 
 let firstColumn = 0;
-let everyRow = false;
+let allRows = false;
 
 function drawRatios(body) {
   body.replaceChildren();
-  const rankings = machinesShown().map((machine) => rank(shown, machine)).filter((one) => one.rows.length);
+  const rankings = machinesShown().map((machine) => rank(shown, machine)).filter((ranking) => ranking.rows.length);
   if (!rankings.length) {
-    body.append(element("p", { class: "empty" }, "No case that can be ranked is left by the filters."));
+    body.append(element("p", { class: "empty" }, "No case that can be ranked matches the filters."));
     return;
   }
-  body.append(element("p", { class: "scale", "aria-hidden": "true" }, "best ", kSteps.map((step, i) => (
-    element("span", { class: `heat h${i}` }, i === 0 ? "1" : step === Infinity ? "more" : `≤ ${Math.round(step * 100) / 100}`)))));
+  body.append(element("p", { class: "scale", "aria-hidden": "true" }, "best ", kRatioLimits.map((limit, i) => (
+    element("span", { class: `heat h${i}` }, i === 0 ? "1" : limit === Infinity ? "more" : `≤ ${Math.round(limit * 100) / 100}`)))));
   if (rankings.length > 1) body.append(sideBySide(rankings));
   for (const ranking of rankings) {
-    const holder = element("div", { class: "ranking" });
-    if (machines.length > 1) holder.append(element("h3", {}, machines[ranking.machine].name));
-    const all = ranking.recordings.length;
-    const begin = firstColumn < all ? firstColumn : 0;
-    const end = Math.min(begin + kMostColumns, all);
-    if (all > kMostColumns) holder.append(columnPager(body, begin, end, all));
-    const step = view.printing ? kPrintedColumns : kMostColumns;
+    const section = element("div", { class: "ranking" });
+    if (machines.length > 1) section.append(element("h3", {}, machines[ranking.machine].name));
+    const total = ranking.recordings.length;
+    const begin = firstColumn < total ? firstColumn : 0;
+    const end = Math.min(begin + kMaxColumns, total);
+    if (total > kMaxColumns) section.append(columnPager(body, begin, end, total));
+    const step = view.printing ? kPrintedColumns : kMaxColumns;
     for (let first = begin; first < end; first += step) {
-      holder.append(ratioTable(ranking, first, Math.min(first + step, end)));
+      section.append(ratioTable(ranking, first, Math.min(first + step, end)));
     }
-    const hidden = everyRow ? 0 : ranking.rows.length - kMostRows;
+    const hidden = allRows ? 0 : ranking.rows.length - kMaxRows;
     if (hidden > 0) {
-      holder.append(button(`Show ${plural(hidden, "slower variant")}`, () => { everyRow = true; drawRatios(body); }));
+      section.append(button(`Show ${plural(hidden, "slower variant")}`, () => { allRows = true; drawRatios(body); }));
     }
-    body.append(holder);
+    body.append(section);
   }
 }
 
-// Means are over all recordings, whichever are shown.
-function columnPager(body, begin, end, all) {
-  const turn = (to, title, mark) => button(mark, () => {
-    firstColumn = to;
+// Pages through the recordings. The means always include all recordings.
+function columnPager(body, begin, end, total) {
+  const pageButton = (target, title, mark) => button(mark, () => {
+    firstColumn = target;
     drawRatios(body);
-    const again = body.querySelector(`[aria-label="${title}"]`);
-    if (again) again.focus();
-  }, { "aria-label": title, disabled: to < 0 || to >= all });
+    const redrawn = body.querySelector(`[aria-label="${title}"]`);
+    if (redrawn) redrawn.focus();
+  }, { "aria-label": title, disabled: target < 0 || target >= total });
   return element("div", { class: "row pager" },
-    element("span", { class: "muted" }, `Recordings ${begin + 1} to ${end} of ${all}`),
-    turn(begin - kMostColumns, "Previous recordings", "‹"), turn(begin + kMostColumns, "Next recordings", "›"));
+    element("span", { class: "muted" }, `Recordings ${begin + 1} to ${end} of ${total}`),
+    pageButton(begin - kMaxColumns, "Previous recordings", "‹"), pageButton(begin + kMaxColumns, "Next recordings", "›"));
 }
 
-// Each machine's own means beside each other: nothing is computed across machines.
+// The means of each machine side by side. Nothing is computed across machines.
 function sideBySide(rankings) {
   const means = rankings.map((ranking) => new Map(ranking.rows.map((row, i) => [row.variant, { ...row, rank: i + 1 }])));
   const variants = distinct(rankings.flatMap((ranking) => ranking.rows.map((row) => row.variant)));
@@ -65,27 +65,27 @@ function sideBySide(rankings) {
         means.map((mean) => {
           const row = mean.get(variant);
           if (!row) return [element("td", { class: "heat gap" }, "not run"), element("td"), element("td")];
-          return [meanCell(row), element("td", {}, row.mean === null ? kNothing : `${row.rank}.`), gapCell(row)];
+          return [meanCell(row), element("td", {}, row.mean === null ? kNoValue : `${row.rank}.`), gapCell(row)];
         })))))));
 }
 
 function meanCell(row) {
-  if (row.mean === null) return element("td", { class: "heat gap" }, kNothing);
-  return element("td", { class: `heat mean ${stepOf(row.mean)}` }, ratio(row.mean));
+  if (row.mean === null) return element("td", { class: "heat gap" }, kNoValue);
+  return element("td", { class: `heat mean ${heatClass(row.mean)}` }, ratio(row.mean));
 }
 
 function gapCell(row) {
-  return element("td", { class: "gaps", title: `${row.gaps} of ${row.of} recordings missing` }, row.gaps || "");
+  return element("td", { class: "gaps", title: `${row.gaps} of ${row.recordingCount} recordings missing` }, row.gaps || "");
 }
 
-function stepOf(value) {
-  return `h${kSteps.findIndex((step) => value <= step)}`;
+function heatClass(value) {
+  return `h${kRatioLimits.findIndex((limit) => value <= limit)}`;
 }
 
-function ratioTable({ machine, recordings: on, rows: all }, first, last) {
-  const rows = everyRow ? all : all.slice(0, kMostRows);
-  const part = on.slice(first, last);
-  const groups = d3.nest().key((one) => one.series).entries(part);
+function ratioTable({ machine, recordings: ranked, rows: ranking }, first, last) {
+  const rows = allRows ? ranking : ranking.slice(0, kMaxRows);
+  const columns = ranked.slice(first, last);
+  const groups = d3.nest().key((recording) => recording.series).entries(columns);
   const table = element("table", { class: "heat-table", role: "grid",
                                    "aria-label": `Ratios to the best, ${machines[machine].name}` },
     element("thead", {},
@@ -93,7 +93,7 @@ function ratioTable({ machine, recordings: on, rows: all }, first, last) {
               groups.map(({ key, values }) => element("th", { colspan: values.length, scope: "colgroup" }, key))),
       element("tr", {}, element("th", { scope: "col" }, "variant"), element("th", { scope: "col" }, "mean"),
               element("th", { scope: "col" }, "gaps"),
-              part.map((one) => element("th", { scope: "col", title: one.title }, d3.format("~s")(one.objects))))),
+              columns.map((recording) => element("th", { scope: "col", title: recording.title }, d3.format("~s")(recording.objects))))),
     element("tbody", {}, rows.map((row) => element("tr", {},
       element("th", { scope: "row" }, row.variant), meanCell(row), gapCell(row),
       row.cells.slice(first, last).map(ratioCell)))));
@@ -104,20 +104,20 @@ function ratioTable({ machine, recordings: on, rows: all }, first, last) {
 function ratioCell(cell) {
   if (cell.ratio === null) {
     return element("td", { class: "heat gap", role: "gridcell" },
-                   !cell.one ? "not run" : cell.one.status === "ok" ? "no time" : cell.one.status);
+                   !cell.testCase ? "not run" : cell.testCase.status === "ok" ? "no time" : cell.testCase.status);
   }
-  return element("td", { class: `heat ${stepOf(cell.ratio)}`, role: "gridcell" }, ratio(cell.ratio));
+  return element("td", { class: `heat ${heatClass(cell.ratio)}`, role: "gridcell" }, ratio(cell.ratio));
 }
 
-function cellLines({ one, recording, ratio: value }, variant) {
-  if (!one) return [variant, recording.title, "not run"];
-  return [...caseLines(one), ...(value === null ? [] : [`${ratio(value)} times the best here`])];
+function cellLines({ testCase, recording, ratio: value }, variant) {
+  if (!testCase) return [variant, recording.title, "not run"];
+  return [...caseLines(testCase), ...(value === null ? [] : [`${ratio(value)} times the best`])];
 }
 
-// One stop of the Tab key; arrow keys go from cell to cell.
+// The table is a single tab stop; arrow keys move between cells.
 function makeGrid(table, rows, first) {
   const cells = [...table.tBodies[0].rows].map((row) => [...row.querySelectorAll("[role=gridcell]")]);
-  const place = (node) => {
+  const cellAt = (node) => {
     const td = node.closest && node.closest("[role=gridcell]");
     if (!td) return null;
     const r = td.parentNode.sectionRowIndex;
@@ -126,7 +126,7 @@ function makeGrid(table, rows, first) {
   };
   if (cells.length && cells[0].length) cells[0][0].tabIndex = 0;
   const show = (event) => {
-    const at = place(event.target);
+    const at = cellAt(event.target);
     if (!at) { hideTooltip(); return; }
     if (event.type === "focusin") showTooltipAt(at.td, cellLines(at.cell, at.variant));
     else showTooltip(at.td, cellLines(at.cell, at.variant), event.clientX, event.clientY);
@@ -136,12 +136,12 @@ function makeGrid(table, rows, first) {
   table.addEventListener("pointerleave", hideTooltip);
   table.addEventListener("focusout", hideTooltip);
   const open = (event) => {
-    const at = place(event.target);
-    if (at && at.cell.one) showDetails([at.cell.one]);
+    const at = cellAt(event.target);
+    if (at && at.cell.testCase) showDetails([at.cell.testCase]);
   };
   table.addEventListener("click", open);
   table.addEventListener("keydown", (event) => {
-    const at = place(event.target);
+    const at = cellAt(event.target);
     if (!at) return;
     const move = { ArrowRight: [0, 1], ArrowLeft: [0, -1], ArrowDown: [1, 0], ArrowUp: [-1, 0] }[event.key];
     if (event.key === "Enter" || event.key === " ") open(event);

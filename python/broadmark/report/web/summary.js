@@ -1,7 +1,7 @@
-// What was run, where, and what to be wary of.
+// The summary: runs, machines and warnings.
 
 function drawSummary() {
-  const versions = distinct(machines.map((one) => factOf(one, "Program version")).filter(Boolean));
+  const versions = distinct(machines.map((machine) => factOf(machine, "Program version")).filter(Boolean));
   const started = data.runs.map((run) => run.started).filter(Boolean).sort();
   byId("title").textContent = data.title;
   byId("subtitle").textContent = [
@@ -10,19 +10,19 @@ function drawSummary() {
   byId("summary").append(
     element("div", { class: "tiles" },
       tile(cases.length, "case"), tile(recordings.length, "recording"),
-      tile(distinct(cases.map((one) => one.algorithm)).length, "algorithm"), tile(machines.length, "machine"),
+      tile(distinct(cases.map((c) => c.algorithm)).length, "algorithm"), tile(machines.length, "machine"),
       element("div", { class: "tile statuses" }, statusCounts())),
     ...warnings().map((text) => element("p", { class: "notice" }, text)),
     ...gallery(),
     element("details", { class: "more" }, element("summary", {}, "Machines, builds and files"),
-      element("div", { class: "machines" }, machines.map((one) => element("div", { class: "machine" },
-        element("h3", {}, one.name), facts("particulars", one.facts)))),
+      element("div", { class: "machines" }, machines.map((machine) => element("div", { class: "machine" },
+        element("h3", {}, machine.name), facts("particulars", machine.facts)))),
       element("h3", {}, "Files"),
       element("ul", { class: "plain" }, data.runs.map((run) => element("li", {}, element("b", {}, run.file),
-        run.complete ? "" : " (partial)", run.started ? ` began ${run.started}` : "",
+        run.complete ? "" : " (partial)", run.started ? ` started ${run.started}` : "",
         element("code", {}, run.command))))));
   byId("about").append(
-    element("p", {}, "Times and intervals are those of the results files. Ratios are taken within one machine only."),
+    element("p", {}, "Times and intervals are taken from the results files. Ratios compare only cases of the same machine."),
     element("details", {}, element("summary", {}, "Charts are drawn by d3"), element("pre", {}, data.licence)));
 }
 
@@ -37,43 +37,43 @@ function tile(number, word) {
   return element("div", { class: "tile" }, element("b", {}, count(number)), " ", number === 1 ? word : `${word}s`);
 }
 
-// A button per status that shows only these.
+// A button per status that filters the cases by it.
 function statusCounts() {
-  const statuses = d3.nest().key((one) => one.status).rollup((some) => some.length).entries(cases);
-  return statuses.map(({ key, value }) => button("", () => filterBy("status", [key]), { class: "plain-button", title: `show only ${key}` }))
-    .map((made, i) => {
-      made.append(element("b", {}, count(statuses[i].value)), " ", statusMark(statuses[i].key));
-      return made;
+  const statuses = d3.nest().key((c) => c.status).rollup((group) => group.length).entries(cases);
+  return statuses.map(({ key, value }) => button("", () => filterBy("status", [key]), { class: "plain-button", title: `Show only ${key}` }))
+    .map((node, i) => {
+      node.append(element("b", {}, count(statuses[i].value)), " ", statusMark(statuses[i].key));
+      return node;
     });
 }
 
 function warnings() {
   const texts = [];
   for (const run of data.runs) {
-    if (!run.complete) texts.push(`${run.file} is partial: its run did not come to an end. Its finished cases are here.`);
+    if (!run.complete) texts.push(`${run.file} is partial because the run was not finished. Its finished cases are shown.`);
   }
   for (const machine of machines) {
     const build = factOf(machine, "Build type");
-    if (build && !/^Rel/.test(build)) texts.push(`${machine.name}: a ${build} build: its times mean little.`);
+    if (build && !/^Rel/.test(build)) texts.push(`${machine.name}: a ${build} build; its times are not representative.`);
   }
   const disturbed = new Map();
-  for (const one of cases) {
-    for (const text of one.warnings.split("; ").filter(Boolean)) disturbed.set(text, (disturbed.get(text) || 0) + 1);
+  for (const testCase of cases) {
+    for (const text of testCase.warnings.split("; ").filter(Boolean)) disturbed.set(text, (disturbed.get(text) || 0) + 1);
   }
   const sorted = [...disturbed].sort((a, b) => b[1] - a[1]);
   texts.push(...sorted.slice(0, 6).map(([text, number]) => `Disturbed: ${text} (${plural(number, "case")}).`));
-  if (sorted.length > 6) texts.push(`Disturbed: ${plural(sorted.length - 6, "more kind of warning", "more kinds of warnings")}; each case’s details show its own.`);
-  const again = cases.filter((one) => one.superseded).length;
-  if (again) texts.push(`${plural(again, "case was", "cases were")} run again later: charts show the last run of each, the table all of them.`);
+  if (sorted.length > 6) texts.push(`Disturbed: ${plural(sorted.length - 6, "more kind of warning", "more kinds of warnings")}; see the details of each case.`);
+  const superseded = cases.filter((c) => c.superseded).length;
+  if (superseded) texts.push(`${plural(superseded, "case was", "cases were")} run again later; charts show only the last run, the table shows all runs.`);
   return texts;
 }
 
 function gallery() {
   const pictures = data.pictures.map((picture) => {
-    const on = recordings[picture.recording];
-    const image = element("img", { alt: `${on.title}, frame ${picture.frame}`, width: 480, height: 360, loading: "lazy" });
+    const recording = recordings[picture.recording];
+    const image = element("img", { alt: `${recording.title}, frame ${picture.frame}`, width: 480, height: 360, loading: "lazy" });
     image.src = picture.uri;
-    return element("figure", {}, image, element("figcaption", {}, element("b", {}, on.series), ` ${plural(on.objects, "body", "bodies")}, frame ${picture.frame}`));
+    return element("figure", {}, image, element("figcaption", {}, element("b", {}, recording.series), ` ${plural(recording.objects, "body", "bodies")}, frame ${picture.frame}`));
   });
   const notes = data.picture_notes.map((note) => element("p", { class: "muted note" }, note));
   return pictures.length ? [element("div", { class: "gallery" }, pictures), ...notes] : notes;

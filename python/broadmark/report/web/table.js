@@ -1,10 +1,10 @@
-// A table that is sorted by its headers and shown page by page.
+// A table with sortable columns and pages.
 
-const kRows = 50;
+const kRowsPerPage = 50;
 const kPrintedRows = 200;
 
-// columns: {title, value(row): what it is sorted by, show(row), number, rank: 1 always shown … 3 only
-// on wide screens, name: a class of its cells}. The first column's button opens the row.
+// columns: {title, value(row): the sort key, show(row), number, rank: from 1 (always shown) to 3 (only
+// on wide screens), name: a class of the cells}. The buttons of the first column open the details.
 function makeTable(name, columns, start) {
   const state = { column: start, descending: false, page: 0, rows: [] };
   const head = element("tr");
@@ -15,23 +15,23 @@ function makeTable(name, columns, start) {
     const column = columns[state.column];
     const sign = state.descending ? -1 : 1;
     const known = (value) => value !== null && value !== undefined && value !== "";
-    const keyed = state.rows.map((row) => [column.value(row), row]);
-    keyed.sort(([a], [b]) => (!known(a) || !known(b) ? known(b) - known(a) : sign * (a < b ? -1 : a > b ? 1 : 0)));
-    const size = view.printing ? kPrintedRows : kRows;
-    const pages = Math.max(1, Math.ceil(keyed.length / size));
+    const sortedRows = state.rows.map((row) => [column.value(row), row]);
+    sortedRows.sort(([a], [b]) => (!known(a) || !known(b) ? known(b) - known(a) : sign * (a < b ? -1 : a > b ? 1 : 0)));
+    const size = view.printing ? kPrintedRows : kRowsPerPage;
+    const pages = Math.max(1, Math.ceil(sortedRows.length / size));
     state.page = Math.min(state.page, pages - 1);
     const first = state.page * size;
-    const part = keyed.slice(first, first + size).map(([, row]) => row);
-    body.replaceChildren(...part.map((row) => rowOf(columns, row)));
-    head.replaceChildren(...columns.map((one, i) => header(one, i)));
-    const turn = (by, title, mark) => button(mark, () => { state.page += by; draw(); pager.querySelector(`[aria-label="${title}"]`).focus(); },
+    const pageRows = sortedRows.slice(first, first + size).map(([, row]) => row);
+    body.replaceChildren(...pageRows.map((row) => rowOf(columns, row)));
+    head.replaceChildren(...columns.map((other, i) => header(other, i)));
+    const pageButton = (by, title, mark) => button(mark, () => { state.page += by; draw(); pager.querySelector(`[aria-label="${title}"]`).focus(); },
       { "aria-label": title, disabled: by < 0 ? state.page === 0 : state.page === pages - 1 });
     pager.replaceChildren(
-      element("span", { class: "muted" }, keyed.length
-        ? `${count(first + 1)} to ${count(first + part.length)} of ${count(keyed.length)}` : "nothing"),
-      ...(pages > 1 && !view.printing ? [turn(-1, "Previous page", "‹"), turn(1, "Next page", "›")] : []));
+      element("span", { class: "muted" }, sortedRows.length
+        ? `${count(first + 1)} to ${count(first + pageRows.length)} of ${count(sortedRows.length)}` : "no cases"),
+      ...(pages > 1 && !view.printing ? [pageButton(-1, "Previous page", "‹"), pageButton(1, "Next page", "›")] : []));
   };
-  // On paper without buttons: Chromium repeats only such heads on every page.
+  // No buttons in print: Chromium repeats only table heads without them on every page.
   const header = (column, i) => {
     const sorted = i === state.column;
     const mark = sorted ? (state.descending ? " ▾" : " ▴") : "";
@@ -63,27 +63,27 @@ function rowOf(columns, row) {
 }
 
 const kMachineColumns = machines.length > 1 ? [{
-  title: "machine", name: "machine", value: (one) => machines[one.machine].name,
-  show: (one) => machines[one.machine].name, rank: 2, place: 60,
+  title: "machine", name: "machine", value: (c) => machines[c.machine].name,
+  show: (c) => machines[c.machine].name, rank: 2, place: 60,
 }] : [];
 
-// From the left by their places.
+// Ordered by `place`.
 const kCaseColumns = [
   { title: "variant", value: nameOf, show: nameOf, rank: 1, place: 10 },
-  { title: "recording", value: (one) => one.on.series, show: (one) => one.on.series, rank: 1, place: 20 },
+  { title: "recording", value: (c) => c.recording.series, show: (c) => c.recording.series, rank: 1, place: 20 },
   ...kMachineColumns,
-  { title: "± 95 %", value: halfWidth, show: (one) => (halfWidth(one) === null ? kNothing : percent(halfWidth(one))), number: true, rank: 2, place: 95 },
+  { title: "± 95 %", value: halfWidth, show: (c) => (halfWidth(c) === null ? kNoValue : percent(halfWidth(c))), number: true, rank: 2, place: 95 },
   ...kFields.filter((field) => field.report > 0).map((field) => ({
-    title: field.heading, value: (one) => valueOf(field, one),
-    show: field.key === "status" ? (one) => statusMark(statusOf(one)) : (one) => textOfField(field, one),
+    title: field.heading, value: (c) => valueOf(field, c),
+    show: field.key === "status" ? (c) => statusMark(statusOf(c)) : (c) => textOfField(field, c),
     number: field.kind === "number", rank: field.rank, place: field.report,
   })),
 ].sort((a, b) => a.place - b.place);
 
-// Half the interval's width as a share of the mean.
-function halfWidth(one) {
-  if (one.ci95_low_seconds === null || !one.seconds_per_frame) return null;
-  return (one.ci95_high_seconds - one.ci95_low_seconds) / 2 / one.seconds_per_frame;
+// Half the width of the confidence interval, relative to the mean.
+function halfWidth(testCase) {
+  if (testCase.ci95_low_seconds === null || !testCase.seconds_per_frame) return null;
+  return (testCase.ci95_high_seconds - testCase.ci95_low_seconds) / 2 / testCase.seconds_per_frame;
 }
 
 const percent = (share) => `${(100 * share).toFixed(share < 0.1 ? 1 : 0)}\u00a0%`;
@@ -92,7 +92,7 @@ let casesTable = null;
 
 function drawCases(body) {
   if (!casesTable) {
-    casesTable = makeTable("All cases", kCaseColumns, kCaseColumns.findIndex((one) => one.title === "mean"));
+    casesTable = makeTable("All cases", kCaseColumns, kCaseColumns.findIndex((column) => column.title === "mean"));
     body.replaceChildren(casesTable.node);
   }
   casesTable.show(shown);

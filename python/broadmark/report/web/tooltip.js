@@ -1,15 +1,15 @@
-// One tooltip for all: on hover and on keyboard focus.
+// The page's only tooltip, shown on hover and on keyboard focus.
 
-let described = null;
+let tooltipTarget = null;
 
 function showTooltip(target, lines, x, y) {
   const tip = byId("tooltip");
   tip.replaceChildren(...lines.map((line, i) => (
     line instanceof Node ? line : element(i === 0 ? "b" : "div", {}, line))));
   tip.hidden = false;
-  (target.closest("dialog") || document.body).append(tip);  // an open dialog covers all that is outside
-  if (described) described.removeAttribute("aria-describedby");
-  described = target;
+  (target.closest("dialog") || document.body).append(tip);  // an open dialog covers elements outside
+  if (tooltipTarget) tooltipTarget.removeAttribute("aria-describedby");
+  tooltipTarget = target;
   target.setAttribute("aria-describedby", "tooltip");
   const own = tip.getBoundingClientRect();
   const width = document.documentElement.clientWidth;
@@ -21,37 +21,37 @@ function showTooltip(target, lines, x, y) {
 
 function hideTooltip() {
   byId("tooltip").hidden = true;
-  if (described) described.removeAttribute("aria-describedby");
-  described = null;
+  if (tooltipTarget) tooltipTarget.removeAttribute("aria-describedby");
+  tooltipTarget = null;
 }
 
-// Beside an element that has the keyboard's focus.
+// Shows the tooltip at an element with keyboard focus.
 function showTooltipAt(target, lines) {
   const box = target.getBoundingClientRect();
   showTooltip(target, lines, box.right - 8, box.top);
 }
 
-function caseLines(one) {
-  const lines = [nameOf(one), one.on.title];
-  if (machines.length > 1) lines.push(machines[one.machine].name);
-  if (one.status === "ok") {
-    lines.push(`${time(one[view.measure])} a frame (${measureName()})`);
-    if (hasInterval(one)) {
-      lines.push(`95 %: ${time(Math.max(0, one.ci95_low_seconds))} to ${time(one.ci95_high_seconds)}`);
+function caseLines(testCase) {
+  const lines = [nameOf(testCase), testCase.recording.title];
+  if (machines.length > 1) lines.push(machines[testCase.machine].name);
+  if (testCase.status === "ok") {
+    lines.push(`${time(testCase[view.measure])} per frame (${measureName()})`);
+    if (hasInterval(testCase)) {
+      lines.push(`95 %: ${time(Math.max(0, testCase.ci95_low_seconds))} to ${time(testCase.ci95_high_seconds)}`);
     } else if (view.measure === "seconds_per_frame") {
-      lines.push(one.repetitions > 1 ? "no interval" : "one repetition: no interval");
+      lines.push(testCase.repetitions > 1 ? "no interval" : "single repetition: no interval");
     }
-    if (one.peak_bytes !== null) lines.push(`memory ${bytes(one.peak_bytes)}`);
-    if (!one.complete) lines.push(statusOf(one));
-    if (!one.checked && !isSelfCheck(one)) lines.push("answers not checked");
+    if (testCase.peak_bytes !== null) lines.push(`memory ${bytes(testCase.peak_bytes)}`);
+    if (!testCase.complete) lines.push(statusOf(testCase));
+    if (!testCase.checked && !isSelfCheck(testCase)) lines.push("answers not checked");
   } else {
-    lines.push(statusMark(one.status));
-    if (one.reason) lines.push(one.reason);
+    lines.push(statusMark(testCase.status));
+    if (testCase.reason) lines.push(testCase.reason);
   }
   return lines;
 }
 
 const measureName = () => kMeasures.find(([key]) => key === view.measure)[1];
 
-const hasInterval = (one) => view.measure === "seconds_per_frame"
-  && one.ci95_low_seconds !== null && one.ci95_high_seconds !== null;
+const hasInterval = (c) => view.measure === "seconds_per_frame"
+  && c.ci95_low_seconds !== null && c.ci95_high_seconds !== null;

@@ -1,4 +1,4 @@
-"""Results files made of given times, for tests of what is made of them."""
+"""Synthetic results files for tests of tables, claims and plots."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ CPU = "A processor as a device (Maker, CPU, 2 units, 6.0 GiB, driver 1)"
 def case(
     scene: str, objects: int, algorithm: str, seconds: float = 0.0, **others: Any
 ) -> dict[str, Any]:
-    """A case with one repetition of a frame. `others` replace or add keys; `object_type`, `limit`
-    and `asked` (repetitions) are what their names say."""
+    """A case with a repetition of one frame. `others` replace or add keys, besides `object_type`, the
+    time limit `limit` and the requested repetitions `asked`."""
     object_type = others.pop("object_type", "Cubes")
     conditions = {
         "repetitions": others.pop("asked", 1),
@@ -27,7 +27,7 @@ def case(
     threads = others.pop("threads", 4 if algorithm.endswith("-mt") else 1)
     isa = others.pop("isa", "scalar")
     nanoseconds = [[round(seconds * 1e9)]]
-    made: dict[str, Any] = {
+    content: dict[str, Any] = {
         "id": f"{scene}/{object_type}/N{objects}/F1/s1/{algorithm}/t{threads}/{isa}",
         "recording": {
             "name": scene,
@@ -65,11 +65,11 @@ def case(
             "total": nanoseconds,
         },
     }
-    return {**made, **others}
+    return {**content, **others}
 
 
 def paper_cases() -> list[dict[str, Any]]:
-    """Table 2 of the paper as cases."""
+    """The paper's Table 2 as cases."""
     return [
         case(scene, n, id_, seconds, checked=False) for (scene, n, id_), seconds in table2().items()
     ]
@@ -78,7 +78,7 @@ def paper_cases() -> list[dict[str, Any]]:
 def write(
     path: pathlib.Path, cases: list[dict[str, Any]], *, cpu: str = "A processor", device: str = GPU
 ) -> pathlib.Path:
-    """A results file of one machine."""
+    """Writes a results file of one machine."""
     environment = {
         "cpu": cpu,
         "logical_cores": 8,
