@@ -1,7 +1,7 @@
 // Columns: finds all pairs from scratch each frame. Space is cut into columns over two axes, and
 // boxes are swept along the third in each column. Nothing but buffers is retained between frames.
 //
-//   boxes --- 1 sample -----> Layout      cut axes, columns             columns/layout.h
+//   boxes --- 1 sample -----> Layout      cut axes, number of columns  columns/layout.h
 //     |                         |
 //     +----- 2 quantise ---> BoxBlock     128 boxes, as arrays         columns/kernels.h
 //                               | bin
@@ -49,6 +49,9 @@
 namespace broadmark::columns {
 namespace {
 
+/// Up to this many boxes, the array of boxes stays in the caches beside the bins and columns.
+constexpr std::size_t kMaxCachedBoxes = (std::size_t{1} << 17) - 1;
+
 enum Counter { grid_columns, splits, entries, tests, box_tests };
 constexpr std::array<std::string_view, 5> kCounterNames = {"columns", "split columns", "copies",
                                                            "tests", "pairs decided by their boxes"};
@@ -92,8 +95,7 @@ class Columns final : public PairBroadPhase {
     SweepStats stats{};
   };
 
-  /// Whether the boxes would displace the bins and columns from the caches. They are read rarely.
-  [[nodiscard]] bool exceedsCaches() const { return boxes_.size() >= std::size_t{1} << 17; }
+  [[nodiscard]] bool exceedsCaches() const { return boxes_.size() > kMaxCachedBoxes; }
   [[nodiscard]] ColumnTraversal::Input input() const {
     return {kernels_,
             {boxes_.data(), boxes_.size()},
@@ -117,7 +119,7 @@ class Columns final : public PairBroadPhase {
   std::vector<Worker> workers_;
 };
 
-// Steps 1 and 2.
+// Steps 1 and 2: sampling, quantisation and binning.
 
 void Columns::updateObjects(const Frame& frame) {
   team().wake();  // meanwhile, this thread chooses the layout
@@ -133,7 +135,7 @@ bool Columns::binBoxes(const Frame& frame) {
   constexpr std::size_t kBlock = BoxBlock::kBoxes;
   const Layout layout = layout_;
   const std::size_t limit = ColumnTraversal::kMaxEntriesPerBox * boxes_.size() + 4 * layout.size();
-  const bool stream = exceedsCaches();
+  const bool stream = exceedsCaches();  // so as not to evict the bins
   team().run([&](int worker) {
     ColumnBins& bins = bins_[static_cast<std::size_t>(worker)];
     bins.clear(layout.size());

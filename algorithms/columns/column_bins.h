@@ -142,7 +142,7 @@ class alignas(64) ColumnBins {
   std::vector<CellEntry*> ends_;
   std::vector<Slab> slabs_;
   std::size_t slab_ = 0;          ///< from which chunks are allocated
-  std::size_t used_in_slab_ = 0;  ///< chunks
+  std::size_t used_in_slab_ = 0;  ///< chunks taken from it
 };
 
 /// Prefetches the entries of a column, chunk by chunk, during the work on another column.

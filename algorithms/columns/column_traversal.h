@@ -22,8 +22,8 @@ struct WorkRange {
   double end = 1;
 };
 
-/// The columns of a world or of a split column. Bins are in the order of the bodies, one per
-/// worker.
+/// The columns of a world or of a split column. Each worker has binned a contiguous range
+/// of the bodies.
 struct ColumnGrid {
   Layout layout;
   std::span<const ColumnBins> bins;

@@ -23,9 +23,8 @@ class HitBuffer {
             PairBuffer& pairs)
       : kernels_(kernels), sorted_(sorted), boxes_(boxes), pairs_(pairs) {}
 
-  /// The index of the next hit in positions() and masks(), with room for kReserve hits. These count
-  /// once setSize() includes them.
   static constexpr std::size_t kReserve = 64;
+  /// Returns the size; positions() and masks() then have room for kReserve hits more.
   std::size_t reserve() {
     if (size_ + kReserve > kCapacity) extractPairs();
     return size_;

@@ -19,7 +19,7 @@ inline Mask overlap(Mask lanes, Vector a_min, Vector a_max, Vector b_min, Vector
 }
 // With `|`, GCC moves each mask to a general-purpose register first.
 inline Mask maskOr(Mask a, Mask b) { return _mm512_kor(a, b); }
-// In assembly, as GCC 12 may spill 16 bits of a mask but reload 32, which lost pairs with
+// Inline assembly, as GCC 12 may spill 16 bits of a mask but reload 32, which lost pairs with
 // -O1 -fsanitize=thread.
 inline unsigned bits(Mask mask) {
   unsigned number;

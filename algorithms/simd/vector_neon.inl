@@ -58,7 +58,7 @@ inline std::uint64_t hitsAtOffsets(const std::uint32_t* keys, Keys limits, Keys 
 
 struct EntryComparison {
   unsigned overlap;
-  unsigned shared;
+  unsigned ambiguous;
 };
 inline EntryComparison compareEntries(const std::uint32_t* a, const std::uint32_t* b) {
   constexpr Keys kSweepAxis = {~0U, ~0U, 0, 0};
