@@ -24,7 +24,6 @@
 // traverse ranges of equal estimated work; the order of the pairs is the same for any team.
 //
 // O(n + w), w the pairs that share a column and overlap on the sweep axis, a few dozen per box.
-//
 // References: C. Ericson, "Real-Time Collision Detection" (2005), 7.1 (grids) and 7.5 (sort and
 // sweep); S. Le Grand, GPU Gems 3 (2007), chapter 32 (home cells).
 
@@ -291,8 +290,6 @@ void Columns::findPairs() {
     mine.stats = sweep.stats();
   });
 }
-
-// Inspection.
 
 class DrawVisitor final : public ColumnVisitor {
  public:

@@ -90,9 +90,8 @@ class alignas(64) ColumnBins {
     return last == nullptr ? 0 : static_cast<std::size_t>(ends_[column] - last->entries.data());
   }
 
-  /// The slot of the first chunk at which a column begins. It is staggered: with one slot for all
-  /// columns, their write positions would be multiples of 2 KiB apart and evict each other (cache
-  /// set conflicts).
+  /// The slot at which a column's first chunk begins. Staggered, as write positions that are
+  /// multiples of 2 KiB apart would evict each other (cache set conflicts).
   static std::size_t firstSlot(std::size_t column) { return column * 29 % kChunkEntries; }
 
   void append(CellEntry** ends, std::size_t column, const CellEntry& entry) {
