@@ -57,13 +57,13 @@ void CellGrid::fit(std::span<const Aabb> boxes, std::size_t cells, bool columns)
   std::array<Aabb, kSample> memory;
   const std::span sample = std::span(memory).first(std::min(boxes.size(), kSample));
   for (std::size_t i = 0; i < sample.size(); ++i) {
-    sample[i] = boxes[sampled(i, sample.size(), boxes.size())];
+    sample[i] = boxes[sampleIndex(i, sample.size(), boxes.size())];
   }
-  std::array<Bulk, 3> bulk;
+  std::array<TrimmedRange, 3> bulk;
   std::array<double, 3> extents{};
   for (int axis = 0; axis < 3; ++axis) {
     if (columns && axis == 1) continue;
-    bulk[axis] = bulkOf(sample, axis);
+    bulk[axis] = trimmedRange(sample, axis);
     extents[axis] = bulk[axis].extent();
   }
   const double side = cellSide(extents, static_cast<double>(std::max<std::size_t>(cells, 1)));

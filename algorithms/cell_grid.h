@@ -8,8 +8,8 @@
 #include <span>
 
 #include "broadmark/aabb.h"
+#include "cell_body.h"
 #include "corner.h"
-#include "marked_body.h"
 
 namespace broadmark {
 
@@ -77,18 +77,18 @@ class CellGrid {
     return {cellsOf(box.min), cellsOf(box.max)};
   }
 
-  /// Calls visit(index, marks) for each cell in `range`: see MarkedBody for the marks.
+  /// Calls visit(index, phantom bits) for each cell in `range`: see CellBody.
   template <class Visit>
   void forEachCell(const CellRange& range, Visit visit) const {
     if (range.first == range.last) {  // most boxes, and quicker than three loops
-      visit(indexOf(range.first[0], range.first[1], range.first[2]), MarkedBody{0});
+      visit(indexOf(range.first[0], range.first[1], range.first[2]), CellBody{0});
       return;
     }
     for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
       for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
         for (std::int32_t x = range.first[0]; x <= range.last[0]; ++x) {
           visit(indexOf(x, y, z),
-                cellMarks(x != range.first[0], y != range.first[1], z != range.first[2]));
+                phantomBits(x != range.first[0], y != range.first[1], z != range.first[2]));
         }
       }
     }

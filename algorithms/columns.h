@@ -1,4 +1,4 @@
-// Columns, for algorithms that find everything anew now and then.
+// The `columns` broad phase, for algorithms that use it for full searches.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,6 @@
 
 namespace broadmark::columns {
 
-/// An instance of `columns`.
 std::unique_ptr<BroadPhase> create();
 
 }  // namespace broadmark::columns

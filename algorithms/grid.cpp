@@ -8,7 +8,7 @@
 // within each cell by the lower bound on the axis along which that cell's boxes are spread out
 // most, in as many buckets as there are boxes. A window ends with the bucket of the upper bound.
 // (To sort further within buckets would save fewer tests than it costs.) A pair that shares several
-// cells is reported in one of them: see MarkedBody.
+// cells is reported in one of them: see CellBody.
 //
 // A box that touches more than kMaxCopies cells is copied into none. Such boxes lie in a cell of
 // their own, and each is tested against the contents of all cells that it touches. So there are
@@ -48,7 +48,7 @@ enum class Search { brute_force, sweep };
 /// A body's copy in one of its cells.
 struct Copy {
   std::uint32_t cell;
-  MarkedBody body;
+  CellBody body;
 };
 
 /// The axis of a cell's sweep, and the buckets of equal length on it that boxes are sorted into.
@@ -160,8 +160,9 @@ class Grid final : public PairBroadPhase {
       kernels_->sweep_cells(arrays_, ends_.data(), bodies_.data(), shares_.of(worker),
                             pairs(worker));
       for (std::size_t i = part.begin; i < part.end; ++i) {
-        forEachRowOfCells(i, [&](Range copies, MarkedBody marks) {
-          kernels_->test_row(arrays_, i, bodies_[i] | marks, copies, bodies_.data(), pairs(worker));
+        forEachRowOfCells(i, [&](Range copies, CellBody phantoms) {
+          kernels_->test_row(arrays_, i, bodies_[i] | phantoms, copies, bodies_.data(),
+                             pairs(worker));
         });
       }
     });
@@ -173,7 +174,7 @@ class Grid final : public PairBroadPhase {
     return {starts_[cell], starts_[cell + 1]};
   }
 
-  /// Calls visit(cell, marks) for each cell that gets a copy of the box.
+  /// Calls visit(cell, phantoms) for each cell that gets a copy of the box.
   template <class Visit>
   void forEachCell(const Aabb& box, Visit visit) const {
     const CellRange range = grid_.touched(box);
@@ -181,7 +182,7 @@ class Grid final : public PairBroadPhase {
       visit(kLarge, 0);
     } else {
       grid_.forEachCell(range,
-                        [&](std::size_t index, MarkedBody marks) { visit(index + 1, marks); });
+                        [&](std::size_t index, CellBody phantoms) { visit(index + 1, phantoms); });
     }
   }
 
@@ -191,9 +192,9 @@ class Grid final : public PairBroadPhase {
       mine.copies.clear();
       mine.places.assign(cellCount(), 0);
       for (std::size_t i = part.begin; i < part.end; ++i) {
-        forEachCell(boxes_[i], [&](std::size_t cell, MarkedBody marks) {
+        forEachCell(boxes_[i], [&](std::size_t cell, CellBody phantoms) {
           mine.copies.push_back(
-              {static_cast<std::uint32_t>(cell), static_cast<MarkedBody>(i) | marks});
+              {static_cast<std::uint32_t>(cell), static_cast<CellBody>(i) | phantoms});
           ++mine.places[cell];
         });
       }
@@ -244,9 +245,9 @@ class Grid final : public PairBroadPhase {
     std::vector<Aabb>& boxes = worker.boxes;
     boxes.resize(range.end - range.begin);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      const std::size_t ahead = range.begin + i + kPrefetchAhead;
-      if (ahead < copies_.size()) prefetch(&boxes_[bodyNumber(copies_[ahead])]);
-      boxes[i] = boxes_[bodyNumber(copies_[range.begin + i])];
+      const std::size_t ahead = range.begin + i + kPrefetchDistance;
+      if (ahead < copies_.size()) prefetch(&boxes_[bodyId(copies_[ahead])]);
+      boxes[i] = boxes_[bodyId(copies_[range.begin + i])];
     }
     const CellBuckets buckets = search_ == Search::sweep ? CellBuckets(boxes) : CellBuckets();
     const int axis = buckets.axis();
@@ -264,13 +265,13 @@ class Grid final : public PairBroadPhase {
     for (std::size_t i = range.begin; i < range.end; ++i) ends_[i] = places[buckets.of(max[i])];
   }
 
-  /// Calls visit(copies, marks) for the copies that the large box at i is tested against: all in
+  /// Calls visit(copies, phantoms) for the copies that the large box at i is tested against: all in
   /// the cells that it touches, a row of cells (whose copies are contiguous) at a time.
   template <class Visit>
   void forEachRowOfCells(std::size_t i, Visit visit) const {
     const CellRange range = grid_.touched(arrays_.box(i));
-    const auto visit_cells = [&](std::size_t first_cell, std::size_t last_cell, MarkedBody marks) {
-      visit(Range{starts_[first_cell + 1], starts_[last_cell + 2]}, marks);
+    const auto visit_cells = [&](std::size_t first_cell, std::size_t last_cell, CellBody phantoms) {
+      visit(Range{starts_[first_cell + 1], starts_[last_cell + 2]}, phantoms);
     };
     for (std::int32_t z = range.first[2]; z <= range.last[2]; ++z) {
       for (std::int32_t y = range.first[1]; y <= range.last[1]; ++y) {
@@ -278,8 +279,8 @@ class Grid final : public PairBroadPhase {
         const std::size_t last = grid_.indexOf(range.last[0], y, z);
         const bool later_y = y != range.first[1];
         const bool later_z = z != range.first[2];
-        visit_cells(first, first, cellMarks(false, later_y, later_z));
-        if (first < last) visit_cells(first + 1, last, cellMarks(true, later_y, later_z));
+        visit_cells(first, first, phantomBits(false, later_y, later_z));
+        if (first < last) visit_cells(first + 1, last, phantomBits(true, later_y, later_z));
       }
     }
   }
@@ -293,9 +294,9 @@ class Grid final : public PairBroadPhase {
   std::vector<Aabb> boxes_;
   CellGrid grid_;
   std::vector<std::uint32_t> starts_;  ///< of cells in what follows, and the end
-  std::vector<MarkedBody> copies_;     ///< by cell, in the order of the bodies
+  std::vector<CellBody> copies_;       ///< by cell, in the order of the bodies
   BoxArrays arrays_;                   ///< by cell, in the order of the sweep
-  std::vector<MarkedBody> bodies_;     ///< of arrays_
+  std::vector<CellBody> bodies_;       ///< of arrays_
   std::vector<std::uint32_t> ends_;    ///< of the windows of arrays_
   WorkShares shares_;
 };
@@ -320,9 +321,9 @@ void Grid::drawStructure(DebugDraw& draw) const {
   TestCounts tests(ends_.size());
   tests.addWindows(ends_);
   for (std::size_t i = 0; i < contents(kLarge).end; ++i) {
-    forEachRowOfCells(i, [&](Range others, MarkedBody) { tests.add(i, others); });
+    forEachRowOfCells(i, [&](Range others, CellBody) { tests.add(i, others); });
   }
-  tests.tell(draw, [this](std::size_t i) { return bodyNumber(bodies_[i]); });
+  tests.tell(draw, [this](std::size_t i) { return bodyId(bodies_[i]); });
 }
 
 void Grid::visitCounters(const CounterVisitor& visit) const {
@@ -334,21 +335,21 @@ void Grid::visitCounters(const CounterVisitor& visit) const {
 std::string Grid::validate() const {
   if (bodies_.size() > kMaxCopies * boxes_.size()) return "too many copies";
   // Every copy a box should have, ticked off as the cells are gone through.
-  std::vector<std::vector<MarkedBody>> expected(cellCount());
+  std::vector<std::vector<CellBody>> expected(cellCount());
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    forEachCell(boxes_[i], [&](std::size_t cell, MarkedBody marks) {
-      expected[cell].push_back(static_cast<MarkedBody>(i) | marks);
+    forEachCell(boxes_[i], [&](std::size_t cell, CellBody phantoms) {
+      expected[cell].push_back(static_cast<CellBody>(i) | phantoms);
     });
   }
   for (std::size_t cell = 0; cell < cellCount(); ++cell) {
     const auto [begin, end] = contents(cell);
-    std::vector<MarkedBody> found(bodies_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                  bodies_.begin() + static_cast<std::ptrdiff_t>(end));
+    std::vector<CellBody> found(bodies_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                bodies_.begin() + static_cast<std::ptrdiff_t>(end));
     std::ranges::sort(found);
     std::ranges::sort(expected[cell]);
     if (found != expected[cell]) return "a cell does not hold what touches it";
     for (std::size_t i = begin; i < end; ++i) {
-      const Aabb& box = boxes_[bodyNumber(bodies_[i])];
+      const Aabb& box = boxes_[bodyId(bodies_[i])];
       if (arrays_.box(i) != merged(box, box))
         return "a copy differs from its box";  // but for padding
       if (ends_[i] <= i || ends_[i] > end) return "window out of range";
@@ -380,7 +381,7 @@ Algorithm variant(const Kind& kind) {
                      .vectorised = true,
                      .changing_worlds = ChangingWorlds::compacted,
                      .side_by_side_below = 400,
-                     .max_objects = kMaxMarkedBodies - 1},
+                     .max_objects = kMaxCellBodies - 1},
           .description = {.principle = sweeps ? "grid, sorting" : "grid",
                           .optimisations = sweeps ? "axis per cell, bucket sort" : "",
                           .time = sweeps ? "O(n + w), w pairs that share a cell and overlap on its "

@@ -1,4 +1,4 @@
-// Mean and variance of box centres, by which algorithms choose their axes.
+// Variance of box centres, by which algorithms choose their axes.
 #pragma once
 
 #include <algorithm>
@@ -8,38 +8,38 @@
 
 namespace broadmark {
 
-/// The three axes, in some order of preference.
+/// A permutation of the three axes, the preferred axis first.
 using AxisOrder = std::array<int, 3>;
 
-/// Sums over box centres, in double: the square of any float is finite there. They are relative to
-/// some box's centre: far from the origin rounding would otherwise exceed the variance.
+/// Sums over box centres, in double, where the square of any float is finite. They are relative to
+/// the centre of some box, as rounding would exceed the variance far from the origin.
 struct Moments {
   std::array<double, 3> sum{};
-  std::array<double, 3> squares{};
+  std::array<double, 3> sum_of_squares{};
 
   void add(const Aabb& box, const std::array<double, 3>& origin) {
     for (int axis = 0; axis < 3; ++axis) {
       const double distance = centreOf(box, axis) - origin[axis];
       sum[axis] += distance;
-      squares[axis] += distance * distance;
+      sum_of_squares[axis] += distance * distance;
     }
   }
   void add(const Moments& other) {
     for (int axis = 0; axis < 3; ++axis) {
       sum[axis] += other.sum[axis];
-      squares[axis] += other.squares[axis];
+      sum_of_squares[axis] += other.sum_of_squares[axis];
     }
   }
   [[nodiscard]] double variance(int axis, double count) const {
-    return squares[axis] / count - (sum[axis] / count) * (sum[axis] / count);
+    return sum_of_squares[axis] / count - (sum[axis] / count) * (sum[axis] / count);
   }
-  /// The axes by falling variance.
+  /// The axes by decreasing variance.
   [[nodiscard]] AxisOrder axes(double count) const {
     AxisOrder axes = {0, 1, 2};
     std::ranges::sort(axes, [&](int a, int b) {
-      const double of_a = variance(a, count);
-      const double of_b = variance(b, count);
-      return of_a != of_b ? of_a > of_b : a < b;
+      const double variance_a = variance(a, count);
+      const double variance_b = variance(b, count);
+      return variance_a != variance_b ? variance_a > variance_b : a < b;
     });
     return axes;
   }

@@ -1,5 +1,4 @@
-// Sending for memory before it is needed, and writing past the caches: what is not looked at soon
-// should neither be read before it is written nor push out what is needed.
+// Software prefetching, and the fence after non-temporal ("streaming") stores.
 #pragma once
 
 #include <cstddef>
@@ -10,38 +9,38 @@
 
 namespace broadmark {
 
-/// How many elements ahead to send for what a loop reads in no order: some hundred nanoseconds.
-inline constexpr std::size_t kPrefetchAhead = 16;
+/// How many elements ahead a loop with random access prefetches: some hundred nanoseconds.
+inline constexpr std::size_t kPrefetchDistance = 16;
 
-/// How many for prefetchFar(), of which more can be under way at a time.
-inline constexpr std::size_t kPrefetchFarAhead = 128;
+/// The distance for prefetchL2(), of which more can be in flight.
+inline constexpr std::size_t kPrefetchL2Distance = 128;
 
 inline void prefetch(const void* address) {
   __builtin_prefetch(address);
-  // GCC takes a loop that does nothing but prefetch for one that does nothing (GCC 12).
+  // GCC 12 removes a loop that only prefetches, as if it had no effect.
   asm volatile("");
 }
 
-/// Sends for it into the second cache only.
-inline void prefetchFar(const void* address) {
-  constexpr int kReading = 0;
-  constexpr int kSecondCache = 2;
-  __builtin_prefetch(address, kReading, kSecondCache);
+/// Prefetches into L2 but not L1.
+inline void prefetchL2(const void* address) {
+  constexpr int kRead = 0;
+  constexpr int kL2 = 2;
+  __builtin_prefetch(address, kRead, kL2);
   asm volatile("");
 }
 
-/// The same for all of an array, from `begin` up to `end`.
+/// Prefetches the array [begin, end) into L2.
 template <class T>
-void prefetchFar(const T* begin, const T* end) {
+void prefetchL2(const T* begin, const T* end) {
   constexpr std::size_t kCacheLine = 64;
   const auto* const stop = reinterpret_cast<const char*>(end);
   for (const auto* line = reinterpret_cast<const char*>(begin); line < stop; line += kCacheLine) {
-    prefetchFar(line);
+    prefetchL2(line);
   }
 }
 
-/// Other threads see what was written past the caches once the writer has called this.
-inline void showWritesPastCaches() {
+/// Makes this thread's non-temporal stores visible to other threads.
+inline void streamFence() {
 #if defined(__SSE2__)
   _mm_sfence();
 #endif

@@ -5,54 +5,56 @@
 namespace broadmark {
 namespace {
 
-/// Of some numbers, the lowest and where a twentieth of them ends.
-struct LowEnd {
-  float least;
-  float twentieth;
+/// The minimum and the 5 % quantile of some values.
+struct LowTail {
+  float min;
+  float quantile;
 };
 
-/// Selects among those that are not above a pivot, which comes from every 16th number. That is most
-/// of the work, and has no branch that could be predicted wrong. After: R. Floyd, R. Rivest,
-/// "Expected time bounds for selection", Communications of the ACM 18 (1975).
-LowEnd lowEndOf(std::span<const float> numbers) {
+/// Quickselect among the values up to a pivot, which is chosen from every 16th value. Filtering by
+/// the pivot is most of the work, and branchless. After: R. Floyd, R. Rivest, "Expected time bounds
+/// for selection", Communications of the ACM 18 (1975).
+LowTail lowTail(std::span<const float> values) {
   constexpr std::size_t kStride = 16;
-  constexpr double kPart = 0.05;
-  constexpr double kPivotPart = 0.15;
-  const auto place_of = [](double part, std::size_t count) {
-    return static_cast<std::ptrdiff_t>(part * static_cast<double>(count - 1));
+  constexpr double kQuantile = 0.05;
+  constexpr double kPivotQuantile = 0.15;
+  const auto rank_of = [](double quantile, std::size_t count) {
+    return static_cast<std::ptrdiff_t>(quantile * static_cast<double>(count - 1));
   };
-  std::array<float, kMostSampled / kStride + 1> few;
-  std::size_t few_count = 0;
-  for (std::size_t i = 0; i < numbers.size(); i += kStride) few[few_count++] = numbers[i];
-  const auto pivot = few.begin() + place_of(kPivotPart, few_count);
-  std::nth_element(few.begin(), pivot, few.begin() + few_count);
+  std::array<float, kMaxSampleSize / kStride + 1> strided;
+  std::size_t strided_count = 0;
+  for (std::size_t i = 0; i < values.size(); i += kStride) strided[strided_count++] = values[i];
+  const auto pivot = strided.begin() + rank_of(kPivotQuantile, strided_count);
+  std::nth_element(strided.begin(), pivot, strided.begin() + strided_count);
 
-  std::array<float, kMostSampled> low;
-  const std::ptrdiff_t wanted = place_of(kPart, numbers.size());
+  std::array<float, kMaxSampleSize> low;
+  const std::ptrdiff_t rank = rank_of(kQuantile, values.size());
   auto end = low.begin();
-  for (const float number : numbers) {
-    *end = number;
-    end += number <= *pivot ? 1 : 0;
+  for (const float value : values) {
+    *end = value;
+    end += value <= *pivot ? 1 : 0;
   }
-  if (end - low.begin() <= wanted) end = std::ranges::copy(numbers, low.begin()).out;
-  std::nth_element(low.begin(), low.begin() + wanted, end);
-  return {*std::min_element(low.begin(), low.begin() + wanted + 1), low[wanted]};
+  // The pivot was too low: select among all.
+  if (end - low.begin() <= rank) end = std::ranges::copy(values, low.begin()).out;
+  std::nth_element(low.begin(), low.begin() + rank, end);
+  return {*std::min_element(low.begin(), low.begin() + rank + 1), low[rank]};
 }
 
 }  // namespace
 
-Bulk bulkOf(std::span<const Aabb> sample, int axis) {
-  std::array<float, kMostSampled> numbers;
-  const auto low_end = [&](auto number_of) {
-    std::ranges::transform(sample, numbers.begin(), number_of);
-    return lowEndOf(std::span(numbers).first(sample.size()));
+TrimmedRange trimmedRange(std::span<const Aabb> sample, int axis) {
+  std::array<float, kMaxSampleSize> values;
+  const auto low_tail = [&](auto value_of) {
+    std::ranges::transform(sample, values.begin(), value_of);
+    return lowTail(std::span(values).first(sample.size()));
   };
-  const LowEnd lows = low_end([=](const Aabb& box) { return box.min[axis]; });
-  const LowEnd highs = low_end([=](const Aabb& box) { return -box.max[axis]; });
-  const double low = lows.twentieth;
-  const double high = -highs.twentieth;
-  const double more = (high - low) / 4;
-  return {std::max<double>(lows.least, low - more), std::min<double>(-highs.least, high + more)};
+  const LowTail mins = low_tail([=](const Aabb& box) { return box.min[axis]; });
+  const LowTail negated_maxs = low_tail([=](const Aabb& box) { return -box.max[axis]; });
+  const double low = mins.quantile;
+  const double high = -negated_maxs.quantile;
+  const double margin = (high - low) / 4;
+  return {std::max<double>(mins.min, low - margin),
+          std::min<double>(-negated_maxs.min, high + margin)};
 }
 
 }  // namespace broadmark

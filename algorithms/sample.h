@@ -1,4 +1,4 @@
-// A sample of the boxes, and what it tells: by this, grids choose their cells.
+// A sample of the boxes, and their trimmed range on an axis: grids choose their cells by these.
 #pragma once
 
 #include <algorithm>
@@ -12,48 +12,49 @@
 
 namespace broadmark {
 
-inline constexpr std::size_t kMostSampled = 2048;
+inline constexpr std::size_t kMaxSampleSize = 2048;
 
-/// Of how many boxes of `count` a sample is taken: at most kMostSampled.
+/// The size of the sample of `count` boxes.
 constexpr std::size_t sampleSize(std::size_t count) {
-  return std::min(count, std::clamp<std::size_t>(count / 32, 256, kMostSampled));
+  return std::min(count, std::clamp<std::size_t>(count / 32, 256, kMaxSampleSize));
 }
 
-/// The k-th of a sample of `of` of `count`. Spread by the golden ratio and not by a stride, since
-/// scenes give bodies their shapes by number, in turn.
-constexpr std::size_t sampled(std::size_t k, std::size_t of, std::size_t count) {
-  if (of == count) return k;
+/// The index of the k-th box in a sample of `size` out of `count`. A golden-ratio sequence, as a
+/// stride could fall in step with scenes that cycle through body shapes.
+constexpr std::size_t sampleIndex(std::size_t k, std::size_t size, std::size_t count) {
+  if (size == count) return k;
   return static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{count} >> 32;
 }
 
-/// Takes a sample of `count` boxes, of which box_of(i) is the i-th, by reference.
-template <class BoxOf>
-void takeSample(std::size_t count, BoxOf box_of, std::vector<Aabb>& sample) {
+/// Samples `count` boxes; box_at(i) returns a reference to box i.
+template <class BoxAt>
+void takeSample(std::size_t count, BoxAt box_at, std::vector<Aabb>& sample) {
   sample.resize(sampleSize(count));
   const auto sampled_box = [&](std::size_t k) -> const Aabb& {
-    return box_of(sampled(k, sample.size(), count));
+    return box_at(sampleIndex(k, sample.size(), count));
   };
   for (std::size_t k = 0; k < sample.size(); ++k) {
-    if (k + kPrefetchAhead < sample.size()) prefetch(&sampled_box(k + kPrefetchAhead));
+    if (k + kPrefetchDistance < sample.size()) prefetch(&sampled_box(k + kPrefetchDistance));
     sample[k] = sampled_box(k);
   }
 }
 
-/// Where the bulk of the boxes lies on one axis. In double: there no float overflows.
-struct Bulk {
+/// The range of most boxes on one axis. In double, where differences of floats cannot overflow.
+struct TrimmedRange {
   double low = 0;
   double high = 0;
   [[nodiscard]] double extent() const { return high - low; }
-  /// How much of the extent an edge takes up, at most all of it.
-  [[nodiscard]] double part(const Aabb& box, int axis) const {
+  /// The edge of a box as a fraction of the extent, at most 1.
+  [[nodiscard]] double relativeExtent(const Aabb& box, int axis) const {
     const double edge = static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis]);
     return edge < extent() ? edge / extent() : 1;
   }
 };
 
-/// Where nine tenths of the boxes of a sample lie, and a quarter of that more on both sides: for
-/// most distributions that holds nearly everything. A few boxes far off don't stretch it. The
-/// sample has from one to kMostSampled boxes.
-Bulk bulkOf(std::span<const Aabb> sample, int axis);
+/// The range from the 5 % quantile of the lower bounds to the 95 % quantile of the upper ones, plus
+/// a margin of a quarter on both sides, within the sample's bounds. It holds nearly all boxes of
+/// most distributions, and a few outliers do not stretch it. The sample has 1 to kMaxSampleSize
+/// boxes.
+TrimmedRange trimmedRange(std::span<const Aabb> sample, int axis);
 
 }  // namespace broadmark

@@ -24,8 +24,8 @@
 
 #include "broadmark/adapters.h"
 #include "broadmark/pair_set.h"
+#include "cell_body.h"
 #include "columns.h"
-#include "marked_body.h"
 #include "sample.h"
 #include "tide/cost_model.h"
 #include "tide/loose_grid.h"
@@ -154,7 +154,8 @@ void Tide::tryMoves(std::span<const Aabb> boxes) {
   for (std::size_t k = 0; k < kTries; ++k) {
     tried_.resize(moves);
     for (std::size_t i = 0; i < moves; ++i) {
-      tried_[i] = static_cast<std::uint32_t>(sampled(k * moves + i, kTries * moves, boxes.size()));
+      tried_[i] =
+          static_cast<std::uint32_t>(sampleIndex(k * moves + i, kTries * moves, boxes.size()));
     }
     std::ranges::sort(tried_);
     tried_.erase(std::ranges::unique(tried_).begin(), tried_.end());
@@ -261,8 +262,7 @@ std::vector<Algorithm> variants() {
                  .events = true,
                  .changing_worlds = ChangingWorlds::native,
                  .instance_per_world = true,
-                 .max_objects =
-                     std::min<std::uint64_t>(kMaxMarkedBodies - 1, LooseGrid::kMostBodies),
+                 .max_objects = std::min<std::uint64_t>(kMaxCellBodies - 1, LooseGrid::kMostBodies),
                  .rare_parameters = {{"full_search_cost_scale", "1000000"}}},
       .description = {.principle = "grid",
                       .optimisations = "events without pairs, several sizes of cells",

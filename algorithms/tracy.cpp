@@ -187,7 +187,7 @@ class Tracy final : public BroadPhase {
     for (const std::uint32_t body : workerOf(worker).moved) {
       const CellRange& before = bodies_.ranges[kBefore][body];
       const CellRange& now = bodies_.ranges[kNow][body];
-      grid_.forEachCell(before, [&](std::size_t cell, MarkedBody) {
+      grid_.forEachCell(before, [&](std::size_t cell, CellBody) {
         if (bodies_.few_moved) {
           mailbox.notify(cell, body);
         } else {
@@ -195,7 +195,7 @@ class Tracy final : public BroadPhase {
         }
       });
       if (now == before) continue;
-      grid_.forEachCell(now, [&](std::size_t cell, MarkedBody) {
+      grid_.forEachCell(now, [&](std::size_t cell, CellBody) {
         if (!before.contains(grid_.position(cell))) mailbox.announce(cell, body);
       });
     }
@@ -310,14 +310,14 @@ class Tracy final : public BroadPhase {
       CellRange& range = bodies_.ranges[kNow][body];
       range = cellsOf(grid_, bodies_.boxes[kNow][body]);
       bodies_.ranges[kBefore][body] = range;
-      grid_.forEachCell(range, [&](std::size_t cell, MarkedBody) { ++ends[cell]; });
+      grid_.forEachCell(range, [&](std::size_t cell, CellBody) { ++ends[cell]; });
       workers_.front().cells_touched += range.count();
     }
     std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
     std::vector<std::uint32_t> bodies(ends.back());
     for (auto body = static_cast<std::uint32_t>(bodies_.boxes[kNow].size()); body-- > 0;) {
       grid_.forEachCell(bodies_.ranges[kNow][body],
-                        [&](std::size_t cell, MarkedBody) { bodies[--ends[cell]] = body; });
+                        [&](std::size_t cell, CellBody) { bodies[--ends[cell]] = body; });
     }
     const auto bodies_in = [&](std::size_t cell) {
       return std::span(bodies).subspan(ends[cell], ends[cell + 1] - ends[cell]);

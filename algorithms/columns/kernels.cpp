@@ -1,7 +1,7 @@
 #include "columns/kernels.h"
 
-#include "columns/copies.h"
-#include "columns/hits.h"
+#include "columns/cell_entries.h"
+#include "columns/hit_buffer.h"
 
 #define BROADMARK_KERNELS "columns/kernels.inl"
 #include "simd/for_each_isa.inl"

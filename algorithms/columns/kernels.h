@@ -1,5 +1,4 @@
-// The inner loops, one table of them per instruction set: boxes into steps, the sweep, and what
-// becomes of its hits.
+// The inner loops, one table of them per instruction set.
 #pragma once
 
 #include <cstddef>
@@ -9,62 +8,62 @@
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 #include "broadmark/range.h"
-#include "columns/copies.h"
+#include "cell_body.h"
+#include "columns/cell_entries.h"
 #include "columns/layout.h"
-#include "marked_body.h"
 
 namespace broadmark::columns {
 
-/// A few boxes among the columns, in one array for each number.
+/// A block of quantised boxes, as a structure of arrays. A box's home column is the first column
+/// that it overlaps.
 struct alignas(64) BoxBlock {
   static constexpr std::size_t kBoxes = 128;
 
-  /// Steps on the sweep axis.
-  std::uint32_t first[kBoxes];
-  std::uint32_t last[kBoxes];
-  /// Steps on the axes that are cut.
-  std::uint32_t low[2][kBoxes];
-  std::uint32_t high[2][kBoxes];
-  /// The first columns that the boxes touch, and their copies there.
+  std::uint32_t sweep_min[kBoxes];
+  std::uint32_t sweep_max[kBoxes];
+  /// On the cut axes, across all columns.
+  std::uint32_t cut_min[2][kBoxes];
+  std::uint32_t cut_max[2][kBoxes];
+  /// Home columns, and the entries there.
   std::uint32_t columns[kBoxes];
   std::uint32_t keys[kBoxes];
-  Copy copies[kBoxes];
-  /// How many sides between columns they cross, on both axes together.
-  std::uint32_t crossed[kBoxes];
-  /// The second columns of those that cross one, and what is different in their copies there.
+  CellEntry entries[kBoxes];
+  /// Column boundaries crossed, on both axes together.
+  std::uint32_t crossings[kBoxes];
+  /// Of boxes that cross one boundary: the second column, and the fields of the entry there that
+  /// differ.
   std::uint32_t next_columns[kBoxes];
   std::uint32_t next_keys[kBoxes];
-  MarkedBody next_bodies[kBoxes];
+  CellBody next_bodies[kBoxes];
 
-  /// A set of boxes, a bit for each.
+  /// A bit per box.
   using Set = std::uint64_t[kBoxes / 64];
   Set cross_one;
-  Set cross_more;
+  Set cross_several;
 };
 
-class HitSink;
+class HitBuffer;
 
 struct Kernels {
-  /// Finds out about `count` boxes, at most BoxBlock::kBoxes, of these bodies.
-  void (*find_steps)(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
-                     const StepScales& scales, BoxBlock& block);
+  /// Quantises up to BoxBlock::kBoxes boxes, and computes their home columns and entries.
+  void (*quantize_boxes)(const Aabb* boxes, const CellBody* bodies, std::size_t count,
+                         const Quantizers& quantizers, BoxBlock& block);
 
-  /// Copies boxes to a place that is aligned to 64 bytes, past the caches if there is a way. Other
-  /// threads see it after showWritesPastCaches().
-  void (*copy_past_caches)(const Aabb* boxes, std::size_t count, Aabb* to);
+  /// Copies boxes to `target`, which is aligned to 64 bytes, by non-temporal stores if there are
+  /// any; streamFence() makes them visible to other threads.
+  void (*stream_copy)(const Aabb* boxes, std::size_t count, Aabb* target);
 
-  /// Tests all copies in `rows`, at most kSweptRows, the first of which is a multiple of that,
-  /// against their windows.
-  void (*sweep)(const std::uint32_t* keys, const std::uint32_t* ends, Range rows, HitSink& hits);
-  static constexpr std::size_t kSweptRows = 64;
+  /// Tests the entries of `rows` against their windows; up to kSweepRows, and the first is a
+  /// multiple of kSweepRows.
+  void (*sweep)(const std::uint32_t* keys, const std::uint32_t* ends, Range rows, HitBuffer& hits);
+  static constexpr std::size_t kSweepRows = 64;
 
-  /// Takes one pair out of each of some hits (HitSink), of these copies. Those hits that have more
-  /// go to the beginning; returns how many they are. `pairs` and `doubtful` are where the next pair
-  /// goes that is sure, and the next of which the boxes have to decide. In all four arrays there
-  /// must be room for one of each hit and kTakenTogether more.
-  std::size_t (*take_pairs)(std::uint64_t* places, std::uint64_t* bits, std::size_t count,
-                            const Copy* copies, Pair*& pairs, Pair*& doubtful);
-  static constexpr std::size_t kTakenTogether = 8;
+  /// Extracts one candidate pair from each hit (HitBuffer), compacts the hits that have more to the
+  /// front, and returns their number. `pairs` and `ambiguous` are the output positions for certain
+  /// and for ambiguous pairs. All four arrays need room for kExtractWidth elements beyond `count`.
+  std::size_t (*extract_pairs)(std::uint64_t* positions, std::uint64_t* masks, std::size_t count,
+                               const CellEntry* entries, Pair*& pairs, Pair*& ambiguous);
+  static constexpr std::size_t kExtractWidth = 8;
 };
 
 /// The kernels for an instruction set, which this processor must support.

@@ -1,145 +1,141 @@
-// The kernels of the columns, written once; compiled for each instruction set by for_each_isa.inl.
-//
-// Boxes into steps: a vector of boxes at once. What is made of the steps is a plain loop over
-// arrays, which compilers turn into vectors by themselves.
-//
-// The sweep: a vector of rows is tested at once against what lies one place behind each of them,
-// two places, and so on: neighbours have nearly the same windows, so that a vector of rows has one
-// badly predicted end of a loop. Nothing else branches: hits are always written, and counted only
-// if there are any.
+// The kernels of columns; for_each_isa.inl compiles this file for each instruction set.
 
-/// The steps of kLanes boxes, from box k of the block on.
-inline void findStepsOf(const float* bounds, std::size_t k, const columns::StepScales& scales,
-                        columns::BoxBlock& block) {
+/// Quantises kLanes boxes into the block, from its box k on.
+inline void quantizeVector(const float* bounds, std::size_t k,
+                           const columns::Quantizers& quantizers, columns::BoxBlock& block) {
   Vector min[3];
   Vector max[3];
   loadCorners(bounds, min);
   loadCorners(bounds + 4, max);
-  const columns::StepScale& sweep = scales.sweep;
-  storeSteps(min[sweep.axis], sweep.low, sweep.factor, sweep.last, block.first + k);
-  storeSteps(max[sweep.axis], sweep.low, sweep.factor, sweep.last, block.last + k);
-  for (int which = 0; which < 2; ++which) {
-    const columns::StepScale& scale = scales.of[which];
-    storeSteps(min[scale.axis], scale.low, scale.factor, scale.last, block.low[which] + k);
-    storeSteps(max[scale.axis], scale.low, scale.factor, scale.last, block.high[which] + k);
+  const columns::Quantizer& sweep = quantizers.sweep;
+  storeQuantized(min[sweep.axis], sweep.origin, sweep.scale, sweep.max, block.sweep_min + k);
+  storeQuantized(max[sweep.axis], sweep.origin, sweep.scale, sweep.max, block.sweep_max + k);
+  for (int i = 0; i < 2; ++i) {
+    const columns::Quantizer& cut = quantizers.cut[i];
+    storeQuantized(min[cut.axis], cut.origin, cut.scale, cut.max, block.cut_min[i] + k);
+    storeQuantized(max[cut.axis], cut.origin, cut.scale, cut.max, block.cut_max[i] + k);
   }
 }
 
-void findSteps(const Aabb* boxes, const MarkedBody* bodies, std::size_t count,
-               const columns::StepScales& scales, columns::BoxBlock& block) {
-  constexpr std::uint32_t kLast = columns::Layout::kLastStep;
-  constexpr int kBits = columns::Layout::kStepBits;
+/// Vectors of boxes are quantised; the rest are plain loops over arrays, which compilers vectorise.
+void quantizeBoxes(const Aabb* boxes, const CellBody* bodies, std::size_t count,
+                   const columns::Quantizers& quantizers, columns::BoxBlock& block) {
+  constexpr std::uint32_t kMax = columns::Layout::kMaxCoord;
+  constexpr int kBits = columns::Layout::kCoordBits;
   const auto* const bounds = reinterpret_cast<const float*>(boxes);
   constexpr std::size_t kFloats = 8;  // in a box
   const std::size_t whole = count / kLanes * kLanes;
   for (std::size_t k = 0; k < whole; k += kLanes) {
-    findStepsOf(bounds + kFloats * k, k, scales, block);
+    quantizeVector(bounds + kFloats * k, k, quantizers, block);
   }
-  if (whole < count) {  // behind the last box there is nothing that could be loaded
+  if (whole < count) {  // a whole vector would read beyond the last box
     float rest[kFloats * kLanes] = {};
     for (std::size_t i = 0; i < kFloats * (count - whole); ++i) {
       rest[i] = bounds[kFloats * whole + i];
     }
-    findStepsOf(rest, whole, scales, block);
+    quantizeVector(rest, whole, quantizers, block);
   }
-  const std::uint32_t columns_in_row = scales.columns_in_row;
-  const MarkedBody mark_a = axisMark(scales.of[0].axis);
-  const MarkedBody mark_b = axisMark(scales.of[1].axis);
+  const std::uint32_t columns_per_row = quantizers.columns_per_row;
+  const CellBody phantom_a = phantomBit(quantizers.cut[0].axis);
+  const CellBody phantom_b = phantomBit(quantizers.cut[1].axis);
   for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t low_a = block.low[0][k];
-    const std::uint32_t low_b = block.low[1][k];
-    const std::uint32_t high_a = block.high[0][k];
-    const std::uint32_t high_b = block.high[1][k];
-    // How many columns it goes on for. Then its last step in this one is the last one there is.
-    const std::uint32_t more_a = (high_a >> kBits) - (low_a >> kBits);
-    const std::uint32_t more_b = (high_b >> kBits) - (low_b >> kBits);
-    const bool on_a = more_a != 0;
-    const bool on_b = more_b != 0;
-    const std::uint32_t first_a = low_a & kLast;
-    const std::uint32_t first_b = low_b & kLast;
-    const std::uint32_t last_a = high_a & kLast;
-    const std::uint32_t last_b = high_b & kLast;
-    const std::uint32_t column = (low_b >> kBits) * columns_in_row + (low_a >> kBits);
+    const std::uint32_t min_a = block.cut_min[0][k];
+    const std::uint32_t min_b = block.cut_min[1][k];
+    const std::uint32_t max_a = block.cut_max[0][k];
+    const std::uint32_t max_b = block.cut_max[1][k];
+    // Boundaries crossed. If any, the maximum in the home column is clamped to kMax.
+    const std::uint32_t crossings_a = (max_a >> kBits) - (min_a >> kBits);
+    const std::uint32_t crossings_b = (max_b >> kBits) - (min_b >> kBits);
+    const bool cross_a = crossings_a != 0;
+    const bool cross_b = crossings_b != 0;
+    const std::uint32_t cut_min_a = min_a & kMax;
+    const std::uint32_t cut_min_b = min_b & kMax;
+    const std::uint32_t cut_max_a = max_a & kMax;
+    const std::uint32_t cut_max_b = max_b & kMax;
+    const std::uint32_t column = (min_b >> kBits) * columns_per_row + (min_a >> kBits);
     block.columns[k] = column;
-    block.keys[k] = columns::keyOf(first_a, first_b, on_a ? kLast : last_a, on_b ? kLast : last_b);
-    block.crossed[k] = more_a + more_b;
-    // If it crosses one side: on the first axis, or else on the second.
-    block.next_columns[k] = column + (on_a ? 1 : columns_in_row);
-    block.next_keys[k] = columns::keyOf(on_a ? 0 : first_a, on_a ? first_b : 0, last_a, last_b);
-    block.next_bodies[k] = bodies[k] | (on_a ? mark_a : mark_b);
+    block.keys[k] = columns::keyOf(cut_min_a, cut_min_b, cross_a ? kMax : cut_max_a,
+                                   cross_b ? kMax : cut_max_b);
+    block.crossings[k] = crossings_a + crossings_b;
+    // The second column, for boxes with one crossing: on axis a, or else on axis b.
+    block.next_columns[k] = column + (cross_a ? 1 : columns_per_row);
+    block.next_keys[k] =
+        columns::keyOf(cross_a ? 0 : cut_min_a, cross_a ? cut_min_b : 0, cut_max_a, cut_max_b);
+    block.next_bodies[k] = bodies[k] | (cross_a ? phantom_a : phantom_b);
   }
   for (std::size_t k = 0; k < count; ++k) {
-    block.copies[k] = {block.first[k], ~block.last[k], block.keys[k], bodies[k]};
+    block.entries[k] = {block.sweep_min[k], ~block.sweep_max[k], block.keys[k], bodies[k]};
   }
   for (std::size_t word = 0; word < columns::BoxBlock::kBoxes / 64; ++word) {
-    std::uint64_t none = 0;
-    std::uint64_t one = 0;
+    std::uint64_t cross_none = 0;
+    std::uint64_t cross_one = 0;
     for (std::size_t bit = 0; bit < 64; bit += kLanes) {
-      const Keys crossed = loadKeys(block.crossed + 64 * word + bit);
-      none |= std::uint64_t{equal(crossed, broadcastKey(0))} << bit;
-      one |= std::uint64_t{equal(crossed, broadcastKey(1))} << bit;
+      const Keys crossings = loadKeys(block.crossings + 64 * word + bit);
+      cross_none |= std::uint64_t{equal(crossings, broadcastKey(0))} << bit;
+      cross_one |= std::uint64_t{equal(crossings, broadcastKey(1))} << bit;
     }
     const std::size_t before = 64 * word;
     const std::size_t here = count <= before ? 0 : count - before;
-    const std::uint64_t all = here >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << here) - 1;
-    block.cross_one[word] = one & all;
-    block.cross_more[word] = ~(none | one) & all;
+    const std::uint64_t valid = here >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << here) - 1;
+    block.cross_one[word] = cross_one & valid;
+    block.cross_several[word] = ~(cross_none | cross_one) & valid;
   }
 }
 
-void copyPastCaches(const Aabb* boxes, std::size_t count, Aabb* to) {
+void streamCopy(const Aabb* boxes, std::size_t count, Aabb* target) {
   constexpr std::size_t kFloats = 8;  // in a box
   const auto* const from = reinterpret_cast<const float*>(boxes);
-  auto* const target = reinterpret_cast<float*>(to);
+  auto* const to = reinterpret_cast<float*>(target);
   const std::size_t whole = kFloats * count / kLanes * kLanes;
-  for (std::size_t i = 0; i < whole; i += kLanes) {
-    storePastCaches(target + i, loadFromAnywhere(from + i));
-  }
-  for (std::size_t i = whole; i < kFloats * count; ++i) target[i] = from[i];
+  for (std::size_t i = 0; i < whole; i += kLanes) streamStore(to + i, loadUnaligned(from + i));
+  for (std::size_t i = whole; i < kFloats * count; ++i) to[i] = from[i];
 }
 
-/// Which lane and which step a bit of hits is of.
+/// The lane and the offset of a bit in a mask of hits.
 constexpr std::size_t laneOf(std::size_t bit) {
-  return bit / (kHitLanes * kHitSteps) * kHitLanes + bit % kHitLanes;
+  return bit / (kHitLanes * kHitOffsets) * kHitLanes + bit % kHitLanes;
 }
-constexpr std::size_t stepOf(std::size_t bit) { return bit / kHitLanes % kHitSteps; }
+constexpr std::size_t offsetOf(std::size_t bit) { return bit / kHitLanes % kHitOffsets; }
 
-/// The place of a hit: see columns::HitSink.
-constexpr std::uint64_t placeOf(std::size_t row, std::size_t distance) {
+/// The position of a hit: see columns::HitBuffer.
+constexpr std::uint64_t positionOf(std::size_t row, std::size_t distance) {
   return std::uint64_t{row} | std::uint64_t{distance} << 32;
 }
 
+/// A vector of rows is tested against the entries at distance 1, at distance 2, and so on: windows
+/// of neighbouring rows end nearly together, which leaves one mispredicted branch per vector of
+/// rows.
 void sweep(const std::uint32_t* keys, const std::uint32_t* ends, Range rows,
-           columns::HitSink& sink) {
-  // So far rows go together before those are counted that are to go on.
-  constexpr std::size_t kStretch = 32;
-  static_assert(kStretch / kHitSteps <= columns::HitSink::kRoom);
-  std::uint64_t* const places = sink.places();
-  std::uint64_t* const bits = sink.bits();
+           columns::HitBuffer& hits) {
+  constexpr std::size_t kBlock = 32;  // distances between two calls of reserve()
+  static_assert(kBlock / kHitOffsets <= columns::HitBuffer::kReserve);
+  std::uint64_t* const positions = hits.positions();
+  std::uint64_t* const masks = hits.masks();
   for (std::size_t row = rows.begin; row < rows.end; row += kLanes) {
     const Keys limits = limitsOf(loadKeys(keys + row));
-    Keys left = loadKeys(ends + row) - lanesFrom(static_cast<std::uint32_t>(row + 1));
+    Keys remaining = loadKeys(ends + row) - iotaFrom(static_cast<std::uint32_t>(row + 1));
     std::size_t distance = 1;
-    while (positive(left) != 0) {
-      std::size_t hits = sink.room();
-      const std::size_t stop = distance + kStretch;
-      while (distance < stop && positive(left) != 0) {
-        const std::uint64_t found = hitsOfSteps(keys + row + distance, limits, left);
-        places[hits] = placeOf(row, distance);
-        bits[hits] = found;
-        hits += found != 0 ? 1 : 0;
-        left -= std::uint32_t{kHitSteps};
-        distance += kHitSteps;
+    while (positive(remaining) != 0) {
+      std::size_t size = hits.reserve();
+      const std::size_t stop = distance + kBlock;
+      while (distance < stop && positive(remaining) != 0) {
+        const std::uint64_t mask = hitsAtOffsets(keys + row + distance, limits, remaining);
+        // Branchless: write unconditionally, advance only on a hit.
+        positions[size] = positionOf(row, distance);
+        masks[size] = mask;
+        size += mask != 0 ? 1 : 0;
+        remaining -= std::uint32_t{kHitOffsets};
+        distance += kHitOffsets;
       }
-      sink.advance(hits);
+      hits.setSize(size);
     }
   }
 }
 
 #if defined(BROADMARK_AVX512)
-#include "columns/take_pairs_avx512.inl"
+#include "columns/extract_pairs_avx512.inl"
 #else
-#include "columns/take_pairs.inl"
+#include "columns/extract_pairs.inl"
 #endif
 
-inline constexpr columns::Kernels kKernels = {findSteps, copyPastCaches, sweep, takePairs};
+inline constexpr columns::Kernels kKernels = {quantizeBoxes, streamCopy, sweep, extractPairs};

@@ -1,7 +1,6 @@
-// Choosing columns. From the sample come, for each axis, where the bulk of the boxes lies and how
-// long they are. If boxes were spread evenly there, the number of copies and of tests would follow
-// from the width of the columns and the axis of the sweep; the cheapest of all choices is taken.
-// What is not spread evenly is for the columns themselves to find out: crowded ones are split.
+// The cost model assumes that boxes are spread evenly over the trimmed range of the sample. Then
+// the width of the columns and the sweep axis determine the number of entries and of tests. Uneven
+// distributions are left to the traversal, which splits crowded columns.
 
 #include "columns/layout.h"
 
@@ -14,137 +13,140 @@
 namespace broadmark::columns {
 namespace {
 
-/// Mean parts of the extents that boxes take up.
-struct Parts {
-  std::array<double, 3> of{};       ///< by axis
-  std::array<double, 3> without{};  ///< by axis: the product of the two others
+/// The mean box, relative to the ranges.
+struct RelativeExtents {
+  std::array<double, 3> edges{};           ///< by axis
+  std::array<double, 3> cross_sections{};  ///< by axis: the product of the other two edges
 };
 
-Parts meanParts(std::span<const Aabb> sample, const std::array<Bulk, 3>& axes) {
-  Parts mean;
+RelativeExtents meanExtents(std::span<const Aabb> sample,
+                            const std::array<TrimmedRange, 3>& ranges) {
+  RelativeExtents mean;
   for (const Aabb& box : sample) {
-    std::array<double, 3> part;
-    for (int axis = 0; axis < 3; ++axis) part[axis] = axes[axis].part(box, axis);
+    std::array<double, 3> edges;
+    for (int axis = 0; axis < 3; ++axis) edges[axis] = ranges[axis].relativeExtent(box, axis);
     for (int axis = 0; axis < 3; ++axis) {
-      mean.of[axis] += part[axis];
-      mean.without[axis] += part[(axis + 1) % 3] * part[(axis + 2) % 3];
+      mean.edges[axis] += edges[axis];
+      mean.cross_sections[axis] += edges[(axis + 1) % 3] * edges[(axis + 2) % 3];
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
-    mean.of[axis] /= static_cast<double>(sample.size());
-    mean.without[axis] /= static_cast<double>(sample.size());
+    mean.edges[axis] /= static_cast<double>(sample.size());
+    mean.cross_sections[axis] /= static_cast<double>(sample.size());
   }
   return mean;
 }
 
-/// How much of the others a box meets on an axis behind its lower bound, by pairs of the sample.
-/// The mean part of the extent would do, were boxes spread evenly.
-double meetingPart(std::span<const Aabb> sample, int axis) {
+/// Half the probability that two boxes overlap on an axis, since a window holds only the box that
+/// begins later. Estimated from pairs of the sample: boxes need not be spread evenly.
+double sampledOverlapFraction(std::span<const Aabb> sample, int axis) {
   constexpr std::size_t kRounds = 4;
-  std::size_t meetings = 0;
+  std::size_t overlaps = 0;
   for (std::size_t round = 1; round <= kRounds; ++round) {
-    const std::size_t away = sample.size() * round / (kRounds + 1) + 1;
-    for (std::size_t i = 0; i + away < sample.size(); ++i) {
+    const std::size_t stride = sample.size() * round / (kRounds + 1) + 1;
+    for (std::size_t i = 0; i + stride < sample.size(); ++i) {
       const Aabb& a = sample[i];
-      const Aabb& b = sample[i + away];
-      meetings += std::size_t{a.min[axis] <= b.max[axis]} & std::size_t{b.min[axis] <= a.max[axis]};
+      const Aabb& b = sample[i + stride];
+      overlaps += std::size_t{a.min[axis] <= b.max[axis]} & std::size_t{b.min[axis] <= a.max[axis]};
     }
   }
   const auto pairs = static_cast<double>(kRounds * sample.size()) / 2;
-  return static_cast<double>(meetings) / pairs / 2;
+  return static_cast<double>(overlaps) / pairs / 2;
 }
 
 }  // namespace
 
 Layout::Layout(std::span<const Aabb> sample, std::size_t count, double copy_cost) {
-  sample = sample.first(std::min(sample.size(), kMostSampled));
+  sample = sample.first(std::min(sample.size(), kMaxSampleSize));
   if (sample.empty()) return;
-  std::array<Bulk, 3> measured;
-  for (int axis = 0; axis < 3; ++axis) measured[axis] = bulkOf(sample, axis);
-  const Parts parts = meanParts(sample, measured);
+  std::array<TrimmedRange, 3> ranges;
+  for (int axis = 0; axis < 3; ++axis) ranges[axis] = trimmedRange(sample, axis);
+  const RelativeExtents mean = meanExtents(sample, ranges);
 
+  // Search every sweep axis and, for columns of square cross-section, every width.
   std::array<int, 3> axes = {0, 1, 2};
   cost_ = std::numeric_limits<double>::max();
   for (int sweep = 0; sweep < 3; ++sweep) {
-    const int first = (sweep + 1) % 3;
-    const int second = (sweep + 2) % 3;
-    const double met = std::max(parts.of[sweep], meetingPart(sample, sweep));
-    // Columns of square cross-section: their side is what is tried out.
-    const double longer = std::max(measured[first].extent(), measured[second].extent());
-    for (double side = longer;; side *= 0.85) {
-      const auto cuts = [&](int axis) {
-        const double columns = std::round(measured[axis].extent() / side);
-        return columns > 1 ? columns : 1;  // also when there is no extent: 0/0
+    const int a = (sweep + 1) % 3;
+    const int b = (sweep + 2) % 3;
+    const double overlap_fraction =
+        std::max(mean.edges[sweep], sampledOverlapFraction(sample, sweep));
+    const double longer = std::max(ranges[a].extent(), ranges[b].extent());
+    for (double width = longer;; width *= 0.85) {
+      const auto count_on = [&](int axis) {
+        const double columns = std::round(ranges[axis].extent() / width);
+        return columns > 1 ? columns : 1;  // 1 also for 0/0, where the extent is 0
       };
-      const double firsts = cuts(first);
-      const double seconds = cuts(second);
-      if (firsts * seconds > static_cast<double>(kMostColumns)) break;
-      // A box lies in one column, and in another one for each side that it crosses.
-      const double crossed_first = firsts - 1;
-      const double crossed_second = seconds - 1;
-      const double copies = 1 + crossed_first * parts.of[first] +
-                            crossed_second * parts.of[second] +
-                            crossed_first * crossed_second * parts.without[sweep];
-      const double in_column = static_cast<double>(count) * copies / (firsts * seconds);
-      const double window = in_column * met;
-      const double cost = copies * (copy_cost + window);
+      const double count_a = count_on(a);
+      const double count_b = count_on(b);
+      if (count_a * count_b > static_cast<double>(kMaxColumns)) break;
+      // A box has one entry, and another one for each column boundary that it crosses.
+      const double boundaries_a = count_a - 1;
+      const double boundaries_b = count_b - 1;
+      const double entries = 1 + boundaries_a * mean.edges[a] + boundaries_b * mean.edges[b] +
+                             boundaries_a * boundaries_b * mean.cross_sections[sweep];
+      const double in_column = static_cast<double>(count) * entries / (count_a * count_b);
+      const double window = in_column * overlap_fraction;
+      const double cost = entries * (copy_cost + window);
       if (cost < cost_) {
         cost_ = cost;
-        met_ = met;
-        axes = {sweep, first, second};
-        counts_ = {static_cast<std::int32_t>(firsts), static_cast<std::int32_t>(seconds)};
+        overlap_fraction_ = overlap_fraction;
+        axes = {sweep, a, b};
+        counts_ = {static_cast<std::int32_t>(count_a), static_cast<std::int32_t>(count_b)};
       }
-      if (!(side > 0)) break;
-      // Narrower columns only cost more copies from here on.
-      if (copies * copy_cost > cost_) break;
+      if (!(width > 0)) break;
+      // Narrower columns only add entries from here on.
+      if (entries * copy_cost > cost_) break;
     }
   }
-  const auto factor = [](double steps, const Bulk& axis) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    return axis.extent() > 0 ? static_cast<float>(std::min(steps / axis.extent(), kMost)) : 0;
+
+  const auto scale = [](double values, const TrimmedRange& range) {
+    constexpr double kMax = std::numeric_limits<float>::max();
+    return range.extent() > 0 ? static_cast<float>(std::min(values / range.extent(), kMax)) : 0;
   };
-  const Bulk& swept = measured[axes[0]];
+  const TrimmedRange& swept = ranges[axes[0]];
   // The last float below 2^kSweepBits.
-  constexpr auto kLastSweepStep = static_cast<float>((1U << Layout::kSweepBits) - 128);
-  scales_.sweep = {.axis = axes[0],
-                   .low = static_cast<float>(swept.low),
-                   .factor = factor(kLastSweepStep, swept),
-                   .last = kLastSweepStep};
-  for (int which = 0; which < 2; ++which) {
-    const Bulk& cut = measured[axes[which + 1]];
-    const int steps = counts_[which] << kStepBits;
-    scales_.of[which] = {.axis = axes[which + 1],
-                         .low = static_cast<float>(cut.low),
-                         .factor = factor(steps, cut),
-                         .last = static_cast<float>(steps - 1)};
+  constexpr auto kMaxSweepCoord = static_cast<float>((1U << Layout::kSweepBits) - 128);
+  quantizers_.sweep = {.axis = axes[0],
+                       .origin = static_cast<float>(swept.low),
+                       .scale = scale(kMaxSweepCoord, swept),
+                       .max = kMaxSweepCoord};
+  for (int i = 0; i < 2; ++i) {
+    const TrimmedRange& range = ranges[axes[i + 1]];
+    const int values = counts_[i] << kCoordBits;
+    quantizers_.cut[i] = {.axis = axes[i + 1],
+                          .origin = static_cast<float>(range.low),
+                          .scale = scale(values, range),
+                          .max = static_cast<float>(values - 1)};
   }
-  scales_.columns_in_row = static_cast<std::uint32_t>(counts_[0]);
+  quantizers_.columns_per_row = static_cast<std::uint32_t>(counts_[0]);
 }
 
-void Layout::widen() {
-  for (int which = 0; which < 2; ++which) {
-    StepScale& scale = scales_.of[which];
-    const std::int32_t before = counts_[which];
-    counts_[which] = (before + 1) / 2;
-    scale.factor *= static_cast<float>(counts_[which]) / static_cast<float>(before);
-    scale.last = static_cast<float>((counts_[which] << kStepBits) - 1);
+void Layout::coarsen() {
+  for (int i = 0; i < 2; ++i) {
+    Quantizer& quantizer = quantizers_.cut[i];
+    const std::int32_t before = counts_[i];
+    counts_[i] = (before + 1) / 2;
+    quantizer.scale *= static_cast<float>(counts_[i]) / static_cast<float>(before);
+    quantizer.max = static_cast<float>((counts_[i] << kCoordBits) - 1);
   }
-  scales_.columns_in_row = static_cast<std::uint32_t>(counts_[0]);
+  quantizers_.columns_per_row = static_cast<std::uint32_t>(counts_[0]);
 }
 
-Aabb Layout::column(std::size_t index, const Aabb& bounds) const {
+Aabb Layout::columnBox(std::size_t index, const Aabb& bounds) const {
   Aabb box = bounds;
-  for (int which = 0; which < 2; ++which) {
-    const StepScale& scale = scales_.of[which];
-    const int axis = scale.axis;
-    const auto count = static_cast<std::size_t>(counts_[which]);
-    const std::size_t at = index % count;
+  for (int i = 0; i < 2; ++i) {
+    const Quantizer& quantizer = quantizers_.cut[i];
+    const int axis = quantizer.axis;
+    const auto count = static_cast<std::size_t>(counts_[i]);
+    const std::size_t position = index % count;
     index /= count;
-    const auto side = [&](std::size_t k) {
-      return static_cast<float>(scale.low + static_cast<double>(k << kStepBits) / scale.factor);
+    const auto boundary = [&](std::size_t k) {
+      return static_cast<float>(quantizer.origin +
+                                static_cast<double>(k << kCoordBits) / quantizer.scale);
     };
-    if (at > 0) box.min[axis] = std::max(box.min[axis], side(at));
-    if (at + 1 < count) box.max[axis] = std::min(box.max[axis], side(at + 1));
+    if (position > 0) box.min[axis] = std::max(box.min[axis], boundary(position));
+    if (position + 1 < count) box.max[axis] = std::min(box.max[axis], boundary(position + 1));
   }
   return box;
 }

@@ -99,7 +99,7 @@ void Searcher::gatherBoxes() {
   boxes_tested_ += count;
   boxes_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    if (i + kPrefetchAhead < count) prefetch(&scene_->boxes[arranged_[i + kPrefetchAhead]]);
+    if (i + kPrefetchDistance < count) prefetch(&scene_->boxes[arranged_[i + kPrefetchDistance]]);
     boxes_.set(i, scene_->boxes[arranged_[i]]);
   }
 }

@@ -1,13 +1,11 @@
 // Compiles the file named by BROADMARK_KERNELS once for each instruction set, in the namespaces
 // broadmark::simd::scalar, sse2, avx2 and avx512 (on ARM scalar and neon), each with its own Vector
-// (vector_*.inl).
+// (vector_*.inl). BROADMARK_AVX512 is defined while compiling for AVX-512.
 //
-// Targets are set around these functions only: a whole file compiled with -mavx2 would leave AVX2
-// copies of shared inline functions behind, of which the linker might keep one for everybody. So
-// kernels may call nothing that is instantiated here from a standard header; all headers but those
-// of the intrinsics must have been included before.
-//
-// Where a kernel is written in another way for AVX-512, BROADMARK_AVX512 tells that it is its turn.
+// Only these functions are compiled for a target: with -mavx2 for a whole file, the linker might
+// keep the AVX2 versions of shared inline functions for the entire program. So kernels must not
+// instantiate anything from a standard header, and all headers but those of the intrinsics must
+// have been included before.
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -16,7 +14,7 @@
 #endif
 
 #if defined(__GNUC__) && !defined(__clang__)
-// GCC 12 takes the undefined operand inside its own AVX-512 intrinsics for ours (GCC bug 105593).
+// GCC 12 warns about the undefined operand of its own AVX-512 intrinsics (GCC bug 105593).
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #pragma GCC diagnostic ignored "-Wuninitialized"  // under sanitizers
 #endif
@@ -67,15 +65,14 @@ BROADMARK_TARGET_END
 
 #elif defined(__aarch64__)
 
-namespace neon {  // part of every such processor: no target to set
+namespace neon {  // part of the baseline: no target to set
 #include "simd/vector_neon.inl"
 #include BROADMARK_KERNELS
 }  // namespace neon
 
 #endif
 
-/// The kernels for an instruction set, which this processor must support: what the file calls
-/// kKernels.
+/// kKernels for an instruction set, which this processor must support.
 const auto& kernelsFor(Isa isa) {
   switch (isa) {
 #if defined(__x86_64__)

@@ -1,4 +1,4 @@
-// The inner loops of brute force and sweep and prune, one table of them per instruction set.
+// Overlap tests of boxes against ranges and windows of boxes, one table per instruction set.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 #include "broadmark/execution.h"
 #include "broadmark/pair.h"
 #include "broadmark/range.h"
-#include "marked_body.h"
+#include "cell_body.h"
 
 namespace broadmark {
 
@@ -18,21 +18,20 @@ struct OverlapKernels {
   /// Adds every overlapping pair (i, j) with i in `rows`, j in `columns` and i < j.
   void (*test_tile)(const BoxArrays& boxes, Range rows, Range columns, PairBuffer& pairs);
 
-  /// Adds the pair of bodies[i] and bodies[j] for every i in `rows` and j in (i, ends[i]) whose
-  /// boxes overlap on axes 1 and 2; ends[i] > i for all rows. (Axis 0 is the sort axis: all j in
-  /// the window overlap i there.)
+  /// Sweep and prune: for every i in `rows` and j in its window (i, ends[i]), adds the pair of
+  /// bodies[i] and bodies[j] if their boxes overlap on axes 1 and 2; on axis 0, the sort axis, all
+  /// in the window do. Requires ends[i] > i.
   void (*sweep)(const BoxArrays& boxes, const std::uint32_t* ends, const std::uint32_t* bodies,
                 Range rows, PairBuffer& pairs);
 
-  /// Adds the pair of bodies[i] and bodies[j] for every i in `rows` and j in (i, ends[i]) whose
-  /// boxes overlap and that are to be reported where they are; ends[i] > i for all rows.
-  void (*sweep_cells)(const BoxArrays& boxes, const std::uint32_t* ends, const MarkedBody* bodies,
+  /// The same within a cell, on all axes, and only for pairs whose home cell this is.
+  void (*sweep_cells)(const BoxArrays& boxes, const std::uint32_t* ends, const CellBody* bodies,
                       Range rows, PairBuffer& pairs);
 
-  /// Adds the pair of `body`, whose box is at `row`, and bodies[j] for every j > row in `columns`
-  /// whose boxes overlap and that are to be reported where they are.
-  void (*test_row)(const BoxArrays& boxes, std::size_t row, MarkedBody body, Range columns,
-                   const MarkedBody* bodies, PairBuffer& pairs);
+  /// For every j > row in `columns`, adds the pair of `body`, at `row`, and bodies[j] if their
+  /// boxes overlap and this is their home cell.
+  void (*test_row)(const BoxArrays& boxes, std::size_t row, CellBody body, Range columns,
+                   const CellBody* bodies, PairBuffer& pairs);
 };
 
 /// The kernels for an instruction set, which this processor must support.

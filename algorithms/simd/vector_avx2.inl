@@ -1,4 +1,4 @@
-// Eight lanes. Functions as explained in vector_scalar.inl.
+// Eight lanes. The functions are documented in vector_scalar.inl.
 
 inline constexpr std::size_t kLanes = 8;
 using Vector = __m256;
@@ -6,14 +6,14 @@ using Mask = __m256;
 
 inline Vector load(const float* from) { return _mm256_load_ps(from); }
 inline Vector broadcast(float value) { return _mm256_set1_ps(value); }
-inline Mask meet(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+inline Mask overlap(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
   return _mm256_and_ps(_mm256_cmp_ps(a_min, b_max, _CMP_LE_OQ),
                        _mm256_cmp_ps(b_min, a_max, _CMP_LE_OQ));
 }
-inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
-  return _mm256_and_ps(of, meet(a_min, a_max, b_min, b_max));
+inline Mask overlap(Mask lanes, Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+  return _mm256_and_ps(lanes, overlap(a_min, a_max, b_min, b_max));
 }
-inline Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
+inline Mask maskOr(Mask a, Mask b) { return _mm256_or_ps(a, b); }
 inline unsigned bits(Mask mask) { return static_cast<unsigned>(_mm256_movemask_ps(mask)); }
 inline bool none(Mask mask) { return bits(mask) == 0; }
 
@@ -35,7 +35,7 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
 }
 inline Vector minOf(Vector a, Vector b) { return _mm256_min_ps(a, b); }
 inline Vector maxOf(Vector a, Vector b) { return _mm256_max_ps(a, b); }
-inline void storeWhole(Vector value, std::uint32_t* to) {
+inline void storeTruncated(Vector value, std::uint32_t* to) {
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(to), _mm256_cvttps_epi32(value));
 }
 
@@ -48,32 +48,32 @@ inline unsigned positive(Keys numbers) {
   return bits(_mm256_castsi256_ps(_mm256_cmpgt_epi32(raw(numbers), _mm256_setzero_si256())));
 }
 
-inline constexpr std::size_t kHitLanes = 4;  // packing keeps to halves of vectors
-inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
-  __m256i hits[kHitSteps];
-  for (std::size_t s = 0; s < kHitSteps; ++s) {
+inline constexpr std::size_t kHitLanes = 4;  // packing works within 128-bit halves
+inline std::uint64_t hitsAtOffsets(const std::uint32_t* keys, Keys limits, Keys remaining) {
+  __m256i hits[kHitOffsets];
+  for (std::size_t offset = 0; offset < kHitOffsets; ++offset) {
     const __m256i above = _mm256_subs_epu8(
-        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(keys + s)), raw(limits));
-    hits[s] =
-        _mm256_and_si256(_mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
-                         _mm256_cmpgt_epi32(raw(left), _mm256_set1_epi32(static_cast<int>(s))));
+        _mm256_loadu_si256(reinterpret_cast<const __m256i*>(keys + offset)), raw(limits));
+    hits[offset] = _mm256_and_si256(
+        _mm256_cmpeq_epi32(above, _mm256_setzero_si256()),
+        _mm256_cmpgt_epi32(raw(remaining), _mm256_set1_epi32(static_cast<int>(offset))));
   }
   const __m256i packed = _mm256_packs_epi16(_mm256_packs_epi32(hits[0], hits[1]),
                                             _mm256_packs_epi32(hits[2], hits[3]));
   return static_cast<unsigned>(_mm256_movemask_epi8(packed));
 }
 
-#include "simd/compare_copies_sse2.inl"
+#include "simd/compare_entries_sse2.inl"
 
-inline void storePastCaches(float* to, Vector value) { _mm256_stream_ps(to, value); }
-inline Vector loadFromAnywhere(const float* from) { return _mm256_loadu_ps(from); }
+inline void streamStore(float* to, Vector value) { _mm256_stream_ps(to, value); }
+inline Vector loadUnaligned(const float* from) { return _mm256_loadu_ps(from); }
 
-inline unsigned numbersWithin(const std::uint64_t* line, std::uint64_t limits) {
-  const __m256i each = _mm256_set1_epi64x(static_cast<std::int64_t>(limits));
+inline unsigned valuesWithin(const std::uint64_t* line, std::uint64_t limits) {
+  const __m256i limit = _mm256_set1_epi64x(static_cast<std::int64_t>(limits));
   const auto* const halves = reinterpret_cast<const __m256i*>(line);
   unsigned within = 0;
   for (int half = 0; half < 2; ++half) {
-    const __m256i above = _mm256_subs_epu8(_mm256_load_si256(halves + half), each);
+    const __m256i above = _mm256_subs_epu8(_mm256_load_si256(halves + half), limit);
     const __m256i none = _mm256_cmpeq_epi64(above, _mm256_setzero_si256());
     within |= static_cast<unsigned>(_mm256_movemask_pd(_mm256_castsi256_pd(none))) << 4 * half;
   }

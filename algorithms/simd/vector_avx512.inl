@@ -1,4 +1,4 @@
-// Sixteen lanes. Functions as explained in vector_scalar.inl.
+// Sixteen lanes. The functions are documented in vector_scalar.inl.
 
 inline constexpr std::size_t kLanes = 16;
 using Vector = __m512;
@@ -6,22 +6,21 @@ using Mask = __mmask16;
 
 inline Vector load(const float* from) { return _mm512_load_ps(from); }
 inline Vector broadcast(float value) { return _mm512_set1_ps(value); }
-// Compares into mask registers run on one port only, min and max on two. So the first axis is
-// tested by two comparisons and the others by the larger minimum against the smaller maximum, which
-// is the same for any two boxes with min <= max, and false for the padding: that keeps both ports
-// busy.
-inline Mask meet(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+// Comparisons into mask registers run on one port, min and max on two. To use both, the first axis
+// is tested by two comparisons, the others by the larger minimum against the smaller maximum:
+// equivalent for boxes with min <= max, and false for the padding.
+inline Mask overlap(Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
   return _mm512_mask_cmp_ps_mask(_mm512_cmp_ps_mask(a_min, b_max, _CMP_LE_OQ), b_min, a_max,
                                  _CMP_LE_OQ);
 }
-inline Mask meet(Mask of, Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
-  return _mm512_mask_cmp_ps_mask(of, _mm512_max_ps(a_min, b_min), _mm512_min_ps(a_max, b_max),
+inline Mask overlap(Mask lanes, Vector a_min, Vector a_max, Vector b_min, Vector b_max) {
+  return _mm512_mask_cmp_ps_mask(lanes, _mm512_max_ps(a_min, b_min), _mm512_min_ps(a_max, b_max),
                                  _CMP_LE_OQ);
 }
-// As mask registers: left to itself, GCC moves each mask to a general one first.
-inline Mask either(Mask a, Mask b) { return _mm512_kor(a, b); }
-// By hand, as GCC 12 may spill the 16 bits of a mask and read 32 again: with -O1 -fsanitize=thread
-// it did, and pairs were lost.
+// With `|`, GCC moves each mask to a general-purpose register first.
+inline Mask maskOr(Mask a, Mask b) { return _mm512_kor(a, b); }
+// Inline assembly, as GCC 12 may spill 16 bits of a mask but reload 32, which lost pairs with
+// -O1 -fsanitize=thread.
 inline unsigned bits(Mask mask) {
   unsigned number;
   asm("kmovw %1, %0" : "=r"(number) : "k"(mask));
@@ -32,7 +31,7 @@ inline bool none(Mask mask) { return _mm512_kortestz(mask, mask) != 0; }
 using Keys = std::uint32_t __attribute__((vector_size(64)));
 inline __m512i raw(Keys keys) { return reinterpret_cast<__m512i>(keys); }
 
-// By shuffles: a gather of sixteen numbers takes several times as long (Zen 4).
+// Shuffles: a gather of sixteen floats takes several times as long (Zen 4).
 inline void loadCorners(const float* corners, Vector (&axes)[3]) {
   Vector rows[4];  // corners r, r + 4, r + 8 and r + 12
   for (int r = 0; r < 4; ++r) {
@@ -50,7 +49,7 @@ inline void loadCorners(const float* corners, Vector (&axes)[3]) {
 }
 inline Vector minOf(Vector a, Vector b) { return _mm512_min_ps(a, b); }
 inline Vector maxOf(Vector a, Vector b) { return _mm512_max_ps(a, b); }
-inline void storeWhole(Vector value, std::uint32_t* to) {
+inline void storeTruncated(Vector value, std::uint32_t* to) {
   _mm512_storeu_si512(to, _mm512_cvttps_epi32(value));
 }
 
@@ -62,34 +61,34 @@ inline unsigned positive(Keys numbers) {
 }
 
 inline constexpr std::size_t kHitLanes = 16;
-inline std::uint64_t hitsOfSteps(const std::uint32_t* keys, Keys limits, Keys left) {
-  Mask hits[kHitSteps];
-  for (std::size_t s = 0; s < kHitSteps; ++s) {
-    const __m512i above = _mm512_subs_epu8(_mm512_loadu_si512(keys + s), raw(limits));
+inline std::uint64_t hitsAtOffsets(const std::uint32_t* keys, Keys limits, Keys remaining) {
+  Mask hits[kHitOffsets];
+  for (std::size_t offset = 0; offset < kHitOffsets; ++offset) {
+    const __m512i above = _mm512_subs_epu8(_mm512_loadu_si512(keys + offset), raw(limits));
     const Mask in_window =
-        _mm512_cmpgt_epi32_mask(raw(left), _mm512_set1_epi32(static_cast<int>(s)));
-    hits[s] = _mm512_mask_testn_epi32_mask(in_window, above, above);
+        _mm512_cmpgt_epi32_mask(raw(remaining), _mm512_set1_epi32(static_cast<int>(offset)));
+    hits[offset] = _mm512_mask_testn_epi32_mask(in_window, above, above);
   }
-  // Within mask registers: a way out of them for each step takes longer.
+  // Packed in mask registers, as a move out of them per offset takes longer.
   return _cvtmask64_u64(_mm512_kunpackd(_mm512_kunpackw(hits[3], hits[2]),  //
                                         _mm512_kunpackw(hits[1], hits[0])));
 }
 
-inline void storePastCaches(float* to, Vector value) { _mm512_stream_ps(to, value); }
-inline Vector loadFromAnywhere(const float* from) { return _mm512_loadu_ps(from); }
+inline void streamStore(float* to, Vector value) { _mm512_stream_ps(to, value); }
+inline Vector loadUnaligned(const float* from) { return _mm512_loadu_ps(from); }
 
 inline std::uint64_t linesWithin(const std::uint64_t* const* lines, const std::uint64_t* limits) {
-  // In two places any number passes, in the last one those without their highest bit.
+  // Values 5 and 6 are ignored, and of value 7 all but its top bit.
   const __m512i counted = _mm512_setr_epi64(-1, -1, -1, -1, -1, 0, 0, std::int64_t{1} << 63);
   Mask within[8];
   for (int l = 0; l < 8; ++l) {
-    const __m512i each = _mm512_set1_epi64(static_cast<std::int64_t>(limits[l]));
-    const __m512i above = _mm512_subs_epu8(_mm512_load_si512(lines[l]), each);
+    const __m512i limit = _mm512_set1_epi64(static_cast<std::int64_t>(limits[l]));
+    const __m512i above = _mm512_subs_epu8(_mm512_load_si512(lines[l]), limit);
     within[l] = _mm512_testn_epi64_mask(above, counted);
   }
-  const auto four = [&](int l) {
+  const auto pack_four = [&](int l) {
     return _mm512_kunpackw(_mm512_kunpackb(within[l + 3], within[l + 2]),
                            _mm512_kunpackb(within[l + 1], within[l]));
   };
-  return _cvtmask64_u64(_mm512_kunpackd(four(4), four(0)));
+  return _cvtmask64_u64(_mm512_kunpackd(pack_four(4), pack_four(0)));
 }

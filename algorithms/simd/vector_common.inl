@@ -1,5 +1,5 @@
-// What is spelled the same for vectors of any length and for one lane, in the notation that GCC and
-// clang have for both. Included by each vector_*.inl.
+// Functions that read the same for scalars and GCC/clang vector types. Included by each
+// vector_*.inl.
 
 /// From any address.
 inline Keys loadKeys(const std::uint32_t* from) {
@@ -7,20 +7,21 @@ inline Keys loadKeys(const std::uint32_t* from) {
   return *reinterpret_cast<const Unaligned*>(from);
 }
 inline Keys broadcastKey(std::uint32_t key) { return key - Keys{}; }
-/// `position` and those behind it.
-inline Keys lanesFrom(std::uint32_t position) {
+/// first, first + 1, ...
+inline Keys iotaFrom(std::uint32_t first) {
   static constexpr std::uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                  8, 9, 10, 11, 12, 13, 14, 15};
-  return loadKeys(kNumbers) + position;
+  return loadKeys(kNumbers) + first;
 }
-/// The limits that follow from keys: see columns/copies.h.
+/// The limits of keys: see columns/cell_entries.h.
 inline Keys limitsOf(Keys keys) { return ~(keys << 16 | keys >> 16); }
 
-/// (value - low) * factor as whole numbers from 0 to `last`, to any address; NaN becomes 0.
-inline void storeSteps(Vector value, float low, float factor, float last, std::uint32_t* to) {
-  const Vector step = (value - broadcast(low)) * broadcast(factor);
-  storeWhole(minOf(maxOf(step, Vector{}), broadcast(last)), to);
+/// Stores (value - origin) * scale, clamped to [0, max] and truncated, to any address; NaN becomes
+/// 0.
+inline void storeQuantized(Vector value, float origin, float scale, float max, std::uint32_t* to) {
+  const Vector scaled = (value - broadcast(origin)) * broadcast(scale);
+  storeTruncated(minOf(maxOf(scaled, Vector{}), broadcast(max)), to);
 }
 
-/// How many steps behind all lanes are tested at once.
-inline constexpr std::size_t kHitSteps = 4;
+/// How many offsets hitsAtOffsets() tests.
+inline constexpr std::size_t kHitOffsets = 4;

@@ -65,8 +65,8 @@ double crowding(std::span<const Aabb> boxes, double edge) {
 
 void Cells::choose(std::span<const Aabb> boxes) {
   const std::vector<Aabb> sample = sampleOf(boxes);
-  std::array<Bulk, 3> bulk;
-  for (int axis = 0; axis < 3 && !sample.empty(); ++axis) bulk[axis] = bulkOf(sample, axis);
+  std::array<TrimmedRange, 3> bulk;
+  for (int axis = 0; axis < 3 && !sample.empty(); ++axis) bulk[axis] = trimmedRange(sample, axis);
   chooseSteps(boxes, sample, bulk);
   chooseLevels(boxes, bulk);
 }
@@ -74,7 +74,7 @@ void Cells::choose(std::span<const Aabb> boxes) {
 /// The size of the cells that promises to cost least. It begins with large ones, a few bodies in
 /// each were they spread evenly: where they are not, smaller ones are better.
 void Cells::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
-                        const std::array<Bulk, 3>& bulk) {
+                        const std::array<TrimmedRange, 3>& bulk) {
   constexpr double kBodiesInLargest = 4;
   constexpr double kShortest = 1e-30;
   constexpr double kLongest = 1e30;
@@ -90,7 +90,7 @@ void Cells::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sampl
     }
     const auto cells = [&](double of_edge) {
       double product = 1;
-      for (const Bulk& on_axis : bulk) product *= std::max(1.0, on_axis.extent() / of_edge);
+      for (const TrimmedRange& on_axis : bulk) product *= std::max(1.0, on_axis.extent() / of_edge);
       return product;
     };
     const double wanted = static_cast<double>(boxes.size()) / kBodiesInLargest;
@@ -121,7 +121,7 @@ void Cells::chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sampl
 }
 
 /// As many as it takes to cover the bulk, but not many more than bodies.
-void Cells::chooseLevels(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk) {
+void Cells::chooseLevels(std::span<const Aabb> boxes, const std::array<TrimmedRange, 3>& bulk) {
   levels_ = {};
   used_levels_ = 0;
   std::array<std::uint32_t, kLevels> bodies{};

@@ -156,8 +156,8 @@ class Cells {
   static Bounds bytesOf(Steps counted_down, Steps counted);
 
   void chooseSteps(std::span<const Aabb> boxes, std::span<const Aabb> sample,
-                   const std::array<Bulk, 3>& bulk);
-  void chooseLevels(std::span<const Aabb> boxes, const std::array<Bulk, 3>& bulk);
+                   const std::array<TrimmedRange, 3>& bulk);
+  void chooseLevels(std::span<const Aabb> boxes, const std::array<TrimmedRange, 3>& bulk);
 
   std::array<float, 4> low_{};
   float factor_ = 1;  ///< steps to a unit of length

@@ -56,13 +56,13 @@ std::size_t addSearches(Cells& cells, std::uint32_t frame, const std::uint32_t* 
                         std::size_t count, const Aabb* boxes, Body* of_bodies, Search* searches) {
   Search* next = searches;
   for (std::size_t i = 0; i < count; ++i) {
-    if (i + kPrefetchFarAhead < count) {
-      prefetchFar(&boxes[bodies[i + kPrefetchFarAhead]]);
-      prefetchFar(&of_bodies[bodies[i + kPrefetchFarAhead]]);
+    if (i + kPrefetchL2Distance < count) {
+      prefetchL2(&boxes[bodies[i + kPrefetchL2Distance]]);
+      prefetchL2(&of_bodies[bodies[i + kPrefetchL2Distance]]);
     }
-    if (i + kPrefetchAhead < count) {
-      prefetch(&boxes[bodies[i + kPrefetchAhead]]);
-      prefetch(&of_bodies[bodies[i + kPrefetchAhead]]);
+    if (i + kPrefetchDistance < count) {
+      prefetch(&boxes[bodies[i + kPrefetchDistance]]);
+      prefetch(&of_bodies[bodies[i + kPrefetchDistance]]);
     }
     const std::uint32_t body = bodies[i];
     next = moveBody(cells, frame, body, of_bodies[body], boxes[body], next);

@@ -17,8 +17,8 @@ void LooseGrid::build(std::span<const Aabb> boxes) {
   lines_.clear(cells_.count());
   bodies_.resize(boxes.size());
   for (std::size_t body = 0; body < boxes.size(); ++body) {
-    if (body + kPrefetchAhead < boxes.size()) {
-      const std::uint32_t cell = cells_.cellOf(boxes[body + kPrefetchAhead]);
+    if (body + kPrefetchDistance < boxes.size()) {
+      const std::uint32_t cell = cells_.cellOf(boxes[body + kPrefetchDistance]);
       if (cell != kNowhere) prefetch(&lines_[cell]);
     }
     const Aabb& box = boxes[body];
@@ -66,7 +66,7 @@ void LooseGrid::takeSearches(std::size_t first, Batch& batch) {
   for (const Search& search : batch.searches) {
     // No processor knows that these are read one after the other, as so much else is meanwhile.
     prefetch(&search + kSearchesAhead);
-    prefetchFar(&bodies_[search.body]);
+    prefetchL2(&bodies_[search.body]);
   }
 }
 
@@ -86,7 +86,7 @@ void LooseGrid::lookAround(Batch& batch) const {
   }
   // All at once: so what each waits for, to know where a page lies, is waited for together.
   for (const Look& look : batch.looks) {
-    for (const Line* const line : look.lines) prefetchFar(line);
+    for (const Line* const line : look.lines) prefetchL2(line);
   }
 }
 
@@ -128,7 +128,7 @@ inline Look& LooseGrid::addLook(std::uint32_t search, Batch& batch) {
 void LooseGrid::sendForLinesBehind(const Batch& batch) const {
   for (const Look& look : batch.looks) {
     for (const Line* const line : look.lines) {
-      prefetchFar(line->next == kNowhere ? line : &lines_[line->next]);
+      prefetchL2(line->next == kNowhere ? line : &lines_[line->next]);
     }
   }
 }
@@ -208,7 +208,7 @@ void LooseGrid::addCandidates(Batch& batch, std::size_t hits) const {
     while (places != 0) [[unlikely]] add();
   }
   batch.candidates.resize(static_cast<std::size_t>(end - batch.candidates.data()));
-  for (const Candidate& candidate : batch.candidates) prefetchFar(&bodies_[candidate.other]);
+  for (const Candidate& candidate : batch.candidates) prefetchL2(&bodies_[candidate.other]);
 }
 
 /// Two bodies that both move are a pair of the one that search() comes to last: the higher number.
@@ -259,7 +259,7 @@ void LooseGrid::tellChanges(const Batch& batch, const CollisionFilter& filter, P
 
 void LooseGrid::settle() {
   for (std::size_t i = 0; i < left_.size(); ++i) {
-    if (i + kPrefetchAhead < left_.size()) prefetch(&lines_[left_[i + kPrefetchAhead].cell]);
+    if (i + kPrefetchDistance < left_.size()) prefetch(&lines_[left_[i + kPrefetchDistance].cell]);
     lines_.remove(left_[i].cell, left_[i].body);
   }
   left_.resize(0);

@@ -1,4 +1,4 @@
-// Columns and what they are made of: layouts, chains, keys, the kernels of every instruction set.
+// The Columns family and its parts: layouts, bins, keys, the kernels of every instruction set.
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <set>
 
 #include "algorithms/runs.h"
-#include "columns/chains.h"
-#include "columns/copies.h"
-#include "columns/hits.h"
+#include "columns/cell_entries.h"
+#include "columns/column_bins.h"
+#include "columns/hit_buffer.h"
 #include "columns/kernels.h"
 #include "columns/layout.h"
 #include "prefetch.h"
@@ -20,131 +20,132 @@ namespace broadmark::tests {
 namespace {
 
 using columns::BoxBlock;
-using columns::Chains;
-using columns::Copy;
+using columns::CellEntry;
+using columns::ColumnBins;
 using columns::Layout;
-using columns::StepScale;
+using columns::Quantizer;
 
 constexpr double kCopyCost = 150;
 
-/// What kernels make of a coordinate.
-std::uint32_t stepOf(const StepScale& scale, float coordinate) {
-  const float step = (coordinate - scale.low) * scale.factor;
-  const float at_least = step > 0 ? step : 0;
+/// A quantised coordinate, as computed by the kernels.
+std::uint32_t quantized(const Quantizer& quantizer, float coordinate) {
+  const float scaled = (coordinate - quantizer.origin) * quantizer.scale;
+  const float not_negative = scaled > 0 ? scaled : 0;
   return static_cast<std::uint32_t>(
-      static_cast<std::int32_t>(at_least < scale.last ? at_least : scale.last));
+      static_cast<std::int32_t>(not_negative < quantizer.max ? not_negative : quantizer.max));
 }
 
-/// How many sides between columns a box crosses.
-std::array<std::uint32_t, 2> crossedBy(const BoxBlock& block, std::size_t k) {
-  std::array<std::uint32_t, 2> crossed;
-  for (std::size_t which = 0; which < 2; ++which) {
-    crossed[which] =
-        (block.high[which][k] >> Layout::kStepBits) - (block.low[which][k] >> Layout::kStepBits);
+/// The column boundaries that a box crosses on each cut axis.
+std::array<std::uint32_t, 2> crossingsOf(const BoxBlock& block, std::size_t k) {
+  std::array<std::uint32_t, 2> crossings;
+  for (std::size_t i = 0; i < 2; ++i) {
+    crossings[i] =
+        (block.cut_max[i][k] >> Layout::kCoordBits) - (block.cut_min[i][k] >> Layout::kCoordBits);
   }
-  return crossed;
+  return crossings;
 }
 
 bool isIn(const BoxBlock::Set& set, std::size_t k) { return (set[k / 64] >> k % 64 & 1) != 0; }
 
-/// First and last steps on both axes.
-struct StepBox {
-  std::uint32_t first[2];
-  std::uint32_t last[2];
-  [[nodiscard]] std::uint32_t key() const {
-    return columns::keyOf(first[0], first[1], last[0], last[1]);
-  }
+/// Quantised bounds on the cut axes.
+struct QuantizedBox {
+  std::uint32_t min[2];
+  std::uint32_t max[2];
+  [[nodiscard]] std::uint32_t key() const { return columns::keyOf(min[0], min[1], max[0], max[1]); }
 };
 
-/// Few different steps, and those at both ends: most boxes share some.
-StepBox randomSteps(inputs::Random& random) {
-  constexpr std::array<std::uint32_t, 6> kSteps = {0, 1, 127, 128, 254, 255};
-  StepBox box;
+/// Few different coordinates, such that most pairs of boxes have equal bounds, and both extremes.
+QuantizedBox randomBox(inputs::Random& random) {
+  constexpr std::array<std::uint32_t, 6> kCoords = {0, 1, 127, 128, 254, 255};
+  QuantizedBox box;
   for (int axis = 0; axis < 2; ++axis) {
     const auto a = static_cast<std::size_t>(random.integer(0, 5));
     const auto b = static_cast<std::size_t>(random.integer(0, 5));
-    box.first[axis] = kSteps[std::min(a, b)];
-    box.last[axis] = kSteps[std::max(a, b)];
+    box.min[axis] = kCoords[std::min(a, b)];
+    box.max[axis] = kCoords[std::max(a, b)];
   }
   return box;
 }
 
-bool overlapInSteps(const StepBox& a, const StepBox& b) {
-  return a.first[0] <= b.last[0] && b.first[0] <= a.last[0] && a.first[1] <= b.last[1] &&
-         b.first[1] <= a.last[1];
+bool overlapQuantized(const QuantizedBox& a, const QuantizedBox& b) {
+  return a.min[0] <= b.max[0] && b.min[0] <= a.max[0] && a.min[1] <= b.max[1] &&
+         b.min[1] <= a.max[1];
 }
 
-TEST(ColumnKeys, TellWhatOverlapsInSteps) {
+TEST(ColumnKeys, OverlapWhereQuantizedBoxesDo) {
   inputs::Random random(1, 0);
   for (int i = 0; i < 5000; ++i) {
-    const StepBox a = randomSteps(random);
-    const StepBox b = randomSteps(random);
-    ASSERT_EQ(columns::overlapInSteps({0, ~1U, a.key(), 0}, {1, ~2U, b.key(), 1}),
-              overlapInSteps(a, b));
+    const QuantizedBox a = randomBox(random);
+    const QuantizedBox b = randomBox(random);
+    ASSERT_EQ(columns::overlapQuantized({0, ~1U, a.key(), 0}, {1, ~2U, b.key(), 1}),
+              overlapQuantized(a, b));
   }
 }
 
-// What becomes of a hit, by every instruction set: nothing, a pair, or one that the boxes decide.
-TEST(ColumnKernels, TakePairsFromHits) {
+// A hit yields no pair, a certain one or an ambiguous one, the same by every instruction set.
+TEST(ColumnKernels, ExtractPairsFromHits) {
   inputs::Random random(1, 0);
-  constexpr std::uint32_t kLastStep = (1U << Layout::kSweepBits) - 1;
-  constexpr std::array<std::uint32_t, 6> kSteps = {0, 1, 2, 1'000'000, kLastStep - 1, kLastStep};
-  LargeArray<Copy> copies;
-  copies.resize(61);
-  std::vector<StepBox> keys;
-  for (Copy& copy : copies) {
-    const std::uint32_t one = kSteps[random.integer(0, 5)];
-    const std::uint32_t other = kSteps[random.integer(0, 5)];
-    keys.push_back(randomSteps(random));
-    copy = {std::min(one, other), ~std::max(one, other), keys.back().key(),
-            static_cast<std::uint32_t>(random.integer(0, 1) == 0 ? copies.end() - &copy
-                                                                 : 7 * keys.size())};
+  constexpr std::uint32_t kMaxCoord = (1U << Layout::kSweepBits) - 1;
+  constexpr std::array<std::uint32_t, 6> kCoords = {0, 1, 2, 1'000'000, kMaxCoord - 1, kMaxCoord};
+  LargeArray<CellEntry> entries;
+  entries.resize(61);
+  std::vector<QuantizedBox> keys;
+  for (CellEntry& entry : entries) {
+    const std::uint32_t coord_a = kCoords[random.integer(0, 5)];
+    const std::uint32_t coord_b = kCoords[random.integer(0, 5)];
+    keys.push_back(randomBox(random));
+    entry = {std::min(coord_a, coord_b), ~std::max(coord_a, coord_b), keys.back().key(),
+             static_cast<std::uint32_t>(random.integer(0, 1) == 0 ? entries.end() - &entry
+                                                                  : 7 * keys.size())};
     for (int axis = 0; axis < 3; ++axis) {
-      if (random.integer(0, 3) == 0) copy.body |= axisMark(axis);
+      if (random.integer(0, 3) == 0) entry.body |= phantomBit(axis);
     }
   }
-  std::vector<std::uint64_t> places;
-  std::vector<Pair> right;
-  std::vector<Pair> right_doubts;
-  for (std::size_t i = 0; i < copies.size(); ++i) {
-    for (std::size_t j = i + 1; j < copies.size(); ++j) {
-      if (!overlapInSteps(keys[i], keys[j])) continue;  // then there is no hit
-      places.push_back(i | std::uint64_t{j - i} << 32);
-      const Copy& a = copies[i];
-      const Copy& b = copies[j];
-      if (a.first > b.last() || b.first > a.last() || !reportedHere(a.body, b.body)) continue;
-      bool shared = a.first == b.last() || b.first == a.last();
+  std::vector<std::uint64_t> positions;
+  std::vector<Pair> expected;
+  std::vector<Pair> expected_ambiguous;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    for (std::size_t j = i + 1; j < entries.size(); ++j) {
+      if (!overlapQuantized(keys[i], keys[j])) continue;  // no hit then
+      positions.push_back(i | std::uint64_t{j - i} << 32);
+      const CellEntry& a = entries[i];
+      const CellEntry& b = entries[j];
+      if (a.sweep_min > b.sweepMax() || b.sweep_min > a.sweepMax() ||
+          !isHomeCellPair(a.body, b.body))
+        continue;
+      bool equal_bounds = a.sweep_min == b.sweepMax() || b.sweep_min == a.sweepMax();
       for (int axis = 0; axis < 2; ++axis) {
-        shared |=
-            keys[i].first[axis] == keys[j].last[axis] || keys[j].first[axis] == keys[i].last[axis];
+        equal_bounds |=
+            keys[i].min[axis] == keys[j].max[axis] || keys[j].min[axis] == keys[i].max[axis];
       }
-      (shared ? right_doubts : right)
-          .push_back(orderedPair(bodyNumber(a.body), bodyNumber(b.body)));
+      (equal_bounds ? expected_ambiguous : expected)
+          .push_back(orderedPair(bodyId(a.body), bodyId(b.body)));
     }
   }
-  ASSERT_GT(right.size(), 50U);
-  ASSERT_GT(right_doubts.size(), 50U);
-  constexpr std::size_t kSlack = columns::Kernels::kTakenTogether;
+  ASSERT_GT(expected.size(), 50U);
+  ASSERT_GT(expected_ambiguous.size(), 50U);
+  constexpr std::size_t kPadding = columns::Kernels::kExtractWidth;
   for (const Isa isa : supportedIsas()) {
-    for (const std::size_t together : {std::size_t{1}, std::size_t{13}, places.size()}) {
-      std::vector<Pair> found(places.size() + kSlack);
-      std::vector<Pair> doubts(places.size() + kSlack);
+    for (const std::size_t batch_size : {std::size_t{1}, std::size_t{13}, positions.size()}) {
+      std::vector<Pair> found(positions.size() + kPadding);
+      std::vector<Pair> ambiguous(positions.size() + kPadding);
       Pair* found_end = found.data();
-      Pair* doubts_end = doubts.data();
-      for (std::size_t begin = 0; begin < places.size(); begin += together) {
-        const std::size_t count = std::min(together, places.size() - begin);
-        std::vector<std::uint64_t> some(places.begin() + begin, places.begin() + begin + count);
-        std::vector<std::uint64_t> bits(count, 1);  // the first lane, the first step
-        some.resize(count + kSlack);
-        bits.resize(count + kSlack, ~std::uint64_t{0});  // nobody's
-        ASSERT_EQ(columns::kernels(isa).take_pairs(some.data(), bits.data(), count, copies.data(),
-                                                   found_end, doubts_end),
+      Pair* ambiguous_end = ambiguous.data();
+      for (std::size_t begin = 0; begin < positions.size(); begin += batch_size) {
+        const std::size_t count = std::min(batch_size, positions.size() - begin);
+        std::vector<std::uint64_t> batch(positions.begin() + begin,
+                                         positions.begin() + begin + count);
+        std::vector<std::uint64_t> masks(count, 1);  // lane 0 at offset 0
+        batch.resize(count + kPadding);
+        masks.resize(count + kPadding, ~std::uint64_t{0});  // beyond the hits
+        ASSERT_EQ(columns::kernels(isa).extract_pairs(batch.data(), masks.data(), count,
+                                                      entries.data(), found_end, ambiguous_end),
                   0U);
       }
       found.resize(static_cast<std::size_t>(found_end - found.data()));
-      doubts.resize(static_cast<std::size_t>(doubts_end - doubts.data()));
-      EXPECT_EQ(found, right) << isaName(isa);
-      EXPECT_EQ(doubts, right_doubts) << isaName(isa);
+      ambiguous.resize(static_cast<std::size_t>(ambiguous_end - ambiguous.data()));
+      EXPECT_EQ(found, expected) << isaName(isa);
+      EXPECT_EQ(ambiguous, expected_ambiguous) << isaName(isa);
     }
   }
 }
@@ -153,59 +154,59 @@ TEST(ColumnKernels, TakePairsFromHits) {
 TEST(ColumnKernels, FindThePairsInTheWindows) {
   constexpr std::size_t kCount = 300;
   inputs::Random random(2, 0);
-  std::vector<StepBox> steps;
-  columns::Sorted sorted;
+  std::vector<QuantizedBox> quantized_boxes;
+  columns::SortedColumn sorted;
   sorted.resize(kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
-    steps.push_back(randomSteps(random));
-    // Bounds never decide, nor do boxes: what is tested are the keys.
-    sorted.copies[i] = {0, ~1U, steps[i].key(), static_cast<MarkedBody>(i)};
-    sorted.keys[i] = steps[i].key();
-    const int length = i % 7 == 0 ? 200 : 12;  // some far longer than their neighbours'
+    quantized_boxes.push_back(randomBox(random));
+    // All overlap on the sweep axis, and all boxes overlap: only the keys differ.
+    sorted.entries[i] = {0, ~1U, quantized_boxes[i].key(), static_cast<CellBody>(i)};
+    sorted.keys[i] = quantized_boxes[i].key();
+    const int length = i % 7 == 0 ? 200 : 12;  // some are far longer than neighbouring ones
     sorted.ends[i] = static_cast<std::uint32_t>(
         std::min<std::size_t>(kCount, i + 1 + static_cast<std::size_t>(random.integer(0, length))));
   }
   const std::vector<Aabb> boxes = inputs::identical(kCount, 0, 0);
-  std::vector<Pair> right;
+  std::vector<Pair> expected;
   for (std::uint32_t i = 0; i < kCount; ++i) {
     for (std::uint32_t j = i + 1; j < sorted.ends[i]; ++j) {
-      if (overlapInSteps(steps[i], steps[j])) right.push_back({i, j});
+      if (overlapQuantized(quantized_boxes[i], quantized_boxes[j])) expected.push_back({i, j});
     }
   }
   for (const Isa isa : supportedIsas()) {
     PairBuffer pairs;
-    columns::HitSink sink(columns::kernels(isa), sorted, boxes.data(), pairs);
-    constexpr std::size_t kRows = columns::Kernels::kSweptRows;
+    columns::HitBuffer hits(columns::kernels(isa), sorted, boxes.data(), pairs);
+    constexpr std::size_t kRows = columns::Kernels::kSweepRows;
     for (std::size_t row = 0; row < kCount; row += kRows) {
       columns::kernels(isa).sweep(sorted.keys.data(), sorted.ends.data(),
-                                  {row, std::min(row + kRows, kCount)}, sink);
-      sink.flush();
+                                  {row, std::min(row + kRows, kCount)}, hits);
+      hits.flush();
     }
-    const PairRun run = pairs.run();
-    EXPECT_EQ(tests::sorted({&run, 1}), right) << isaName(isa);
+    const PairRun found = pairs.run();
+    EXPECT_EQ(tests::sorted({&found, 1}), expected) << isaName(isa);
   }
 }
 
-TEST(ColumnKernels, CopyNoMoreAndNoLessPastCaches) {
-  constexpr std::size_t kMost = 40;
-  const std::vector<Aabb> boxes = inputs::uniform(kMost + 1, 0, 1);
+TEST(ColumnKernels, StreamExactlyTheBoxes) {
+  constexpr std::size_t kMaxCount = 40;
+  const std::vector<Aabb> boxes = inputs::uniform(kMaxCount + 1, 0, 1);
   for (const Isa isa : supportedIsas()) {
-    for (std::size_t count = 0; count <= kMost; ++count) {
-      const Aabb* const from = boxes.data() + count % 2;  // no alignment is asked for
-      LargeArray<Aabb> kept;
-      kept.resize(kMost + 1);
-      std::fill(kept.begin(), kept.end(), kEmptyBox);
-      columns::kernels(isa).copy_past_caches(from, count, kept.data());
-      showWritesPastCaches();
-      ASSERT_TRUE(std::equal(kept.begin(), kept.begin() + count, from)) << count;
-      ASSERT_TRUE(isEmpty(kept[count])) << count;
+    for (std::size_t count = 0; count <= kMaxCount; ++count) {
+      const Aabb* const from = boxes.data() + count % 2;  // may be unaligned
+      LargeArray<Aabb> target;
+      target.resize(kMaxCount + 1);
+      std::fill(target.begin(), target.end(), kEmptyBox);
+      columns::kernels(isa).stream_copy(from, count, target.data());
+      streamFence();
+      ASSERT_TRUE(std::equal(target.begin(), target.begin() + count, from)) << count;
+      ASSERT_TRUE(isEmpty(target[count])) << count;
     }
   }
 }
 
-// A lower coordinate never gets a higher step, and all instruction sets agree.
-TEST(ColumnKernels, FindTheSameSteps) {
-  std::array<MarkedBody, BoxBlock::kBoxes> bodies;
+// All instruction sets agree.
+TEST(ColumnKernels, QuantizeBoxesAlike) {
+  std::array<CellBody, BoxBlock::kBoxes> bodies;
   std::iota(bodies.begin(), bodies.end(), 1000);
   for (const inputs::Generator boxes_of : {inputs::assorted, inputs::limits, inputs::tiny}) {
     const std::vector<Aabb> boxes = boxes_of(BoxBlock::kBoxes, 1, 3);
@@ -213,58 +214,59 @@ TEST(ColumnKernels, FindTheSameSteps) {
     for (const Isa isa : supportedIsas()) {
       for (const std::size_t count : {1U, 7U, 16U, 33U, 128U}) {
         BoxBlock block;
-        columns::kernels(isa).find_steps(boxes.data(), bodies.data(), count, layout.scales(),
-                                         block);
-        const auto expect_steps = [&](const StepScale& scale, std::size_t k, std::uint32_t first,
-                                      std::uint32_t last) {
-          ASSERT_EQ(first, stepOf(scale, boxes[k].min[scale.axis])) << isaName(isa);
-          ASSERT_EQ(last, stepOf(scale, boxes[k].max[scale.axis])) << isaName(isa);
+        columns::kernels(isa).quantize_boxes(boxes.data(), bodies.data(), count,
+                                             layout.quantizers(), block);
+        const auto expect_coords = [&](const Quantizer& quantizer, std::size_t k, std::uint32_t min,
+                                       std::uint32_t max) {
+          ASSERT_EQ(min, quantized(quantizer, boxes[k].min[quantizer.axis])) << isaName(isa);
+          ASSERT_EQ(max, quantized(quantizer, boxes[k].max[quantizer.axis])) << isaName(isa);
         };
         for (std::size_t k = 0; k < count; ++k) {
-          for (int which = 0; which < 2; ++which) {
-            expect_steps(layout.scales().of[which], k, block.low[which][k], block.high[which][k]);
+          for (int i = 0; i < 2; ++i) {
+            expect_coords(layout.quantizers().cut[i], k, block.cut_min[i][k], block.cut_max[i][k]);
           }
-          const Copy& copy = block.copies[k];
-          expect_steps(layout.scales().sweep, k, copy.first, copy.last());
-          ASSERT_EQ(copy.key, block.keys[k]);
-          ASSERT_EQ(copy.body, bodies[k]);
+          const CellEntry& entry = block.entries[k];
+          expect_coords(layout.quantizers().sweep, k, entry.sweep_min, entry.sweepMax());
+          ASSERT_EQ(entry.key, block.keys[k]);
+          ASSERT_EQ(entry.body, bodies[k]);
           ASSERT_LT(block.columns[k], layout.size());
-          const auto [on_a, on_b] = crossedBy(block, k);
-          ASSERT_EQ(isIn(block.cross_one, k), on_a + on_b == 1) << isaName(isa);
-          ASSERT_EQ(isIn(block.cross_more, k), on_a + on_b > 1) << isaName(isa);
-          if (on_a + on_b != 1) continue;
-          const int axis = layout.scales().of[on_a != 0 ? 0 : 1].axis;
-          ASSERT_EQ(block.next_bodies[k], bodies[k] | axisMark(axis));
-          ASSERT_EQ(block.next_columns[k],
-                    block.columns[k] + (on_a != 0 ? 1 : layout.scales().columns_in_row));
+          const auto [crossings_a, crossings_b] = crossingsOf(block, k);
+          ASSERT_EQ(isIn(block.cross_one, k), crossings_a + crossings_b == 1) << isaName(isa);
+          ASSERT_EQ(isIn(block.cross_several, k), crossings_a + crossings_b > 1) << isaName(isa);
+          if (crossings_a + crossings_b != 1) continue;
+          const int axis = layout.quantizers().cut[crossings_a != 0 ? 0 : 1].axis;
+          ASSERT_EQ(block.next_bodies[k], bodies[k] | phantomBit(axis));
+          ASSERT_EQ(
+              block.next_columns[k],
+              block.columns[k] + (crossings_a != 0 ? 1 : layout.quantizers().columns_per_row));
         }
         for (std::size_t k = count; k < BoxBlock::kBoxes; ++k) {
-          ASSERT_FALSE(isIn(block.cross_one, k) || isIn(block.cross_more, k)) << isaName(isa);
+          ASSERT_FALSE(isIn(block.cross_one, k) || isIn(block.cross_several, k)) << isaName(isa);
         }
       }
     }
   }
 }
 
-TEST(ColumnLayout, StepsKeepTheOrderOfCoordinates) {
-  constexpr float kMost = std::numeric_limits<float>::max();
+TEST(ColumnLayout, QuantizationIsMonotonic) {
+  constexpr float kMax = std::numeric_limits<float>::max();
   for (const inputs::Generator boxes : {inputs::uniform, inputs::limits, inputs::tiny, inputs::huge,
                                         inputs::identical, inputs::zeroSize}) {
     const Layout layout(boxes(200, 0, 1), 100'000, kCopyCost);
-    const auto& [cut, sweep, columns] = layout.scales();
-    for (const StepScale& scale : {cut[0], cut[1], sweep}) {
+    const auto& [cut, sweep, columns] = layout.quantizers();
+    for (const Quantizer& quantizer : {cut[0], cut[1], sweep}) {
       std::uint32_t before = 0;
-      for (const float x : {-kMost, -1e30F, -100.0F, -1.0F, -1e-40F, 0.0F, 1e-45F, 0.3F, 1.0F, 2.0F,
-                            20.0F, 1e30F, kMost}) {
-        ASSERT_GE(stepOf(scale, x), before);
-        ASSERT_LE(static_cast<float>(stepOf(scale, x)), scale.last);
-        before = stepOf(scale, x);
+      for (const float x : {-kMax, -1e30F, -100.0F, -1.0F, -1e-40F, 0.0F, 1e-45F, 0.3F, 1.0F, 2.0F,
+                            20.0F, 1e30F, kMax}) {
+        ASSERT_GE(quantized(quantizer, x), before);
+        ASSERT_LE(static_cast<float>(quantized(quantizer, x)), quantizer.max);
+        before = quantized(quantizer, x);
       }
     }
   }
 }
 
-TEST(ColumnLayout, NothingAndOneThingAreOneColumn) {
+TEST(ColumnLayout, IsOneColumnForNoneAndForIdenticalBoxes) {
   EXPECT_EQ(Layout().size(), 1U);
   EXPECT_EQ(Layout({}, 0, kCopyCost).size(), 1U);
   EXPECT_EQ(Layout(inputs::identical(50, 0, 1), 1'000'000, kCopyCost).size(), 1U);
@@ -276,64 +278,64 @@ TEST(ColumnLayout, HasMoreColumnsForMoreBoxes) {
   EXPECT_GT(Layout(sample, 2'000'000, kCopyCost).size(), Layout(sample, 2'000'000, 10'000).size());
 }
 
-// A line is swept along, and a plane is not cut through.
-TEST(ColumnLayout, CutsWhereBoxesExtend) {
+// A line is swept along its length, and a plane is not swept through its thickness.
+TEST(ColumnLayout, CutsAxesByExtent) {
   const Layout plane(inputs::onePlane(2000, 0, 1), 100'000, kCopyCost);
-  EXPECT_NE(plane.scales().sweep.axis, 2);
+  EXPECT_NE(plane.quantizers().sweep.axis, 2);
   EXPECT_GT(plane.size(), 4U);
   const std::vector<Aabb> line = inputs::generate(2000, 0, 1, [](inputs::Random& random, auto) {
     return inputs::boxAt({0, random.uniform(0, 4000), 0}, {1, 1, 1});
   });
-  EXPECT_EQ(Layout(line, 2000, kCopyCost).scales().sweep.axis, 1);
+  EXPECT_EQ(Layout(line, 2000, kCopyCost).quantizers().sweep.axis, 1);
 }
 
-TEST(ColumnLayout, WidensDownToOneColumn) {
+TEST(ColumnLayout, CoarsensDownToOneColumn) {
   Layout layout(inputs::uniform(2000, 0, 1), 1'000'000, kCopyCost);
   ASSERT_GT(layout.size(), 64U);
   std::size_t before = layout.size();
   while (layout.size() > 1) {
-    layout.widen();
+    layout.coarsen();
     ASSERT_LT(layout.size(), before);
     before = layout.size();
   }
 }
 
-TEST(ColumnChains, KeepCopiesInTheirOrder) {
+TEST(ColumnBins, PreserveOrder) {
   constexpr std::uint32_t kColumns = 40;
-  Chains chains;
-  for (const std::uint32_t copies : {0U, 1U, 126U, 127U, 128U, 254U, 1000U}) {
-    chains.clear(kColumns);
-    for (std::uint32_t i = 0; i < copies; ++i) {
+  ColumnBins bins;
+  for (const std::uint32_t count : {0U, 1U, 126U, 127U, 128U, 254U, 1000U}) {
+    bins.clear(kColumns);
+    for (std::uint32_t i = 0; i < count; ++i) {
       for (std::uint32_t column = 0; column < kColumns; ++column) {
-        chains.append(column, {0, 0, column, i});
+        bins.append(column, {0, 0, column, i});
       }
     }
-    EXPECT_EQ(chains.count(), std::size_t{kColumns} * copies);
+    EXPECT_EQ(bins.count(), std::size_t{kColumns} * count);
     for (std::uint32_t column = 0; column < kColumns; ++column) {
-      ASSERT_EQ(chains.count(column), copies);
+      ASSERT_EQ(bins.count(column), count);
       std::uint32_t next = 0;
-      chains.forEach(column, [&](const Copy& copy) {
-        ASSERT_EQ(copy.key, column);
-        ASSERT_EQ(copy.body, next++);
+      bins.forEach(column, [&](const CellEntry& entry) {
+        ASSERT_EQ(entry.key, column);
+        ASSERT_EQ(entry.body, next++);
       });
-      ASSERT_EQ(next, copies);
+      ASSERT_EQ(next, count);
     }
   }
 }
 
-// However often more is asked for, and of as many workers as there are.
-TEST(ColumnChains, AreSentForToTheirEnds) {
-  std::array<Chains, 3> chains;
-  for (Chains& each : chains) each.clear(2);
-  for (std::uint32_t i = 0; i < 1000; ++i) chains[i < 900 ? 0 : 2].append(1, {0, 0, 0, i});
+// More calls than chunks, and bins of several workers.
+TEST(ColumnBins, ArePrefetchedToTheirEnds) {
+  std::array<ColumnBins, 3> bins;
+  for (ColumnBins& worker_bins : bins) worker_bins.clear(2);
+  for (std::uint32_t i = 0; i < 1000; ++i) bins[i < 900 ? 0 : 2].append(1, {0, 0, 0, i});
   for (const std::size_t column : {0U, 1U}) {
-    columns::ChainsAhead ahead(chains, column);
-    for (int chunk = 0; chunk < 30; ++chunk) ahead.more();
+    columns::ChunkPrefetcher prefetcher(bins, column);
+    for (int chunk = 0; chunk < 30; ++chunk) prefetcher.next();
   }
-  columns::ChainsAhead().more();
+  columns::ChunkPrefetcher().next();
 }
 
-/// Edges from 0.02 to 200: the largest boxes are over all.
+/// Edges from 0.02 to 200: the largest boxes span the world.
 std::vector<Aabb> allSizes(std::size_t n, std::uint32_t frame, std::uint64_t seed) {
   return inputs::generate(n, frame, seed, [](inputs::Random& random, std::size_t) {
     const float edge = 0.02F * std::pow(10'000.0F, std::pow(random.uniform(0, 1), 4.0F));
@@ -354,22 +356,22 @@ std::vector<Aabb> clusters(std::size_t n, std::uint32_t frame, std::uint64_t see
 
 class ColumnsFamily : public testing::TestWithParam<Algorithm> {
  protected:
-  /// In every configuration: with columns as they are, with as many as there may be, and with all
-  /// split that can be.
+  /// In every configuration, with default parameters, with the most columns, and with the most
+  /// splits.
   void check(const std::vector<Aabb>& boxes) {
-    const std::vector<Pair> right = sweptPairs(boxes);
-    for (const Configuration& way : configurations(GetParam())) {
+    const std::vector<Pair> expected = sweptPairs(boxes);
+    for (const Configuration& configuration : configurations(GetParam())) {
       for (const ParameterValues& parameters :
            {ParameterValues{}, ParameterValues{{"copy_cost", "1"}},
             ParameterValues{{"copy_cost", "1"}, {"split_threshold", "1"}}}) {
-        SCOPED_TRACE(caseName(caseOf(GetParam(), way, parameters)));
-        TestRun run(GetParam(), way, parameters);
+        SCOPED_TRACE(caseName(caseOf(GetParam(), configuration, parameters)));
+        TestRun test_run(GetParam(), configuration, parameters);
         SceneInfo scene;
         scene.objects = static_cast<std::uint32_t>(boxes.size());
-        run.start(scene, inputs::clustered(boxes.size(), 99, 1));
-        ASSERT_EQ(sorted(run.step(boxes)), right);
-        ASSERT_EQ(run.broadPhase().validate(), "");
-        ASSERT_EQ(countersOf(run.broadPhase()).count("copies"), 1U);
+        test_run.start(scene, inputs::clustered(boxes.size(), 99, 1));
+        ASSERT_EQ(sorted(test_run.step(boxes)), expected);
+        ASSERT_EQ(test_run.broadPhase().validate(), "");
+        ASSERT_EQ(countersOf(test_run.broadPhase()).count("copies"), 1U);
       }
     }
   }
@@ -388,7 +390,7 @@ TEST_P(ColumnsFamily, CopeWithBoxesOfAllSizesAndPlaces) {
     check(boxes(700, 0, 1));
     if (HasFatalFailure()) return;
   }
-  // Columns within a column are cut on other axes than it.
+  // Split columns are cut on other axes than the grid around them.
   for (std::uint32_t frame = 0; frame < 6; ++frame) {
     check(inputs::rodsAndPlates(1500, frame, 1));
     if (HasFatalFailure()) return;
@@ -397,21 +399,21 @@ TEST_P(ColumnsFamily, CopeWithBoxesOfAllSizesAndPlaces) {
   check({inputs::boxAt({0, 0, 0}, {1, 1, 1})});
 }
 
-// Where all is in one spot, and in one of two clusters: cutting does not help.
+// In one dense cluster, or two, splitting does not help.
 TEST_P(ColumnsFamily, SweepBoxesWhereManyOverlap) {
-  const auto spot = [](std::size_t n, float apart) {
+  const auto dense = [](std::size_t n, float apart) {
     return inputs::generate(n, 0, 1, [apart](inputs::Random& random, std::size_t i) {
       inputs::Vec3 corner = random.inCube(0.5F);
       for (float& x : corner) x += i % 2 == 0 ? 0 : apart;
       return inputs::boxAt(corner, {1, 1, 1});
     });
   };
-  check(spot(601, 0));
-  check(spot(900, 50));
-  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1});
-  run.start(spot(601, 0));
-  run.step(spot(601, 0));
-  const auto counters = countersOf(run.broadPhase());
+  check(dense(601, 0));
+  check(dense(900, 50));
+  TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1});
+  test_run.start(dense(601, 0));
+  test_run.step(dense(601, 0));
+  const auto counters = countersOf(test_run.broadPhase());
   EXPECT_EQ(counters.at("pairs decided by their boxes"), counters.at("tests"));
   EXPECT_EQ(counters.at("tests"), 601U * 600U / 2);
 }
@@ -419,21 +421,21 @@ TEST_P(ColumnsFamily, SweepBoxesWhereManyOverlap) {
 TEST_P(ColumnsFamily, CopeWithEveryNumberOfBodies) {
   for (std::size_t n = 0; n <= 70; ++n) {
     const std::vector<Aabb> boxes = inputs::touching(n, 0, n);
-    TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1}, {{"copy_cost", "1"}});
-    run.start(boxes);
-    ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << n;
+    TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 3 : 1},
+                     {{"copy_cost", "1"}});
+    test_run.start(boxes);
+    ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << n;
   }
 }
 
-// As many as are kept past the caches, and more.
 TEST_P(ColumnsFamily, FindTheRightPairsOfAMillionBodies) {
   const std::vector<Aabb> boxes = inputs::uniform(1'000'000, 0, 1);
-  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
-  run.start(boxes);
-  ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+  TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
+  test_run.start(boxes);
+  ASSERT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
 }
 
-// One giant over all, and a plate on every axis, are copied into every column, and nothing else is.
+// Only one giant that spans the world, and a plate per axis, have entries in all columns.
 TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
   std::vector<Aabb> boxes = inputs::uniform(3000, 0, 1);
   boxes[5] = inputs::boxAt({-1e6F, -1e6F, -1e6F}, {2e6F, 2e6F, 2e6F});
@@ -444,15 +446,15 @@ TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
     plate.max[axis] = 15.5F;
   }
   check(boxes);
-  TestRun run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "5"}});
-  run.start(boxes);
-  run.step(boxes);
-  const Counters counters = countersOf(run.broadPhase());
+  TestRun test_run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "5"}});
+  test_run.start(boxes);
+  test_run.step(boxes);
+  const Counters counters = countersOf(test_run.broadPhase());
   EXPECT_GT(counters.at("columns"), 20U);
   EXPECT_LT(counters.at("copies"), 2 * boxes.size() + 4 * counters.at("columns"));
 }
 
-/// Small boxes where the sample of the root looks, and plates elsewhere: as the columns choose it.
+/// Small boxes at the indices of the first sample (sampleIndex()), plates at all others.
 std::vector<Aabb> misleading(std::size_t n) {
   std::set<std::size_t> sampled;
   for (std::size_t k = 0; k < 256; ++k) {
@@ -465,20 +467,20 @@ std::vector<Aabb> misleading(std::size_t n) {
   });
 }
 
-TEST_P(ColumnsFamily, DoNotCopyWithoutLimit) {
+TEST_P(ColumnsFamily, LimitTheNumberOfEntries) {
   const std::vector<Aabb> boxes = misleading(4000);
-  TestRun run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "1"}});
-  run.start(boxes);
-  EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
-  EXPECT_LT(countersOf(run.broadPhase()).at("copies"), 10 * boxes.size());
+  TestRun test_run(GetParam(), {bestIsa(), 1}, {{"copy_cost", "1"}});
+  test_run.start(boxes);
+  EXPECT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
+  EXPECT_LT(countersOf(test_run.broadPhase()).at("copies"), 10 * boxes.size());
 }
 
-// So many that they are kept past the caches.
-TEST_P(ColumnsFamily, FindTheRightPairsOfVeryManyBoxes) {
+// Enough boxes for non-temporal stores, with an incomplete last block.
+TEST_P(ColumnsFamily, FindTheRightPairsOfManyBoxes) {
   const std::vector<Aabb> boxes = inputs::uniform((std::size_t{1} << 17) + 3, 0, 1);
-  TestRun run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
-  run.start(inputs::uniform(boxes.size(), 1, 1));
-  ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
+  TestRun test_run(GetParam(), {bestIsa(), GetParam().traits.parallel ? 2 : 1});
+  test_run.start(inputs::uniform(boxes.size(), 1, 1));
+  ASSERT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
 }
 
 TEST_P(ColumnsFamily, SplitCrowdedColumns) {
@@ -489,15 +491,15 @@ TEST_P(ColumnsFamily, SplitCrowdedColumns) {
       boxes[i].max[axis] += 1e5F;
     }
   }
-  TestRun run(GetParam(), {bestIsa(), 1});
-  run.start(boxes);
-  EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
-  EXPECT_EQ(run.broadPhase().validate(), "");
-  const Counters counters = countersOf(run.broadPhase());
+  TestRun test_run(GetParam(), {bestIsa(), 1});
+  test_run.start(boxes);
+  EXPECT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
+  EXPECT_EQ(test_run.broadPhase().validate(), "");
+  const Counters counters = countersOf(test_run.broadPhase());
   EXPECT_GE(counters.at("split columns"), 2U);
   EXPECT_LT(counters.at("tests"), 150 * boxes.size());
-  // Their own columns are drawn in their place, a level further down.
-  const RecordedDrawing drawing = drawingOf(run.broadPhase());
+  // The columns of a split are drawn instead of it, a level deeper.
+  const RecordedDrawing drawing = drawingOf(test_run.broadPhase());
   EXPECT_TRUE(std::ranges::any_of(drawing.boxes(), [](const auto& box) { return box.level == 1; }));
   EXPECT_LE(drawing.boxes().size(), counters.at("columns"));
   EXPECT_GE(populationOf(drawing), boxes.size());
@@ -507,14 +509,15 @@ TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
   if (!GetParam().traits.parallel) GTEST_SKIP() << "uses one thread";
   for (const std::vector<Aabb>& boxes :
        {inputs::uniform(3000, 1, 1), clusters(3000, 1, 1), inputs::assorted(3000, 1, 1),
-        inputs::uniform(150'000, 1, 1)}) {  // so many are kept past the caches
+        inputs::uniform(150'000, 1, 1)}) {  // enough for non-temporal stores
     std::vector<Pair> first;
     for (const int threads : {1, 2, 3, 5, 8}) {
-      TestRun run(GetParam(), {bestIsa(), threads}, {{"copy_cost", "5"}, {"split_threshold", "5"}});
-      run.start(boxes);
+      TestRun test_run(GetParam(), {bestIsa(), threads},
+                       {{"copy_cost", "5"}, {"split_threshold", "5"}});
+      test_run.start(boxes);
       std::vector<Pair> pairs;
-      for (const PairRun part : run.step(boxes))
-        pairs.insert(pairs.end(), part.begin(), part.end());
+      for (const PairRun worker_pairs : test_run.step(boxes))
+        pairs.insert(pairs.end(), worker_pairs.begin(), worker_pairs.end());
       ASSERT_FALSE(pairs.empty());
       if (first.empty()) first = pairs;
       ASSERT_EQ(pairs, first) << threads << " threads";
@@ -523,9 +526,10 @@ TEST_P(ColumnsFamily, ReportPairsInTheSameOrderForEveryTeam) {
 }
 
 std::vector<Algorithm> columnsFamily() {
-  std::vector<Algorithm> all = pairFinders();
-  std::erase_if(all, [](const Algorithm& algorithm) { return algorithm.family != "Columns"; });
-  return all;
+  std::vector<Algorithm> algorithms = pairFinders();
+  std::erase_if(algorithms,
+                [](const Algorithm& algorithm) { return algorithm.family != "Columns"; });
+  return algorithms;
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, ColumnsFamily, testing::ValuesIn(columnsFamily()),

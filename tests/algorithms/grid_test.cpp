@@ -1,4 +1,4 @@
-// The grid families and what they are made of: cells, marks, shares of the work.
+// The grid families and what they are made of: cells, phantom bits, shares of the work.
 
 #include <gtest/gtest.h>
 
@@ -73,7 +73,7 @@ TEST(CellGrid, IsNotStretchedByABodyFarOff) {
   const CellGrid grid = gridOver(boxes, 64);
   std::map<std::size_t, int> bodies;
   for (const Aabb& box : boxes) {
-    grid.forEachCell(grid.touched(box), [&](std::size_t cell, MarkedBody) { ++bodies[cell]; });
+    grid.forEachCell(grid.touched(box), [&](std::size_t cell, CellBody) { ++bodies[cell]; });
   }
   int fullest = 0;
   for (const auto& [cell, count] : bodies) fullest = std::max(fullest, count);
@@ -104,13 +104,13 @@ TEST(CellGrid, SeesAllShapesThatComeInTurn) {
 
 /// In how many of the cells that both touch a pair would be reported.
 int timesReported(const CellGrid& grid, const Aabb& a, const Aabb& b) {
-  std::map<std::size_t, MarkedBody> cells;
+  std::map<std::size_t, CellBody> cells;
   grid.forEachCell(grid.touched(a),
-                   [&](std::size_t cell, MarkedBody marks) { cells.emplace(cell, marks); });
+                   [&](std::size_t cell, CellBody phantoms) { cells.emplace(cell, phantoms); });
   int times = 0;
-  grid.forEachCell(grid.touched(b), [&](std::size_t cell, MarkedBody marks) {
+  grid.forEachCell(grid.touched(b), [&](std::size_t cell, CellBody phantoms) {
     const auto shared = cells.find(cell);
-    if (shared != cells.end() && reportedHere(shared->second, marks)) ++times;
+    if (shared != cells.end() && isHomeCellPair(shared->second, phantoms)) ++times;
   });
   return times;
 }

@@ -1,4 +1,4 @@
-// What a sample tells.
+// The trimmed range of a sample.
 
 #include "sample.h"
 
@@ -13,8 +13,8 @@
 namespace broadmark {
 namespace {
 
-/// The same from all bounds in order.
-Bulk bulkOfSorted(const std::vector<Aabb>& sample, int axis) {
+/// trimmedRange(), by sorting.
+TrimmedRange trimmedRangeBySorting(const std::vector<Aabb>& sample, int axis) {
   std::vector<double> lows;
   std::vector<double> highs;
   for (const Aabb& box : sample) {
@@ -24,12 +24,12 @@ Bulk bulkOfSorted(const std::vector<Aabb>& sample, int axis) {
   std::ranges::sort(lows);
   std::ranges::sort(highs, std::greater());
   const auto at = static_cast<std::size_t>(0.05 * static_cast<double>(sample.size() - 1));
-  const double more = (highs[at] - lows[at]) / 4;
-  return {std::max(lows[0], lows[at] - more), std::min(highs[0], highs[at] + more)};
+  const double margin = (highs[at] - lows[at]) / 4;
+  return {std::max(lows[0], lows[at] - margin), std::min(highs[0], highs[at] + margin)};
 }
 
-// Sorted and reversed, too: then every 16th box tells little of the others.
-TEST(Sample, FindsTheBulkWhereverItLies) {
+// Sorted and reversed samples, too, in which every 16th value is no random sample.
+TEST(Sample, FindsTheTrimmedRange) {
   for (const inputs::Input& input : inputs::kAll) {
     for (const std::size_t size : {1U, 2U, 15U, 16U, 17U, 100U, 256U, 1000U, 2047U, 2048U}) {
       SCOPED_TRACE(testing::Message() << input.name << ", " << size);
@@ -43,10 +43,10 @@ TEST(Sample, FindsTheBulkWhereverItLies) {
           std::ranges::reverse(sample);
         }
         for (int axis = 0; axis < 3; ++axis) {
-          const Bulk expected = bulkOfSorted(sample, axis);
-          const Bulk bulk = bulkOf(sample, axis);
-          EXPECT_EQ(bulk.low, expected.low);
-          EXPECT_EQ(bulk.high, expected.high);
+          const TrimmedRange expected = trimmedRangeBySorting(sample, axis);
+          const TrimmedRange range = trimmedRange(sample, axis);
+          EXPECT_EQ(range.low, expected.low);
+          EXPECT_EQ(range.high, expected.high);
         }
       }
     }
