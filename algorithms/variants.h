@@ -1,4 +1,4 @@
-// Listing the variants of a family, which have most of their entry in common.
+// Registry entries of algorithm variants that share most of their fields.
 #pragma once
 
 #include <functional>
@@ -10,19 +10,18 @@
 
 namespace broadmark {
 
-/// How a variant can be run.
-struct Ways {
+struct VariantOptions {
   bool parallel = false;
   bool vectorised = false;
 };
 
-/// The entry of a variant; `family` has what all variants share.
+/// The registry entry of a variant. `family` has the shared fields.
 inline Algorithm variantOf(Algorithm family, std::function<std::unique_ptr<BroadPhase>()> create,
-                           std::string id, std::string summary, Ways ways = {}) {
+                           std::string id, std::string summary, VariantOptions options = {}) {
   family.id = std::move(id);
   family.summary = std::move(summary);
-  family.traits.parallel = ways.parallel;
-  family.traits.vectorised = ways.vectorised;
+  family.traits.parallel = options.parallel;
+  family.traits.vectorised = options.vectorised;
   family.create = std::move(create);
   return family;
 }
