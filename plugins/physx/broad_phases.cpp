@@ -25,9 +25,9 @@
 #include <string>
 #include <vector>
 
+#include "broadmark/non_colliding_layers.h"
 #include "broadmark/pair_set.h"
 #include "broadmark/plugin.h"
-#include "broadmark/strangers.h"
 #include "physx/library.h"
 #include "physx/region_loads.h"
 
@@ -101,13 +101,13 @@ class PhysX final : public BroadPhase {
     team_ = &execution.team();
     if (execution.threads() > 1) workers_.emplace(execution.threads());
     const std::vector<std::uint32_t> bodies = first.presentBodies();
-    const Strangers strangers(filter_, bodies);
+    const NonCollidingLayers layers(filter_, bodies);
     const std::size_t room = first.boxes.size() + 1;  // PhysX reads a bit further
     bounds_.assign(room, physx::PxBounds3(physx::PxVec3(0), physx::PxVec3(0)));
     distances_.assign(room, 0);
     for (std::uint32_t body = 0; body < first.boxes.size(); ++body) {
-      groups_.push_back(strangers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
-                                                 : physx::PxGetBroadPhaseDynamicFilterGroup(body));
+      groups_.push_back(layers.contains(body) ? physx::PxGetBroadPhaseStaticFilterGroup()
+                                              : physx::PxGetBroadPhaseDynamicFilterGroup(body));
     }
     groups_.push_back(0);
     is_there_.assign(room, 0);

@@ -44,14 +44,14 @@ void CompactedWorld::initialize(const SceneInfo& scene, const Frame& first, Exec
 }
 
 void CompactedWorld::findStrangers(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
-  const Strangers strangers(filter_, bodies);
-  const auto meeting = static_cast<std::size_t>(
-      std::ranges::count_if(bodies, [&](std::uint32_t body) { return strangers.meet(body); }));
-  if (strangers.count() < meeting) return;  // to look who is near would cost more than it saves
+  const NonCollidingLayers strangers(filter_, bodies);
+  const auto meeting = static_cast<std::size_t>(std::ranges::count_if(
+      bodies, [&](std::uint32_t body) { return strangers.collideWith(body); }));
+  if (strangers.bodyCount() < meeting) return;  // to look who is near would cost more than it saves
   strangers_ = strangers;
   for (const std::uint32_t body : bodies) {
     if (strangers_.contains(body)) stranger_bodies_.push_back(body);
-    if (strangers_.meet(body)) meeting_bodies_.push_back(body);
+    if (strangers_.collideWith(body)) meeting_bodies_.push_back(body);
   }
   near_.emplace(scene.world);
 }

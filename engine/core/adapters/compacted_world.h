@@ -21,7 +21,7 @@
 #include "adapters/near_grid.h"
 #include "adapters/side_by_side.h"
 #include "broadmark/broad_phase.h"
-#include "broadmark/strangers.h"
+#include "broadmark/non_colliding_layers.h"
 
 namespace broadmark {
 
@@ -67,8 +67,8 @@ class CompactedWorld final : public BroadPhase {
   LayerMatrix matrix_;
   std::vector<std::uint8_t> present_;                           ///< by body: 1 if it is
   std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present, by layer
-  std::uint32_t meetable_ = 0;  ///< bit by layer: somebody is there whom it meets
-  Strangers strangers_;         ///< if that is worth it
+  std::uint32_t meetable_ = 0;    ///< bit by layer: somebody is there whom it meets
+  NonCollidingLayers strangers_;  ///< if that is worth it
   std::vector<std::uint32_t> stranger_bodies_;
   std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet strangers
   std::optional<NearGrid> near_;               ///< of these
