@@ -31,7 +31,7 @@
 #include <vector>
 
 #include "broadmark/exclusive_use.h"
-#include "broadmark/strangers.h"
+#include "broadmark/non_colliding_layers.h"
 #include "bullet_broad_phase.h"
 #include "variants.h"
 
@@ -87,7 +87,7 @@ class Dbvt final : public BulletBroadPhase {
     if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);
     proxies_.resize(boxes().size(), nullptr);
     const std::vector<std::uint32_t> bodies = first.presentBodies();
-    putToRest(Strangers(scene.filter, bodies), bodies);
+    putToRest(NonCollidingLayers(scene.filter, bodies), bodies);
     for (const std::uint32_t body : bodies) {
       if (proxies_[body] == nullptr) create(body);
     }
@@ -172,12 +172,12 @@ class Dbvt final : public BulletBroadPhase {
   }
 
   /// Puts bodies that never meet into the tree at rest, before there is anybody else.
-  void putToRest(const Strangers& strangers, std::span<const std::uint32_t> bodies) {
-    if (strangers.count() == 0) return;
+  void putToRest(const NonCollidingLayers& layers, std::span<const std::uint32_t> bodies) {
+    if (layers.bodyCount() == 0) return;
     const bool deferred = tree_.m_deferedcollide;
     tree_.m_deferedcollide = true;  // nobody looks for pairs when created,
     for (const std::uint32_t body : bodies) {
-      if (strangers.contains(body)) create(body);
+      if (layers.contains(body)) create(body);
     }
     tree_.m_deferedcollide = false;  // nor here, where all go to rest.
     for (int stage = 0; stage < Tree::STAGECOUNT; ++stage) tree_.collide(nullptr);

@@ -1,16 +1,30 @@
-// Tide: the cost of a frame follows the bodies that move. Who moves is looked for in a loose grid,
-// at the place where it was and at the one where it is, and what overlaps at one of the two only is
-// a pair that ends or begins. No pairs are kept for that: a frame is done with once its events are
-// known. Bodies at rest are not looked at, but for those around the ones that move.
+// Tide: an incremental broad phase. The cost of a frame grows with the number of moving bodies.
 //
-// When many move it is quicker to find all pairs anew: then `columns` does it, until few move
-// again (tide/cost_model.h).
+//                   few bodies move: loose grid                 many bodies move: full search
+//   updateObjects   moveBodies: new box -> Body, MoveQuery      columns, in which all bodies move
+//   searchOverlaps  findEvents, a pipeline of small batches:    columns; for events, compares the
+//                     load -> make cell queries ->              pairs with those of the last frame
+//                     apply moves -> run cell queries ->
+//                     test boxes, emit events
+//                   PairSet: erase ended, insert began
+//                   CostModel: rebuild the grid?                CostModel: build a grid?
 //
-// O(m · k), m the bodies that move, k those around one of them; O(n) where that is quicker. A frame
-// in which nothing moves costs nothing. Where pairs are asked for and not events, they are kept in
-// a set, O(1) for each that begins or ends.
+//   MoveQuery             CellQuery            CellBucket, 64 bytes         Body, 64 bytes
+//   +-------------+       2x2x2 cells          +-----------------+          +------------+-------+
+//   | old and new |  per  +---+---+    per     | 5 packed bounds | overlap  | box.min    | frame |
+//   | box, cells  | ----> | x | x | ---------> | 5 body indices  | -------> | box.max    | cell  |
+//   +-------------+ level +---+---+    cell    | next            |          | before.min |       |
+//                         | x | x |            +--|--------------+          | before.max | cell  |
+//                         +---+---+               +-> full overflow bucket  +------------+-------+
 //
-// Source: Broadmark; for the grid see tide/loose_grid.h.
+// A move query covers the old and the new box of a body: an overlap at only one of the two is an
+// event, so events need no stored pairs. Bodies at rest are visited only near moving bodies.
+//
+// O(m · k) per frame, m moving bodies with k bodies around each; O(n) in a full search; 0 if
+// nothing moves. Pairs as the answer cost O(1) more per event.
+//
+// Source: Broadmark. Loose cells: T. Ulrich, "Loose Octrees", Game Programming Gems, 2000. Levels:
+// C. Ericson, "Real-Time Collision Detection", 2005, 7.2 (hierarchical hash grids).
 
 #include <algorithm>
 #include <array>
@@ -34,13 +48,13 @@
 namespace broadmark::tide {
 namespace {
 
-/// Directly on BroadPhase: events need no pairs.
+/// Directly on BroadPhase: a layer would store pairs, which events do not need.
 class Tide final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"full_search_cost_scale",
-           "cost of a full search, in percent of the prediction: the grid is kept longer if it is "
-           "higher",
+           "cost of a full search, in percent of the predicted cost; the higher, the longer the "
+           "grid is used",
            &full_search_cost_scale_, 1, 1'000'000});
   }
 
@@ -51,10 +65,10 @@ class Tide final : public BroadPhase {
   void updateStructures() override;
   void searchOverlaps() override;
   [[nodiscard]] PairRuns overlaps() const override {
-    return is_anew_ ? anew_->overlaps() : PairRuns(&pairs_run_, 1);
+    return mode_ == Mode::full ? full_search_->overlaps() : PairRuns(&pairs_run_, 1);
   }
   [[nodiscard]] PairEvents events() const override {
-    if (is_anew_) return anew_->events();
+    if (mode_ == Mode::full) return full_search_->events();
     return {PairRuns(&began_run_, 1), PairRuns(&ended_run_, 1)};
   }
 
@@ -63,140 +77,147 @@ class Tide final : public BroadPhase {
   [[nodiscard]] std::string validate() const override;
 
  private:
-  void findAnew(std::uint32_t frame, std::span<const Aabb> boxes);
-  void beginAnew(const Frame& frame);
+  enum class Mode { grid, full };
+
+  void switchToFullSearch(const Frame& frame);
+  void runFullSearch(std::uint32_t frame, std::span<const Aabb> boxes);
   void buildGrid(std::span<const Aabb> boxes);
-  void tryMoves(std::span<const Aabb> boxes);
+  void calibrateMoveCost(std::span<const Aabb> boxes);
   void searchGrid();
-  void takePairs();
+  void copyFullSearchPairs();
   void countPairs();
 
   std::int64_t full_search_cost_scale_ = 100;
   bool reports_events_ = false;
   CollisionFilter filter_;
-  std::vector<std::uint32_t> bodies_;  ///< all ids
-  std::vector<std::uint32_t> tried_;   ///< some
+  Mode mode_ = Mode::grid;  ///< of this frame
+  CostModel costs_;
 
-  std::unique_ptr<BroadPhase> anew_;  ///< finds all pairs
-  bool is_anew_ = false;              ///< this frame is its
+  std::unique_ptr<BroadPhase> full_search_;
+  std::vector<std::uint32_t> bodies_;  ///< all ids
 
   std::optional<LooseGrid> grid_;
-  bool grid_is_ready_ = false;  ///< knows where bodies are
-  CostModel costs_;
-  std::uint64_t pair_count_ = 0;
-  std::uint64_t moves_ = 0;
-  std::uint64_t builds_ = 0;
-  std::vector<Aabb> boxes_;  ///< for building it anew
+  bool grid_is_current_ = false;  ///< has the boxes of the last frame
+  std::vector<Aabb> boxes_;       ///< copied from the grid
+  std::vector<std::uint32_t> calibration_bodies_;
+
   PairBuffer began_;
   PairBuffer ended_;
-  PairSet pairs_;  ///< unless it reports events
+  PairSet pairs_;  ///< unused if events are reported
   PairRun began_run_;
   PairRun ended_run_;
   PairRun pairs_run_;
+  std::uint64_t pair_count_ = 0;
+  std::uint64_t moves_ = 0;
+  std::uint64_t builds_ = 0;
 };
 
 void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
   filter_ = scene.filter;
-  costs_ = CostModel(reports_events_ ? kCostsOfEvents : kCostsOfPairs,
+  costs_ = CostModel(reports_events_ ? kEventCosts : kPairCosts,
                      static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size());
   bodies_.resize(first.boxes.size());
   std::iota(bodies_.begin(), bodies_.end(), 0U);
-  anew_ = columns::create();
-  if (isChangingWorld(scene)) anew_ = compacted(std::move(anew_));
-  if (reports_events_) anew_ = withEvents(std::move(anew_));
-  anew_->initialize(scene, first, execution);
-  is_anew_ = true;
-  if (!reports_events_) findAnew(first.index, first.boxes);
+  full_search_ = columns::create();
+  if (isChangingWorld(scene)) full_search_ = compacted(std::move(full_search_));
+  if (reports_events_) full_search_ = withEvents(std::move(full_search_));
+  full_search_->initialize(scene, first, execution);
+  mode_ = Mode::full;
+  if (!reports_events_) runFullSearch(first.index, first.boxes);
   countPairs();
   grid_.emplace(execution.isa());
   buildGrid(first.boxes);
-  if (!reports_events_) takePairs();
+  if (!reports_events_) copyFullSearchPairs();
 }
 
-/// All pairs of a frame, of which all bodies may have moved.
-void Tide::findAnew(std::uint32_t frame, std::span<const Aabb> boxes) {
-  anew_->updateObjects({frame, boxes, bodies_});
-  anew_->cleanCache();
-  anew_->updateStructures();
-  anew_->searchOverlaps();
-}
-
+/// Chooses the mode of the frame. The choice has hysteresis: a grid is built only once its absence
+/// has cost as much as a build.
 void Tide::updateObjects(const Frame& frame) {
   moves_ = frame.changed->size();
   builds_ = 0;
-  if (grid_is_ready_ && !costs_.scratchIsQuicker(moves_)) {
-    is_anew_ = false;
+  if (grid_is_current_ && !costs_.fullSearchIsCheaper(moves_)) {
+    mode_ = Mode::grid;
     grid_->resetWork();
-    grid_->addMoves(*frame.changed, frame.boxes);
+    grid_->moveBodies(*frame.changed, frame.boxes);
     return;
   }
-  grid_is_ready_ = false;
-  if (!is_anew_) {
-    beginAnew(frame);
+  grid_is_current_ = false;
+  if (mode_ == Mode::grid) {
+    switchToFullSearch(frame);
     return;
   }
-  anew_->updateObjects(frame);
+  full_search_->updateObjects(frame);
   if (costs_.gridPays(moves_)) buildGrid(frame.boxes);
+}
+
+/// The full search missed the frames in the grid. Its events are relative to its previous frame, so
+/// the last of them is searched, too.
+void Tide::switchToFullSearch(const Frame& frame) {
+  mode_ = Mode::full;
+  if (reports_events_) {
+    grid_->copyBoxes(boxes_);
+    runFullSearch(frame.index - 1, boxes_);
+  }
+  full_search_->updateObjects({frame.index, frame.boxes, bodies_});
+}
+
+void Tide::runFullSearch(std::uint32_t frame, std::span<const Aabb> boxes) {
+  full_search_->updateObjects({frame, boxes, bodies_});
+  full_search_->cleanCache();
+  full_search_->updateStructures();
+  full_search_->searchOverlaps();
 }
 
 void Tide::buildGrid(std::span<const Aabb> boxes) {
   grid_->build(boxes);
-  grid_is_ready_ = true;
+  grid_is_current_ = true;
   ++builds_;
-  tryMoves(boxes);
+  calibrateMoveCost(boxes);
 }
 
-/// Tells what moves cost by some of bodies that stay where they are.
-void Tide::tryMoves(std::span<const Aabb> boxes) {
-  constexpr std::size_t kTries = CostModel::kTries;
-  const std::size_t moves = std::min(boxes.size(), CostModel::kEnoughMoves) / kTries;
-  std::array<Work, kTries> tries;
-  for (std::size_t k = 0; k < kTries; ++k) {
-    tried_.resize(moves);
+/// Measures the work of moves in a new grid: samples of the bodies move, but stay where they are.
+void Tide::calibrateMoveCost(std::span<const Aabb> boxes) {
+  constexpr std::size_t kBatches = CostModel::kCalibrationBatches;
+  const std::size_t moves = std::min(boxes.size(), CostModel::kCalibrationMoves) / kBatches;
+  std::array<WorkCounts, kBatches> batches;
+  for (std::size_t k = 0; k < kBatches; ++k) {
+    std::vector<std::uint32_t>& bodies = calibration_bodies_;
+    bodies.resize(moves);
     for (std::size_t i = 0; i < moves; ++i) {
-      tried_[i] =
-          static_cast<std::uint32_t>(sampleIndex(k * moves + i, kTries * moves, boxes.size()));
+      bodies[i] =
+          static_cast<std::uint32_t>(sampleIndex(k * moves + i, kBatches * moves, boxes.size()));
     }
-    std::ranges::sort(tried_);
-    tried_.erase(std::ranges::unique(tried_).begin(), tried_.end());
-    tries[k] = grid_->tryMoves(tried_, boxes);
+    std::ranges::sort(bodies);
+    bodies.erase(std::ranges::unique(bodies).begin(), bodies.end());
+    batches[k] = grid_->measureMoves(bodies, boxes);
   }
-  costs_.setGrid(tries, moves);
-}
-
-/// From now on all pairs are found anew. Its last frame was some time ago.
-void Tide::beginAnew(const Frame& frame) {
-  is_anew_ = true;
-  if (reports_events_) {  // which are what differs from the frame before
-    grid_->boxes(boxes_);
-    findAnew(frame.index - 1, boxes_);
-  }
-  anew_->updateObjects({frame.index, frame.boxes, bodies_});
+  costs_.calibrate(batches, moves);
 }
 
 void Tide::cleanCache() {
-  if (is_anew_) return anew_->cleanCache();
+  if (mode_ == Mode::full) return full_search_->cleanCache();
   began_.clear();
   ended_.clear();
 }
 
 void Tide::updateStructures() {
-  if (is_anew_) anew_->updateStructures();
+  if (mode_ == Mode::full) full_search_->updateStructures();
 }
 
 void Tide::searchOverlaps() {
-  if (is_anew_) {
-    anew_->searchOverlaps();
-    if (grid_is_ready_ && !reports_events_) takePairs();
+  if (mode_ == Mode::full) {
+    full_search_->searchOverlaps();
+    if (grid_is_current_ && !reports_events_) copyFullSearchPairs();
   } else {
     searchGrid();
   }
   countPairs();
 }
 
+/// Finds events, applies them to the pairs, and rebuilds a grid whose cells have become crowded.
 void Tide::searchGrid() {
-  grid_->search(filter_, began_, ended_);
-  grid_->settle();
+  grid_->findEvents(filter_, began_, ended_);
+  grid_->endFrame();
   began_run_ = began_.run();
   ended_run_ = ended_.run();
   if (!reports_events_) {
@@ -205,15 +226,16 @@ void Tide::searchGrid() {
     pairs_run_ = pairs_.run();
   }
   const std::size_t changes = began_.size() + ended_.size();
-  if (moves_ > 0 && costs_.anotherGridPays(grid_->work(), changes, moves_)) {
-    grid_->boxes(boxes_);
+  if (moves_ > 0 && costs_.rebuildPays(grid_->work(), changes, moves_)) {
+    grid_->copyBoxes(boxes_);
     buildGrid(boxes_);
   }
 }
 
-void Tide::takePairs() {
+/// A new grid continues from the pairs of the full search.
+void Tide::copyFullSearchPairs() {
   pairs_.clear();
-  for (const PairRun run : anew_->overlaps()) pairs_.insert(run);
+  for (const PairRun pairs : full_search_->overlaps()) pairs_.insert(pairs);
   pairs_run_ = pairs_.run();
 }
 
@@ -227,8 +249,8 @@ void Tide::countPairs() {
 }
 
 void Tide::drawStructure(DebugDraw& draw) const {
-  if (is_anew_) {
-    anew_->drawStructure(draw);
+  if (mode_ == Mode::full) {
+    full_search_->drawStructure(draw);
   } else {
     grid_->draw(draw);
   }
@@ -237,11 +259,11 @@ void Tide::drawStructure(DebugDraw& draw) const {
 void Tide::visitCounters(const CounterVisitor& visit) const {
   visit("moves", moves_);
   visit("grids built", builds_);
-  if (is_anew_) {
-    anew_->visitCounters(visit);
+  if (mode_ == Mode::full) {
+    full_search_->visitCounters(visit);
     return;
   }
-  visit("looks", grid_->work().looks);
+  visit("looks", grid_->work().cell_queries);
   visit("tests", grid_->work().tests);
   visit("cell changes", grid_->work().cell_changes);
   visit("pairs begun", began_.size());
@@ -249,7 +271,7 @@ void Tide::visitCounters(const CounterVisitor& visit) const {
 }
 
 std::string Tide::validate() const {
-  if (!grid_is_ready_) return anew_->validate();
+  if (!grid_is_current_) return full_search_->validate();
   return grid_->validate();
 }
 
@@ -262,16 +284,16 @@ std::vector<Algorithm> variants() {
                  .events = true,
                  .changing_worlds = ChangingWorlds::native,
                  .instance_per_world = true,
-                 .max_objects = std::min<std::uint64_t>(kMaxCellBodies - 1, LooseGrid::kMostBodies),
+                 .max_objects = std::min<std::uint64_t>(kMaxCellBodies - 1, LooseGrid::kMaxBodies),
                  .rare_parameters = {{"full_search_cost_scale", "1000000"}}},
       .description = {.principle = "grid",
-                      .optimisations = "events without pairs, several sizes of cells",
-                      .time = "O(m · k), m bodies that move, k around each; O(n) if many move",
+                      .optimisations = "events without pairs, hierarchical grid",
+                      .time = "O(m · k), m moving bodies, k around each; O(n) if many move",
                       .space = "O(n)",
                       .source = "Broadmark; Ulrich 2000, Ericson 2005, 7.2"}};
-  return {variantOf<Tide>(family, "tide",
-                          "those that move in a loose grid, from scratch when many do",
-                          {.vectorised = true})};
+  return {variantOf<Tide>(
+      family, "tide", "loose grid queried around moving bodies; full search if many bodies move",
+      {.vectorised = true})};
 }
 
 }  // namespace broadmark::tide

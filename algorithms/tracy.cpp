@@ -1,22 +1,22 @@
-// Tracy: a uniform grid whose every cell is an incremental sweep and prune. A body that stays where
-// it is costs at most a look at a bit; what moves is sorted anew, from its last place to the new
-// one, and each swap of a start and an end is an event at which a pair may begin or end. Pairs are
-// kept from frame to frame. O(n + s), s the swaps: for each moved body about the distance times the
-// endpoints per unit of length in a cell. The grid does what no incremental sweep can: keep apart
-// bodies that overlap on one or two axes only.
+// Tracy: a uniform grid with an incremental sweep and prune in every cell. A body that does not
+// move costs at most the test of a bit. The endpoints of a moved body are re-sorted by insertion
+// sort; each swap of a start with an end is an event at which a pair may begin or end. Pairs are
+// retained between frames. The grid separates what no incremental sweep can: bodies that overlap on
+// one or two axes only.
 //
-// A frame: find the bodies that have moved and the cells that they touch now; notify these cells;
-// let each of them find the pairs that began and ended in it (tracy/cell.h, with the proof that
-// each change is reported once, so that nothing has to be counted); apply these to the pair set.
-// All of it is shared out: first bodies, then cells, then pairs by their lower body. No two workers
-// touch the same cell or the same part of the set.
+// A frame: find the moved bodies and the cells that they touch; notify these cells; let each cell
+// find the pairs that began or ended in it (tracy/cell.h proves that each change is reported once,
+// so pairs need no reference counts); apply these to the pair set. Each step is parallel: over
+// bodies, then cells, then pairs by their lower body. Workers share neither cells nor parts of the
+// set.
 //
-// These changes are the events, too. A grid that is built anew finds all pairs: then they are
-// compared with those that were there.
+// The same changes are the events. A rebuild finds all pairs: then they are compared with the
+// previous pairs.
 //
-// If many bodies each touched very many cells, the cells' lists would be as long as the product of
-// both. When the average body touches more than kMostCellsPerBody cells, the grid is rebuilt with
-// half the cells per axis, or fewer; later, when they would fit, with more.
+// O(n + s) per frame, s swaps: per moved body about the distance times the endpoints per unit of
+// length in a cell. Many bodies that each touch many cells would make the lists as long as the
+// product of both. When the mean body touches more than kMaxCellsPerBody cells, the grid is rebuilt
+// with half the cells per axis, or fewer; later, when they would fit, with more.
 //
 // Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
 // AABB Insertion and Removal", IEEE VR 2009.
@@ -41,32 +41,31 @@
 namespace broadmark::tracy {
 namespace {
 
-/// On average; evenly spread small bodies touch 1 to 3.
-constexpr std::uint64_t kMostCellsPerBody = 8;
-constexpr double kMostCellsPerAxis = 1024;
-/// When fewer bodies than one of so many have moved, each is looked up in its cells; otherwise it
-/// takes less to look at all bodies of these cells.
-constexpr std::size_t kFew = 64;
+/// Mean over all bodies; evenly spread small bodies touch 1 to 3 cells.
+constexpr std::uint64_t kMaxCellsPerBody = 8;
+constexpr double kMaxCellsPerAxis = 1024;
+/// Above this ratio of bodies to moved bodies, cells look up each moved body; below, a scan of all
+/// bodies in the cell is faster.
+constexpr std::size_t kMinBodiesPerMover = 64;
 
 struct alignas(64) Worker {
   CellWork work;
   Mailbox mailbox;
-  std::vector<std::uint32_t> moved;  ///< in this frame, of the worker's share of the bodies
-  std::uint64_t cells_touched = 0;   ///< by the worker's share of the bodies
+  std::vector<std::uint32_t> moved;  ///< in this frame, of the worker's share
+  std::uint64_t cells_touched = 0;   ///< by the worker's share
 };
 
-/// The cells that a box touches, none if it is empty.
 CellRange cellsOf(const CellGrid& grid, const Aabb& box) {
   if (isEmpty(box)) return {.first = {1, 1, 1, 0}, .last = {0, 0, 0, 0}};
   return grid.touched(box);
 }
 
-/// Directly on BroadPhase: the pairs are a set that is kept from frame to frame.
+/// Directly on BroadPhase: the pair set is retained between frames.
 class Tracy final : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"objects_per_cell", "bodies per grid cell, were they evenly spread", &objects_per_cell_,
-           1, 1e9});
+    visit({"objects_per_cell", "target number of bodies per grid cell, for evenly spread bodies",
+           &objects_per_cell_, 1, 1e9});
   }
 
   void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
@@ -81,19 +80,19 @@ class Tracy final : public BroadPhase {
       worker.moved.reserve(count / team_size + 2 * kWordBits);
     }
     pairs_.resize(team_size);
-    if (reports_events_) pairs_before_.resize(team_size);
-    runs_.reserve(team_size);
+    if (reports_events_) previous_pairs_.resize(team_size);
+    pair_runs_.reserve(team_size);
 
-    bodies_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
-    bodies_.boxes[kNow] = bodies_.boxes[kBefore];
-    bodies_.filter = scene.filter;
-    for (std::vector<CellRange>& ranges : bodies_.ranges) ranges.resize(count);
-    bodies_.moved.assign((count + kWordBits - 1) / kWordBits, 0);
+    states_.boxes[kBefore].assign(first.boxes.begin(), first.boxes.end());
+    states_.boxes[kNow] = states_.boxes[kBefore];
+    states_.filter = scene.filter;
+    for (std::vector<CellRange>& ranges : states_.ranges) ranges.resize(count);
+    states_.moved.assign((count + kWordBits - 1) / kWordBits, 0);
 
-    const double wanted =
+    const double cells =
         std::ceil(std::cbrt(static_cast<double>(count) / static_cast<double>(objects_per_cell_)));
-    wanted_cells_ = static_cast<std::int32_t>(std::clamp(wanted, 1.0, kMostCellsPerAxis));
-    rebuild(affordable(wanted_cells_));
+    target_cells_ = static_cast<std::int32_t>(std::clamp(cells, 1.0, kMaxCellsPerAxis));
+    rebuild(coarsenToFit(target_cells_));
     searchOverlaps();
     if (!reports_events_) cleanCache();
   }
@@ -101,14 +100,14 @@ class Tracy final : public BroadPhase {
   void reportEvents() override { reports_events_ = true; }
 
   void updateObjects(const Frame& frame) override {
-    team_->run(bodies_.moved.size(), [&](int worker, Range words) {
+    team_->run(states_.moved.size(), [&](int worker, Range words) {
       std::vector<std::uint32_t>& moved = workerOf(worker).moved;
-      for (const std::uint32_t body : moved) bodies_.moved[body / kWordBits] = 0;
-      // Whole words of bits: no two workers write to the same.
+      for (const std::uint32_t body : moved) states_.moved[body / kWordBits] = 0;
+      // Shares are whole words of bits, so workers write to different words.
       const std::span<const std::uint32_t> changed = *frame.changed;
       moved.assign(std::ranges::lower_bound(changed, words.begin * kWordBits),
                    std::ranges::lower_bound(changed, words.end * kWordBits));
-      for (const std::uint32_t body : moved) takeOver(body, frame.boxes[body]);
+      for (const std::uint32_t body : moved) applyBox(body, frame.boxes[body]);
     });
   }
 
@@ -126,14 +125,14 @@ class Tracy final : public BroadPhase {
     std::size_t moved = 0;
     for (const Worker& worker : workers_) moved += worker.moved.size();
     if (moved == 0) return;
-    bodies_.few_moved = kFew * moved < bodies_.boxes[kNow].size();
+    states_.few_moved = kMinBodiesPerMover * moved < states_.boxes[kNow].size();
     team_->run([this](int worker) { findCells(worker); });
-    if (const std::int32_t cells = suitableCellsPerAxis(); cells != grid_.counts()[0]) {
+    if (const std::int32_t cells = chooseCellsPerAxis(); cells != grid_.counts()[0]) {
       rebuild(cells);
       return;
     }
-    team_->run([this](int worker) { tellCells(worker); });
-    shareOutCells();
+    team_->run([this](int worker) { notifyCells(worker); });
+    balanceCells();
     team_->run([this](int worker) { updateCells(worker); });
   }
 
@@ -147,14 +146,14 @@ class Tracy final : public BroadPhase {
       for (const Worker& from : workers_) {
         pairs.insert(from.work.begun[part].run());
       }
-      if (reports_events_ && rebuilds_ > 0) compareWithBefore(part);
+      if (reports_events_ && rebuilds_ > 0) diffWithPrevious(part);
     });
-    runs_.clear();
-    for (const PairSet& pairs : pairs_) runs_.push_back(pairs.run());
-    if (reports_events_) gatherEvents();
+    pair_runs_.clear();
+    for (const PairSet& pairs : pairs_) pair_runs_.push_back(pairs.run());
+    if (reports_events_) collectEventRuns();
   }
 
-  [[nodiscard]] PairRuns overlaps() const override { return runs_; }
+  [[nodiscard]] PairRuns overlaps() const override { return pair_runs_; }
   [[nodiscard]] PairEvents events() const override { return {begun_runs_, ended_runs_}; }
 
   void drawStructure(DebugDraw& draw) const override;
@@ -166,29 +165,28 @@ class Tracy final : public BroadPhase {
 
   Worker& workerOf(int worker) { return workers_[static_cast<std::size_t>(worker)]; }
 
-  void takeOver(std::uint32_t body, const Aabb& box) {
-    bodies_.boxes[kBefore][body] = std::exchange(bodies_.boxes[kNow][body], box);
-    bodies_.moved[body / kWordBits] |= std::uint64_t{1} << body % kWordBits;
+  void applyBox(std::uint32_t body, const Aabb& box) {
+    states_.boxes[kBefore][body] = std::exchange(states_.boxes[kNow][body], box);
+    states_.moved[body / kWordBits] |= std::uint64_t{1} << body % kWordBits;
   }
 
   void findCells(int worker) {
     std::uint64_t& touched = workerOf(worker).cells_touched;
     for (const std::uint32_t body : workerOf(worker).moved) {
-      CellRange& now = bodies_.ranges[kNow][body];
-      bodies_.ranges[kBefore][body] = std::exchange(now, cellsOf(grid_, bodies_.boxes[kNow][body]));
+      CellRange& now = states_.ranges[kNow][body];
+      states_.ranges[kBefore][body] = std::exchange(now, cellsOf(grid_, states_.boxes[kNow][body]));
       touched += now.count();
-      touched -= bodies_.ranges[kBefore][body].count();
+      touched -= states_.ranges[kBefore][body].count();
     }
   }
 
-  /// The merge of a body's old cells and its new ones.
-  void tellCells(int worker) {
+  void notifyCells(int worker) {
     Mailbox& mailbox = workerOf(worker).mailbox;
     for (const std::uint32_t body : workerOf(worker).moved) {
-      const CellRange& before = bodies_.ranges[kBefore][body];
-      const CellRange& now = bodies_.ranges[kNow][body];
+      const CellRange& before = states_.ranges[kBefore][body];
+      const CellRange& now = states_.ranges[kNow][body];
       grid_.forEachCell(before, [&](std::size_t cell, CellBody) {
-        if (bodies_.few_moved) {
+        if (states_.few_moved) {
           mailbox.notify(cell, body);
         } else {
           mailbox.notify(cell);
@@ -196,83 +194,82 @@ class Tracy final : public BroadPhase {
       });
       if (now == before) continue;
       grid_.forEachCell(now, [&](std::size_t cell, CellBody) {
-        if (!before.contains(grid_.position(cell))) mailbox.announce(cell, body);
+        if (!before.contains(grid_.position(cell))) mailbox.notifyArrival(cell, body);
       });
     }
   }
 
-  /// Of the cells that have messages.
-  void shareOutCells() {
-    concerned_.clear();
+  void balanceCells() {
+    dirty_cells_.clear();
     for (const Worker& worker : workers_) {
-      std::ranges::copy(worker.mailbox.cells(), std::back_inserter(concerned_));
+      std::ranges::copy(worker.mailbox.cells(), std::back_inserter(dirty_cells_));
     }
-    std::ranges::sort(concerned_);
-    const auto twice = std::ranges::unique(concerned_);
-    concerned_.erase(twice.begin(), twice.end());
-    // A body that moves passes a fixed part of those in its cell.
+    std::ranges::sort(dirty_cells_);
+    const auto duplicates = std::ranges::unique(dirty_cells_);
+    dirty_cells_.erase(duplicates.begin(), duplicates.end());
+    // A moved body passes a constant fraction of the bodies in its cell.
     const auto cost = [&](std::size_t i) {
-      const std::uint64_t size = cells_[concerned_[i]].size();
+      const std::uint64_t size = cells_[dirty_cells_[i]].size();
       return 1 + size * (64 + size);
     };
-    shares_.measure(concerned_.size(), 1, cost, *team_);
+    shares_.measure(dirty_cells_.size(), 1, cost, *team_);
   }
 
   void updateCells(int worker) {
     const Range mine = shares_.of(worker);
     for (std::size_t i = mine.begin; i < mine.end; ++i) {
-      const std::uint32_t cell = concerned_[i];
+      const std::uint32_t cell = dirty_cells_[i];
       CellWork& work = workerOf(worker).work;
       work.moved.clear();
       for (const Worker& from : workers_) {
         from.mailbox.moved().forEach(cell, [&](std::uint32_t body) { work.moved.push_back(body); });
       }
-      cells_[cell].update(bodies_, work, [&](auto enter) {
+      cells_[cell].update(states_, work, [&](auto enter) {
         for (const Worker& from : workers_) from.mailbox.arrivals().forEach(cell, enter);
       });
-      for (Worker& from : workers_) from.mailbox.forget(cell);
+      for (Worker& from : workers_) from.mailbox.erase(cell);
     }
   }
 
-  /// Cells that all bodies touch, counted as often as they are touched, on a grid of another size.
+  /// Summed over all bodies.
   std::uint64_t cellsTouchedIn(const CellGrid& grid) {
-    std::atomic<std::uint64_t> all = 0;
-    team_->run(bodies_.boxes[kNow].size(), [&](int, Range part) {
+    std::atomic<std::uint64_t> total = 0;
+    team_->run(states_.boxes[kNow].size(), [&](int, Range part) {
       std::uint64_t touched = 0;
       for (std::size_t i = part.begin; i < part.end; ++i)
-        touched += cellsOf(grid, bodies_.boxes[kNow][i]).count();
-      all += touched;
+        touched += cellsOf(grid, states_.boxes[kNow][i]).count();
+      total += touched;
     });
-    return all;
+    return total;
   }
 
-  [[nodiscard]] std::uint64_t mostCellsTouched() const {
-    return kMostCellsPerBody * bodies_.boxes[kNow].size();
+  [[nodiscard]] std::uint64_t maxCellsTouched() const {
+    return kMaxCellsPerBody * states_.boxes[kNow].size();
   }
 
-  /// `cells_per_axis`, or as often halved as it takes.
-  std::int32_t affordable(std::int32_t cells_per_axis) {
+  /// Halves the number of cells until the bodies do not touch too many of them.
+  std::int32_t coarsenToFit(std::int32_t cells_per_axis) {
     while (cells_per_axis > 1 &&
-           cellsTouchedIn(CellGrid(world_, cells_per_axis)) > mostCellsTouched()) {
+           cellsTouchedIn(CellGrid(world_, cells_per_axis)) > maxCellsTouched()) {
       cells_per_axis /= 2;
     }
     return cells_per_axis;
   }
 
-  std::int32_t suitableCellsPerAxis() {
-    const std::int32_t present = grid_.counts()[0];
+  std::int32_t chooseCellsPerAxis() {
+    const std::int32_t current = grid_.counts()[0];
     std::uint64_t touched = 0;
     for (const Worker& worker : workers_) touched += worker.cells_touched;
-    if (touched > mostCellsTouched()) return affordable(present / 2);
-    if (present == wanted_cells_) return present;
-    // Well below the limit, or the next frame might be above it again.
-    const std::int32_t more = std::min(2 * present + 1, wanted_cells_);
-    return 2 * cellsTouchedIn(CellGrid(world_, more)) <= mostCellsTouched() ? more : present;
+    if (touched > maxCellsTouched()) return coarsenToFit(current / 2);
+    if (current == target_cells_) return current;
+    // Hysteresis: refine only well below the limit.
+    const std::int32_t finer = std::min(2 * current + 1, target_cells_);
+    return 2 * cellsTouchedIn(CellGrid(world_, finer)) <= maxCellsTouched() ? finer : current;
   }
 
-  /// All pairs have begun anew: leaves those that did, and adds those that ended.
-  void compareWithBefore(std::size_t part) {
-    const PairSet& before = pairs_before_[part];
+  /// After a rebuild, which reports all pairs as begun.
+  void diffWithPrevious(std::size_t part) {
+    const PairSet& before = previous_pairs_[part];
     for (Worker& worker : workers_) {
       worker.work.begun[part].retain([&](Pair pair) { return !before.contains(pair); });
     }
@@ -281,7 +278,7 @@ class Tracy final : public BroadPhase {
     }
   }
 
-  void gatherEvents() {
+  void collectEventRuns() {
     begun_runs_.clear();
     ended_runs_.clear();
     for (const Worker& worker : workers_) {
@@ -290,33 +287,33 @@ class Tracy final : public BroadPhase {
     }
   }
 
-  /// Starts over with another grid; all pairs are found anew.
+  /// From scratch, with another grid; all pairs are reported as begun.
   void rebuild(std::int32_t cells_per_axis) {
     ++rebuilds_;
-    if (reports_events_) pairs_.swap(pairs_before_);
+    if (reports_events_) pairs_.swap(previous_pairs_);
     grid_ = CellGrid(world_, cells_per_axis);
     cells_.clear();
     cells_.resize(grid_.size());
-    concerned_.reserve(workers_.size() * cells_.size());
+    dirty_cells_.reserve(workers_.size() * cells_.size());
     for (Worker& worker : workers_) {
       worker.mailbox.resize(cells_.size());
       worker.cells_touched = 0;
     }
     for (PairSet& pairs : pairs_) pairs.clear();
 
-    // Bodies by cell: counted, then filled in from the back.
+    // Counting sort of the bodies by cell.
     std::vector<std::size_t> ends(cells_.size() + 1, 0);
-    for (std::size_t body = 0; body < bodies_.boxes[kNow].size(); ++body) {
-      CellRange& range = bodies_.ranges[kNow][body];
-      range = cellsOf(grid_, bodies_.boxes[kNow][body]);
-      bodies_.ranges[kBefore][body] = range;
+    for (std::size_t body = 0; body < states_.boxes[kNow].size(); ++body) {
+      CellRange& range = states_.ranges[kNow][body];
+      range = cellsOf(grid_, states_.boxes[kNow][body]);
+      states_.ranges[kBefore][body] = range;
       grid_.forEachCell(range, [&](std::size_t cell, CellBody) { ++ends[cell]; });
       workers_.front().cells_touched += range.count();
     }
     std::inclusive_scan(ends.begin(), ends.end(), ends.begin());
     std::vector<std::uint32_t> bodies(ends.back());
-    for (auto body = static_cast<std::uint32_t>(bodies_.boxes[kNow].size()); body-- > 0;) {
-      grid_.forEachCell(bodies_.ranges[kNow][body],
+    for (auto body = static_cast<std::uint32_t>(states_.boxes[kNow].size()); body-- > 0;) {
+      grid_.forEachCell(states_.ranges[kNow][body],
                         [&](std::size_t cell, CellBody) { bodies[--ends[cell]] = body; });
     }
     const auto bodies_in = [&](std::size_t cell) {
@@ -327,33 +324,33 @@ class Tracy final : public BroadPhase {
     team_->run([&](int worker) {
       const Range mine = shares_.of(worker);
       for (std::size_t cell = mine.begin; cell < mine.end; ++cell) {
-        cells_[cell].build(grid_.position(cell), bodies_in(cell), bodies_, workerOf(worker).work);
+        cells_[cell].build(grid_.position(cell), bodies_in(cell), states_, workerOf(worker).work);
       }
     });
   }
 
-  /// Half of the original's 200: as fast where all bodies move, and faster where few do.
+  /// Half of the paper's 200: as fast if all bodies move, and faster if few do.
   std::int64_t objects_per_cell_ = 100;
   ThreadTeam* team_ = nullptr;
   Aabb world_;
-  std::int32_t wanted_cells_ = 1;  ///< per axis, bodies permitting
+  std::int32_t target_cells_ = 1;  ///< per axis, unless bodies touch too many
   CellGrid grid_;
-  Bodies bodies_;
+  BodyStates states_;
   std::vector<Cell> cells_;
-  std::vector<std::uint32_t> concerned_;  ///< in this frame: cells in which something has moved
+  std::vector<std::uint32_t> dirty_cells_;  ///< cells with messages
   WorkShares shares_;
   std::vector<Worker> workers_;
   std::vector<PairSet> pairs_;  ///< one per worker, by the lower body
-  std::vector<PairRun> runs_;
+  std::vector<PairRun> pair_runs_;
   std::uint64_t rebuilds_ = 0;
   bool reports_events_ = false;
-  // Of events only.
-  std::vector<PairSet> pairs_before_;  ///< the last rebuild
+  // For events.
+  std::vector<PairSet> previous_pairs_;  ///< before the last rebuild
   std::vector<PairRun> begun_runs_;
   std::vector<PairRun> ended_runs_;
 };
 
-/// Level 0: the occupied cells; level 1: how the first axis is cut into chunks in each of them.
+/// Level 0: the occupied cells; level 1: the chunks of their first axis.
 void Tracy::drawStructure(DebugDraw& draw) const {
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
     if (cells_[cell].size() == 0) continue;
@@ -371,51 +368,51 @@ void Tracy::drawStructure(DebugDraw& draw) const {
 }
 
 void Tracy::visitCounters(const CounterVisitor& visit) const {
-  WorkCounts all;
+  WorkCounts total;
   std::uint64_t begun = 0;
   std::uint64_t ended = 0;
   for (const Worker& worker : workers_) {
     const WorkCounts& counts = worker.work.counts;
-    all.moves += counts.moves;
-    all.swaps += counts.swaps;
-    all.cell_changes += counts.cell_changes;
-    all.jumps += counts.jumps;
+    total.moves += counts.moves;
+    total.swaps += counts.swaps;
+    total.cell_changes += counts.cell_changes;
+    total.jumps += counts.jumps;
     for (const PairBuffer& pairs : worker.work.begun) begun += pairs.size();
     for (const PairBuffer& pairs : worker.work.ended) ended += pairs.size();
   }
-  visit("moves", all.moves);
-  visit("swaps", all.swaps);
-  visit("cell changes", all.cell_changes);
-  visit("jumps", all.jumps);
+  visit("moves", total.moves);
+  visit("swaps", total.swaps);
+  visit("cell changes", total.cell_changes);
+  visit("jumps", total.jumps);
   visit("pairs begun", begun);
   visit("pairs ended", ended);
   visit("grid rebuilds", rebuilds_);
 }
 
 std::string Tracy::validate() const {
-  std::vector<std::uint64_t> cells_of_body(bodies_.boxes[kNow].size(), 0);
+  std::vector<std::uint64_t> cells_of_body(states_.boxes[kNow].size(), 0);
   std::vector<std::size_t> last_cell(cells_of_body.size(), cells_.size());
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    if (std::string fault = cells_[cell].validate(bodies_); !fault.empty()) return fault;
-    bool twice = false;
+    if (std::string fault = cells_[cell].validate(states_); !fault.empty()) return fault;
+    bool is_duplicate = false;
     cells_[cell].forEachBody([&](std::uint32_t body) {
-      twice = twice || std::exchange(last_cell[body], cell) == cell;
+      is_duplicate = is_duplicate || std::exchange(last_cell[body], cell) == cell;
       ++cells_of_body[body];
     });
-    if (twice) return "body twice in a cell";
+    if (is_duplicate) return "a body is in a cell twice";
     for (const Worker& worker : workers_) {
-      if (worker.mailbox.concerns(cell)) return "messages left unread";
+      if (worker.mailbox.hasMessages(cell)) return "a message is unread";
     }
   }
   std::uint64_t touched = 0;
   for (const Worker& worker : workers_) touched += worker.cells_touched;
   for (std::size_t body = 0; body < cells_of_body.size(); ++body) {
-    const CellRange range = cellsOf(grid_, bodies_.boxes[kNow][body]);
-    if (bodies_.ranges[kNow][body] != range) return "cells of a body out of date";
-    if (cells_of_body[body] != range.count()) return "body missing from a cell that it touches";
+    const CellRange range = cellsOf(grid_, states_.boxes[kNow][body]);
+    if (states_.ranges[kNow][body] != range) return "the cells of a body are out of date";
+    if (cells_of_body[body] != range.count()) return "a body is missing in a cell that it touches";
     touched -= range.count();
   }
-  if (touched != 0) return "cells miscounted";
+  if (touched != 0) return "the number of touched cells is wrong";
   return {};
 }
 
@@ -432,7 +429,7 @@ std::vector<Algorithm> variants() {
                                             .time = "O(n + s), s swaps of endpoints",
                                             .space = "O(n + k)",
                                             .source = "Tracy, Buss and Woods 2009"}};
-  return {variantOf<Tracy>(family, "tracy", "incremental sweep and prune in the cells of a grid"),
+  return {variantOf<Tracy>(family, "tracy", "incremental sweep and prune in each cell of a grid"),
           variantOf<Tracy>(family, "tracy-mt",
                            "incremental sweep and prune in a grid, on several threads",
                            {.parallel = true})};

@@ -1,4 +1,4 @@
-// Listing the variants of a family, which have most of their entry in common.
+// Registry entries of algorithm variants that share most of their fields.
 #pragma once
 
 #include <memory>
@@ -9,20 +9,20 @@
 
 namespace broadmark {
 
-/// How a variant can be run.
-struct Ways {
+struct VariantOptions {
   bool parallel = false;
   bool vectorised = false;
 };
 
-/// The entry of a variant, made from `arguments`; `family` has what all variants share.
+/// The registry entry of a variant, which is constructed from `arguments`. `family` has the shared
+/// fields.
 template <class Phase, class... Arguments>
-Algorithm variantOf(Algorithm family, std::string id, std::string summary, Ways ways = {},
-                    Arguments... arguments) {
+Algorithm variantOf(Algorithm family, std::string id, std::string summary,
+                    VariantOptions options = {}, Arguments... arguments) {
   family.id = std::move(id);
   family.summary = std::move(summary);
-  family.traits.parallel = ways.parallel;
-  family.traits.vectorised = ways.vectorised;
+  family.traits.parallel = options.parallel;
+  family.traits.vectorised = options.vectorised;
   family.create = [arguments...] { return std::make_unique<Phase>(arguments...); };
   return family;
 }

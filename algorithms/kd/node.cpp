@@ -5,8 +5,8 @@
 namespace broadmark::kd {
 namespace {
 
-/// Pairs of nodes in stock at least.
-constexpr std::size_t kSpare = 16;
+/// Minimum number of free pairs after reserve().
+constexpr std::size_t kMinFreePairs = 16;
 
 }  // namespace
 
@@ -33,13 +33,13 @@ void NodePool::releaseChildren(Node& node) {
 
 void NodePool::grow() {
   free_.push_back(pairs_.emplace_back().data());
-  // So that releasing never allocates.
+  // So that release() never allocates.
   if (free_.capacity() < pairs_.size()) free_.reserve(2 * pairs_.size());
 }
 
 void NodePool::reserve() {
-  if (free_.size() >= kSpare + pairs_.size() / 8) return;
-  while (free_.size() < 2 * kSpare + pairs_.size() / 4) grow();
+  if (free_.size() >= kMinFreePairs + pairs_.size() / 8) return;
+  while (free_.size() < 2 * kMinFreePairs + pairs_.size() / 4) grow();
 }
 
 }  // namespace broadmark::kd

@@ -1,4 +1,4 @@
-// The nodes of the adaptive KD tree, and the stock that they are taken from.
+// The nodes of the adaptive KD tree, and their pool.
 #pragma once
 
 #include <array>
@@ -10,23 +10,22 @@
 namespace broadmark::kd {
 
 /// A node owns a contiguous slice of the tree's array of bodies: left child's | own | right
-/// child's. Only populations are kept; where slices begin follows on the way down. So to shift the
-/// slice of a whole subtree is one block move that touches no node.
+/// child's. Nodes store sizes only; the traversal computes where slices begin. So the slice of a
+/// subtree can be shifted by one block move, without an update of its nodes.
 struct Node {
   Node* parent = nullptr;    ///< null: the root
   Node* children = nullptr;  ///< left and right; null: a leaf
   float plane = 0;
   int axis = 0;
-  std::uint32_t own = 0;   ///< bodies kept here: in a leaf all, else those that straddle the plane
+  std::uint32_t own = 0;   ///< in a leaf all bodies, else those that straddle the plane
   std::uint32_t size = 0;  ///< bodies of the subtree
-  /// During a refit: bodies that no longer fit in the cell, just outside of the slice, on the side
-  /// towards the parent's own.
-  std::uint32_t escaped = 0;
-  std::uint32_t work = 0;   ///< own bodies of the touched nodes of the subtree
-  bool own_touched = true;  ///< in this frame own bodies moved, came or went
-  bool touched = true;      ///< here or anywhere below; else nothing of this node has changed
-  bool unsettled = false;   ///< own bodies that did not move may be on one side of the plane, too
-  bool refitted = false;    ///< in parallel, before its parent
+  /// During a refit: evicted bodies, which lie between the slice and the parent's own bodies.
+  std::uint32_t evicted = 0;
+  std::uint32_t work = 0;  ///< own bodies of the dirty nodes of the subtree
+  bool own_dirty = true;   ///< own bodies moved, were inserted or were removed
+  bool dirty = true;       ///< own_dirty here or below
+  bool check_all = false;  ///< test own bodies that did not move against the plane, too
+  bool refitted = false;   ///< by a task, before its parent
 
   [[nodiscard]] bool isLeaf() const { return children == nullptr; }
   [[nodiscard]] Node& left() const { return children[0]; }
@@ -37,16 +36,14 @@ struct Node {
   }
 };
 
-/// Pairs of nodes, which stay where they are. Workers may take and release them at the same time.
+/// Thread-safe, with stable addresses. Nodes are allocated as pairs of siblings.
 class NodePool {
  public:
-  /// Two fresh nodes.
   Node* take();
   void release(Node* pair);
   /// Makes the node a leaf.
   void releaseChildren(Node& node);
-  /// Keeps a stock of nodes, so that workers need not allocate when they take and release nodes in
-  /// another order than before.
+  /// Grows the pool in advance, so that workers do not allocate during an update.
   void reserve();
 
  private:

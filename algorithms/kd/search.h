@@ -1,4 +1,4 @@
-// Finding the pairs of an adaptive KD tree.
+// The search for overlapping pairs in an adaptive KD tree.
 #pragma once
 
 #include <cstddef>
@@ -15,83 +15,80 @@
 
 namespace broadmark::kd {
 
-/// One worker's search. Keeps its memory from frame to frame.
+/// The search of one worker. Retains its memory between frames.
 class Searcher {
  public:
   explicit Searcher(Isa isa);
 
-  /// What is searched. All borrowed.
   struct Scene {
     const Tree& tree;
     std::span<const Aabb> boxes;              ///< one per body
-    std::span<const std::uint8_t> moving;     ///< one per body: 1 if its pairs are searched for
+    std::span<const std::uint8_t> moved;      ///< one per body: 1 if its pairs are searched for
     const CollisionFilter* filter = nullptr;  ///< null: all pairs are wanted
   };
 
-  /// Adds every pair of overlapping bodies at least one of which moves, in the part-th of `parts`
-  /// nearly equal shares of the work.
+  /// Adds the overlapping pairs with at least one moved body that are found in the part-th of
+  /// `parts` nearly equal shares of the work.
   void search(const Scene& scene, int part, int parts, PairBuffer& pairs);
 
-  /// Subtrees that the last search had no need to enter.
-  [[nodiscard]] std::uint64_t skippedSubtrees() const { return skipped_; }
-  /// Boxes that it looked at.
+  [[nodiscard]] std::uint64_t skippedSubtrees() const { return skipped_subtrees_; }
   [[nodiscard]] std::uint64_t boxesTested() const { return boxes_tested_; }
 
  private:
-  /// Vector tests that cost as much as to sort a box and find its window.
-  static constexpr std::size_t kVectorsPerSorted = 16;
+  /// Sorting a box and finding its window costs about as much as this number of vector tests.
+  static constexpr std::size_t kTestsPerSortedBox = 16;
 
-  /// Bodies kept further up that reach into a cell: a stretch of lists_, the moving ones first.
+  /// Own bodies of ancestors that reach into a cell: a range of lists_, moved bodies first.
   struct List {
     std::size_t begin = 0;
-    std::size_t still = 0;
+    std::size_t unchanged = 0;
     std::size_t end = 0;
   };
-  /// Where each kind begins among the bodies arranged for a node.
+  /// Where the sections of arranged_ begin; the own moved bodies come first.
   struct Sections {
-    std::size_t listed_still = 0;  ///< own moving ones come first
-    std::size_t listed_moving = 0;
-    std::size_t own_still = 0;
+    std::size_t listed_unchanged = 0;
+    std::size_t listed_moved = 0;
+    std::size_t own_unchanged = 0;
     std::size_t end = 0;
   };
 
   void enter(const Node& node, std::size_t begin, std::uint64_t work_before, List list);
   void visit(const Node& node, std::size_t begin, std::uint64_t work_before, List list);
-  [[nodiscard]] bool isMine(std::uint64_t work_before) const;
+  [[nodiscard]] bool ownsNode(std::uint64_t work_before) const;
   void arrange(std::span<const std::uint32_t> own, List list);
   void gatherBoxes();
-  [[nodiscard]] std::size_t testsWanted() const;
+  [[nodiscard]] std::size_t requiredTests() const;
   void test();
   void sweep();
   void addPairs();
   template <class Reaches>
-  List push(bool child_touched, Reaches reaches);
+  List push(bool child_dirty, Reaches reaches);
   template <class Reaches>
   void pushSection(std::size_t begin, std::size_t end, Reaches reaches);
 
   const OverlapKernels* kernels_;
-  std::size_t tests_per_sorted_;
+  std::size_t min_tests_to_sort_;
 
   const Scene* scene_ = nullptr;
   PairBuffer* pairs_ = nullptr;
-  /// Nodes whose work begins in here are this worker's.
+  /// The worker's share: nodes with their first work in this range.
   std::uint64_t work_begin_ = 0;
   std::uint64_t work_end_ = 0;
-  std::uint64_t skipped_ = 0;
+  std::uint64_t skipped_subtrees_ = 0;
   std::uint64_t boxes_tested_ = 0;
 
   std::vector<std::uint32_t> lists_;  ///< a stack
 
-  // The present node's bodies and their boxes, in sections.
+  // Of the current node.
   Sections sections_;
   std::vector<std::uint32_t> arranged_;
-  std::vector<std::uint32_t> own_still_;
+  std::vector<std::uint32_t> own_unchanged_;
   BoxArrays boxes_;
 
-  ThreadTeam alone_{1};
-  SortedWindows sorted_;  ///< of positions among the arranged bodies, for the sweep
+  ThreadTeam single_thread_{1};
+  SortedWindows sorted_;  ///< indices into arranged_
 
-  PairBuffer hits_;  ///< by position among the arranged bodies
+  PairBuffer hits_;  ///< indices into arranged_
 };
 
 }  // namespace broadmark::kd

@@ -1,42 +1,41 @@
-// The inner loops of Tide, one table of them for each instruction set.
+// The inner loops of Tide, with one table of them for each instruction set.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
 #include "broadmark/execution.h"
-#include "tide/search.h"
+#include "tide/queries.h"
 
 namespace broadmark::tide {
 
-/// Some bodies met by a look.
+/// Bits of a cell query's buckets.
 struct Hit {
-  std::uint64_t places;  ///< a byte for each line, in which there is a bit for each place
-  std::uint32_t look;
+  std::uint64_t bits;  ///< a byte per bucket: CellQuery::kSlotBits or kOverflowBits
+  std::uint32_t query;
 };
 
 struct Kernels {
-  /// Takes over where bodies are, and writes their searches, of which there is room for two each.
-  /// Returns how many these are. `boxes` and `of_bodies` have one for each body there is.
-  std::size_t (*add_searches)(Cells& cells, std::uint32_t frame, const std::uint32_t* bodies,
-                              std::size_t count, const Aabb* boxes, Body* of_bodies,
-                              Search* searches);
+  /// Moves the bodies to their boxes and writes up to two move queries for each; returns the number
+  /// of queries. `boxes` and `states` have an element for every body of the scene.
+  std::size_t (*move_bodies)(GridLayout& layout, std::uint32_t frame, const std::uint32_t* bodies,
+                             std::size_t count, const Aabb* boxes, Body* states,
+                             MoveQuery* queries);
 
-  /// Sets a look for who on a level may overlap an extent, all but its numbers, and returns true if
-  /// that is nearly as always: two cells on each axis at most, all of them in the bulk.
-  bool (*set_look)(const Cells& cells, const Line* lines, const Extent& extent, std::uint32_t level,
-                   Look& look);
+  /// Makes the query of a level, except for its indices. Returns false if the box needs more than
+  /// two cells on an axis, or cells outside of the level's dims.
+  bool (*make_query)(const GridLayout& layout, const CellBucket* buckets, const GridBox& box,
+                     std::uint32_t level, CellQuery& query);
 
-  struct Found {
+  struct Counts {
     std::size_t hits;
-    std::size_t followed;
+    std::size_t overflows;
   };
 
-  /// Looks for bounds within limits; looks are numbered from `first` on. Lists the looks that find
-  /// any, and those with lines that are followed by others, which are told by bits of
-  /// Look::kFollowed. There is room for `count` of both.
-  Found (*look)(const Look* looks, std::size_t count, std::uint32_t first, Hit* hits,
-                Hit* followed);
+  /// Runs the queries, which are numbered from `first`. Lists those that hit any slot and those
+  /// with overflow buckets. Both lists need room for `count` elements.
+  Counts (*run_queries)(const CellQuery* queries, std::size_t count, std::uint32_t first, Hit* hits,
+                        Hit* overflows);
 };
 
 /// The kernels for an instruction set, which this processor must support.

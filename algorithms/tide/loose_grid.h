@@ -1,10 +1,8 @@
-// A loose grid, in which bodies are found and moved at the cost of those that move.
+// A loose grid that finds the pairs which begin and end when some bodies move.
 //
-// What a move costs is waiting for memory, and branches that nobody can predict. So it touches few
-// cache lines, which are sent for in time: those of the cells around it (tide/lines.h), and of the
-// bodies there whose bounds pass, one each.
-//
-// For where bodies lie see tide/cells.h.
+// A move is bound by memory latency and branch mispredictions. It touches few cache lines, and all
+// of them are prefetched: the buckets of the cells around the body (tide/bucket_table.h), and one
+// line for each body there whose packed bounds overlap.
 #pragma once
 
 #include <array>
@@ -20,113 +18,109 @@
 #include "broadmark/execution.h"
 #include "broadmark/large_array.h"
 #include "broadmark/pair.h"
-#include "tide/cells.h"
+#include "tide/bucket_table.h"
+#include "tide/grid_layout.h"
 #include "tide/kernels.h"
-#include "tide/lines.h"
 
 namespace broadmark::tide {
 
-/// What a frame took.
-struct Work {
-  std::uint64_t looks = 0;  ///< into the lines of eight cells, or into those behind them
-  std::uint64_t tests = 0;  ///< of a box against another body's
+struct WorkCounts {
+  std::uint64_t cell_queries = 0;
+  std::uint64_t tests = 0;  ///< of two boxes
   std::uint64_t cell_changes = 0;
 };
 
-/// A frame: addMoves(), search(), settle().
+/// A frame: moveBodies(), findEvents(), endFrame().
 class LooseGrid {
  public:
-  /// Most bodies.
-  static constexpr std::uint32_t kMostBodies = 1U << 29;
+  static constexpr std::uint32_t kMaxBodies = 1U << 29;
 
   /// This processor must support the instruction set.
   explicit LooseGrid(Isa isa) : kernels_(&kernels(isa)) {}
 
-  /// Chooses cells for these boxes, one per body, and puts the bodies into them. O(n).
+  /// Fits the cells to these boxes, one per body, and stores the bodies. O(n).
   void build(std::span<const Aabb> boxes);
 
-  /// Takes over where these bodies are now, ascending; `boxes` has one for each body.
-  void addMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
+  /// Moves these bodies, in ascending order, to their boxes; `boxes` has one for every body.
+  void moveBodies(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
-  /// Moves them to other cells, and adds the wanted pairs that begin or end to overlap, once each.
-  void search(const CollisionFilter& filter, PairBuffer& began, PairBuffer& ended);
+  /// Updates the cells, and adds the wanted pairs that begin or end to overlap, each of them once.
+  void findEvents(const CollisionFilter& filter, PairBuffer& began, PairBuffer& ended);
 
-  /// Ends the frame.
-  void settle();
+  void endFrame();
 
-  /// The work since reset.
-  [[nodiscard]] const Work& work() const { return work_; }
+  /// Since the last reset.
+  [[nodiscard]] const WorkCounts& work() const { return work_; }
   void resetWork() { work_ = {}; }
 
-  /// The work of a frame in which these bodies move, but not from where they are; `boxes` has one
-  /// for each body.
-  Work tryMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
+  /// The work of a frame in which these bodies move, but stay where they are.
+  WorkCounts measureMoves(std::span<const std::uint32_t> bodies, std::span<const Aabb> boxes);
 
-  /// The boxes, one per body, as of the last frame that was settled.
-  void boxes(std::vector<Aabb>& into) const;
+  /// Writes the boxes of all bodies, as of the last frame that ended.
+  void copyBoxes(std::vector<Aabb>& boxes) const;
 
   void draw(DebugDraw& draw) const;
-  /// "" or what is broken, once settled.
+  /// "" or the broken invariant. Not within a frame.
   [[nodiscard]] std::string validate() const;
 
  private:
-  /// Somebody, found by a look, who may overlap a body.
+  /// A body whose packed bounds overlap a query.
   struct Candidate {
     std::uint32_t other;
-    std::uint32_t line;  ///< of all looks of the batch
+    std::uint32_t bucket;  ///< index of its query, times kBuckets, plus the bucket in the query
   };
-  /// A few searches, and what is to be done for them.
+  /// The unit of the pipeline: a few move queries, with their cell queries and candidates.
   struct Batch {
-    static constexpr std::size_t kSearches = 8;
-    std::span<const Search> searches;
-    LargeArray<Look> looks;
+    static constexpr std::size_t kMoves = 8;
+    std::span<const MoveQuery> moves;
+    LargeArray<CellQuery> queries;
     LargeArray<Candidate> candidates;
 
-    [[nodiscard]] const Look& lookOf(const Candidate& candidate) const {
-      return looks[candidate.line / Look::kLines];
+    [[nodiscard]] const CellQuery& queryOf(const Candidate& candidate) const {
+      return queries[candidate.bucket / CellQuery::kBuckets];
     }
   };
-  static constexpr std::size_t kSteps = 5;  ///< that a batch takes
-  /// So many searches and more touch more memory than stays in caches.
-  static constexpr std::size_t kManySearches = 1000;
-  /// So many searches ahead one is sent for.
-  static constexpr std::size_t kSearchesAhead = 32;
+  static constexpr std::size_t kStages = 5;
+  /// Below this number of moves the buckets stay in the caches.
+  static constexpr std::size_t kMinMovesForOverflowPrefetch = 1000;
+  static constexpr std::size_t kMovesAhead = 32;  ///< prefetch distance
 
-  /// Somebody who has left a cell and lies there until settle(), for pairs that end there.
-  struct Left {
+  /// A body to be removed from its old cell in endFrame(): until then queries must find it there.
+  struct Departure {
     std::uint32_t body;
     std::uint32_t cell;
   };
 
+  // The stages, in order.
+  void loadBatch(std::size_t first, Batch& batch);
+  void makeQueries(Batch& batch) const;
+  void prefetchOverflow(const Batch& batch) const;
+  void applyMoves(const Batch& batch);
+  void runQueries(Batch& batch);
+  void emitEvents(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
+                  PairBuffer& ended);
+
+  void makeWrappedQueries(std::uint32_t level, const GridBox& box, std::uint32_t move,
+                          Batch& batch) const;
+  static CellQuery& addQuery(std::uint32_t move, Batch& batch);
+  void queryOverflow(const Hit& overflow, Batch& batch) const;
+  void collectCandidates(Batch& batch, std::size_t hits) const;
+  [[nodiscard]] EventMask eventOf(const Batch& batch, const Candidate& candidate) const;
   static bool overlapOnAxes(const Aabb& a, const Aabb& b) {
     return isEveryAxis((cornerOf(a.min) <= cornerOf(b.max)) & (cornerOf(b.min) <= cornerOf(a.max)));
   }
-  void takeSearches(std::size_t first, Batch& batch);
-  void lookAround(Batch& batch) const;
-  void lookAroundFarOff(std::uint32_t level, const Extent& extent, std::uint32_t search,
-                        Batch& batch) const;
-  static Look& addLook(std::uint32_t search, Batch& batch);
-  void addLookBehind(const Hit& followed, Batch& batch) const;
-  void sendForLinesBehind(const Batch& batch) const;
-  void makeMoves(const Batch& batch);
-  void lookIntoCells(Batch& batch);
-  void addCandidates(Batch& batch, std::size_t hits) const;
-  void tellChanges(const Batch& batch, const CollisionFilter& filter, PairBuffer& began,
-                   PairBuffer& ended);
-  /// kBeginnings or kEnds if the overlap of both begins or ends; else 0.
-  [[nodiscard]] std::uint32_t change(const Batch& batch, const Candidate& candidate) const;
 
   const Kernels* kernels_;
-  Cells cells_;
-  Lines lines_;
+  GridLayout layout_;
+  BucketTable buckets_;
   LargeArray<Body> bodies_;
-  LargeArray<Search> searches_;  ///< of this frame, by body
-  std::array<Batch, kSteps> under_way_;
+  LargeArray<MoveQuery> moves_;  ///< in ascending order of bodies
+  std::array<Batch, kStages> pipeline_;
   LargeArray<Hit> hits_;
-  LargeArray<Hit> followed_;  ///< looks into lines behind which there are others
-  LargeArray<Left> left_;
+  LargeArray<Hit> overflows_;
+  LargeArray<Departure> departures_;
   std::uint32_t frame_ = 1;
-  Work work_;
+  WorkCounts work_;
 };
 
 }  // namespace broadmark::tide

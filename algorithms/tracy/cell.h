@@ -1,26 +1,26 @@
 // One cell of the grid: an incremental sweep and prune on three axes over the bodies that touch it.
 //
-// What a cell reports. A cell gets all its bodies' old and new boxes, then moves one body after the
-// other. Each swap of one body's start with another's end is an event: the two may have begun or
-// ceased to overlap. In the middle of a frame some bodies are at their old place and some at the
-// new one, and an event may be undone by a later one. So a swap is only the occasion to test; what
-// is reported depends on old and new boxes alone, and each change is reported exactly once:
+// A cell gets the old and new boxes of its bodies, then moves the bodies sequentially. At each swap
+// of one body's start with another body's end, the overlap of the two may begin or end. During the
+// update some bodies are at their old and some at their new position, and a later swap may undo an
+// earlier one. So a swap only triggers a test; the result depends on the old and new boxes alone,
+// and each change is reported exactly once:
 //
-// - On each axis, two boxes overlap if the start of each comes before the end of the other: six
-//   conditions in all. A start and an end change places at most once when the one is moved and at
-//   most once when the other is. So where a condition fails on the old boxes and holds on the new
-//   ones, its two endpoints are swapped once in that direction and never back.
-// - A pair that begins to overlap has such a condition, and is reported at the swap of the first
-//   one. (On one axis only one of the two conditions can fail.) Likewise for a pair that ceases to.
-// - Bodies that leave the cell go before the others move, bodies that enter it come after. Their
-//   pairs are found by asking the list of the first axis which intervals they meet.
-// - Of several cells that both bodies touch, the one with the lowest corner of their intersection
-//   reports: the only one in which on no axis both begin below it. The beginning of an overlap is
-//   reported by the cell of the new boxes, its end by that of the old ones; both bodies were in it.
+// - Two boxes overlap if, on each axis, the start of each comes before the end of the other: six
+//   conditions. A start and an end are swapped at most once when the former moves and at most once
+//   when the latter moves. So if a condition fails on the old boxes and holds on the new boxes, its
+//   two endpoints are swapped once in that direction and never back.
+// - A pair that begins to overlap has such a condition, and the swap of the first one reports it.
+//   (On an axis only one of the two conditions can fail.) The same holds for a pair that ends.
+// - Bodies that leave the cell are removed before the others move; bodies that enter it are
+//   inserted afterwards. A query of the list of the first axis finds their pairs.
+// - If two bodies share several cells, the home cell of the pair reports it: the cell with the
+//   lowest corner of their intersection, the only one below which they do not both begin on any
+//   axis. The home cell of the new boxes reports beginnings, that of the old boxes reports ends.
 //
-// Intervals are clipped to the cell: what begins below it begins at -infinity, what ends above it
-// ends at +infinity. Two bodies that touch the cell overlap on an axis exactly if their clipped
-// intervals do. So a large body that moves costs nothing in the cells that it spans.
+// Intervals are clipped to the cell: to -infinity if they begin below it, to +infinity if they end
+// above it. Two bodies that touch the cell overlap on an axis exactly if their clipped intervals
+// do. So a large moving body costs nothing in the cells that it spans.
 #pragma once
 
 #include <array>
@@ -38,11 +38,11 @@
 
 namespace broadmark::tracy {
 
-/// The two moments between which bodies move; indices of arrays.
+/// Indexes arrays of two.
 enum Moment : std::uint8_t { kBefore, kNow };
 
-/// Where a body pokes out of a cell that it touches: bit `axis` if it begins in a lower cell on
-/// that axis, bit `axis` + 3 if it ends in a higher one.
+/// The sides on which a body extends beyond a cell that it touches: bit `axis` if it begins in a
+/// lower cell, bit `axis` + 3 if it ends in a higher cell.
 using Crossing = std::uint8_t;
 constexpr Crossing crossesBelow(int axis) { return static_cast<Crossing>(1 << axis); }
 constexpr Crossing crossesAbove(int axis) { return static_cast<Crossing>(8 << axis); }
@@ -52,12 +52,12 @@ inline Crossing crossingOf(const CellRange& range, const CellPosition& cell) {
   return static_cast<Crossing>(below | axesWhere(cornerOf(cell) < cornerOf(range.last)) << 3);
 }
 
-/// All bodies, as far as the cells have to know them.
-struct Bodies {
-  std::array<std::vector<Aabb>, 2> boxes;        ///< by moment; what has not moved: kNow only
-  std::array<std::vector<CellRange>, 2> ranges;  ///< likewise
+/// The bodies of the scene, as shared by all cells.
+struct BodyStates {
+  std::array<std::vector<Aabb>, 2> boxes;  ///< by moment; of unchanged bodies only kNow is valid
+  std::array<std::vector<CellRange>, 2> ranges;  ///< by moment, as boxes
   std::vector<std::uint64_t> moved;              ///< a bit per body
-  bool few_moved = false;                        ///< so few that cells are told who
+  bool few_moved = false;                        ///< CellWork::moved lists the moved bodies
   CollisionFilter filter;
 
   [[nodiscard]] bool hasMoved(std::uint32_t body) const {
@@ -65,24 +65,23 @@ struct Bodies {
   }
 };
 
-/// Work done in a frame.
 struct WorkCounts {
-  std::uint64_t moves = 0;         ///< of a body in a cell
+  std::uint64_t moves = 0;         ///< of bodies within a cell
   std::uint64_t swaps = 0;         ///< endpoints passed
   std::uint64_t cell_changes = 0;  ///< bodies that entered or left a cell
   std::uint64_t jumps = 0;         ///< bodies removed from a cell and inserted again
 };
 
-/// What a worker needs and brings forth. Alone on its cache lines: workers count side by side.
+/// Input, output and scratch memory of a worker. Aligned to avoid false sharing.
 struct alignas(64) CellWork {
-  /// Pairs that began and ceased to overlap, shared out by their lower body.
+  // Partitioned by the lower body.
   std::vector<PairBuffer> begun;
   std::vector<PairBuffer> ended;
   WorkCounts counts;
 
-  /// Bodies of the present cell that have moved, if few have.
+  /// Bodies of the current cell, if few bodies have moved.
   std::vector<std::uint32_t> moved;
-  // Its slots.
+  // Slots of the current cell.
   std::vector<std::uint32_t> leaving;
   std::vector<std::uint32_t> jumping;
   std::vector<std::uint32_t> staying;
@@ -92,80 +91,76 @@ struct alignas(64) CellWork {
 
 class Cell {
  public:
-  /// Bodies in the cell.
   [[nodiscard]] std::uint32_t size() const { return size_; }
 
-  /// Becomes the cell at `position` with these bodies, in their boxes of now, and reports all
-  /// their pairs. O(m log m + w), w the pairs that overlap on the first axis.
-  void build(const CellPosition& position, std::span<const std::uint32_t> bodies, const Bodies& all,
-             CellWork& work);
+  /// Reports all pairs of the bodies. O(m log m + w), w pairs that overlap on the first axis.
+  void build(const CellPosition& position, std::span<const std::uint32_t> bodies,
+             const BodyStates& states, CellWork& work);
 
-  /// Takes note of all bodies that have moved: those in the cell (if few, they are in work.moved)
-  /// and those that enter it, which for_each_arrival(visit) shows by calling visit(body).
+  /// Applies the moves of the bodies in the cell (with few_moved, those in work.moved) and inserts
+  /// the bodies for which for_each_arrival(visit) calls visit(body).
   template <class ForEachArrival>
-  void update(const Bodies& all, CellWork& work, ForEachArrival for_each_arrival) {
-    sortOutMoved(all, work);
+  void update(const BodyStates& states, CellWork& work, ForEachArrival for_each_arrival) {
+    classifyMoved(states, work);
     for (const std::uint32_t slot : work.leaving) leave(slot, work);
-    for (const std::uint32_t slot : work.jumping) depart(slot, work);
+    for (const std::uint32_t slot : work.jumping) unlink(slot, work);
     for (const std::uint32_t slot : work.staying) move(slot, work);
-    for (const std::uint32_t slot : work.jumping) arrive(slot, work);
-    for_each_arrival([&](std::uint32_t body) { enter(body, all, work); });
-    settle(work);
+    for (const std::uint32_t slot : work.jumping) link(slot, work);
+    for_each_arrival([&](std::uint32_t body) { enter(body, states, work); });
+    endFrame(work);
     work.counts.moves += work.staying.size();
     work.counts.jumps += work.jumping.size();
     work.counts.cell_changes += work.leaving.size() + work.entered.size();
   }
 
-  /// Calls visit(body) for all bodies in the cell.
   template <class Visit>
   void forEachBody(Visit visit) const {
     for (const std::uint32_t body : bodies_) {
-      if (body != kNobody) visit(body);
+      if (body != kEmptySlot) visit(body);
     }
   }
   /// Calls visit(lowest coordinate) for each chunk of the first axis that begins inside the cell.
   void forEachSegment(const std::function<void(float)>& visit) const;
 
-  /// "" or what is wrong.
-  [[nodiscard]] std::string validate(const Bodies& all) const;
+  /// "" or the broken invariant.
+  [[nodiscard]] std::string validate(const BodyStates& states) const;
 
  private:
-  static constexpr std::uint32_t kNobody = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kEmptySlot = std::numeric_limits<std::uint32_t>::max();
 
-  /// A body's boxes: a whole cache line, since any event may need both.
+  /// A cache line with both boxes of a body, since any event may need both.
   struct alignas(64) Slot {
     std::array<Aabb, 2> boxes;
   };
   using Crossings = std::array<Crossing, 2>;
 
-  /// Start and end on each axis.
+  /// By axis: start and end.
   using Ends = std::array<std::array<Endpoint, 2>, 3>;
   [[nodiscard]] Ends ends(std::uint32_t slot, Moment) const;
 
   [[nodiscard]] const Aabb& box(std::uint32_t slot, Moment moment) const {
     return slots_[slot].boxes[moment];
   }
-  /// Whether this cell reports the pair.
-  [[nodiscard]] bool isOurs(std::uint32_t p, std::uint32_t q, Moment moment) const {
+  [[nodiscard]] bool isHomeCell(std::uint32_t p, std::uint32_t q, Moment moment) const {
     return (crossings_[p][moment] & crossings_[q][moment] & kCrossesBelow) == 0;
   }
 
-  void sortOutMoved(const Bodies& all, CellWork& work);
-  void sortOut(std::uint32_t slot, const Bodies& all, CellWork& work);
+  void classifyMoved(const BodyStates& states, CellWork& work);
+  void classify(std::uint32_t slot, const BodyStates& states, CellWork& work);
   [[nodiscard]] bool jumps(std::uint32_t slot) const;
   void leave(std::uint32_t slot, CellWork& work);
-  void enter(std::uint32_t body, const Bodies& all, CellWork& work);
-  void depart(std::uint32_t slot, CellWork& work);
-  void arrive(std::uint32_t slot, CellWork& work);
+  void enter(std::uint32_t body, const BodyStates& states, CellWork& work);
+  void unlink(std::uint32_t slot, CellWork& work);
+  void link(std::uint32_t slot, CellWork& work);
   void move(std::uint32_t slot, CellWork& work);
-  void settle(const CellWork& work);
+  void endFrame(const CellWork& work);
 
-  void movePoint(int axis, Endpoint from, Endpoint to, CellWork& work);
-  [[nodiscard]] bool reports(std::uint32_t starts, std::uint32_t ends, int axis, Moment without,
-                             Moment with) const;
-  void reportMeeting(std::uint32_t slot, Moment without, Moment with,
-                     std::vector<PairBuffer>& shares) const;
-  void reportFirstPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
+  void moveEndpoint(int axis, Endpoint from, Endpoint to, CellWork& work);
+  [[nodiscard]] bool isReportedSwap(std::uint32_t starts, std::uint32_t ends, int axis,
+                                    Moment without, Moment with) const;
+  void reportOverlaps(std::uint32_t slot, Moment without, Moment with,
+                      std::vector<PairBuffer>& shares) const;
+  void reportInitialPairs(std::span<const Endpoint> endpoints, CellWork& work) const;
   void report(std::uint32_t p, std::uint32_t q, std::vector<PairBuffer>& shares) const;
 
   std::uint32_t takeSlot(std::uint32_t body);
@@ -174,8 +169,8 @@ class Cell {
   CellPosition position_{};
   const CollisionFilter* filter_ = nullptr;  ///< null: every pair is wanted
   std::uint32_t size_ = 0;
-  std::uint32_t capacity_ = 0;         ///< slots that the lists have room for
-  std::vector<std::uint32_t> bodies_;  ///< by slot, kNobody where it is free
+  std::uint32_t capacity_ = 0;         ///< of the lists, in slots
+  std::vector<std::uint32_t> bodies_;  ///< by slot
   std::vector<Slot> slots_;
   std::vector<Crossings> crossings_;  ///< by slot
   std::vector<std::uint32_t> free_;

@@ -7,9 +7,9 @@ namespace broadmark::tracy {
 
 namespace {
 
-/// Chunks of a list of the largest size, or so: more would make the open sets, of a bit per slot
-/// each, more than linear.
-constexpr std::uint32_t kMostFullChunks = 64;
+/// Approximate maximum number of chunks: an open set has a bit per slot, so the memory of more sets
+/// would be superlinear.
+constexpr std::uint32_t kMaxFullChunks = 64;
 
 }  // namespace
 
@@ -17,16 +17,16 @@ void SegmentedList::clear(std::uint32_t capacity) {
   const std::uint32_t endpoints = 2 * capacity;
   if (capacity > capacity_) {
     capacity_ = capacity;
-    chunk_size_ = std::max(kChunkSize, endpoints / kMostFullChunks);
-    // Two neighbours always hold more than half a chunk between them.
-    const std::uint32_t most_chunks = 2 * (endpoints / (chunk_size_ / 2 + 1)) + 2;
-    chunks_.resize(most_chunks);
-    unused_.reserve(most_chunks);
-    endpoints_ = std::make_unique_for_overwrite<Endpoint[]>(std::size_t{most_chunks} * chunk_size_);
+    chunk_size_ = std::max(kChunkSize, endpoints / kMaxFullChunks);
+    // Two adjacent chunks are more than half a chunk together.
+    const std::uint32_t max_chunks = 2 * (endpoints / (chunk_size_ / 2 + 1)) + 2;
+    chunks_.resize(max_chunks);
+    unused_.reserve(max_chunks);
+    endpoints_ = std::make_unique_for_overwrite<Endpoint[]>(std::size_t{max_chunks} * chunk_size_);
     chunk_of_.resize(endpoints);
-    if (keeps_open_) {
+    if (tracks_open_) {
       open_words_ = capacity / kWordBits;
-      open_.assign(std::size_t{most_chunks} * open_words_, 0);
+      open_.assign(std::size_t{max_chunks} * open_words_, 0);
     }
   }
   unused_.clear();
@@ -39,19 +39,19 @@ void SegmentedList::clear(std::uint32_t capacity) {
 void SegmentedList::build(std::span<const Endpoint> sorted, std::uint32_t capacity) {
   clear(capacity);
   first_ = addChunkAfter(kNone);
-  if (keeps_open_) std::fill_n(open(first_), open_words_, 0);
-  // Not quite full, or the next insertions would split them all.
+  if (tracks_open_) std::fill_n(open(first_), open_words_, 0);
+  // Leave room, or the next insertions would split every chunk.
   const std::size_t fill = std::size_t{chunk_size_} / 4 * 3;
   ChunkId id = first_;
-  for (std::size_t done = 0; done < sorted.size(); done += fill) {
-    if (done > 0) {
+  for (std::size_t begun = 0; begun < sorted.size(); begun += fill) {
+    if (begun > 0) {
       const ChunkId next = addChunkAfter(id);
-      if (keeps_open_) advanceOpen(id, next);
+      if (tracks_open_) advanceOpen(id, next);
       id = next;
     }
-    for (const Endpoint endpoint : sorted.subspan(done, std::min(fill, sorted.size() - done))) {
+    for (const Endpoint endpoint : sorted.subspan(begun, std::min(fill, sorted.size() - begun))) {
       begin(id)[chunks_[id].count++] = endpoint;
-      putInto(id, endpoint);
+      setChunk(id, endpoint);
     }
   }
 }
@@ -67,15 +67,15 @@ SegmentedList::ChunkId SegmentedList::addChunkAfter(ChunkId previous) {
   return id;
 }
 
-/// The open set of `to`, from that of `from` before it and what begins and ends in there.
+/// Derives the open set of `to` from the chunk before it, `from`.
 void SegmentedList::advanceOpen(ChunkId from, ChunkId to) {
   std::copy_n(open(from), open_words_, open(to));
   for (const Endpoint endpoint : contents(from)) setOpen(to, endpoint.slot(), !endpoint.isEnd());
 }
 
-/// For all chunks whose start lies between the two.
+/// In all chunks with a start between the two endpoints.
 void SegmentedList::setOpenBetween(Endpoint start, Endpoint end, bool is_open) {
-  if (!keeps_open_) return;
+  if (!tracks_open_) return;
   for (ChunkId id = chunkOf(start); id != chunkOf(end);) {
     id = chunks_[id].next;
     setOpen(id, start.slot(), is_open);
@@ -83,7 +83,7 @@ void SegmentedList::setOpenBetween(Endpoint start, Endpoint end, bool is_open) {
 }
 
 void SegmentedList::insert(Endpoint start, Endpoint end) {
-  // The end first: a chunk that is split meanwhile then never takes the interval for open.
+  // The end first, so that a split in between does not find the interval open.
   insert(end, first_);
   insert(start, chunkOf(end));
   setOpenBetween(start, end, true);
@@ -92,19 +92,19 @@ void SegmentedList::insert(Endpoint start, Endpoint end) {
 void SegmentedList::insert(Endpoint endpoint, ChunkId near) {
   ChunkId id = near;
   while (chunks_[id].previous != kNone && endpoint < front(id)) id = chunks_[id].previous;
-  const auto go_on = [&] {
+  const auto advance = [&] {
     while (chunks_[id].next != kNone && front(chunks_[id].next) < endpoint) id = chunks_[id].next;
   };
-  go_on();
+  advance();
   if (chunks_[id].count == chunk_size_) {
     split(id);
-    go_on();
+    advance();
   }
-  Endpoint* const place = lowerBound(id, endpoint);
-  std::copy_backward(place, end(id), end(id) + 1);
-  *place = endpoint;
+  Endpoint* const position = lowerBound(id, endpoint);
+  std::copy_backward(position, end(id), end(id) + 1);
+  *position = endpoint;
   ++chunks_[id].count;
-  putInto(id, endpoint);
+  setChunk(id, endpoint);
 }
 
 void SegmentedList::split(ChunkId left) {
@@ -113,8 +113,8 @@ void SegmentedList::split(ChunkId left) {
   std::copy(begin(left) + kept, end(left), begin(right));
   chunks_[right].count = chunks_[left].count - kept;
   chunks_[left].count = kept;
-  for (const Endpoint endpoint : contents(right)) putInto(right, endpoint);
-  if (keeps_open_) advanceOpen(left, right);
+  for (const Endpoint endpoint : contents(right)) setChunk(right, endpoint);
+  if (tracks_open_) advanceOpen(left, right);
 }
 
 void SegmentedList::remove(Endpoint start, Endpoint end) {
@@ -125,22 +125,22 @@ void SegmentedList::remove(Endpoint start, Endpoint end) {
 
 void SegmentedList::remove(Endpoint endpoint) {
   const ChunkId id = chunkOf(endpoint);
-  Endpoint* const place = lowerBound(id, endpoint);
-  std::copy(place + 1, end(id), place);
+  Endpoint* const position = lowerBound(id, endpoint);
+  std::copy(position + 1, end(id), position);
   --chunks_[id].count;
   const ChunkId previous = chunks_[id].previous;
   mergeIfSmall(id, chunks_[id].next);
   mergeIfSmall(previous, id);
 }
 
-/// The left one keeps its open set: nothing changes before it.
+/// The open set of the left chunk remains valid.
 void SegmentedList::mergeIfSmall(ChunkId left, ChunkId right) {
   if (left == kNone || right == kNone) return;
   const std::uint32_t left_count = chunks_[left].count;
   const std::uint32_t right_count = chunks_[right].count;
-  const bool one_is_empty = left_count == 0 || right_count == 0;
-  if (!one_is_empty && left_count + right_count > chunk_size_ / 2) return;
-  for (const Endpoint endpoint : contents(right)) putInto(left, endpoint);
+  const bool is_empty = left_count == 0 || right_count == 0;
+  if (!is_empty && left_count + right_count > chunk_size_ / 2) return;
+  for (const Endpoint endpoint : contents(right)) setChunk(left, endpoint);
   std::copy(begin(right), end(right), end(left));
   chunks_[left].count += right_count;
   chunks_[left].next = chunks_[right].next;
@@ -155,10 +155,11 @@ bool SegmentedList::isNear(Endpoint from, Endpoint to) const {
 }
 
 std::vector<Endpoint> SegmentedList::endpoints() const {
-  std::vector<Endpoint> all;
-  forEachChunk(
-      [&](std::span<const Endpoint> chunk) { all.insert(all.end(), chunk.begin(), chunk.end()); });
-  return all;
+  std::vector<Endpoint> result;
+  forEachChunk([&](std::span<const Endpoint> chunk) {
+    result.insert(result.end(), chunk.begin(), chunk.end());
+  });
+  return result;
 }
 
 std::string SegmentedList::validate() const {
@@ -167,34 +168,34 @@ std::string SegmentedList::validate() const {
   ChunkId previous = kNone;
   Endpoint last;
   for (ChunkId id = first_; id != kNone; previous = id, id = chunks_[id].next) {
-    if (++chunks > chunks_.size()) return "chunks linked in a ring";
-    if (chunks_[id].previous != previous) return "chunk linked to a wrong one before it";
+    if (++chunks > chunks_.size()) return "the chunks form a cycle";
+    if (chunks_[id].previous != previous) return "a chunk has a wrong predecessor";
     const std::span<const Endpoint> endpoints = contents(id);
-    if (endpoints.size() > chunk_size_) return "chunk too full";
+    if (endpoints.size() > chunk_size_) return "a chunk is too full";
     if (previous != kNone && endpoints.size() + contents(previous).size() <= chunk_size_ / 2) {
-      return "chunks not merged";
+      return "two small chunks are not merged";
     }
     if (endpoints.empty() && (previous != kNone || chunks_[id].next != kNone)) {
-      return "empty chunk";
+      return "a chunk is empty";
     }
-    if (keeps_open_ && !std::equal(is_open.begin(), is_open.end(), open(id))) {
-      return "wrong open set";
+    if (tracks_open_ && !std::equal(is_open.begin(), is_open.end(), open(id))) {
+      return "an open set is wrong";
     }
     for (const Endpoint endpoint : endpoints) {
       if ((id != first_ || &endpoint != endpoints.data()) && !(last < endpoint)) {
-        return "endpoints not sorted";
+        return "the endpoints are not sorted";
       }
       last = endpoint;
-      if (chunkOf(endpoint) != id) return "endpoint taken for one of another chunk";
-      if (keeps_open_) {
+      if (chunkOf(endpoint) != id) return "an endpoint is recorded in another chunk";
+      if (tracks_open_) {
         is_open[endpoint.slot() / kWordBits] ^= Word{1} << endpoint.slot() % kWordBits;
       }
     }
   }
   if (std::ranges::any_of(is_open, [](Word word) { return word != 0; })) {
-    return "interval without end";
+    return "an interval has no end";
   }
-  if (chunks + unused_.size() != chunks_.size()) return "chunks lost";
+  if (chunks + unused_.size() != chunks_.size()) return "a chunk is lost";
   return {};
 }
 

@@ -1,8 +1,8 @@
-// A segmented interval list: the ends of many intervals on one axis, kept sorted in linked chunks.
+// A segmented interval list: the endpoints of intervals on an axis, sorted, in linked chunks.
 //
-// An endpoint that moves a little is put in order by insertion sort, from neighbour to neighbour.
-// One that comes or goes shifts its own chunk only. Every chunk may keep the set of intervals that
-// are open at its start: then a new interval is not compared with all that begin before it.
+// Insertion sort moves endpoints past their neighbours. Insertions and removals shift the endpoints
+// of one chunk only. Chunks may store the set of intervals that are open at their start: then a new
+// interval is not compared with all intervals that begin before it.
 //
 // Paper: D. J. Tracy, S. R. Buss, B. M. Woods, "Efficient Large-Scale Sweep and Prune Methods with
 // AABB Insertion and Removal", IEEE VR 2009, section 4.
@@ -21,9 +21,9 @@
 
 namespace broadmark::tracy {
 
-/// One end of the interval with the number `slot` (< 2^31). Ordered by value; where values are
-/// equal starts come before ends, so that closed intervals that touch overlap; then by slot, so
-/// that no two are equal.
+/// An endpoint of the interval with index `slot` (< 2^31). Ordered by value; then starts come
+/// before ends, so that closed intervals that touch overlap; then by slot, so that all endpoints
+/// differ.
 class Endpoint {
  public:
   Endpoint() = default;
@@ -39,7 +39,7 @@ class Endpoint {
   static constexpr int kSlotBits = 31;
   static constexpr std::uint32_t kSlots = (1U << kSlotBits) - 1;
 
-  // -0 + 0 is +0: the two are one value.
+  // Adding +0 turns -0 into +0, which has to compare equal.
   Endpoint(float value, std::uint32_t is_end, std::uint32_t slot)
       : bits_(std::uint64_t{sortKey(value + 0.0F)} << 32 | is_end << kSlotBits | slot) {}
 
@@ -48,25 +48,23 @@ class Endpoint {
 
 class SegmentedList {
  public:
-  /// Endpoints of a chunk in all but very long lists. There a chunk holds more, for the sake of the
-  /// open sets: a bounded number of chunks keeps their memory linear.
+  /// The capacity of a chunk. Very long lists have larger chunks: a bounded number of chunks keeps
+  /// the memory of the open sets linear.
   static constexpr std::uint32_t kChunkSize = 64;
 
-  /// With `keeps_open` every chunk keeps its open set, and forEachMeeting() may be called.
-  explicit SegmentedList(bool keeps_open) : keeps_open_(keeps_open) {}
+  /// `tracks_open`: chunks store their open sets, as forEachOverlapping() requires.
+  explicit SegmentedList(bool tracks_open) : tracks_open_(tracks_open) {}
 
-  /// Becomes the list of these endpoints, ascending, with room for intervals of the slots
-  /// [0, capacity): a power of two, at least 64. Until the next build nothing is allocated.
+  /// Replaces the contents, and reserves memory for the slots [0, capacity), a power of two of at
+  /// least 64. Later insertions do not allocate.
   void build(std::span<const Endpoint> sorted, std::uint32_t capacity);
 
-  /// Adds an interval; finding its place is linear in the number of chunks.
+  /// Linear in the number of chunks.
   void insert(Endpoint start, Endpoint end);
-  /// Removes an interval.
   void remove(Endpoint start, Endpoint end);
 
-  /// Moves an endpoint of the list past its neighbours until the order is right again, and calls
-  /// passed(endpoint) for each of them, in order. An interval's start must not be moved past its
-  /// own end.
+  /// Changes the value of an endpoint, and calls passed(endpoint) for each endpoint that it passes,
+  /// in order. A start must not pass the end of its own interval.
   template <class Passed>
   void move(Endpoint from, Endpoint to, Passed passed) {
     if (from < to) {
@@ -76,24 +74,23 @@ class SegmentedList {
     }
   }
 
-  /// Whether move() would end in the same chunk or the one beside it.
+  /// Whether move() would end in the same chunk or an adjacent one.
   [[nodiscard]] bool isNear(Endpoint from, Endpoint to) const;
 
-  /// Calls visit(slot) once for each other interval that meets the one in `slot`, and for some that
-  /// end just before it begins.
+  /// Calls visit(slot) once for each interval that overlaps the interval `slot`, and for some that
+  /// end shortly before it begins.
   template <class Visit>
-  void forEachMeeting(std::uint32_t slot, Visit visit) const;
+  void forEachOverlapping(std::uint32_t slot, Visit visit) const;
 
-  /// Calls visit(first endpoint, endpoints of the chunk) from chunk to chunk.
+  /// Calls visit(endpoints of the chunk) in order.
   template <class Visit>
   void forEachChunk(Visit visit) const {
     for (ChunkId id = first_; id != kNone; id = chunks_[id].next) visit(contents(id));
   }
 
-  /// The endpoints in order.
   [[nodiscard]] std::vector<Endpoint> endpoints() const;
 
-  /// "" or what is wrong with order, links, sizes, places or open sets.
+  /// "" or the broken invariant.
   [[nodiscard]] std::string validate() const;
 
  private:
@@ -110,7 +107,7 @@ class SegmentedList {
 
   Endpoint* begin(ChunkId id) { return &endpoints_[std::size_t{id} * chunk_size_]; }
   Endpoint* end(ChunkId id) { return begin(id) + chunks_[id].count; }
-  /// The first in the chunk that is not less. Without branches, which no predictor would foresee.
+  /// Branchless, since the comparisons are unpredictable.
   Endpoint* lowerBound(ChunkId id, Endpoint endpoint) {
     Endpoint* first = begin(id);
     for (std::size_t count = chunks_[id].count; count > 0;) {
@@ -148,25 +145,25 @@ class SegmentedList {
   void remove(Endpoint endpoint);
   void split(ChunkId left);
   void mergeIfSmall(ChunkId left, ChunkId right);
-  void putInto(ChunkId id, Endpoint endpoint) { chunkOf(endpoint) = id; }
+  void setChunk(ChunkId id, Endpoint endpoint) { chunkOf(endpoint) = id; }
 
   template <int kStep, class Passed>
   void shift(Endpoint from, Endpoint to, Passed& passed);
 
-  bool keeps_open_;
+  bool tracks_open_;
   std::uint32_t capacity_ = 0;    ///< slots
-  std::uint32_t chunk_size_ = 0;  ///< endpoints that a chunk has room for
-  std::uint32_t open_words_ = 0;  ///< of one open set
+  std::uint32_t chunk_size_ = 0;  ///< capacity, in endpoints
+  std::uint32_t open_words_ = 0;  ///< words per open set
   ChunkId first_ = kNone;
   std::vector<Chunk> chunks_;
   std::vector<ChunkId> unused_;
   std::unique_ptr<Endpoint[]> endpoints_;  ///< chunk_size_ for each chunk
-  std::vector<ChunkId> chunk_of_;          ///< of each slot's start and end
+  std::vector<ChunkId> chunk_of_;          ///< by slot: of its start and end
   std::vector<Word> open_;                 ///< open_words_ for each chunk
 };
 
 template <class Visit>
-void SegmentedList::forEachMeeting(std::uint32_t slot, Visit visit) const {
+void SegmentedList::forEachOverlapping(std::uint32_t slot, Visit visit) const {
   ChunkId id = chunk_of_[2 * std::size_t{slot}];
   const Word* const words = open(id);
   for (std::uint32_t i = 0; i < open_words_; ++i) {
@@ -176,18 +173,18 @@ void SegmentedList::forEachMeeting(std::uint32_t slot, Visit visit) const {
   }
   for (; id != kNone; id = chunks_[id].next) {
     for (const Endpoint endpoint : contents(id)) {
-      const bool own = endpoint.slot() == slot;
+      const bool is_own = endpoint.slot() == slot;
       if (endpoint.isEnd()) {
-        if (own) return;
-      } else if (!own) {
+        if (is_own) return;
+      } else if (!is_own) {
         visit(endpoint.slot());
       }
     }
   }
 }
 
-/// Insertion sort upwards (+1) or downwards (-1). Within a chunk neighbours are shifted; at the
-/// border of two chunks the endpoint changes places with its neighbour, so that neither grows.
+/// Insertion sort upwards (+1) or downwards (-1). Within a chunk neighbours are shifted; across a
+/// boundary the endpoint is swapped with its neighbour, so that chunk sizes do not change.
 template <int kStep, class Passed>
 void SegmentedList::shift(Endpoint from, Endpoint to, Passed& passed) {
   constexpr bool kUp = kStep > 0;
@@ -207,9 +204,9 @@ void SegmentedList::shift(Endpoint from, Endpoint to, Passed& passed) {
     if (!ahead(*entrance)) break;
     passed(*entrance);
     *at = *entrance;
-    putInto(id, *entrance);
-    if (keeps_open_) {
-      // The start of the later chunk now lies on the other side of both.
+    setChunk(id, *entrance);
+    if (tracks_open_) {
+      // The start of the later chunk is now on the other side of both.
       const ChunkId later = kUp ? beside : id;
       setOpen(later, entrance->slot(), entrance->isEnd() != kUp);
       setOpen(later, to.slot(), to.isEnd() == kUp);
@@ -218,7 +215,7 @@ void SegmentedList::shift(Endpoint from, Endpoint to, Passed& passed) {
     at = entrance;
   }
   *at = to;
-  putInto(id, to);
+  setChunk(id, to);
 }
 
 }  // namespace broadmark::tracy

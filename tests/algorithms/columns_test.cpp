@@ -55,7 +55,7 @@ struct QuantizedBox {
 };
 
 /// Few different coordinates, such that most pairs of boxes have equal bounds, and both extremes.
-QuantizedBox randomBox(inputs::Random& random) {
+QuantizedBox randomQuantizedBox(inputs::Random& random) {
   constexpr std::array<std::uint32_t, 6> kCoords = {0, 1, 127, 128, 254, 255};
   QuantizedBox box;
   for (int axis = 0; axis < 2; ++axis) {
@@ -75,8 +75,8 @@ bool overlapQuantized(const QuantizedBox& a, const QuantizedBox& b) {
 TEST(ColumnKeys, OverlapWhereQuantizedBoxesDo) {
   inputs::Random random(1, 0);
   for (int i = 0; i < 5000; ++i) {
-    const QuantizedBox a = randomBox(random);
-    const QuantizedBox b = randomBox(random);
+    const QuantizedBox a = randomQuantizedBox(random);
+    const QuantizedBox b = randomQuantizedBox(random);
     ASSERT_EQ(columns::overlapQuantized({0, ~1U, a.key(), 0}, {1, ~2U, b.key(), 1}),
               overlapQuantized(a, b));
   }
@@ -93,7 +93,7 @@ TEST(ColumnKernels, ExtractPairsFromHits) {
   for (CellEntry& entry : entries) {
     const std::uint32_t coord_a = kCoords[random.integer(0, 5)];
     const std::uint32_t coord_b = kCoords[random.integer(0, 5)];
-    keys.push_back(randomBox(random));
+    keys.push_back(randomQuantizedBox(random));
     entry = {std::min(coord_a, coord_b), ~std::max(coord_a, coord_b), keys.back().key(),
              static_cast<std::uint32_t>(random.integer(0, 1) == 0 ? entries.end() - &entry
                                                                   : 7 * keys.size())};
@@ -158,7 +158,7 @@ TEST(ColumnKernels, FindThePairsInTheWindows) {
   columns::SortedColumn sorted;
   sorted.resize(kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
-    quantized_boxes.push_back(randomBox(random));
+    quantized_boxes.push_back(randomQuantizedBox(random));
     // All overlap on the sweep axis, and all boxes overlap: only the keys differ.
     sorted.entries[i] = {0, ~1U, quantized_boxes[i].key(), static_cast<CellBody>(i)};
     sorted.keys[i] = quantized_boxes[i].key();
@@ -456,13 +456,13 @@ TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
 
 /// Small boxes at the indices of the first sample (sampleIndex()), plates at all others.
 std::vector<Aabb> misleading(std::size_t n) {
-  std::set<std::size_t> sampled;
+  std::set<std::size_t> sampleIndex;
   for (std::size_t k = 0; k < 256; ++k) {
-    sampled.insert(static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{n} >> 32);
+    sampleIndex.insert(static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{n} >> 32);
   }
   return inputs::generate(n, 0, 1, [&](inputs::Random& random, std::size_t i) {
     const inputs::Vec3 corner = random.inCube(100);
-    if (sampled.contains(i)) return inputs::boxAt(corner, {0.1F, 0.1F, 0.1F});
+    if (sampleIndex.contains(i)) return inputs::boxAt(corner, {0.1F, 0.1F, 0.1F});
     return inputs::boxAt({corner[0], 0, 0}, {0.01F, 100, 100});
   });
 }

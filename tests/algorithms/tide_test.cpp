@@ -1,5 +1,5 @@
-// Tide: what it does when few bodies move, when many do, and in between. That it finds the right
-// pairs on all inputs, with its grid alone, too, is tested with all others.
+// Tide when few bodies move, when many bodies move, and when it switches between its modes. The
+// tests of all algorithms check its pairs on all inputs, also with the grid only.
 
 #include <gtest/gtest.h>
 
@@ -15,16 +15,16 @@ namespace {
 
 using tide::LooseGrid;
 
-/// A box of any size from a grain to half the world, somewhere; now and then nowhere.
-Aabb anything(inputs::Random& random) {
+/// A box of a random size from 2^-6 to half the world, at a random position; sometimes empty.
+Aabb randomBox(inputs::Random& random) {
   if (random.integer(0, 9) == 0) return kEmptyBox;
   const float edge = std::exp2(random.uniform(-6, 5));
   return inputs::boxAt(random.inCube(60), {edge, edge * random.uniform(0.1F, 1), edge});
 }
 
-/// A step that seldom leads into another cell, or anywhere.
+/// A small step, which seldom changes the cell; sometimes a new random box.
 Aabb moved(const Aabb& box, inputs::Random& random) {
-  if (isEmpty(box) || random.integer(0, 7) == 0) return anything(random);
+  if (isEmpty(box) || random.integer(0, 7) == 0) return randomBox(random);
   Aabb to = box;
   for (int axis = 0; axis < 3; ++axis) {
     const float step = random.uniform(-0.4F, 0.4F);
@@ -34,14 +34,14 @@ Aabb moved(const Aabb& box, inputs::Random& random) {
   return to;
 }
 
-std::vector<Aabb> anyBoxes(std::size_t n, inputs::Random& random) {
+std::vector<Aabb> randomBoxes(std::size_t n, inputs::Random& random) {
   std::vector<Aabb> boxes(n);
-  for (Aabb& box : boxes) box = anything(random);
+  for (Aabb& box : boxes) box = randomBox(random);
   return boxes;
 }
 
-/// The frame that comes after this one if `movers` bodies move.
-std::vector<Aabb> after(std::vector<Aabb> boxes, std::size_t movers, inputs::Random& random) {
+/// Moves up to `movers` random bodies.
+std::vector<Aabb> withMovers(std::vector<Aabb> boxes, std::size_t movers, inputs::Random& random) {
   for (std::size_t i = 0; i < movers; ++i) {
     Aabb& box =
         boxes[static_cast<std::size_t>(random.integer(0, static_cast<int>(boxes.size()) - 1))];
@@ -59,110 +59,110 @@ SceneInfo sceneFor(std::size_t bodies) {
 
 const ParameterValues kGridOnly = algorithmOf("tide").traits.rare_parameters;
 
-/// Each kind of answer, with the parameters.
-std::vector<TestRun> runsOf(const ParameterValues& parameters) {
-  std::vector<TestRun> runs;
+/// One for each kind of answer.
+std::vector<TestRun> testRuns(const ParameterValues& parameters) {
+  std::vector<TestRun> test_runs;
   for (const AnswerKind answer : {AnswerKind::pairs, AnswerKind::events}) {
-    runs.emplace_back(algorithmOf("tide"), Configuration{bestIsa(), 1, answer}, parameters);
+    test_runs.emplace_back(algorithmOf("tide"), Configuration{bestIsa(), 1, answer}, parameters);
   }
-  return runs;
+  return test_runs;
 }
 
-TEST(Tide, FindsBodiesOfAllSizesThatMoveNearAndFarComeAndGo) {
+TEST(Tide, FindsBodiesOfAllSizesThatMoveAppearAndVanish) {
   constexpr std::size_t kBodies = 400;
-  for (TestRun& run : runsOf(kGridOnly)) {
+  for (TestRun& test_run : testRuns(kGridOnly)) {
     inputs::Random random(1, 0);
-    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
-    run.start(sceneFor(kBodies), boxes);
+    std::vector<Aabb> boxes = randomBoxes(kBodies, random);
+    test_run.start(sceneFor(kBodies), boxes);
     for (int frame = 0; frame < 200; ++frame) {
-      boxes = after(boxes, static_cast<std::size_t>(random.integer(0, frame % 10 == 0 ? 400 : 20)),
-                    random);
-      ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
-      ASSERT_EQ(run.broadPhase().validate(), "") << "frame " << frame;
+      boxes = withMovers(
+          boxes, static_cast<std::size_t>(random.integer(0, frame % 10 == 0 ? 400 : 20)), random);
+      ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(test_run.broadPhase().validate(), "") << "frame " << frame;
     }
   }
 }
 
-bool isInTheGrid(TestRun& run) { return countersOf(run.broadPhase()).contains("looks"); }
+bool usesGrid(TestRun& test_run) { return countersOf(test_run.broadPhase()).contains("looks"); }
 
-// Few, many for some frames, few again: the grid is built again once it would have paid.
-TEST(Tide, ChangesOverWhenManyMoveAndBack) {
+// Few bodies move, then many, then few again: a grid is rebuilt once that pays.
+TEST(Tide, SwitchesToFullSearchAndBack) {
   constexpr std::size_t kBodies = 500;
-  constexpr int kFirstOfMany = 3;
-  constexpr int kLastOfMany = 7;
-  for (TestRun& run : runsOf({})) {
+  constexpr int kFirstWithMany = 3;
+  constexpr int kLastWithMany = 7;
+  for (TestRun& test_run : testRuns({})) {
     inputs::Random random(2, 0);
-    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
-    run.start(sceneFor(kBodies), boxes);
+    std::vector<Aabb> boxes = randomBoxes(kBodies, random);
+    test_run.start(sceneFor(kBodies), boxes);
     std::vector<int> built;
     for (int frame = 0; frame < 80; ++frame) {
-      const bool many = frame >= kFirstOfMany && frame <= kLastOfMany;
-      boxes = after(boxes, many ? 400 : 5, random);
-      ASSERT_EQ(sorted(run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
-      ASSERT_EQ(run.broadPhase().validate(), "") << "frame " << frame;
-      if (countersOf(run.broadPhase()).at("grids built") > 0) built.push_back(frame);
+      const bool many = frame >= kFirstWithMany && frame <= kLastWithMany;
+      boxes = withMovers(boxes, many ? 400 : 5, random);
+      ASSERT_EQ(sorted(test_run.step(boxes)), bruteForcePairs(boxes)) << "frame " << frame;
+      ASSERT_EQ(test_run.broadPhase().validate(), "") << "frame " << frame;
+      if (countersOf(test_run.broadPhase()).at("grids built") > 0) built.push_back(frame);
       const bool is_built = !built.empty() && built[0] < frame;
-      EXPECT_EQ(isInTheGrid(run), frame < kFirstOfMany || is_built) << "frame " << frame;
+      EXPECT_EQ(usesGrid(test_run), frame < kFirstWithMany || is_built) << "frame " << frame;
     }
     ASSERT_EQ(built.size(), 1U);
-    EXPECT_GT(built[0], kLastOfMany + 1) << "too soon to have paid";
+    EXPECT_GT(built[0], kLastWithMany + 1) << "built before it pays";
   }
 }
 
-// Boxes of several sizes are on several levels, all of which a move looks into: so it is sooner
-// quicker to find all pairs anew.
-TEST(Tide, ChangesOverWhereThatIsQuicker) {
+// Boxes of several sizes occupy several levels, all of which a move queries: so a full search is
+// cheaper at a lower number of moving bodies.
+TEST(Tide, SwitchesToFullSearchWhereThatIsCheaper) {
   constexpr std::size_t kBodies = 4000;
-  const auto stays_in_the_grid = [](inputs::Generator input, std::size_t movers) {
-    TestRun run(algorithmOf("tide"), Configuration{bestIsa(), 1, AnswerKind::events});
+  const auto stays_in_grid = [](inputs::Generator input, std::size_t movers) {
+    TestRun test_run(algorithmOf("tide"), Configuration{bestIsa(), 1, AnswerKind::events});
     std::vector<Aabb> boxes = input(kBodies, 0, 1);
-    run.start(boxes);
+    test_run.start(boxes);
     for (int frame = 0; frame < 3; ++frame) {
       for (std::size_t body = 0; body < movers; ++body) {
         boxes[body].min[0] -= 0.125F;
         boxes[body].max[0] -= 0.125F;
       }
-      EXPECT_EQ(sorted(run.step(boxes)), sweptPairs(boxes)) << "frame " << frame;
+      EXPECT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes)) << "frame " << frame;
     }
-    return isInTheGrid(run);
+    return usesGrid(test_run);
   };
-  EXPECT_TRUE(stays_in_the_grid(inputs::uniform, kBodies / 20));
-  EXPECT_TRUE(stays_in_the_grid(inputs::uniform, kBodies / 6));
-  EXPECT_FALSE(stays_in_the_grid(inputs::uniform, kBodies / 2));
-  EXPECT_TRUE(stays_in_the_grid(inputs::assorted, kBodies / 20));
-  EXPECT_FALSE(stays_in_the_grid(inputs::assorted, kBodies / 6));
+  EXPECT_TRUE(stays_in_grid(inputs::uniform, kBodies / 20));
+  EXPECT_TRUE(stays_in_grid(inputs::uniform, kBodies / 6));
+  EXPECT_FALSE(stays_in_grid(inputs::uniform, kBodies / 2));
+  EXPECT_TRUE(stays_in_grid(inputs::assorted, kBodies / 20));
+  EXPECT_FALSE(stays_in_grid(inputs::assorted, kBodies / 6));
 }
 
-TEST(Tide, TellsHowManyBodiesItsCellsHold) {
+TEST(Tide, DrawsThePopulationOfItsCells) {
   constexpr std::size_t kBodies = 400;
-  for (TestRun& run : runsOf(kGridOnly)) {
+  for (TestRun& test_run : testRuns(kGridOnly)) {
     inputs::Random random(3, 0);
-    std::vector<Aabb> boxes = anyBoxes(kBodies, random);
-    run.start(sceneFor(kBodies), boxes);
-    boxes = after(boxes, 20, random);
-    run.step(boxes);
+    std::vector<Aabb> boxes = randomBoxes(kBodies, random);
+    test_run.start(sceneFor(kBodies), boxes);
+    boxes = withMovers(boxes, 20, random);
+    test_run.step(boxes);
     const auto present = kBodies - static_cast<std::size_t>(std::ranges::count_if(boxes, isEmpty));
-    EXPECT_EQ(populationOf(drawingOf(run.broadPhase())), present);
+    EXPECT_EQ(populationOf(drawingOf(test_run.broadPhase())), present);
   }
 }
 
-TEST(Tide, LooksAtNothingWhereNothingMoves) {
+TEST(Tide, DoesNothingWhenNothingMoves) {
   const std::vector<Aabb> boxes = inputs::uniform(1000, 0, 1);
-  for (TestRun& run : runsOf({})) {
-    run.start(boxes);
-    ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes));
-    const Counters counters = countersOf(run.broadPhase());
+  for (TestRun& test_run : testRuns({})) {
+    test_run.start(boxes);
+    ASSERT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes));
+    const Counters counters = countersOf(test_run.broadPhase());
     EXPECT_EQ(counters.at("tests"), 0U);
     EXPECT_EQ(counters.at("looks"), 0U);
   }
 }
 
-// A grid for bodies far apart has too few cells once they crowd.
-TEST(Tide, BuildsAnotherGridWhereBodiesCrowd) {
+// A grid built for spread bodies has too few cells once they are crowded.
+TEST(Tide, RebuildsTheGridWhenBodiesCrowd) {
   constexpr std::size_t kBodies = 2000;
   const std::vector<Aabb> apart = inputs::uniform(kBodies, 0, 1);
-  for (TestRun& run : runsOf(kGridOnly)) {
-    run.start(apart);
+  for (TestRun& test_run : testRuns(kGridOnly)) {
+    test_run.start(apart);
     std::uint64_t built = 0;
     std::vector<std::uint64_t> tests;
     for (int frame = 1; frame <= 40; ++frame) {
@@ -171,81 +171,82 @@ TEST(Tide, BuildsAnotherGridWhereBodiesCrowd) {
       for (Aabb& box : boxes) {
         const inputs::Vec3 corner = {box.min[0] * share, box.min[1] * share, box.min[2] * share};
         box = inputs::boxAt(corner, {0.02F, 0.02F, 0.02F});
-        box.max[0] += 1e-5F * static_cast<float>(frame);  // all move, to the end
+        box.max[0] += 1e-5F * static_cast<float>(frame);  // all bodies move in every frame
       }
-      ASSERT_EQ(sorted(run.step(boxes)), sweptPairs(boxes)) << "frame " << frame;
-      const Counters counters = countersOf(run.broadPhase());
+      ASSERT_EQ(sorted(test_run.step(boxes)), sweptPairs(boxes)) << "frame " << frame;
+      const Counters counters = countersOf(test_run.broadPhase());
       built += counters.at("grids built");
       tests.push_back(counters.at("tests"));
     }
     EXPECT_GE(built, 1U);
     EXPECT_LE(built, 5U);
-    EXPECT_LT(tests.back(), 100 * kBodies) << "of a move with twice as many others than expected";
+    EXPECT_LT(tests.back(), 100 * kBodies) << "a move costs too many tests";
   }
 }
 
-// A frame from scratch takes 12 ns a body, one in the grid 71 for each that moves, and a grid 100 a
-// body.
+// A full search takes 12 ns per body, a frame in the grid 71 ns per moving body, and a build 100 ns
+// per body.
 constexpr tide::Costs kRoundCosts = {
-    .build = 100, .move = 35, .look = 36, .test = 13, .sampled = 0, .body = 12};
+    .build = 100, .move = 35, .cell_query = 36, .test = 13, .sampleIndex = 0, .body = 12};
 
-/// Of ten moves each; in one there was a giant.
-constexpr std::array<tide::Work, tide::CostModel::kTries> kTries = [] {
-  std::array<tide::Work, tide::CostModel::kTries> tries{};
-  for (tide::Work& work : tries) work.looks = 10;
-  tries[0].tests = 1'000'000;
-  return tries;
+/// Ten moves each, one of them of a very large body.
+constexpr std::array<tide::WorkCounts, tide::CostModel::kCalibrationBatches> kBatches = [] {
+  std::array<tide::WorkCounts, tide::CostModel::kCalibrationBatches> batches{};
+  for (tide::WorkCounts& work : batches) work.cell_queries = 10;
+  batches[0].tests = 1'000'000;
+  return batches;
 }();
 
-TEST(TideCosts, AGridPaysOnceAsMuchWasWasted) {
+TEST(TideCosts, AGridPaysOnceItsAbsenceHasCostAsMuch) {
   constexpr std::size_t kBodies = 1000;
   constexpr std::size_t kFew = 50;
   tide::CostModel costs(kRoundCosts, 1, kBodies);
-  costs.setGrid(kTries, 10);
-  EXPECT_FALSE(costs.scratchIsQuicker(kFew));
-  EXPECT_TRUE(costs.scratchIsQuicker(4 * kFew));
+  costs.calibrate(kBatches, 10);
+  EXPECT_FALSE(costs.fullSearchIsCheaper(kFew));
+  EXPECT_TRUE(costs.fullSearchIsCheaper(4 * kFew));
   for (int frame = 0; frame < 2; ++frame) {
     for (int quiet = 1; quiet <= 11; ++quiet) EXPECT_FALSE(costs.gridPays(kFew)) << quiet;
     EXPECT_TRUE(costs.gridPays(kFew));
-    costs.setGrid(kTries, 10);
+    costs.calibrate(kBatches, 10);
   }
   for (int quiet = 1; quiet <= 11; ++quiet) costs.gridPays(kFew);
   costs.gridPays(kBodies);
-  EXPECT_FALSE(costs.gridPays(kFew)) << "frames in which many move speak against it";
+  EXPECT_FALSE(costs.gridPays(kFew)) << "a frame in which many bodies move counts against the grid";
 }
 
-TEST(TideCosts, AnotherGridPaysOnceMovesHaveBecomeDear) {
+TEST(TideCosts, ARebuildPaysOnceMovesHaveBecomeExpensive) {
   constexpr std::size_t kBodies = 1000;
   tide::CostModel costs(kRoundCosts, 1, kBodies);
-  costs.setGrid(kTries, 10);
+  costs.calibrate(kBatches, 10);
   for (int frame = 0; frame < 100; ++frame) {
-    EXPECT_FALSE(costs.anotherGridPays({.looks = 100, .tests = 900}, 0, 100)) << "not dear yet";
+    EXPECT_FALSE(costs.rebuildPays({.cell_queries = 100, .tests = 900}, 0, 100))
+        << "not expensive yet";
   }
-  EXPECT_TRUE(costs.anotherGridPays({.looks = 1000, .tests = 100'000}, 0, 1000));
+  EXPECT_TRUE(costs.rebuildPays({.cell_queries = 1000, .tests = 100'000}, 0, 1000));
 }
 
 TEST(TideCosts, LearnFromFramesInWhichManyMove) {
   constexpr std::size_t kBodies = 1000;
-  constexpr tide::Work kDear = {.looks = 1000, .tests = 30'000};
+  constexpr tide::WorkCounts kExpensive = {.cell_queries = 1000, .tests = 30'000};
   tide::CostModel costs(kRoundCosts, 1, kBodies);
-  costs.setGrid(kTries, 10);
-  for (int frame = 0; frame < 100; ++frame) costs.anotherGridPays({.tests = 90'000}, 0, 10);
-  EXPECT_FALSE(costs.scratchIsQuicker(100)) << "too few moved to tell";
-  costs.anotherGridPays(kDear, 0, 1000);
-  EXPECT_FALSE(costs.scratchIsQuicker(100)) << "that may be a single giant";
-  for (int frame = 0; frame < 10; ++frame) costs.anotherGridPays(kDear, 0, 1000);
-  EXPECT_TRUE(costs.scratchIsQuicker(100));
+  costs.calibrate(kBatches, 10);
+  for (int frame = 0; frame < 100; ++frame) costs.rebuildPays({.tests = 90'000}, 0, 10);
+  EXPECT_FALSE(costs.fullSearchIsCheaper(100)) << "too few moves to learn from";
+  costs.rebuildPays(kExpensive, 0, 1000);
+  EXPECT_FALSE(costs.fullSearchIsCheaper(100)) << "this may be a single very large body";
+  for (int frame = 0; frame < 10; ++frame) costs.rebuildPays(kExpensive, 0, 1000);
+  EXPECT_TRUE(costs.fullSearchIsCheaper(100));
 
   int frames = 1;
   while (!costs.gridPays(100) && frames < 10'000) ++frames;
-  EXPECT_GT(frames, 100) << "a grid is built in vain, and too often";
-  EXPECT_LT(frames, 1000) << "what was learnt is never forgotten";
+  EXPECT_GT(frames, 100) << "wasted builds are too frequent";
+  EXPECT_LT(frames, 1000) << "the learnt cost does not decay";
 }
 
-/// Drives a grid through frames of its own.
+/// Steps a grid without Tide around it.
 class LooseGridTest : public testing::Test {
  protected:
-  /// Checks the events of a frame against both sets of pairs.
+  /// Checks the events against the pairs before and after the frame.
   void step(LooseGrid& grid, const std::vector<Aabb>& before, const std::vector<Aabb>& now) {
     std::vector<std::uint32_t> changed;
     for (std::uint32_t body = 0; body < now.size(); ++body) {
@@ -253,43 +254,42 @@ class LooseGridTest : public testing::Test {
     }
     PairBuffer began;
     PairBuffer ended;
-    grid.addMoves(changed, now);
-    grid.search({}, began, ended);
-    grid.settle();
+    grid.moveBodies(changed, now);
+    grid.findEvents({}, began, ended);
+    grid.endFrame();
     ASSERT_EQ(grid.validate(), "");
-    EXPECT_EQ(sortedList(began.run()), without(bruteForcePairs(now), bruteForcePairs(before)));
-    EXPECT_EQ(sortedList(ended.run()), without(bruteForcePairs(before), bruteForcePairs(now)));
+    EXPECT_EQ(sortedList(began.run()), difference(bruteForcePairs(now), bruteForcePairs(before)));
+    EXPECT_EQ(sortedList(ended.run()), difference(bruteForcePairs(before), bruteForcePairs(now)));
   }
 
-  static std::vector<Pair> sortedList(PairRun run) {
-    std::vector<Pair> pairs(run.begin(), run.end());
-    std::ranges::sort(pairs);
-    return pairs;
+  static std::vector<Pair> sortedList(PairRun pairs) {
+    std::vector<Pair> list(pairs.begin(), pairs.end());
+    std::ranges::sort(list);
+    return list;
   }
-  static std::vector<Pair> without(const std::vector<Pair>& pairs,
-                                   const std::vector<Pair>& others) {
-    std::vector<Pair> rest;
-    std::ranges::set_difference(pairs, others, std::back_inserter(rest));
-    return rest;
+  static std::vector<Pair> difference(const std::vector<Pair>& pairs,
+                                      const std::vector<Pair>& others) {
+    std::vector<Pair> result;
+    std::ranges::set_difference(pairs, others, std::back_inserter(result));
+    return result;
   }
 };
 
-TEST_F(LooseGridTest, TellsEachEventOnce) {
+TEST_F(LooseGridTest, EmitsEachEventOnce) {
   constexpr std::size_t kBodies = 300;
   inputs::Random random(3, 0);
-  std::vector<Aabb> boxes = anyBoxes(kBodies, random);
+  std::vector<Aabb> boxes = randomBoxes(kBodies, random);
   LooseGrid grid(bestIsa());
   grid.build(boxes);
   for (int frame = 0; frame < 180; ++frame) {
     const std::vector<Aabb> before = boxes;
-    boxes = after(boxes, frame % 7 == 0 ? 2 * kBodies : 30, random);
+    boxes = withMovers(boxes, frame % 7 == 0 ? 2 * kBodies : 30, random);
     step(grid, before, boxes);
     if (HasFailure()) return;
   }
 }
 
-// Crowded cells have many lines.
-TEST_F(LooseGridTest, CopesWithCrowds) {
+TEST_F(LooseGridTest, HandlesOverflowBuckets) {
   for (const Isa isa : supportedIsas()) {
     SCOPED_TRACE(isaName(isa));
     std::vector<Aabb> boxes = inputs::identical(700, 0, 1);
@@ -306,76 +306,77 @@ TEST_F(LooseGridTest, CopesWithCrowds) {
   }
 }
 
-// Bounds of any kind: a byte that is one too large is enough to be missed.
-TEST(TideKernels, FindThoseWithinLimits) {
-  constexpr std::uint32_t kLooks = 500;
+// Random bounds: a single byte that is too large by one is a miss.
+TEST(TideKernels, FindOverlappingBounds) {
+  constexpr std::uint32_t kQueries = 500;
   inputs::Random random(4, 0);
-  const auto any_bounds = [&](int least) {
-    tide::Bounds bounds = 0;
+  const auto random_bounds = [&](int min) {
+    tide::PackedBounds bounds = 0;
     for (const int byte : {0, 1, 2, 4, 5, 6}) {
-      bounds |= static_cast<tide::Bounds>(random.integer(least, 127)) << 8 * byte;
+      bounds |= static_cast<tide::PackedBounds>(random.integer(min, 127)) << 8 * byte;
     }
     return bounds;
   };
-  std::vector<tide::Line> lines(std::size_t{tide::Look::kLines} * kLooks);
-  for (tide::Line& line : lines) {
-    const int bodies = random.integer(0, tide::Line::kPlaces);
-    for (int place = 0; place < bodies; ++place) line.bounds[place] = any_bounds(0);
-    for (std::uint32_t& body : line.bodies) body = static_cast<std::uint32_t>(random.integer(0, 9));
-    if (random.integer(0, 9) == 0) line.next = 7;
+  std::vector<tide::CellBucket> buckets(std::size_t{tide::CellQuery::kBuckets} * kQueries);
+  for (tide::CellBucket& bucket : buckets) {
+    const int bodies = random.integer(0, tide::CellBucket::kSlots);
+    for (int slot = 0; slot < bodies; ++slot) bucket.bounds[slot] = random_bounds(0);
+    for (std::uint32_t& body : bucket.bodies)
+      body = static_cast<std::uint32_t>(random.integer(0, 9));
+    if (random.integer(0, 9) == 0) bucket.next = 7;
   }
-  std::vector<tide::Look> looks(kLooks);
-  for (std::uint32_t look = 0; look < kLooks; ++look) {
-    looks[look].wanted = 0;
-    for (std::uint32_t i = 0; i < tide::Look::kLines; ++i) {
-      looks[look].lines[i] = &lines[tide::Look::kLines * look + i];
-      looks[look].limits[i] = any_bounds(random.integer(0, 127));
-      if (random.integer(0, 3) != 0) looks[look].wanted |= tide::Look::kLine << 8 * i;
+  std::vector<tide::CellQuery> queries(kQueries);
+  for (std::uint32_t query = 0; query < kQueries; ++query) {
+    queries[query].active = 0;
+    for (std::uint32_t i = 0; i < tide::CellQuery::kBuckets; ++i) {
+      queries[query].buckets[i] = &buckets[tide::CellQuery::kBuckets * query + i];
+      queries[query].packed[i] = random_bounds(random.integer(0, 127));
+      if (random.integer(0, 3) != 0) queries[query].active |= tide::CellQuery::kBucketBits << 8 * i;
     }
   }
-  constexpr std::uint32_t kFirstLook = 5;
+  constexpr std::uint32_t kFirstQuery = 5;
   for (const Isa isa : supportedIsas()) {
     SCOPED_TRACE(isaName(isa));
-    std::vector<tide::Hit> hits(kLooks);
-    std::vector<tide::Hit> followed(kLooks);
-    const tide::Kernels::Found found =
-        tide::kernels(isa).look(looks.data(), kLooks, kFirstLook, hits.data(), followed.data());
+    std::vector<tide::Hit> hits(kQueries);
+    std::vector<tide::Hit> overflows(kQueries);
+    const tide::Kernels::Counts counts = tide::kernels(isa).run_queries(
+        queries.data(), kQueries, kFirstQuery, hits.data(), overflows.data());
     std::size_t hit = 0;
     std::size_t next = 0;
-    for (std::uint32_t look = 0; look < kLooks; ++look) {
-      std::uint64_t places = 0;
-      std::uint64_t behind = 0;
-      for (std::uint32_t i = 0; i < tide::Look::kLines; ++i) {
-        if ((looks[look].wanted >> 8 * i & 0xFF) == 0) continue;
-        const tide::Line& line = *looks[look].lines[i];
-        for (std::uint32_t place = 0; place < tide::Line::kPlaces; ++place) {
-          if (tide::areWithin(line.bounds[place], looks[look].limits[i])) {
-            places |= std::uint64_t{1} << (8 * i + place);
+    for (std::uint32_t query = 0; query < kQueries; ++query) {
+      std::uint64_t slots = 0;
+      std::uint64_t overflow = 0;
+      for (std::uint32_t i = 0; i < tide::CellQuery::kBuckets; ++i) {
+        if ((queries[query].active >> 8 * i & 0xFF) == 0) continue;
+        const tide::CellBucket& bucket = *queries[query].buckets[i];
+        for (std::uint32_t slot = 0; slot < tide::CellBucket::kSlots; ++slot) {
+          if (tide::packedOverlap(bucket.bounds[slot], queries[query].packed[i])) {
+            slots |= std::uint64_t{1} << (8 * i + slot);
           }
         }
-        if (line.next != tide::kNowhere)
-          behind |= tide::Look::kFollowed & std::uint64_t{0xFF} << 8 * i;
+        if (bucket.next != tide::kInvalidIndex)
+          overflow |= tide::CellQuery::kOverflowBits & std::uint64_t{0xFF} << 8 * i;
       }
-      if (places != 0) {
-        ASSERT_LT(hit, found.hits);
-        EXPECT_EQ(hits[hit].look, kFirstLook + look);
-        EXPECT_EQ(hits[hit++].places, places);
+      if (slots != 0) {
+        ASSERT_LT(hit, counts.hits);
+        EXPECT_EQ(hits[hit].query, kFirstQuery + query);
+        EXPECT_EQ(hits[hit++].bits, slots);
       }
-      if (behind != 0) {
-        ASSERT_LT(next, found.followed);
-        EXPECT_EQ(followed[next].look, kFirstLook + look);
-        EXPECT_EQ(followed[next++].places, behind);
+      if (overflow != 0) {
+        ASSERT_LT(next, counts.overflows);
+        EXPECT_EQ(overflows[next].query, kFirstQuery + query);
+        EXPECT_EQ(overflows[next++].bits, overflow);
       }
     }
-    EXPECT_EQ(hit, found.hits);
-    EXPECT_EQ(next, found.followed);
-    EXPECT_GT(hit, kLooks / 20) << "or too little was tested";
-    EXPECT_LT(hit, kLooks);
+    EXPECT_EQ(hit, counts.hits);
+    EXPECT_EQ(next, counts.overflows);
+    EXPECT_GT(hit, kQueries / 20) << "too few queries hit to test anything";
+    EXPECT_LT(hit, kQueries);
   }
 }
 
-// At the ends of what a float can hold, and where all bodies are one point.
-TEST_F(LooseGridTest, NeedsNoBounds) {
+// Near the limits of floats, and with all bodies at one point.
+TEST_F(LooseGridTest, NeedsNoWorldBounds) {
   for (const inputs::Input& input : inputs::kAll) {
     SCOPED_TRACE(input.name);
     std::vector<Aabb> boxes = input.boxes(100, 0, 1);
@@ -393,16 +394,16 @@ TEST_F(LooseGridTest, NeedsNoBounds) {
 
 TEST_F(LooseGridTest, MayBeEmpty) {
   for (const std::size_t n : {0U, 1U, 2U}) {
-    const std::vector<Aabb> nobody(n, kEmptyBox);
-    const std::vector<Aabb> all(n, inputs::boxAt({5, 5, 5}, {1, 1, 1}));
+    const std::vector<Aabb> absent(n, kEmptyBox);
+    const std::vector<Aabb> present(n, inputs::boxAt({5, 5, 5}, {1, 1, 1}));
     LooseGrid grid(bestIsa());
-    grid.build(nobody);
-    step(grid, nobody, all);
-    step(grid, all, nobody);
-    step(grid, nobody, nobody);
+    grid.build(absent);
+    step(grid, absent, present);
+    step(grid, present, absent);
+    step(grid, absent, absent);
     std::vector<Aabb> boxes;
-    grid.boxes(boxes);
-    EXPECT_EQ(boxes, nobody);
+    grid.copyBoxes(boxes);
+    EXPECT_EQ(boxes, absent);
   }
 }
 

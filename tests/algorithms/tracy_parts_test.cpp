@@ -1,4 +1,4 @@
-// Tracy's parts by themselves: endpoints, the segmented list, the set of pairs.
+// The components of Tracy: endpoints, the segmented list, the pair set.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(Endpoint, StartsComeBeforeEndsAtTheSameValue) {
   EXPECT_EQ(Endpoint::end(1, 0x7FFF'FFFF).slot(), 0x7FFF'FFFFU);
 }
 
-/// A segmented list beside the plainest thing that does the same.
+/// A segmented list and a naive model of it.
 class ListAndModel {
  public:
   ListAndModel(std::uint32_t capacity, int values, std::uint64_t seed)
@@ -38,7 +38,7 @@ class ListAndModel {
     list_.build({}, capacity);
   }
 
-  /// Does something at random; `fullness` is the share of intervals it tends to.
+  /// A random operation; `fullness` is the expected share of occupied slots.
   void step(double fullness) {
     const auto slot =
         static_cast<std::uint32_t>(random_.integer(0, static_cast<int>(capacity_) - 1));
@@ -48,12 +48,12 @@ class ListAndModel {
     } else if (random_.uniform(0, 1) > fullness) {
       remove(slot);
     } else {
-      moveTo(slot, random_.integer(0, 3) == 0 ? anywhere() : nearby(found->second));
+      moveTo(slot, random_.integer(0, 3) == 0 ? randomInterval() : nearby(found->second));
     }
   }
 
   void insert(std::uint32_t slot) {
-    const Interval interval = intervals_[slot] = anywhere();
+    const Interval interval = intervals_[slot] = randomInterval();
     list_.insert(Endpoint::start(interval.low, slot), Endpoint::end(interval.high, slot));
   }
   void remove(std::uint32_t slot) {
@@ -67,20 +67,23 @@ class ListAndModel {
     ASSERT_TRUE(std::ranges::equal(list_.endpoints(), model()));
   }
 
-  /// What is said to meet an interval must be what does, and what ends before it at the most.
-  void checkMeeting() const {
+  /// Every overlapping interval is visited once; others are visited only if they begin before the
+  /// end.
+  void checkOverlapping() const {
     for (const auto& [slot, interval] : intervals_) {
       std::map<std::uint32_t, int> visits;
-      list_.forEachMeeting(slot, [&](std::uint32_t other) { ++visits[other]; });
+      list_.forEachOverlapping(slot, [&](std::uint32_t other) { ++visits[other]; });
       EXPECT_EQ(visits.count(slot), 0U);
-      for (const auto& [other, theirs] : intervals_) {
+      for (const auto& [other, other_interval] : intervals_) {
         if (other == slot) continue;
-        const bool meets = interval.low <= theirs.high && theirs.low <= interval.high;
+        const bool overlaps =
+            interval.low <= other_interval.high && other_interval.low <= interval.high;
         const int count = visits[other];
-        if (meets) {
-          ASSERT_EQ(count, 1) << slot << " meets " << other;
+        if (overlaps) {
+          ASSERT_EQ(count, 1) << slot << " overlaps " << other;
         }
-        ASSERT_TRUE(count == 0 || (count == 1 && theirs.low <= interval.high)) << slot << other;
+        ASSERT_TRUE(count == 0 || (count == 1 && other_interval.low <= interval.high))
+            << slot << other;
       }
     }
   }
@@ -101,32 +104,32 @@ class ListAndModel {
   };
 
   float value() { return static_cast<float>(random_.integer(-values_, values_)); }
-  Interval anywhere() {
+  Interval randomInterval() {
     const float low = value();
     // Mostly short, so that open sets are neither empty nor full.
     const int longest = random_.integer(0, 9) == 0 ? values_ : values_ / 20;
     return {low, low + static_cast<float>(random_.integer(0, longest))};
   }
   Interval nearby(const Interval& from) {
-    const auto some = [&] { return static_cast<float>(random_.integer(-2, 2)); };
-    const float low = from.low + some();
-    return {low, std::max(low, from.high + some())};
+    const auto offset = [&] { return static_cast<float>(random_.integer(-2, 2)); };
+    const float low = from.low + offset();
+    return {low, std::max(low, from.high + offset())};
   }
 
   void moveTo(std::uint32_t slot, const Interval& to) {
     const Interval from = std::exchange(intervals_[slot], to);
-    const auto moveStart = [&] {
+    const auto move_start = [&] {
       move(Endpoint::start(from.low, slot), Endpoint::start(to.low, slot));
     };
-    const auto moveEnd = [&] {
+    const auto move_end = [&] {
       move(Endpoint::end(from.high, slot), Endpoint::end(to.high, slot));
     };
     if (from.high < to.high) {
-      moveEnd();
-      moveStart();
+      move_end();
+      move_start();
     } else {
-      moveStart();
-      moveEnd();
+      move_start();
+      move_end();
     }
   }
 
@@ -143,13 +146,13 @@ class ListAndModel {
   }
 
   [[nodiscard]] std::vector<Endpoint> model() const {
-    std::vector<Endpoint> all;
+    std::vector<Endpoint> endpoints;
     for (const auto& [slot, interval] : intervals_) {
-      all.push_back(Endpoint::start(interval.low, slot));
-      all.push_back(Endpoint::end(interval.high, slot));
+      endpoints.push_back(Endpoint::start(interval.low, slot));
+      endpoints.push_back(Endpoint::end(interval.high, slot));
     }
-    std::ranges::sort(all);
-    return all;
+    std::ranges::sort(endpoints);
+    return endpoints;
   }
 
   std::uint32_t capacity_;
@@ -159,27 +162,27 @@ class ListAndModel {
   std::map<std::uint32_t, Interval> intervals_;
 };
 
-// Few values make many ties. The list fills up and empties again, so that chunks split and merge.
-TEST(SegmentedList, DoesAsANaiveListDoes) {
+// Few values make many ties. The list fills and empties, so that chunks split and merge.
+TEST(SegmentedList, BehavesLikeANaiveList) {
   for (const int values : {3, 50, 5000}) {
     SCOPED_TRACE(values);
     ListAndModel both(512, values, 7);
-    int most_chunks = 0;
+    int max_chunks = 0;
     for (int round = 0; round < 12; ++round) {
       for (int i = 0; i < 800; ++i) {
         both.step(round % 4 < 2 ? 0.9 : 0.1);
         if (i % 8 == 0) both.check();
         if (HasFailure()) return;
       }
-      most_chunks = std::max(most_chunks, both.chunks());
-      both.checkMeeting();
+      max_chunks = std::max(max_chunks, both.chunks());
+      both.checkOverlapping();
       if (HasFailure()) return;
     }
-    EXPECT_GE(most_chunks, 12);
+    EXPECT_GE(max_chunks, 12);
   }
 }
 
-// A chunk of a very long list holds more, or the open sets would need more than linear memory.
+// Very long lists have larger chunks, or the open sets would need superlinear memory.
 TEST(SegmentedList, KeepsTheNumberOfChunksBounded) {
   for (const std::uint32_t capacity : {64U, 1024U, 16384U}) {
     ListAndModel both(capacity, 100'000, 3);
@@ -195,17 +198,17 @@ TEST(SegmentedList, KeepsTheNumberOfChunksBounded) {
   }
 }
 
-TEST(SegmentedList, BuildsAsItInserts) {
+TEST(SegmentedList, BuildsTheSameListAsInsertions) {
   ListAndModel both(256, 1000, 11);
   for (std::uint32_t slot = 0; slot < 256; slot += 2) both.insert(slot);
   for (const std::uint32_t capacity : {256U, 512U, 4096U}) {
     both.list().build(both.list().endpoints(), capacity);
     both.check();
-    both.checkMeeting();
+    both.checkOverlapping();
   }
 }
 
-TEST(SegmentedList, TellsWhatIsNear) {
+TEST(SegmentedList, DetectsNearMoves) {
   SegmentedList list(false);
   std::vector<Endpoint> sorted;
   for (std::uint32_t slot = 0; slot < 500; ++slot) {
@@ -213,44 +216,44 @@ TEST(SegmentedList, TellsWhatIsNear) {
     sorted.push_back(Endpoint::end(static_cast<float>(slot) + 0.5F, slot));
   }
   list.build(sorted, 512);
-  const auto nearFrom250 = [&](float value) {
+  const auto is_near_250 = [&](float value) {
     return list.isNear(Endpoint::start(250, 250), Endpoint::start(value, 250));
   };
-  EXPECT_TRUE(nearFrom250(250));
-  EXPECT_TRUE(nearFrom250(260));
-  EXPECT_TRUE(nearFrom250(240));
-  EXPECT_FALSE(nearFrom250(400));
-  EXPECT_FALSE(nearFrom250(100));
+  EXPECT_TRUE(is_near_250(250));
+  EXPECT_TRUE(is_near_250(260));
+  EXPECT_TRUE(is_near_250(240));
+  EXPECT_FALSE(is_near_250(400));
+  EXPECT_FALSE(is_near_250(100));
 }
 
-TEST(PairSet, DoesAsASetDoes) {
+TEST(PairSet, BehavesLikeStdSet) {
   PairSet pairs;
   std::set<Pair> expected;
   inputs::Random random(3, 0);
   for (int round = 0; round < 2; ++round) {
     for (int change = 0; change < 400; ++change) {
-      std::set<Pair> come;
-      std::set<Pair> gone;
+      std::set<Pair> inserted;
+      std::set<Pair> erased;
       for (int i = random.integer(0, 100); i > 0; --i) {
         const auto a = static_cast<std::uint32_t>(random.integer(0, 60));
         const Pair pair{a, a + static_cast<std::uint32_t>(random.integer(1, 60))};
-        (expected.contains(pair) ? gone : come).insert(pair);
+        (expected.contains(pair) ? erased : inserted).insert(pair);
       }
-      for (const Pair pair : gone) expected.erase(pair);
-      expected.insert(come.begin(), come.end());
-      pairs.erase(std::vector<Pair>(gone.begin(), gone.end()));
-      pairs.insert(std::vector<Pair>(come.begin(), come.end()));
-      const PairRun run = pairs.run();
-      ASSERT_EQ(sorted({&run, 1}), std::vector<Pair>(expected.begin(), expected.end()));
-      for (const Pair pair : come) ASSERT_TRUE(pairs.contains(pair));
-      for (const Pair pair : gone) ASSERT_FALSE(pairs.contains(pair));
+      for (const Pair pair : erased) expected.erase(pair);
+      expected.insert(inserted.begin(), inserted.end());
+      pairs.erase(std::vector<Pair>(erased.begin(), erased.end()));
+      pairs.insert(std::vector<Pair>(inserted.begin(), inserted.end()));
+      const PairRun contents = pairs.run();
+      ASSERT_EQ(sorted({&contents, 1}), std::vector<Pair>(expected.begin(), expected.end()));
+      for (const Pair pair : inserted) ASSERT_TRUE(pairs.contains(pair));
+      for (const Pair pair : erased) ASSERT_FALSE(pairs.contains(pair));
     }
-    const Pair there = pairs.run().front();
-    const Pair nowhere = {100, 200};
-    EXPECT_THROW(pairs.insert({&there, 1}), std::logic_error);
-    EXPECT_THROW(pairs.erase({&nowhere, 1}), std::logic_error);
+    const Pair present = pairs.run().front();
+    const Pair absent = {100, 200};
+    EXPECT_THROW(pairs.insert({&present, 1}), std::logic_error);
+    EXPECT_THROW(pairs.erase({&absent, 1}), std::logic_error);
     pairs.clear();
-    EXPECT_THROW(pairs.erase({&there, 1}), std::logic_error);
+    EXPECT_THROW(pairs.erase({&present, 1}), std::logic_error);
     expected.clear();
     EXPECT_TRUE(pairs.run().empty());
   }

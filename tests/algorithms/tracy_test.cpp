@@ -1,5 +1,5 @@
-// What is particular to Tracy: that it is incremental, and right where bodies change cells, leave
-// the world or touch very many cells.
+// Tracy: incremental updates, and correctness for bodies that change cells, leave the world or
+// touch very many cells.
 
 #include <gtest/gtest.h>
 
@@ -12,11 +12,11 @@
 namespace broadmark::tests {
 namespace {
 
-/// A run of Tracy that checks its structure and its answers; and beside it one for events.
-class Checked {
+/// Runs Tracy twice, for pairs and for events, and checks structure and answers.
+class CheckedRun {
  public:
-  Checked(const std::string& id, int threads, int objects_per_cell, const Aabb& world,
-          const std::vector<Aabb>& first)
+  CheckedRun(const std::string& id, int threads, int objects_per_cell, const Aabb& world,
+             const std::vector<Aabb>& first)
       : run_(algorithmOf(id), {Isa::scalar, threads},
              {{"objects_per_cell", std::to_string(objects_per_cell)}}),
         events_(algorithmOf(id), {Isa::scalar, threads, AnswerKind::events},
@@ -32,7 +32,7 @@ class Checked {
     ++index_;
     const std::vector<Pair> right = sweptPairs(boxes);
     EXPECT_EQ(sorted(run_.step(boxes)), right) << "in frame " << index_;
-    EXPECT_EQ(sorted(events_.step(boxes)), right) << "of events, in frame " << index_;
+    EXPECT_EQ(sorted(events_.step(boxes)), right) << "from events, in frame " << index_;
     EXPECT_EQ(run_.broadPhase().validate(), "") << "in frame " << index_;
   }
 
@@ -47,44 +47,44 @@ class Checked {
 
 Aabb cubeFrom(float low, float high) { return {{low, low, low, 0}, {high, high, high, 0}}; }
 
-void moveBy(Aabb& box, const inputs::Vec3& way) {
+void moveBy(Aabb& box, const inputs::Vec3& offset) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.min[axis] += way[axis];
-    box.max[axis] += way[axis];
+    box.min[axis] += offset[axis];
+    box.max[axis] += offset[axis];
   }
 }
 
-inputs::Vec3 anyWay(inputs::Random& random, float most) {
-  return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
+inputs::Vec3 randomOffset(inputs::Random& random, float max) {
+  return {random.uniform(-max, max), random.uniform(-max, max), random.uniform(-max, max)};
 }
 
 TEST(Tracy, DoesNothingWhenNothingMoves) {
   const std::vector<Aabb> boxes = inputs::assorted(2000, 0, 5);
-  Checked run("tracy", 1, 20, cubeFrom(0, 30), boxes);
+  CheckedRun run("tracy", 1, 20, cubeFrom(0, 30), boxes);
   run.step(boxes);
   for (const auto& [name, count] : run.counters()) EXPECT_EQ(count, 0U) << name;
 
-  std::vector<Aabb> one_moved = boxes;
-  moveBy(one_moved[77], {0.1F, 0, 0});
-  run.step(one_moved);
+  std::vector<Aabb> with_move = boxes;
+  moveBy(with_move[77], {0.1F, 0, 0});
+  run.step(with_move);
   EXPECT_GE(run.counters()["moves"], 1U);
   EXPECT_LE(run.counters()["moves"], 8U);
   EXPECT_GT(run.counters()["swaps"], 0U);
   EXPECT_LT(run.counters()["swaps"], 200U);
 }
 
-TEST(Tracy, HoldsOverAThousandFramesOfSmallMoves) {
+TEST(Tracy, IsExactOverAThousandFramesOfSmallMoves) {
   for (const char* id : {"tracy", "tracy-mt"}) {
     std::vector<Aabb> boxes = inputs::clustered(400, 0, 9);
-    Checked run(id, id == std::string("tracy") ? 1 : 3, 25, cubeFrom(-6, 6), boxes);
+    CheckedRun run(id, id == std::string("tracy") ? 1 : 3, 25, cubeFrom(-6, 6), boxes);
     Counters sum;
     for (std::uint32_t frame = 1; frame <= 1000; ++frame) {
       inputs::Random random(4, frame);
       for (std::size_t i = frame % 3; i < boxes.size(); i += 3) {
         // On a coarse lattice, so that many bounds are equal.
-        inputs::Vec3 way = anyWay(random, 0.3F);
-        for (float& x : way) x = std::round(x * 8) / 8;
-        moveBy(boxes[i], way);
+        inputs::Vec3 offset = randomOffset(random, 0.3F);
+        for (float& x : offset) x = std::round(x * 8) / 8;
+        moveBy(boxes[i], offset);
       }
       run.step(boxes);
       if (HasFailure()) return;
@@ -97,22 +97,22 @@ TEST(Tracy, HoldsOverAThousandFramesOfSmallMoves) {
   }
 }
 
-TEST(Tracy, HoldsForManyBodies) {
+TEST(Tracy, IsExactForManyBodies) {
   constexpr std::size_t kCount = 20'000;
   std::vector<Aabb> boxes = inputs::assorted(kCount, 0, 2);
-  Checked one("tracy", 1, 200, cubeFrom(0, 58.5F), boxes);
-  Checked several("tracy-mt", 4, 200, cubeFrom(0, 58.5F), boxes);
+  CheckedRun single("tracy", 1, 200, cubeFrom(0, 58.5F), boxes);
+  CheckedRun parallel("tracy-mt", 4, 200, cubeFrom(0, 58.5F), boxes);
   for (std::uint32_t frame = 1; frame <= 5; ++frame) {
     inputs::Random random(8, frame);
-    for (Aabb& box : boxes) moveBy(box, anyWay(random, 0.4F));
-    for (std::size_t i = 0; i < 100; ++i) moveBy(boxes[i * 191], anyWay(random, 60));
-    one.step(boxes);
-    several.step(boxes);
+    for (Aabb& box : boxes) moveBy(box, randomOffset(random, 0.4F));
+    for (std::size_t i = 0; i < 100; ++i) moveBy(boxes[i * 191], randomOffset(random, 60));
+    single.step(boxes);
+    parallel.step(boxes);
   }
 }
 
-// The listed algorithm is tested with its usual cells; here everything happens at their borders.
-TEST(Tracy, HoldsWithCellsOfAFewBodies) {
+// The tests of all algorithms use the default cells; with small cells most bodies cross boundaries.
+TEST(Tracy, IsExactWithCellsOfAFewBodies) {
   constexpr std::size_t kCount = 257;
   constexpr std::uint32_t kSteps = 4;
   for (const int objects_per_cell : {1, 4}) {
@@ -120,17 +120,17 @@ TEST(Tracy, HoldsWithCellsOfAFewBodies) {
     for (const inputs::Input& input : inputs::kAll) {
       SCOPED_TRACE(input.name);
       const auto frames = framesOf(input, kCount, kSteps);
-      Checked run("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
+      CheckedRun run("tracy-mt", 2, objects_per_cell, sceneOf(frames).world, frames[0]);
       for (std::uint32_t i = 1; i < kSteps; ++i) run.step(frames[i]);
       unrelated.push_back(frames[1]);
       if (HasFailure()) return;
     }
-    Checked run("tracy", 1, objects_per_cell, cubeFrom(-10, 20), unrelated[0]);
+    CheckedRun run("tracy", 1, objects_per_cell, cubeFrom(-10, 20), unrelated[0]);
     for (const std::vector<Aabb>& boxes : unrelated) run.step(boxes);
   }
 }
 
-// So few that each is looked up in its cells: they move a little, jump, vanish and come back.
+// So few movers that cells look up each of them: they take small steps, jump, vanish and reappear.
 TEST(Tracy, FindsFewMoversAmongMany) {
   constexpr std::size_t kCount = 1000;
   constexpr std::size_t kMovers = 12;
@@ -138,21 +138,21 @@ TEST(Tracy, FindsFewMoversAmongMany) {
   for (const int threads : {1, 2, 3}) {
     SCOPED_TRACE(threads);
     std::vector<Aabb> boxes = inputs::assorted(kCount, 0, 5);
-    Checked run(threads > 1 ? "tracy-mt" : "tracy", threads, 4, cubeFrom(0, kEdge), boxes);
+    CheckedRun run(threads > 1 ? "tracy-mt" : "tracy", threads, 4, cubeFrom(0, kEdge), boxes);
     inputs::Random random(3, 1);
-    const auto any_body = [&] {
+    const auto random_body = [&] {
       return static_cast<std::size_t>(random.uniform(0, kCount - 0.5F));
     };
     for (int frame = 0; frame < 60; ++frame) {
       for (std::size_t i = 0; i < kMovers; ++i) {
-        Aabb& box = boxes[i % 2 == 0 ? i : any_body()];
-        const float dice = random.uniform(0, 1);
+        Aabb& box = boxes[i % 2 == 0 ? i : random_body()];
+        const float choice = random.uniform(0, 1);
         if (isEmpty(box)) {
-          box = boxes[kCount - 1 - i];  // identical to another, if that is there
-        } else if (dice < 0.2F) {
+          box = boxes[kCount - 1 - i];  // identical to another body, unless that is absent
+        } else if (choice < 0.2F) {
           box = kEmptyBox;
         } else {
-          moveBy(box, anyWay(random, dice < 0.4F ? kEdge : 0.3F));
+          moveBy(box, randomOffset(random, choice < 0.4F ? kEdge : 0.3F));
         }
       }
       run.step(boxes);
@@ -167,11 +167,11 @@ TEST(Tracy, KeepsPairsThatChangeCells) {
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) moveBy(boxes[i], {static_cast<float>(i) * 0.02F, 0, 0});
   }
-  Checked run("tracy", 1, 1, cubeFrom(0, 4), boxes);
+  CheckedRun run("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::uint64_t cell_changes = 0;
   for (int frame = 0; frame < 100; ++frame) {
-    const float way = frame < 50 ? 0.09F : -0.09F;
-    for (Aabb& box : boxes) moveBy(box, {way, way / 2, -way / 3});
+    const float step = frame < 50 ? 0.09F : -0.09F;
+    for (Aabb& box : boxes) moveBy(box, {step, step / 2, -step / 3});
     run.step(boxes);
     const Counters counters = run.counters();
     cell_changes += counters.at("cell changes");
@@ -180,11 +180,11 @@ TEST(Tracy, KeepsPairsThatChangeCells) {
   EXPECT_GT(cell_changes, 16U);
 }
 
-// One body moves past another of the same size, both in the same direction: their endpoints are
-// swapped to and fro within a frame.
-TEST(Tracy, TellsNothingOfWhatIsUndoneWithinAFrame) {
+// Two bodies move in the same direction by more than their distance: their endpoints are swapped
+// and swapped back within a frame.
+TEST(Tracy, ReportsNothingThatIsUndoneWithinAFrame) {
   std::vector<Aabb> boxes = {cubeFrom(0, 1), cubeFrom(1.5F, 2.5F)};
-  Checked run("tracy", 1, 200, cubeFrom(0, 100), boxes);
+  CheckedRun run("tracy", 1, 200, cubeFrom(0, 100), boxes);
   for (int frame = 0; frame < 40; ++frame) {
     for (Aabb& box : boxes) moveBy(box, {2, 2, 2});
     run.step(boxes);
@@ -192,9 +192,9 @@ TEST(Tracy, TellsNothingOfWhatIsUndoneWithinAFrame) {
   }
 }
 
-TEST(Tracy, SetsDownAnewWhatGoesFarWithinACell) {
+TEST(Tracy, ReinsertsBodiesThatMoveFarWithinACell) {
   std::vector<Aabb> boxes = inputs::uniform(600, 0, 6);
-  Checked run("tracy", 1, 1'000'000, cubeFrom(0, 18), boxes);
+  CheckedRun run("tracy", 1, 1'000'000, cubeFrom(0, 18), boxes);
   const std::vector<Aabb> elsewhere = inputs::uniform(600, 1, 6);
   std::copy_n(elsewhere.begin(), 300, boxes.begin());
   run.step(boxes);
@@ -204,14 +204,14 @@ TEST(Tracy, SetsDownAnewWhatGoesFarWithinACell) {
   run.step(boxes);
 }
 
-TEST(Tracy, HoldsOutsideOfTheWorld) {
+TEST(Tracy, IsExactOutsideOfTheWorld) {
   std::vector<Aabb> boxes = inputs::clustered(500, 0, 3);
-  Checked run("tracy-mt", 2, 20, cubeFrom(-4, 4), boxes);
+  CheckedRun run("tracy-mt", 2, 20, cubeFrom(-4, 4), boxes);
   for (std::uint32_t frame = 1; frame <= 60; ++frame) {
     inputs::Random random(5, frame);
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      // A wind blows most of them out of the world, in a stream dense enough to collide.
-      moveBy(boxes[i], anyWay(random, 0.2F));
+      // Most bodies drift out of the world, close enough to each other to collide.
+      moveBy(boxes[i], randomOffset(random, 0.2F));
       if (i % 3 != 0) moveBy(boxes[i], {0.5F, -0.5F, i % 2 == 0 ? 0.5F : 0.0F});
     }
     run.step(boxes);
@@ -220,25 +220,25 @@ TEST(Tracy, HoldsOutsideOfTheWorld) {
   run.step(boxes);
 }
 
-// All numbers in the header are zero, or the world is no larger than a point.
-TEST(Tracy, HoldsInAWorldOfNoSize) {
+// The world is a point or a plane.
+TEST(Tracy, IsExactInADegenerateWorld) {
   for (const Aabb& world : {cubeFrom(0, 0), cubeFrom(3, 3), Aabb{{0, 0, 0, 0}, {10, 10, 0, 0}}}) {
-    Checked run("tracy", 1, 5, world, inputs::uniform(300, 0, 1));
+    CheckedRun run("tracy", 1, 5, world, inputs::uniform(300, 0, 1));
     for (std::uint32_t frame = 1; frame < 4; ++frame) run.step(inputs::uniform(300, frame, 1));
   }
 }
 
-// Values that no recording holds: differences overflow in floats.
+// Values that no recording contains: differences overflow.
 TEST(Tracy, SurvivesTheLimitsOfFloats) {
   const std::vector<Aabb> first = inputs::limits(300, 0, 1);
   for (const Aabb& world : {cubeFrom(-1, 1), cubeFrom(-std::numeric_limits<float>::max(),
                                                       std::numeric_limits<float>::max())}) {
-    Checked run("tracy", 1, 5, world, first);
+    CheckedRun run("tracy", 1, 5, world, first);
     for (std::uint32_t frame = 1; frame < 5; ++frame) run.step(inputs::limits(300, frame, 1));
   }
 }
 
-// Were each body to stand in all cells that it touches, these would need a thousand places each.
+// On the initial grid the bodies would touch a thousand cells each.
 TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
   const std::vector<Aabb> small = inputs::uniform(1000, 0, 4);
   std::vector<Aabb> large = small;
@@ -249,12 +249,12 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
     large[i].max[(i + 1) % 3] = 30;
   }
   for (const char* id : {"tracy", "tracy-mt"}) {
-    Checked run(id, id == std::string("tracy") ? 1 : 3, 1, cubeFrom(0, 21.5F), small);
+    CheckedRun run(id, id == std::string("tracy") ? 1 : 3, 1, cubeFrom(0, 21.5F), small);
     run.step(large);
     EXPECT_EQ(run.counters()["grid rebuilds"], 1U);
     run.step(large);
     EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
-    // A step finer at a time, until the grid is what it was.
+    // The grid is refined step by step, up to the initial grid.
     std::uint64_t rebuilds = 0;
     std::vector<Aabb> boxes = small;
     for (int frame = 0; frame < 12; ++frame) {
@@ -264,17 +264,17 @@ TEST(Tracy, CoarsensTheGridForBodiesThatTouchManyCells) {
     }
     EXPECT_GE(rebuilds, 2U);
     EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
-    Checked fresh(id, 1, 1, cubeFrom(0, 21.5F), small);
+    CheckedRun fresh(id, 1, 1, cubeFrom(0, 21.5F), small);
     fresh.step(boxes);
     run.step(boxes);
   }
 }
 
-// A floor and four walls among small bodies are no reason to give up the grid.
+// A floor and four walls among small bodies do not coarsen the grid.
 TEST(Tracy, KeepsTheGridForAFewLargeBodies) {
   std::vector<Aabb> boxes = inputs::uniform(2000, 0, 4);
   for (std::size_t i = 0; i < 5; ++i) boxes[i] = cubeFrom(-1, 30);
-  Checked run("tracy", 1, 10, cubeFrom(0, 28), boxes);
+  CheckedRun run("tracy", 1, 10, cubeFrom(0, 28), boxes);
   for (Aabb& box : boxes) moveBy(box, {0.1F, 0.2F, 0});
   run.step(boxes);
   EXPECT_EQ(run.counters()["grid rebuilds"], 0U);
@@ -283,7 +283,7 @@ TEST(Tracy, KeepsTheGridForAFewLargeBodies) {
 TEST(Tracy, DrawsOccupiedCellsAndTheirSegments) {
   std::vector<Aabb> boxes(100, cubeFrom(0.1F, 0.2F));
   for (std::size_t i = 0; i < 50; ++i) boxes[i] = cubeFrom(3.5F, 3.6F);
-  Checked run("tracy", 1, 1, cubeFrom(0, 4), boxes);
+  CheckedRun run("tracy", 1, 1, cubeFrom(0, 4), boxes);
   std::map<int, std::vector<Aabb>> levels;
   const RecordedDrawing drawing = drawingOf(run.broadPhase());
   for (const RecordedDrawing::Box& drawn : drawing.boxes()) {
@@ -293,7 +293,7 @@ TEST(Tracy, DrawsOccupiedCellsAndTheirSegments) {
   ASSERT_EQ(levels[0].size(), 2U);
   EXPECT_EQ(levels[0][0].min, cubeFrom(0, 0).min);
   EXPECT_EQ(levels[0][1].max, cubeFrom(4, 4).max);
-  // 100 endpoints in each of the cells: three chunks, the first from the first endpoint on.
+  // 100 endpoints in each cell: three chunks, the first of which begins at the first endpoint.
   for (const Aabb& cell : levels[0]) {
     float covered = 0;
     for (const Aabb& segment : levels[1]) {

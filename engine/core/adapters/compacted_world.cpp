@@ -5,9 +5,9 @@
 // are left out: O(pairs).
 //
 // What can be known of pairs beforehand keeps them from being formed. A body takes no part where no
-// layer that meets its own has anybody present. Where strangers (a level, say) are near nobody that
-// they meet, they take no part either: O(strangers) in a frame in which something changed. Worlds
-// are put side by side.
+// layer that meets its own has anybody present. Where bodies of non-colliding layers (a level, say)
+// are near nobody that they meet, they take no part either: O(their number) in a frame in which
+// something changed. Worlds are put side by side.
 
 #include <algorithm>
 #include <numeric>
@@ -18,7 +18,7 @@
 #include "adapters/renamed_bodies.h"
 #include "adapters/side_by_side.h"
 #include "broadmark/adapters.h"
-#include "broadmark/strangers.h"
+#include "broadmark/non_colliding_layers.h"
 
 namespace broadmark {
 namespace {
@@ -40,7 +40,7 @@ class CompactedWorld final : public BroadPhase {
     matrix_ = filter_.matrix();
     std::vector<std::uint32_t> all(scene.objects);
     std::iota(all.begin(), all.end(), 0U);
-    findStrangers(scene, all);
+    findNonColliding(scene, all);
     worlds_.emplace(scene);
     present_.assign(scene.objects, 0);
     places_.assign(scene.objects, kAbsent);
@@ -101,15 +101,15 @@ class CompactedWorld final : public BroadPhase {
  private:
   static constexpr std::uint32_t kAbsent = 0xFFFF'FFFF;
 
-  void findStrangers(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
-    const Strangers strangers(filter_, bodies);
-    const auto meeting = static_cast<std::size_t>(
-        std::ranges::count_if(bodies, [&](std::uint32_t body) { return strangers.meet(body); }));
-    if (strangers.count() < meeting) return;  // to look who is near would cost more than it saves
-    strangers_ = strangers;
+  void findNonColliding(const SceneInfo& scene, std::span<const std::uint32_t> bodies) {
+    const NonCollidingLayers layers(filter_, bodies);
+    const auto meeting = static_cast<std::size_t>(std::ranges::count_if(
+        bodies, [&](std::uint32_t body) { return layers.collideWith(body); }));
+    if (layers.bodyCount() < meeting) return;  // to look who is near would cost more than it saves
+    non_colliding_ = layers;
     for (const std::uint32_t body : bodies) {
-      if (strangers_.contains(body)) stranger_bodies_.push_back(body);
-      if (strangers_.meet(body)) meeting_bodies_.push_back(body);
+      if (non_colliding_.contains(body)) stranger_bodies_.push_back(body);
+      if (non_colliding_.collideWith(body)) meeting_bodies_.push_back(body);
     }
     near_.emplace(scene.world);
   }
@@ -162,7 +162,7 @@ class CompactedWorld final : public BroadPhase {
 
   [[nodiscard]] bool takesPart(std::uint32_t body, const Aabb& box) {
     if (present_[body] == 0 || (meetable_ >> filter_.layerOf(body) & 1) == 0) return false;
-    return !strangers_.contains(body) || near_->isNear(box);
+    return !non_colliding_.contains(body) || near_->isNear(box);
   }
 
   void consider(std::uint32_t body, const Aabb& box) {
@@ -236,10 +236,10 @@ class CompactedWorld final : public BroadPhase {
   LayerMatrix matrix_;
   std::vector<std::uint8_t> present_;                           ///< by body: 1 if it is
   std::array<std::size_t, LayerMatrix::kLayers> population_{};  ///< present, by layer
-  std::uint32_t meetable_ = 0;  ///< bit by layer: somebody is there whom it meets
-  Strangers strangers_;         ///< if that is worth it
+  std::uint32_t meetable_ = 0;        ///< bit by layer: somebody is there whom it meets
+  NonCollidingLayers non_colliding_;  ///< if that is worth it
   std::vector<std::uint32_t> stranger_bodies_;
-  std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet strangers
+  std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet non-colliding layers
   std::optional<NearGrid> near_;               ///< of these
   std::vector<std::uint32_t> appearing_;       ///< bodies that take part from this frame on
 

@@ -1,4 +1,4 @@
-// A set of pairs that lies ready as one contiguous run: pairs come and go in O(1).
+// A set of pairs in one contiguous array, with O(1) insertion and removal.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace broadmark {
 
-/// The pairs themselves lie in an array without gaps; a hash table with linear probing (of at
-/// most half its places taken) holds their positions. Keeps its memory when cleared.
+/// A hash table with linear probing (load factor up to 1/2) maps pairs to positions in the array.
+/// Retains its memory when cleared.
 class PairSet {
  public:
   [[nodiscard]] PairRun run() const { return pairs_; }
 
   [[nodiscard]] bool contains(Pair pair) const {
-    return table_[placeFor(pair, hashOf(pair))].position != kEmpty;
+    return table_[findSlot(pair, hashOf(pair))].position != kEmpty;
   }
 
   void clear() {
@@ -25,29 +25,28 @@ class PairSet {
     table_.assign(table_.size(), Slot{});
   }
 
-  /// Adds pairs. Throws std::logic_error if one is in it already.
+  /// Throws std::logic_error if a pair is in the set already.
   void insert(PairRun pairs) {
     while (2 * (pairs_.size() + pairs.size()) > table_.size()) grow();
-    inTurn(pairs, [this](Pair pair) { insert(pair); });
+    forEachPrefetched(pairs, [this](Pair pair) { insert(pair); });
   }
 
-  /// Removes pairs; the last ones take their places in the run. Throws std::logic_error if one is
-  /// not in it.
+  /// Fills the gaps with the last pairs. Throws std::logic_error if a pair is not in the set.
   void erase(PairRun pairs) {
-    inTurn(pairs, [this](Pair pair) { erase(pair); });
+    forEachPrefetched(pairs, [this](Pair pair) { erase(pair); });
   }
 
  private:
-  /// So many ahead pairs are sent for, and places in the table.
+  // Prefetch distances.
   static constexpr std::size_t kPairsAhead = 8;
-  static constexpr std::size_t kPlacesAhead = 2 * kPairsAhead;
+  static constexpr std::size_t kSlotsAhead = 2 * kPairsAhead;
 
-  /// Calls visit(pair) for each; what that reads is sent for before, as most of it is in no cache:
-  /// first places in the table, then the pairs whose positions these hold.
+  /// Calls visit(pair) for each pair. Prefetches in two steps: the slot in the table, then the pair
+  /// that it points to.
   template <class Visit>
-  void inTurn(PairRun pairs, Visit visit) {
+  void forEachPrefetched(PairRun pairs, Visit visit) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (i + kPlacesAhead < pairs.size()) __builtin_prefetch(homeOf(pairs[i + kPlacesAhead]));
+      if (i + kSlotsAhead < pairs.size()) __builtin_prefetch(homeOf(pairs[i + kSlotsAhead]));
       if (i + kPairsAhead < pairs.size()) {
         const std::uint32_t position = homeOf(pairs[i + kPairsAhead])->position;
         if (position != kEmpty) __builtin_prefetch(&pairs_[position]);
@@ -58,64 +57,63 @@ class PairSet {
 
   void insert(Pair pair) {
     const std::uint32_t hash = hashOf(pair);
-    Slot& slot = table_[placeFor(pair, hash)];
-    if (slot.position != kEmpty) throw std::logic_error("a pair began that was there already");
+    Slot& slot = table_[findSlot(pair, hash)];
+    if (slot.position != kEmpty) throw std::logic_error("inserted pair is already in the set");
     slot = {static_cast<std::uint32_t>(pairs_.size()), hash};
     pairs_.push_back(pair);
   }
 
   void erase(Pair pair) {
-    const std::size_t place = placeFor(pair, hashOf(pair));
-    const std::uint32_t gap = table_[place].position;
-    if (gap == kEmpty) throw std::logic_error("a pair ended that was not there");
+    const std::size_t slot = findSlot(pair, hashOf(pair));
+    const std::uint32_t gap = table_[slot].position;
+    if (gap == kEmpty) throw std::logic_error("erased pair is not in the set");
     const Pair last = pairs_.back();
-    table_[placeFor(last, hashOf(last))].position = gap;
+    table_[findSlot(last, hashOf(last))].position = gap;
     pairs_[gap] = last;
-    vacate(place);
+    eraseSlot(slot);
     pairs_.pop_back();
-    if (pairs_.size() > kPlacesAhead) {
-      __builtin_prefetch(homeOf(pairs_[pairs_.size() - kPlacesAhead]));
+    if (pairs_.size() > kSlotsAhead) {
+      __builtin_prefetch(homeOf(pairs_[pairs_.size() - kSlotsAhead]));
     }
   }
 
-  /// Of the table.
   struct Slot {
-    std::uint32_t position = kEmpty;  ///< of a pair in pairs_
-    std::uint32_t hash = 0;           ///< of that pair
+    std::uint32_t position = kEmpty;  ///< in pairs_
+    std::uint32_t hash = 0;
   };
   static constexpr std::uint32_t kEmpty = 0xFFFF'FFFF;
   static constexpr int kHashBits = 32;
-  static constexpr int kSmallestBits = 10;
+  static constexpr int kMinBits = 10;
 
-  /// The upper bits of a product, which depend on all others.
+  /// Multiplicative hashing: the upper bits of the product depend on all bits of the pair.
   static std::uint32_t hashOf(Pair pair) {
     const std::uint64_t key = std::uint64_t{pair.a} << 32 | pair.b;
     return static_cast<std::uint32_t>((key ^ key >> 29) * 0x9E37'79B9'7F4A'7C15 >> 32);
   }
-  /// Where the search for a pair begins.
+  /// The first slot of the probe sequence.
   [[nodiscard]] std::size_t homeOf(std::uint32_t hash) const { return hash >> shift_; }
   [[nodiscard]] const Slot* homeOf(Pair pair) const { return &table_[homeOf(hashOf(pair))]; }
-  [[nodiscard]] std::size_t following(std::size_t place) const {
-    return (place + 1) & (table_.size() - 1);
+  [[nodiscard]] std::size_t following(std::size_t slot) const {
+    return (slot + 1) & (table_.size() - 1);
   }
 
-  /// Where the pair is, or else the free place where it belongs.
-  [[nodiscard]] std::size_t placeFor(Pair pair, std::uint32_t hash) const {
-    std::size_t place = homeOf(hash);
-    while (table_[place].position != kEmpty &&
-           (table_[place].hash != hash || pairs_[table_[place].position] != pair)) {
-      place = following(place);
+  /// The slot of the pair, or else the empty slot to insert it in.
+  [[nodiscard]] std::size_t findSlot(Pair pair, std::uint32_t hash) const {
+    std::size_t slot = homeOf(hash);
+    while (table_[slot].position != kEmpty &&
+           (table_[slot].hash != hash || pairs_[table_[slot].position] != pair)) {
+      slot = following(slot);
     }
-    return place;
+    return slot;
   }
 
-  /// Frees a place and closes ranks: what follows moves up unless that is before its home.
-  void vacate(std::size_t hole) {
+  /// Deletion with backward shift, which needs no tombstones.
+  void eraseSlot(std::size_t hole) {
     const std::size_t mask = table_.size() - 1;
     for (std::size_t next = following(hole); table_[next].position != kEmpty;
          next = following(next)) {
-      const std::size_t wanted = homeOf(table_[next].hash);
-      if (((next - wanted) & mask) < ((next - hole) & mask)) continue;
+      const std::size_t home = homeOf(table_[next].hash);
+      if (((next - home) & mask) < ((next - hole) & mask)) continue;
       table_[hole] = table_[next];
       hole = next;
     }
@@ -123,18 +121,18 @@ class PairSet {
   }
 
   void grow() {
-    if (shift_ == 0) throw std::length_error("more pairs than a set can hold");
+    if (shift_ == 0) throw std::length_error("too many pairs for a PairSet");
     table_.assign(2 * table_.size(), Slot{});
     --shift_;
     for (std::uint32_t i = 0; i < pairs_.size(); ++i) {
       const std::uint32_t hash = hashOf(pairs_[i]);
-      table_[placeFor(pairs_[i], hash)] = {i, hash};
+      table_[findSlot(pairs_[i], hash)] = {i, hash};
     }
   }
 
   LargeVector<Pair> pairs_;
-  LargeVector<Slot> table_ = LargeVector<Slot>(std::size_t{1} << kSmallestBits);
-  int shift_ = kHashBits - kSmallestBits;
+  LargeVector<Slot> table_ = LargeVector<Slot>(std::size_t{1} << kMinBits);
+  int shift_ = kHashBits - kMinBits;
 };
 
 }  // namespace broadmark

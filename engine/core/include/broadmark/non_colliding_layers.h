@@ -1,0 +1,53 @@
+// Layers without pairs among them, such as those of static geometry.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <span>
+
+#include "broadmark/collision_filter.h"
+
+namespace broadmark {
+
+/// A set of layers that collide neither with themselves nor with each other.
+class NonCollidingLayers {
+ public:
+  /// An empty set.
+  NonCollidingLayers() = default;
+  /// Greedy: adds layers in descending order of population. Only `bodies` count.
+  NonCollidingLayers(const CollisionFilter& filter, std::span<const std::uint32_t> bodies)
+      : filter_(filter) {
+    const LayerMatrix matrix = filter.matrix();
+    std::array<std::size_t, LayerMatrix::kLayers> population{};
+    for (const std::uint32_t body : bodies) ++population[filter.layerOf(body)];
+    std::array<std::size_t, LayerMatrix::kLayers> order{};
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, std::ranges::greater{},
+                             [&](std::size_t layer) { return population[layer]; });
+    for (const std::size_t layer : order) {
+      if (population[layer] == 0 || matrix.collide(layer, layer) || collides_[layer]) continue;
+      members_[layer] = true;
+      body_count_ += population[layer];
+      for (const std::size_t other : order) collides_[other] |= matrix.collide(layer, other);
+    }
+  }
+
+  /// The number of bodies in these layers.
+  [[nodiscard]] std::size_t bodyCount() const { return body_count_; }
+  [[nodiscard]] bool contains(std::uint32_t body) const { return members_[filter_.layerOf(body)]; }
+  /// Whether any of the layers collides with the layer of the body.
+  [[nodiscard]] bool collideWith(std::uint32_t body) const {
+    return collides_[filter_.layerOf(body)];
+  }
+
+ private:
+  CollisionFilter filter_;
+  std::size_t body_count_ = 0;
+  std::array<bool, LayerMatrix::kLayers> members_{};
+  std::array<bool, LayerMatrix::kLayers> collides_{};
+};
+
+}  // namespace broadmark
