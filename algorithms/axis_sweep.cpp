@@ -197,7 +197,8 @@ class Sweep final : public bt32BitAxisSweep3 {
 
 class AxisSweep final : public BulletBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
     sweep_ = std::make_unique<Sweep>(boxes(), reportsEvents() ? &changes_ : nullptr);

@@ -60,7 +60,8 @@ class RTree final : public MovedBoxes {
  public:
   explicit RTree(bool incremental) : incremental_(incremental) {}
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
     pack();
   }

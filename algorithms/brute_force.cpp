@@ -33,7 +33,8 @@ Range rowsOf(int worker, int workers, std::size_t count) {
 
 class BruteForce final : public SimdBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     SimdBroadPhase::initialize(scene, first, execution);
     kernels_ = &overlapKernels(execution.isa());
   }

@@ -15,7 +15,8 @@ namespace broadmark {
 /// + 1.
 class BulletBroadPhase : public MovedBoxes {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
     wanted_.filter = scene.filter;
   }

@@ -108,7 +108,7 @@ struct SapTraits : UsualTraits<b3GpuSapBroadphase> {
 template <class Traits>
 class SharedLibrary final : public SharedResource {
  public:
-  explicit SharedLibrary(Execution& execution) {
+  explicit SharedLibrary(ExecutionContext& execution) {
     const auto& context = execution.shared<opencl::DeviceContext>();
     opencl::loadBulletLibrary();
     const opencl::ScopedTimer timer(build_ns_);
@@ -127,7 +127,7 @@ class SharedLibrary final : public SharedResource {
 template <class Traits>
 class BulletOpenCl final : public BroadPhase {
  public:
-  void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo&, const Frame& first, ExecutionContext& execution) override {
     auto& library = execution.shared<SharedLibrary<Traits>>();
     broad_phase_ = &library.broadPhase();
     build_ns_ = library.buildNanoseconds();
@@ -174,7 +174,7 @@ class BulletOpenCl final : public BroadPhase {
 
  private:
   /// Farther from the origin the cell of a float is too inaccurate.
-  static constexpr float kMostCellsAway = 1 << 20;
+  static constexpr float kMaxCellsAway = 1 << 20;
 
   void answer(const Frame& frame) {
     updateObjects(frame);
@@ -199,11 +199,11 @@ class BulletOpenCl final : public BroadPhase {
     float edge = 0;
     float farthest = 0;
     const bool divides = Traits::kHasLarge && count_ > 0;
-    const float reach = divides ? 2 * quantile(boxes, distance, 15) / kMostCellsAway : 0;
+    const float reach = divides ? 2 * quantile(boxes, distance, 15) / kMaxCellsAway : 0;
     const float limit = divides ? std::max(reach, largestSmallEdge(boxes)) : kLargest;
     for (int i = 0; i < host_boxes_.size(); ++i) {
       const bool fits = !divides || (longestEdge(boxes[i]) <= limit &&
-                                     distance(boxes[i]) / kMostCellsAway < limit);
+                                     distance(boxes[i]) / kMaxCellsAway < limit);
       (fits ? sizes_.small : sizes_.large).push_back(i);
       if (!fits || !divides) continue;
       edge = std::max({edge, reach, longestEdge(boxes[i])});

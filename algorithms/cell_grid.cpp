@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kSample = 256;
 /// Cells on one axis: far fewer than the integers that a float can tell apart.
-constexpr double kMostCells = 1 << 20;
+constexpr double kMaxCells = 1 << 20;
 
 /// Three quarters of the boxes are no longer.
 double usualEdge(std::span<const Aabb> sample, int axis) {
@@ -69,7 +69,7 @@ void CellGrid::fit(std::span<const Aabb> boxes, std::size_t cells, bool columns)
   const double side = cellSide(extents, static_cast<double>(std::max<std::size_t>(cells, 1)));
   for (int axis = 0; axis < 3; ++axis) {
     const double length = std::max(side, 2 * usualEdge(sample, axis));
-    const double count = std::min(std::round(extents[axis] / length), kMostCells);
+    const double count = std::min(std::round(extents[axis] / length), kMaxCells);
     // Not when there is no extent, either: 0/0.
     if (count >= 2) cut(axis, bulk[axis].low, extents[axis], count);
   }

@@ -71,7 +71,8 @@ class Columns final : public PairBroadPhase {
            1, 1'000'000'000});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     PairBroadPhase::initialize(scene, first, execution);
     kernels_ = &kernels(execution.isa());
     dense_kernels_ = &overlapKernels(execution.isa());

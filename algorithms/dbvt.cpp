@@ -81,7 +81,8 @@ class Dbvt final : public BulletBroadPhase {
   /// How far a leaf may reach beyond its box.
   [[nodiscard]] float margin() const override { return 2 * static_cast<float>(margin_); }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BulletBroadPhase::initialize(scene, first, execution);
     filterPairs(*tree_.m_paircache);
     if (reportsEvents()) tree_.m_paircache->setInternalGhostPairCallback(&changes_);

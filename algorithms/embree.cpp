@@ -62,7 +62,7 @@ float upperBoundFor(float bound) { return std::min(std::max(bound + kRim, -kFart
 /// Embree's device, which takes milliseconds to make, and the threads that work for it.
 class Threads final : public SharedResource {
  public:
-  explicit Threads(const Execution& execution)
+  explicit Threads(const ExecutionContext& execution)
       // TBB has no more threads than there are cores, and prints a warning when asked for them.
       : Threads(std::min(execution.threads(), tbb::info::default_concurrency())) {}
 
@@ -93,7 +93,8 @@ class Embree final : public BoxBroadPhase {
  public:
   explicit Embree(RTCBuildQuality quality) : quality_(quality) {}
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     threads_ = &execution.shared<Threads>();
     threads_->run([this] { makeScene(threads_->device()); });

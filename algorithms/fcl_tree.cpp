@@ -98,7 +98,8 @@ constexpr bool kHasFixedRoom = std::is_same_v<Manager, Array>;
 template <class Manager>
 class Fcl final : public MovedBoxes {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
     most_ = scene.objects;
     for (std::uint32_t body = 0; body < boxes().size(); ++body) create(body);

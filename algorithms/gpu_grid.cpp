@@ -20,7 +20,7 @@ namespace broadmark::gpu_grid {
 namespace {
 
 /// Per body: enough for a cell each where bodies take a tenth of the space.
-constexpr std::size_t kMostBuckets = 4;
+constexpr std::size_t kMaxBuckets = 4;
 
 // As grid.cl has them.
 constexpr int kLevels = 21;
@@ -35,13 +35,13 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
  public:
   /// Reads the boxes back and draws the cells that hold bodies.
   void drawStructure(DebugDraw& draw) const override {
-    constexpr std::size_t kMostCells = 20'000;
+    constexpr std::size_t kMaxCells = 20'000;
     if (count() < 2) return;
     std::map<Cell, std::uint32_t> populations;
     for (const Aabb& box : read<Aabb>(boxes(), count())) ++populations[cellOf(box)];
     std::size_t drawn = 0;
     for (const auto& [cell, population] : populations) {
-      if (++drawn > kMostCells) return;
+      if (++drawn > kMaxCells) return;
       draw.cell(boxOf(cell), cell.level, population);
     }
   }
@@ -58,7 +58,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
 
   void reserve(std::size_t count) override {
     sorted_ = sortedBoxes(count);
-    starts_ = context().buffer((std::bit_ceil(kMostBuckets * count) + 1) * sizeof(cl_uint));
+    starts_ = context().buffer((std::bit_ceil(kMaxBuckets * count) + 1) * sizeof(cl_uint));
   }
 
   void build() override {
@@ -90,12 +90,12 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
 
   /// Units about as large as a typical body; larger where a coordinate would take too many of them.
   void chooseGrid(const opencl::FrameSummary& summary) {
-    constexpr double kMostUnits = 1 << (kLevels - 1);
+    constexpr double kMaxUnits = 1 << (kLevels - 1);
     double unit = std::max(summary.mean_edge * 1.01, 1e-30);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double low = summary.bounds.min[axis];
       const double high = summary.bounds.max[axis];
-      unit = std::max({unit, (high - low) / (kMostUnits - 2),
+      unit = std::max({unit, (high - low) / (kMaxUnits - 2),
                        std::max(std::abs(low), std::abs(high)) / (1 << 23)});
     }
     // Larger than bodies, so that there are few rows of cells to look into; more so where sixteen
@@ -112,7 +112,7 @@ class GpuGrid final : public opencl::DeviceBroadPhase {
       bits[axis] = static_cast<int>(std::bit_width(units >> edge[axis]));
     }
     grid_.scale.s[3] = grid_.origin.s[3] = 0;
-    const auto most = static_cast<int>(std::bit_width(kMostBuckets * count() - 1));
+    const auto most = static_cast<int>(std::bit_width(kMaxBuckets * count() - 1));
     wraps_ = bits[0] + bits[1] + bits[2] > most ? 1 : 0;
     while (bits[0] + bits[1] + bits[2] > most) --*std::ranges::max_element(bits);
     for (std::size_t axis = 0; axis < 3; ++axis) {

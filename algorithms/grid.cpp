@@ -76,7 +76,7 @@ class CellBuckets {
       widest = width;
       axis_ = axis;
       low_ = least[axis];
-      last_ = static_cast<float>(std::min<std::size_t>(boxes.size() - 1, kMostBuckets));
+      last_ = static_cast<float>(std::min<std::size_t>(boxes.size() - 1, kMaxBuckets));
       scale_ = std::min(last_ / range, std::numeric_limits<float>::max());
     }
   }
@@ -92,7 +92,7 @@ class CellBuckets {
   }
 
  private:
-  static constexpr std::size_t kMostBuckets = std::size_t{1} << 20;
+  static constexpr std::size_t kMaxBuckets = std::size_t{1} << 20;
 
   int axis_ = 0;
   float low_ = 0;
@@ -110,7 +110,8 @@ class Grid final : public PairBroadPhase {
            1'000'000'000});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     PairBroadPhase::initialize(scene, first, execution);
     kernels_ = &overlapKernels(execution.isa());
     workers_.resize(static_cast<std::size_t>(team().size()));
@@ -303,15 +304,15 @@ class Grid final : public PairBroadPhase {
 
 void Grid::drawStructure(DebugDraw& draw) const {
   // More would hide one another. The fullest cells are drawn.
-  constexpr std::size_t kMostDrawn = 10'000;
+  constexpr std::size_t kMaxDrawn = 10'000;
   std::vector<std::size_t> cells;
   for (std::size_t cell = kLarge + 1; cell < cellCount(); ++cell) {
     if (starts_[cell] < starts_[cell + 1]) cells.push_back(cell);
   }
   const auto copies = [&](std::size_t cell) { return starts_[cell + 1] - starts_[cell]; };
-  if (cells.size() > kMostDrawn) {
-    std::ranges::nth_element(cells, cells.begin() + kMostDrawn, std::ranges::greater(), copies);
-    cells.resize(kMostDrawn);
+  if (cells.size() > kMaxDrawn) {
+    std::ranges::nth_element(cells, cells.begin() + kMaxDrawn, std::ranges::greater(), copies);
+    cells.resize(kMaxDrawn);
   }
   Aabb bounds = kEmptyBox;
   for (const Aabb& box : boxes_) bounds = merged(bounds, box);

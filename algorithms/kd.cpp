@@ -54,7 +54,8 @@ class Kd final : public BroadPhase {
            &margin_, 0, 1'000'000});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     team_ = &execution.team();
     world_ = scene.world;
     filter_ = scene.filter;

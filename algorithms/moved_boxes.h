@@ -13,7 +13,8 @@ namespace broadmark {
 /// knows which bodies are awake.
 class MovedBoxes : public BoxBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     moved_.resize(boxes().size());
     std::iota(moved_.begin(), moved_.end(), 0U);

@@ -75,7 +75,8 @@ int geomClass() {
 
 class OdeSpace : public MovedBoxes {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     MovedBoxes::initialize(scene, first, execution);
     geomClass();  // before anything else of the library
     space_.reset(makeSpace());

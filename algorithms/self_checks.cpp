@@ -14,7 +14,7 @@ namespace {
 /// Directly on BroadPhase: a layer's copies and buffers would be in the time that is measured.
 class None : public BroadPhase {
  public:
-  void initialize(const SceneInfo&, const Frame&, Execution&) override {}
+  void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}
   void updateObjects(const Frame&) override {}
   void searchOverlaps() override {}
   [[nodiscard]] PairRuns overlaps() const override { return {}; }

@@ -30,7 +30,8 @@ namespace {
 /// Every step is shared out over the team; one thread is a team of one.
 class SweepAndPrune final : public BoxBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     world_ = scene.world;
     kernels_ = &overlapKernels(execution.isa());

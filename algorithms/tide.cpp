@@ -59,7 +59,7 @@ class Tide final : public BroadPhase {
   }
 
   void reportEvents() override { reports_events_ = true; }
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
   void cleanCache() override;
   void updateStructures() override;
@@ -112,7 +112,7 @@ class Tide final : public BroadPhase {
   std::uint64_t builds_ = 0;
 };
 
-void Tide::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
+void Tide::initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) {
   filter_ = scene.filter;
   costs_ = CostModel(reports_events_ ? kEventCosts : kPairCosts,
                      static_cast<double>(full_search_cost_scale_) / 100, first.boxes.size());

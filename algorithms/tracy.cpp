@@ -68,7 +68,8 @@ class Tracy final : public BroadPhase {
            &objects_per_cell_, 1, 1e9});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     team_ = &execution.team();
     world_ = scene.world;
     const std::size_t count = first.boxes.size();

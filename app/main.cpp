@@ -24,11 +24,11 @@ void requirePrinted() {
   }
 }
 
-std::terminate_handler usual_end = nullptr;
+std::terminate_handler previous_terminate_handler = nullptr;
 
 /// Memory may also run out in a destructor (JSON's takes some), from where nothing is thrown to
 /// main().
-void endOfMemory() {
+void onTerminate() {
   try {
     if (const auto error = std::current_exception()) std::rethrow_exception(error);
   } catch (const std::bad_alloc&) {
@@ -36,14 +36,14 @@ void endOfMemory() {
     std::_Exit(broadmark::exit_status::bad_input);
   } catch (...) {
   }
-  usual_end();
+  previous_terminate_handler();
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   // Whatever a file claims, it ends this program rather than the machine.
-  usual_end = std::set_terminate(endOfMemory);
+  previous_terminate_handler = std::set_terminate(onTerminate);
   broadmark::limitMemory(broadmark::machineMemory(), /*for_good=*/false);
   try {
     const int status = broadmark::parseCommandLine({argv + 1, argv + argc})();

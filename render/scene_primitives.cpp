@@ -11,7 +11,7 @@ namespace broadmark {
 namespace {
 
 /// More outlines cost time and tell the eye nothing; the tint still shows what is selected.
-constexpr std::size_t kMostOutlines = 2000;
+constexpr std::size_t kMaxOutlines = 2000;
 constexpr float kOutlineWidth = 1.8F;
 constexpr float kSelectionTint = 0.45F;
 
@@ -69,13 +69,13 @@ void append(std::vector<Primitive>& lines, const std::vector<Primitive>& more) {
   lines.insert(lines.end(), more.begin(), more.end());
 }
 
-ScenePrimitives::Layer layerOf(Behind behind) {
+ScenePrimitives::Layer layerOf(OcclusionStyle behind) {
   switch (behind) {
-    case Behind::hidden:
+    case OcclusionStyle::hidden:
       return ScenePrimitives::hidden;
-    case Behind::faint:
+    case OcclusionStyle::faint:
       return ScenePrimitives::faint;
-    case Behind::shown:
+    case OcclusionStyle::shown:
       return ScenePrimitives::shown;
   }
   return ScenePrimitives::hidden;
@@ -122,7 +122,7 @@ void setOutlines(ScenePrimitives& scene, const SceneViewContent& content) {
   std::vector<Primitive>& outlines = scene.lines[ScenePrimitives::outlines].lines;
   outlines.clear();
   for (const std::uint32_t body :
-       content.selected.first(std::min(kMostOutlines, content.selected.size()))) {
+       content.selected.first(std::min(kMaxOutlines, content.selected.size()))) {
     if (body >= content.boxes.size() || isEmpty(content.boxes[body])) continue;
     append(outlines, wireframe(content.boxes[body], content.theme.selected,
                                kOutlineWidth * content.scale, content.space));
@@ -130,7 +130,8 @@ void setOutlines(ScenePrimitives& scene, const SceneViewContent& content) {
 }
 
 void setLines(ScenePrimitives& scene, const SceneViewContent& content) {
-  for (const Behind behind : {Behind::hidden, Behind::faint, Behind::shown}) {
+  for (const OcclusionStyle behind :
+       {OcclusionStyle::hidden, OcclusionStyle::faint, OcclusionStyle::shown}) {
     scene.lines[layerOf(behind)].lines.clear();
   }
   for (const SceneLine& line : content.lines) {

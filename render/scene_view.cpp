@@ -10,7 +10,7 @@
 #include "broadmark/render/framebuffer.h"
 #include "primitive_renderer.h"
 #include "scene_primitives.h"
-#include "splatter.h"
+#include "software_rasterizer.h"
 
 namespace broadmark {
 namespace {
@@ -118,8 +118,9 @@ class SceneView::Painter {
   Painter(const Gl& gl, const SceneViewOptions& options)
       : gl_(&gl),
         team_(std::max(1, options.threads)),
-        splatter_(splats(gl, options.technique) ? std::make_unique<Splatter>(team_, options.isa)
-                                                : nullptr),
+        splatter_(splats(gl, options.technique)
+                      ? std::make_unique<SoftwareRasterizer>(team_, options.isa)
+                      : nullptr),
         boxes_(boxRenderer(gl, options.max_batch)),
         lines_(lineRenderer(gl)) {}
 
@@ -256,7 +257,7 @@ class SceneView::Painter {
 
   const Gl* gl_;
   ThreadTeam team_;
-  std::unique_ptr<Splatter> splatter_;  ///< null: OpenGL draws the scene
+  std::unique_ptr<SoftwareRasterizer> splatter_;  ///< null: OpenGL draws the scene
   PrimitiveRenderer boxes_;
   PrimitiveRenderer lines_;
 

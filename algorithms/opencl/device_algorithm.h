@@ -10,12 +10,12 @@
 namespace broadmark::opencl {
 
 /// Kernels count sixteen floats for each body with 32 bits.
-constexpr std::uint64_t kMostObjects = std::uint64_t{1} << 28;
+constexpr std::uint64_t kMaxObjectCount = std::uint64_t{1} << 28;
 
 /// The entry of an algorithm on a device. All are linear in space, and drivers allocate.
 template <class Phase>
 Algorithm deviceAlgorithm(std::string id, std::string summary, AlgorithmDescription description,
-                          std::uint64_t max_objects = kMostObjects, std::string exclusive = {}) {
+                          std::uint64_t max_objects = kMaxObjectCount, std::string exclusive = {}) {
   description.space = "O(n + k)";
   return {.id = std::move(id),
           .family = "GPU",

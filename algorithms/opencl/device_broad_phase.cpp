@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kStrips = 256;  ///< parts in which boxes are summarised
 constexpr std::size_t kSumsPerStrip = 5;
 /// As common.cl has it: kernels stop counting about here.
-constexpr cl_uint kMostPairs = 0x80000000;
+constexpr cl_uint kMaxPairs = 0x80000000;
 
 /// A corner or a sum, as kernels write it.
 using Float4 = std::array<float, 4>;
@@ -29,7 +29,8 @@ bool DeviceBroadPhase::likeGpu() const {
   return work_division_.value == "auto" ? !context_->onCpu() : work_division_.value == "gpu";
 }
 
-void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first, Execution& execution) {
+void DeviceBroadPhase::initialize(const SceneInfo&, const Frame& first,
+                                  ExecutionContext& execution) {
   context_ = &execution.shared<DeviceContext>();
   makeProgram();
   updateObjects(first);
@@ -83,7 +84,7 @@ void DeviceBroadPhase::searchOverlaps() {
   if (count_ < 2) return;
   cl_uint found = searchOnce();
   while (found > sink_.capacity) {
-    if (found >= kMostPairs) throw UnsupportedError("more than 2^31 overlapping pairs");
+    if (found >= kMaxPairs) throw UnsupportedError("more than 2^31 overlapping pairs");
     // A little more, or every frame of a growing heap would need a second search.
     sink_.capacity = found + found / 4 + 1024;
     sink_.pairs = context_->buffer(std::size_t{sink_.capacity} * sizeof(Pair));
@@ -100,7 +101,7 @@ void DeviceBroadPhase::searchOverlaps() {
 
 cl_uint DeviceBroadPhase::searchOnce() {
   if (sink_.capacity == 0) {
-    sink_.capacity = static_cast<cl_uint>(std::min<std::size_t>(2 * count_ + 1024, kMostPairs - 1));
+    sink_.capacity = static_cast<cl_uint>(std::min<std::size_t>(2 * count_ + 1024, kMaxPairs - 1));
     sink_.pairs = context_->buffer(std::size_t{sink_.capacity} * sizeof(Pair));
   }
   const cl::CommandQueue& queue = context_->queue();

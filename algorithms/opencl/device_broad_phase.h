@@ -35,7 +35,7 @@ class DeviceBroadPhase : public BroadPhase {
  public:
   void visitParameters(const ParameterVisitor&) override;
 
-  void initialize(const SceneInfo&, const Frame& first, Execution&) final;
+  void initialize(const SceneInfo&, const Frame& first, ExecutionContext&) final;
   void updateObjects(const Frame& frame) final;
   void cleanCache() final;
   void updateStructures() final;

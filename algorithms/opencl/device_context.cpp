@@ -78,7 +78,7 @@ std::vector<cl::Device> devices() {
 
 }  // namespace
 
-DeviceContext::DeviceContext(Execution& execution) {
+DeviceContext::DeviceContext(ExecutionContext& execution) {
   const std::vector<ComputeDevice> known = computeDevices();
   if (known.empty()) throw UnsupportedError(whyNone());
   try {

@@ -38,7 +38,7 @@ class ScopedTimer {
 class DeviceContext final : public SharedResource {
  public:
   /// Throws UnsupportedError that says why there is no such device.
-  explicit DeviceContext(Execution&);
+  explicit DeviceContext(ExecutionContext&);
   ~DeviceContext() override;
   DeviceContext(const DeviceContext&) = delete;
   DeviceContext& operator=(const DeviceContext&) = delete;

@@ -44,7 +44,7 @@ std::vector<std::string> parseRecorders(const std::vector<std::string>& names) {
 std::vector<std::uint32_t> parseObjectCounts(const std::vector<std::string>& texts) {
   std::vector<std::uint32_t> counts;
   for (const std::string& text : texts) {
-    counts.push_back(static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMostBodies)));
+    counts.push_back(static_cast<std::uint32_t>(parseInteger(text, "--objects", 0, kMaxBodies)));
   }
   std::ranges::sort(counts);
   counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
@@ -69,13 +69,13 @@ ParameterValues parseKeyValues(const std::vector<std::string>& texts) {
 }
 
 void parseSize(const std::string& text, PictureOptions& options) {
-  constexpr int kMostPixels = 16384;
+  constexpr int kMaxPixels = 16384;
   const auto x = text.find('x');
   if (x == std::string::npos) {
     throw InputError(fmt::format("--size: '{}' is not of the form WxH, e.g. 1280x720", text));
   }
-  options.width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, kMostPixels));
-  options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMostPixels));
+  options.width = static_cast<int>(parseInteger(text.substr(0, x), "--size", 1, kMaxPixels));
+  options.height = static_cast<int>(parseInteger(text.substr(x + 1), "--size", 1, kMaxPixels));
 }
 
 /// As an option of a list takes it.

@@ -143,22 +143,21 @@ void SessionParser::addCases() {
 }
 
 void SessionParser::addRun() {
-  constexpr long long kMostPasses = 1'000'000;
+  constexpr long long kMaxPasses = 1'000'000;
   RunPolicy& policy = options_.policy;
   RepetitionOptions& repetitions = options_.repetitions;
   const auto set_repetitions = [&](const std::string& text) {
     repetitions.until_precise = text == "auto";
     repetitions.most = repetitions.until_precise
-                           ? RepetitionOptions::kMostUntilPrecise
-                           : static_cast<int>(parseInteger(text, "--repetitions", 1, kMostPasses));
+                           ? RepetitionOptions::kMaxUntilPrecise
+                           : static_cast<int>(parseInteger(text, "--repetitions", 1, kMaxPasses));
   };
   tag(addValue(
           app_, "--repetitions", "R|auto", set_repetitions,
           [&] { return repetitions.until_precise ? "auto" : fmt::format("{}", repetitions.most); },
           fmt::format("measured repetitions of each case; auto: from {} to {}, until its mean "
                       "is known precisely",
-                      RepetitionOptions::kFewestUntilPrecise,
-                      RepetitionOptions::kMostUntilPrecise)),
+                      RepetitionOptions::kMinUntilPrecise, RepetitionOptions::kMaxUntilPrecise)),
       kInspector);
   tag(addShare(app_, "--precision", repetitions.precision, true,
                "of --repetitions auto: width of the mean's 95 % interval over the "
@@ -168,13 +167,13 @@ void SessionParser::addRun() {
           app_, "--max-seconds", "S", repetitions.max_seconds,
           fmt::format("of --repetitions auto: time on a recording, after which no case is repeated "
                       "more than {} times",
-                      RepetitionOptions::kFewestUntilPrecise)),
+                      RepetitionOptions::kMinUntilPrecise)),
       kInspector | kFixedCount);
   tag(addInteger(app_, "--order-seed", "S", repetitions.order_seed, 0,
                  std::numeric_limits<long long>::max(),
                  "seed of the order in which cases take turns, another for each repetition"),
       kInspector);
-  tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMostPasses,
+  tag(addInteger(app_, "--warmup", "W", repetitions.warmup, 0, kMaxPasses,
                  "unmeasured repetitions before them"),
       kInspector);
   tag(addPositive(app_, "--time-limit", "SECONDS", policy.frame_limit_seconds,
@@ -201,14 +200,14 @@ void SessionParser::addOutput() {
 }
 
 void SessionParser::addPictures() {
-  constexpr long long kMostFrame = std::numeric_limits<std::int32_t>::max();
+  constexpr long long kMaxFrame = std::numeric_limits<std::int32_t>::max();
   CLI::Option* screenshot =
       addPath(app_, "--screenshot", "FILE", options_.screenshot,
               "draw a frame of each recording off-screen; with several recordings their names "
               "are added to the file's");
   tag(screenshot, kExport | kWindow);
   const auto set_frame = [this](const std::string& text) {
-    options_.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMostFrame));
+    options_.frame = static_cast<std::uint32_t>(parseInteger(text, "--frame", 0, kMaxFrame));
   };
   std::string frame_help = "frame of the screenshot, 0 being the initial pose (default: the last)";
   if (parts::kInspector.included) frame_help += "; of the inspector: where it opens";

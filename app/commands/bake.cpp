@@ -153,12 +153,12 @@ void addScenes(CLI::App& app, Options& options) {
 }
 
 void addMovie(CLI::App& app, MovieOptions& movie) {
-  constexpr long long kMostEvery = 1'000'000;
+  constexpr long long kMaxEvery = 1'000'000;
   CLI::Option* directory =
       addPath(app, "--movie", "DIR", movie.directory,
               "draw each recording into numbered pictures, in a folder of its name in this "
               "directory");
-  CLI::Option* every = addInteger(app, "--movie-every", "K", movie.every, 1, kMostEvery,
+  CLI::Option* every = addInteger(app, "--movie-every", "K", movie.every, 1, kMaxEvery,
                                   "frames from one picture to the next");
   showWith(parts::kRenderer, {directory, every->needs(directory)});
   for (CLI::Option* option : addPictureOptions(app, movie.picture)) option->needs(directory);

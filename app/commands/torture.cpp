@@ -37,7 +37,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 /// Of the same kind of fault in the same algorithm only so many are shrunk and written.
-constexpr std::uint64_t kMostAlike = 3;
+constexpr std::uint64_t kMaxAlike = 3;
 
 struct Options : RunRequest {
   Options() {
@@ -70,7 +70,7 @@ class Torture {
     torture_.is_news = [this](const std::string& algorithm, FaultKind kind) {
       const std::lock_guard lock(mutex_);
       const auto times = log_.times.find({algorithm, std::string(kFaultKinds.nameOf(kind))});
-      return times == log_.times.end() || times->second < kMostAlike;
+      return times == log_.times.end() || times->second < kMaxAlike;
     };
   }
 
@@ -234,7 +234,7 @@ class Torture {
     if (!round.finding) return;
     const TortureFinding& finding = *round.finding;
     const std::string kind(kFaultKinds.nameOf(finding.fault.kind));
-    if (log_.times[{finding.run.algorithm.id, kind}]++ >= kMostAlike) return;
+    if (log_.times[{finding.run.algorithm.id, kind}]++ >= kMaxAlike) return;
     log_.found.push_back(write(finding, kind, number));
     progress.print(formatFoundFault(log_.found.back()));
   }

@@ -102,9 +102,9 @@ class MovingScene {
   [[nodiscard]] std::uint64_t frames(double rate) const {
     if (animation_ == nullptr) return 1;
     const double frames = animation_->mDuration / ticksPerSecond() * rate;
-    if (!(frames >= 0 && frames < kMostFrames)) {
+    if (!(frames >= 0 && frames < kMaxFrames)) {
       throw InputError(
-          fmt::format("its animation has {:g} frames: at most {} are read", frames, kMostFrames));
+          fmt::format("its animation has {:g} frames: at most {} are read", frames, kMaxFrames));
     }
     constexpr double kAlmost = 1e-6;  // durations are rounded
     return static_cast<std::uint64_t>(frames + kAlmost) + 1;
@@ -242,7 +242,7 @@ void limitResources(std::uint64_t file_bytes) {
   constexpr std::uint64_t kMemoryPerByte = 200;
   // Reading takes a second for tens of millions of bytes; a damaged file may keep it at it for
   // ever.
-  constexpr rlim_t kLeastSeconds = 10;
+  constexpr rlim_t kMinSeconds = 10;
   constexpr std::uint64_t kBytesASecond = 100'000;
   std::uint64_t pages = 0;  // of data: the sixth number
   std::ifstream statm("/proc/self/statm");
@@ -250,7 +250,7 @@ void limitResources(std::uint64_t file_bytes) {
   const rlim_t bytes = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + 4 * kGib +
                        kMemoryPerByte * file_bytes;
   const rlimit memory{bytes, bytes};
-  const rlim_t seconds = kLeastSeconds + file_bytes / kBytesASecond;
+  const rlim_t seconds = kMinSeconds + file_bytes / kBytesASecond;
   const rlimit time{seconds, seconds};
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_DATA, &memory);

@@ -112,7 +112,7 @@ class ElementFrames final : public IndexedFrames {
       throw InputError(fmt::format("{}: vertex {} has a coordinate that is no finite 32-bit float",
                                    file.string(), broken - points.begin()));
     }
-    if (frames_ > kMostFrames) throw InputError(fmt::format("more than {} frames", kMostFrames));
+    if (frames_ > kMaxFrames) throw InputError(fmt::format("more than {} frames", kMaxFrames));
     ++frames_;
     writeAll(kept_.get(), std::as_bytes(points), "the vertices of a mesh");
     for (const Point& p : points) {

@@ -41,7 +41,7 @@ class ObjReader {
 
   void addVertex() {
     if (words_.size() < 4) lines_.fail("a vertex has three coordinates");
-    if (points.size() >= kMostVertices) lines_.fail("more than 2^31 - 1 vertices");
+    if (points.size() >= kMaxVertices) lines_.fail("more than 2^31 - 1 vertices");
     Point point;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       point[axis] = static_cast<float>(lines_.realNumber(words_[1 + axis], "a coordinate"));
@@ -71,7 +71,7 @@ class ObjReader {
   }
 
   static constexpr std::size_t kLongest = 1 << 20;
-  static constexpr std::size_t kMostVertices = (std::size_t{1} << 31) - 1;
+  static constexpr std::size_t kMaxVertices = (std::size_t{1} << 31) - 1;
 
   LineReader lines_;
   std::string line_;

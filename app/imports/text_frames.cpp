@@ -104,9 +104,9 @@ class TextFrames final : public IndexedFrames {
                  static_cast<std::uint64_t>(*last_number_) - 1;
     }
     last_number_ = frame_.number;
-    if (left_out >= kMostFrames || places_.size() + left_out > kMostFrames) {
+    if (left_out >= kMaxFrames || places_.size() + left_out > kMaxFrames) {
       lines.fail(frame_.rows.empty() ? lines.number() : frame_.rows.front().line,
-                 fmt::format("more than {} frames", kMostFrames));
+                 fmt::format("more than {} frames", kMaxFrames));
     }
     if (left_out > 0) scene_.all_present = false;
     places_.resize(places_.size() + left_out, FramePlace{.empty = true});

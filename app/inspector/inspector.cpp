@@ -26,7 +26,7 @@ constexpr float kNarrowest = 110;     // units: of a place that is shown
 }  // namespace
 
 Inspector::Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences,
-                     float scale, HostMaker make_host)
+                     float scale, ExecutorFactory make_host)
     : preferences_(std::move(preferences)),
       context_(ImGui::CreateContext()),
       renderer_(gl),
@@ -184,7 +184,7 @@ void Inspector::build(const RunProgress& progress, int width, int height) {
   session_.notices.wanted_panels.clear();
   files_.draw(ui_);
   drawLeaving(ui_, files_, session_);
-  drawEnding();
+  drawQuitDialog();
   drawHelp();
   drawErrors();
   ImGui::PopStyleVar();
@@ -236,7 +236,7 @@ void Inspector::leave() {
   session_.document.leave([this] { closing_ = true; });
 }
 
-void Inspector::drawEnding() {
+void Inspector::drawQuitDialog() {
   if (!ending_ || !session_.notices.errors.empty()) return;
   if (!session_.jobs.running()) return leave();  // it has ended meanwhile
   const auto scope = ui_.scope("Ending");

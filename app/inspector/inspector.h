@@ -48,7 +48,7 @@ class Inspector {
   /// `scale`: pixels per unit. Needs its context current from construction to destruction; at most
   /// one lives at a time.
   Inspector(const Gl& gl, std::vector<Algorithm> algorithms, Preferences preferences, float scale,
-            HostMaker make_host = makeLocalHost);
+            ExecutorFactory make_host = makeLocalHost);
   ~Inspector();
   Inspector(const Inspector&) = delete;
   Inspector& operator=(const Inspector&) = delete;
@@ -98,7 +98,7 @@ class Inspector {
   void drawHelp();
   void drawErrors();
   /// While `ending_`: whether to end the work in the background, or to stay.
-  void drawEnding();
+  void drawQuitDialog();
   /// Closes, once it is decided what becomes of unsaved changes.
   void leave();
   void splitter(const char* id, ImVec2 position, ImVec2 size, double& extent, float sign);

@@ -122,8 +122,8 @@ void takeCasePart(Case& made, const std::string& part, const std::string& name) 
 int allCores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 int parseThreadCount(const std::string& text) {
-  constexpr long long kMostThreads = 1024;
-  return static_cast<int>(parseInteger(text, "--threads", 1, kMostThreads));
+  constexpr long long kMaxThreads = 1024;
+  return static_cast<int>(parseInteger(text, "--threads", 1, kMaxThreads));
 }
 
 const Algorithm* findAlgorithm(std::string_view id, const std::vector<Algorithm>& known) {

@@ -7,7 +7,7 @@
 
 namespace broadmark {
 
-HostMaker hostMaker(const HostOptions& options) {
+ExecutorFactory hostMaker(const HostOptions& options) {
   const bool other = !options.program.empty();
   if (options.in_process && !other) return makeLocalHost;
   constexpr double kGibibyte = 1 << 30;

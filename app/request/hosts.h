@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 
 namespace broadmark {
 
@@ -16,6 +16,6 @@ struct HostOptions {
   std::optional<double> memory_limit_gib;  ///< nothing: as much as the machine has
 };
 
-HostMaker hostMaker(const HostOptions&);
+ExecutorFactory hostMaker(const HostOptions&);
 
 }  // namespace broadmark

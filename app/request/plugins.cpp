@@ -105,7 +105,7 @@ bool isId(std::string_view id) {
 
 /// Throws InputError for an entry that cannot be chosen or made. `other`: the plug-in of the one
 /// that has the id already, if there is one.
-void requireSound(const std::string& file, std::string_view kind, std::string_view id, bool creates,
+void requireValid(const std::string& file, std::string_view kind, std::string_view id, bool creates,
                   const std::string* other) {
   if (!isId(id)) {
     refuse(file, kind, id,
@@ -120,13 +120,13 @@ void requireSound(const std::string& file, std::string_view kind, std::string_vi
 
 /// Throws InputError for an engine that cannot be chosen or made, or whose parameters would hide
 /// those of a scene.
-void requireSound(const scenes::EngineEntry& engine, const std::string& file) {
+void requireValid(const scenes::EngineEntry& engine, const std::string& file) {
   constexpr std::string_view kKind = "engine";
   const std::string& id = engine.listing.id;
   const std::vector<EngineListing> known = availableEngines();
   const auto other = std::ranges::find(known, id, &EngineListing::id);
   const auto instance = engine.create == nullptr ? nullptr : engine.create({});
-  requireSound(file, kKind, id, instance != nullptr,
+  requireValid(file, kKind, id, instance != nullptr,
                other == known.end() ? nullptr : &other->plugin);
   const std::vector<std::string> own = parameterNames(*instance);
   for (const SceneListing& scene : builtinScenes()) {
@@ -180,7 +180,7 @@ std::vector<Algorithm> availableAlgorithms(const std::vector<std::string>& plugi
     const PluginBuild build = buildOf(*plugin, file);
     forEachEntry(*plugin, file, [&](Algorithm& algorithm) {
       const Algorithm* other = findAlgorithm(algorithm.id, algorithms);
-      requireSound(file, "algorithm", algorithm.id, algorithm.create && algorithm.create(),
+      requireValid(file, "algorithm", algorithm.id, algorithm.create && algorithm.create(),
                    other == nullptr ? nullptr : &other->plugin);
       algorithm.plugin = file;
       algorithm.plugin_build = build;
@@ -195,7 +195,7 @@ void addEnginesOf(const std::vector<std::string>& plugins) {
     const auto* plugin = exportOf<scenes::EngineEntry>(file, scenes::kEnginePluginSymbol);
     if (plugin == nullptr) continue;
     forEachEntry(*plugin, file, [&](scenes::EngineEntry& engine) {
-      requireSound(engine, file);
+      requireValid(engine, file);
       engine.listing.plugin = file;
       scenes::addEngine(std::move(engine));
     });

@@ -16,8 +16,8 @@ struct ReadingOptions : Parametrised {
   double frame_rate = 30;
 
   void visitParameters(const ParameterVisitor& visit) override {
-    constexpr double kMostRadius = 1e30;
-    constexpr double kMostRate = 1e6;
+    constexpr double kMaxRadius = 1e30;
+    constexpr double kMaxRate = 1e6;
     visit({"swept",
            "boxes that also hold those of the frame before, rounded outward, as continuous "
            "collision detection takes them",
@@ -25,8 +25,8 @@ struct ReadingOptions : Parametrised {
     visit({"elements", "of meshes: what gets a box", &elements});
     visit(
         {"keep", "of meshes: pairs that are wanted, too: of elements that share a vertex", &keep});
-    visit({"radius", "of particles; 0: as the file says", &radius, 0, kMostRadius});
-    visit({"frame_rate", "of animations: frames a second", &frame_rate, 1e-6, kMostRate});
+    visit({"radius", "of particles; 0: as the file says", &radius, 0, kMaxRadius});
+    visit({"frame_rate", "of animations: frames a second", &frame_rate, 1e-6, kMaxRate});
   }
 
   /// Those that do not have their defaults.

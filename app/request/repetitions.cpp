@@ -8,7 +8,7 @@ namespace broadmark {
 bool RepetitionRule::isEnough(const CaseResult& result) const {
   const int done = static_cast<int>(result.repetitions.size());
   if (done >= options_.most) return true;
-  if (!options_.until_precise || done < RepetitionOptions::kFewestUntilPrecise) return false;
+  if (!options_.until_precise || done < RepetitionOptions::kMinUntilPrecise) return false;
   const std::chrono::duration<double> passed = Clock::now() - begin_;
   if (passed.count() >= options_.max_seconds) return true;
   const Summary summary = result.summary();

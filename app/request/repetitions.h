@@ -12,8 +12,8 @@
 namespace broadmark {
 
 struct RepetitionOptions {
-  static constexpr int kFewestUntilPrecise = 5;
-  static constexpr int kMostUntilPrecise = 100;
+  static constexpr int kMinUntilPrecise = 5;
+  static constexpr int kMaxUntilPrecise = 100;
 
   int warmup = 0;              ///< unmeasured repetitions before
   int most = 1;                ///< and fewest, unless:

@@ -79,7 +79,7 @@ struct PlannedCase {
 class PlanRun {
  public:
   /// All arguments outlive this.
-  PlanRun(Plan& plan, const HostMaker& make_host, RunObserver& observer)
+  PlanRun(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer)
       : plan_(plan),
         request_(plan.request),
         make_host_(make_host),
@@ -222,7 +222,7 @@ class PlanRun {
 
   Plan& plan_;
   const RunRequest& request_;
-  const HostMaker& make_host_;
+  const ExecutorFactory& make_host_;
   RunObserver& observer_;
   Results results_;
   RunWarnings warnings_;
@@ -242,7 +242,7 @@ std::uint64_t stepsOf(const Plan& plan) {
   return steps;
 }
 
-Results runPlan(Plan& plan, const HostMaker& make_host, RunObserver& observer) {
+Results runPlan(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer) {
   return PlanRun(plan, make_host, observer).run();
 }
 

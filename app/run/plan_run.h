@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recordings/recording.h"
 #include "broadmark/results/results.h"
@@ -31,6 +31,6 @@ std::uint64_t stepsOf(const Plan& plan);
 /// Opens or simulates the plan's recordings, runs every case on them, checks and measures. The
 /// result files that the request names are kept up to date. Returns what has been run; complete
 /// unless the observer has ended it. Throws InputError; finished cases are in the files then.
-Results runPlan(Plan& plan, const HostMaker& make_host, RunObserver& observer);
+Results runPlan(Plan& plan, const ExecutorFactory& make_host, RunObserver& observer);
 
 }  // namespace broadmark

@@ -7,7 +7,7 @@
 
 #include "broadmark/harness/case.h"
 #include "broadmark/harness/environment.h"
-#include "broadmark/harness/quietness.h"
+#include "broadmark/harness/noise_warnings.h"
 
 namespace broadmark {
 

@@ -16,7 +16,7 @@ using imports::TextFrame;
 
 ParticleColumns columnsOf(const LineReader& lines) {
   constexpr std::string_view kKey = "Properties=";
-  constexpr std::int64_t kMostColumns = 1000;
+  constexpr std::int64_t kMaxColumns = 1000;
   const std::size_t key = lines.line().find(kKey);
   ParticleColumns columns{.what = "particle",
                           .no_radius = "states no radius: say it with --radius",
@@ -31,7 +31,7 @@ ParticleColumns columnsOf(const LineReader& lines) {
   bool positions = false;
   for (std::size_t i = 0; i + 2 < words.size(); i += 3) {
     const std::int64_t width = lines.integer(words[i + 2], "a number of columns");
-    if (width < 1 || width > kMostColumns) lines.fail("Properties: 1 to 1000 columns are expected");
+    if (width < 1 || width > kMaxColumns) lines.fail("Properties: 1 to 1000 columns are expected");
     if (words[i] == "pos" && width == 3) {
       columns.position = {column, column + 1, column + 2};
       positions = true;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 
 namespace broadmark {
 

@@ -18,7 +18,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// So many rounds are run, whatever is known.
-constexpr std::size_t kFewestRounds = 60;
+constexpr std::size_t kMinRounds = 60;
 /// After so many times more rounds the intervals are looked at again: they narrow with the root.
 constexpr double kNextLook = 1.3;
 
@@ -138,7 +138,7 @@ class Duel {
     const bool time_is_up = result_.seconds >= options_.max_seconds;
     if (rounds < next_look_ && !time_is_up) return;
     next_look_ = static_cast<std::size_t>(static_cast<double>(rounds) * kNextLook) + 1;
-    const bool narrow = rounds >= kFewestRounds && isNarrow();
+    const bool narrow = rounds >= kMinRounds && isNarrow();
     // Twice in a row: an interval may be narrow by chance once.
     result_.decided = std::exchange(was_narrow_, narrow) && narrow;
     ended_ = result_.decided || time_is_up;
@@ -161,7 +161,7 @@ class Duel {
   Oracle oracle_;
   DuelResult result_;
   Clock::time_point begin_ = Clock::now();
-  std::size_t next_look_ = kFewestRounds;
+  std::size_t next_look_ = kMinRounds;
   bool was_narrow_ = false;
   bool ended_ = false;
 };

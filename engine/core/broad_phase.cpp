@@ -6,7 +6,7 @@
 
 namespace broadmark {
 
-void PairBroadPhase::initialize(const SceneInfo&, const Frame&, Execution& execution) {
+void PairBroadPhase::initialize(const SceneInfo&, const Frame&, ExecutionContext& execution) {
   execution_ = &execution;
   buffers_.resize(static_cast<std::size_t>(execution.threads()));
   runs_.reserve(buffers_.size());
@@ -26,7 +26,8 @@ void PairBroadPhase::searchOverlaps() {
   for (const PairBuffer& buffer : buffers_) runs_.push_back(buffer.run());
 }
 
-void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
+void BoxBroadPhase::initialize(const SceneInfo& scene, const Frame& first,
+                               ExecutionContext& execution) {
   PairBroadPhase::initialize(scene, first, execution);
   boxes_.assign(first.boxes.begin(), first.boxes.end());
 }
@@ -42,7 +43,8 @@ void BoxBroadPhase::updateObjects(const Frame& frame) {
   }
 }
 
-void SimdBroadPhase::initialize(const SceneInfo& scene, const Frame& first, Execution& execution) {
+void SimdBroadPhase::initialize(const SceneInfo& scene, const Frame& first,
+                                ExecutionContext& execution) {
   PairBroadPhase::initialize(scene, first, execution);
   arrays_.assign(first.boxes);
 }

@@ -18,7 +18,7 @@ namespace {
 constexpr int kSpins = 2000;
 
 /// The same where work has been promised.
-constexpr int kSpinsAwake = 50'000;
+constexpr int kHotSpinCount = 50'000;
 
 /// Tells the processor that this thread only waits.
 void pauseSpin() {
@@ -123,7 +123,7 @@ bool ThreadTeam::pin(std::span<const int> cores, std::span<const int> usable) {
 
 /// In a virtual machine Linux often wakes a thread on the core of the one that wakes it, although
 /// another core is idle: then both share it for a frame.
-void ThreadTeam::keepApart() {
+void ThreadTeam::avoidCallerCore() {
   const int core = ::sched_getcpu();
   if (shared_cores_.empty() || core == callers_core_) return;
   callers_core_ = core;
@@ -151,7 +151,7 @@ void ThreadTeam::tell(unsigned generation) {
 
 void ThreadTeam::wake() {
   if (threads_.empty() || spins_ == 0) return;
-  keepApart();
+  avoidCallerCore();
   tell(generation_ | 1U);
 }
 
@@ -159,11 +159,11 @@ void ThreadTeam::start(Job job) {
   job_ = job;
   busy_.store(size() - 1, std::memory_order_relaxed);
   if (!threads_.empty()) {
-    keepApart();
+    avoidCallerCore();
     tell((generation_ | 1U) + 1);
   }
   perform(0);
-  const int spins = spins_ > 0 ? kSpinsAwake : 0;  // it ends soon, and to wake up takes long
+  const int spins = spins_ > 0 ? kHotSpinCount : 0;  // it ends soon, and to wake up takes long
   for (int busy = busy_; busy != 0;) busy = awaitChange(busy_, busy, spins);
   if (failed_.exchange(false)) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
@@ -171,7 +171,7 @@ void ThreadTeam::start(Job job) {
 void ThreadTeam::loop(int worker) {
   for (unsigned seen = 0;;) {
     const bool is_awake = (seen & 1U) != 0;
-    seen = awaitChange(generation_, seen, is_awake ? kSpinsAwake : spins_);
+    seen = awaitChange(generation_, seen, is_awake ? kHotSpinCount : spins_);
     if (stopping_.load()) return;
     if ((seen & 1U) != 0) continue;
     perform(worker);

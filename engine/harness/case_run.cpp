@@ -18,7 +18,8 @@ double seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
 }  // namespace
 
-CaseRun::CaseRun(Case run, RunPolicy policy, const HostMaker& make_host, CancelQuery cancelled)
+CaseRun::CaseRun(Case run, RunPolicy policy, const ExecutorFactory& make_host,
+                 CancelQuery cancelled)
     : case_(std::move(run)),
       policy_(policy),
       margin_(makeInstance(case_)->margin()),
@@ -132,16 +133,18 @@ void CaseRun::stop() {
 }
 
 template <class Answer>
-Answer CaseRun::ask(Answer (CaseHost::*question)()) {
+Answer CaseRun::ask(Answer (CaseExecutor::*question)()) {
   Answer answer;
   attempt([&] { answer = (host_.get()->*question)(); });
   return answer;
 }
 
-PairRuns CaseRun::answer() { return answersEvents() ? followed_.pairs() : ask(&CaseHost::answer); }
-Counts CaseRun::counters() { return ask(&CaseHost::counters); }
-Counts CaseRun::setup() { return ask(&CaseHost::setup); }
-RecordedDrawing CaseRun::structure() { return ask(&CaseHost::structure); }
-std::string CaseRun::validate() { return ask(&CaseHost::validate); }
+PairRuns CaseRun::answer() {
+  return answersEvents() ? followed_.pairs() : ask(&CaseExecutor::answer);
+}
+Counts CaseRun::counters() { return ask(&CaseExecutor::counters); }
+Counts CaseRun::setup() { return ask(&CaseExecutor::setup); }
+RecordedDrawing CaseRun::structure() { return ask(&CaseExecutor::structure); }
+std::string CaseRun::validate() { return ask(&CaseExecutor::validate); }
 
 }  // namespace broadmark

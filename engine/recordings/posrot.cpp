@@ -47,7 +47,7 @@ PosrotReader::PosrotReader(FileDescriptor file, std::string name)
 void PosrotReader::readSizes() {
   unturned_.resize(scene().objects);
   readSet(0, std::as_writable_bytes(std::span(unturned_)));
-  requireSound<Aabb>(unturned_, 0, scene(), name(), "box");
+  requireValid<Aabb>(unturned_, 0, scene(), name(), "box");
   half_extents_.resize(scene().objects);
   std::ranges::transform(unturned_, half_extents_.begin(), halfExtentsOf);
 }
@@ -58,12 +58,12 @@ std::span<const Aabb> PosrotReader::readBoxes(std::uint32_t index) {
   poses_.resize(scene().objects);
   boxes_.resize(scene().objects);
   readSet(index, std::as_writable_bytes(std::span(poses_)));
-  requireSound<Pose>(poses_, index, scene(), name(), "pose");
+  requireValid<Pose>(poses_, index, scene(), name(), "pose");
   for (std::size_t body = 0; body < poses_.size(); ++body) {
     const Pose& pose = poses_[body];
     boxes_[body] = boxAround(pose.position, extents(body, pose.rotation));
   }
-  requireSound<Aabb>(boxes_, index, scene(), name(), "box");  // at the edge of what floats hold
+  requireValid<Aabb>(boxes_, index, scene(), name(), "box");  // at the edge of what floats hold
   return boxes_;
 }
 

@@ -138,8 +138,8 @@ const RecordingOrigin& Recording::origin() const {
 const std::string& Recording::hash() {
   if (!hash_.empty()) return hash_;
   Hasher hasher;
-  constexpr std::uint64_t kMostAtOnce = 1 << 20;
-  std::vector<std::byte> chunk(std::min(size_, kMostAtOnce));
+  constexpr std::uint64_t kMaxAtOnce = 1 << 20;
+  std::vector<std::byte> chunk(std::min(size_, kMaxAtOnce));
   for (std::uint64_t offset = 0; offset < size_; offset += chunk.size()) {
     const std::span part(chunk.data(), std::min<std::uint64_t>(chunk.size(), size_ - offset));
     read(offset, part);
@@ -182,7 +182,7 @@ RecordingReader::RecordingReader(FileDescriptor file, std::string name)
 
 std::span<const Aabb> RecordingReader::readBoxes(std::uint32_t index) {
   readSet(index, std::as_writable_bytes(std::span(boxes_)));
-  requireSound<Aabb>(boxes_, index, scene(), name(), "box");
+  requireValid<Aabb>(boxes_, index, scene(), name(), "box");
   return boxes_;
 }
 

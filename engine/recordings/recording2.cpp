@@ -56,8 +56,8 @@ void Recording2Reader::open() {
   if (end.magic != kRecording2Magic) {
     refuse(name(), "byte {}: does not end as a recording 2: cut short, or not finished?", last);
   }
-  constexpr std::uint64_t kMostHeaderBytes = 1 << 28;  // scene parameters may be some millions
-  if (start.header_bytes > std::min(kMostHeaderBytes, last - sizeof start) ||
+  constexpr std::uint64_t kMaxHeaderBytes = 1 << 28;  // scene parameters may be some millions
+  if (start.header_bytes > std::min(kMaxHeaderBytes, last - sizeof start) ||
       (sizeof start + start.header_bytes) % kRecordingAlignment != 0) {
     refuse(name(), "byte 8: a header of {} bytes cannot be: it ends at a multiple of {}",
            start.header_bytes, kRecordingAlignment);

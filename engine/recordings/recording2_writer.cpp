@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "broadmark/changed_bodies.h"
+#include "broadmark/change_detector.h"
 #include "broadmark/error.h"
 #include "recording2_header.h"
 #include "recording_file.h"
@@ -15,7 +15,7 @@ namespace broadmark {
 namespace {
 
 /// Most frames from one key frame to the next: a frame in which little changed takes its time, too.
-constexpr std::uint32_t kMostBetweenKeys = 256;
+constexpr std::uint32_t kMaxBetweenKeys = 256;
 
 class Recording2File final : public RecordingFile {
  public:
@@ -68,7 +68,7 @@ class Recording2File final : public RecordingFile {
     since_key_ += changed * (sizeof(std::uint32_t) + sizeof(PackedBox));
     const std::uint64_t whole = sizeof(PackedBox) * std::uint64_t{scene().objects};
     const std::uint32_t last = index == 0 ? 0 : index_.back().key;
-    if (index > 0 && since_key_ < whole && index - last < kMostBetweenKeys) return last;
+    if (index > 0 && since_key_ < whole && index - last < kMaxBetweenKeys) return last;
     since_key_ = 0;
     return index;
   }
@@ -84,7 +84,7 @@ class Recording2File final : public RecordingFile {
     append(block_);
   }
 
-  ChangedBodies changes_;
+  ChangeDetector changes_;
   std::vector<RecordedFrame> index_;
   std::vector<std::byte> block_;  ///< what is written next
   std::uint64_t since_key_ = 0;   ///< bytes of what changed since the last key frame

@@ -17,7 +17,7 @@ static_assert(sizeof(Aabb) == kRecordBytes);
 constexpr std::size_t kTextBytes = 128;
 
 /// Frames of no objects take no bytes, so the file's length does not bound their number.
-constexpr std::uint32_t kMostEmptyFrames = 1'000'000;
+constexpr std::uint32_t kMaxEmptyFrames = 1'000'000;
 
 /// A NUL-padded text of the header.
 std::string headerText(const char (&field)[kTextBytes], std::string_view what, std::size_t offset,
@@ -49,9 +49,9 @@ std::vector<std::byte> makeHeader(const SceneInfo& scene) {
     throw InputError(fmt::format("cannot record {} objects and {} frames: at most {} each",
                                  scene.objects, scene.frames, kMost));
   }
-  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+  if (scene.objects == 0 && scene.frames > kMaxEmptyFrames) {
     throw InputError(fmt::format("cannot record {} frames of no objects: at most {} are allowed",
-                                 scene.frames, kMostEmptyFrames));
+                                 scene.frames, kMaxEmptyFrames));
   }
   RecordingHeader header{};
   std::ranges::copy(scene.name, header.name);
@@ -88,10 +88,10 @@ SceneInfo parseHeader(const RecordingHeader& header, const std::string& name) {
       headerText(header.object_type, "object type", offsetof(RecordingHeader, object_type), name);
   scene.objects = headerCount(header.objects, "objects", offsetof(RecordingHeader, objects), name);
   scene.frames = headerCount(header.frames, "frames", offsetof(RecordingHeader, frames), name);
-  if (scene.objects == 0 && scene.frames > kMostEmptyFrames) {
+  if (scene.objects == 0 && scene.frames > kMaxEmptyFrames) {
     throw InputError(fmt::format("{}: byte {}: {} frames of no objects: at most {} are allowed",
                                  name, offsetof(RecordingHeader, frames), scene.frames,
-                                 kMostEmptyFrames));
+                                 kMaxEmptyFrames));
   }
   scene.world = header.world;
   if (const std::string wrong = fault(scene.world); !wrong.empty()) {

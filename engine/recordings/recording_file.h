@@ -85,7 +85,7 @@ inline bool isSound(const Pose& pose) {
 /// Throws InputError naming the first record for which isSound() is false. `first` is the number of
 /// the first of these records in the set.
 template <class Record>
-void requireSound(std::span<const Record> records, std::uint64_t set, const SceneInfo& scene,
+void requireValid(std::span<const Record> records, std::uint64_t set, const SceneInfo& scene,
                   const std::string& name, std::string_view what, std::size_t first = 0) {
   bool sound = true;
   for (const Record& record : records) sound &= isSound(record);
@@ -172,7 +172,7 @@ class OriginalRecordingFile final : public RecordingFile {
     constexpr std::size_t kPiece = 1 << 13;
     for (std::size_t first = 0; first < records.size(); first += kPiece) {
       const auto piece = records.subspan(first, std::min(kPiece, records.size() - first));
-      requireSound(piece, sets_, scene(), name(), what, first);
+      requireValid(piece, sets_, scene(), name(), what, first);
       std::ranges::copy(bytes.subspan(first * kRecordBytes, piece.size() * kRecordBytes),
                         filling_.begin() + static_cast<std::ptrdiff_t>(first * kRecordBytes));
     }

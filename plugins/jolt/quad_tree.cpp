@@ -161,7 +161,8 @@ class QuadTree final : public BoxBroadPhase {
     if (!all.empty()) manager_.DestroyBodies(all.data(), static_cast<int>(all.size()));
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     filter_ = scene.filter;
     layers_ = std::make_unique<Layers>(filter_);

@@ -96,7 +96,8 @@ class PhysX final : public BroadPhase {
     if (!broad_phase_) throw UnsupportedError("PhysX: creates no broad phase");
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     filter_ = scene.filter;
     team_ = &execution.team();
     if (execution.threads() > 1) workers_.emplace(execution.threads());

@@ -18,17 +18,17 @@
 namespace broadmark::scenes {
 namespace {
 
-constexpr float kMostCoordinate = 1e9F;
-constexpr float kMostSpeed = 1e6F;
-constexpr double kLeastMass = 1e-6;
-constexpr double kMostMass = 1e9;
+constexpr float kMaxCoordinate = 1e9F;
+constexpr float kMaxSpeed = 1e6F;
+constexpr double kMinMass = 1e-6;
+constexpr double kMaxMass = 1e9;
 
 bool isWithin(std::span<const float> values, float limit) {
   // Comparisons with NaN are false.
   return std::ranges::all_of(values, [&](float value) { return std::abs(value) <= limit; });
 }
 
-bool isSize(float edge) { return edge >= kLeastEdge && edge <= kMostEdge; }
+bool isSize(float edge) { return edge >= kMinEdge && edge <= kMaxEdge; }
 
 std::string outOfRange(std::string_view key, double most) {
   return fmt::format("{}: numbers from {:g} to {:g} are expected", key, -most, most);
@@ -44,34 +44,34 @@ std::string faultOfBody(const AuthoredBody& body, std::size_t id) {
 
 std::string faultOfBody(const AuthoredBody& body) {
   if (!std::ranges::all_of(edgesOf(body.shape), isSize)) {
-    return fmt::format("size: edges or a diameter from {:g} to {:g} are expected", kLeastEdge,
-                       kMostEdge);
+    return fmt::format("size: edges or a diameter from {:g} to {:g} are expected", kMinEdge,
+                       kMaxEdge);
   }
-  if (!isWithin(body.pose.position, kMostCoordinate)) {
-    return outOfRange("position", kMostCoordinate);
+  if (!isWithin(body.pose.position, kMaxCoordinate)) {
+    return outOfRange("position", kMaxCoordinate);
   }
   float length = 0;
   for (const float part : body.pose.rotation) length += part * part;
   if (!(std::abs(length - 1) <= kRotationTolerance)) {
     return "rotation: a quaternion x, y, z, w of unit length is expected";
   }
-  if (!(body.mass >= kLeastMass && body.mass <= kMostMass)) {
-    return fmt::format("mass: a number from {:g} to {:g} is expected", kLeastMass, kMostMass);
+  if (!(body.mass >= kMinMass && body.mass <= kMaxMass)) {
+    return fmt::format("mass: a number from {:g} to {:g} is expected", kMinMass, kMaxMass);
   }
-  if (!isWithin(body.linear_velocity, kMostSpeed)) return outOfRange("velocity", kMostSpeed);
-  if (!isWithin(body.angular_velocity, kMostSpeed)) {
-    return outOfRange("angular_velocity", kMostSpeed);
+  if (!isWithin(body.linear_velocity, kMaxSpeed)) return outOfRange("velocity", kMaxSpeed);
+  if (!isWithin(body.angular_velocity, kMaxSpeed)) {
+    return outOfRange("angular_velocity", kMaxSpeed);
   }
   if (body.layer >= LayerMatrix::kLayers) return faultOfLayer("layer");
-  if (body.appears > kMostFrames) {
-    return fmt::format("appears: a frame from 0 to {} is expected", kMostFrames);
+  if (body.appears > kMaxFrames) {
+    return fmt::format("appears: a frame from 0 to {} is expected", kMaxFrames);
   }
-  if (body.vanishes <= body.appears || (body.vanishes > kMostFrames && body.vanishes != kNever)) {
+  if (body.vanishes <= body.appears || (body.vanishes > kMaxFrames && body.vanishes != kNever)) {
     return fmt::format("vanishes: a frame from {} to {} is expected: it appears in frame {}",
-                       body.appears + 1, kMostFrames, body.appears);
+                       body.appears + 1, kMaxFrames, body.appears);
   }
-  if (body.group > kMostBodies) {
-    return fmt::format("group: a whole number from 0 to {} is expected", kMostBodies);
+  if (body.group > kMaxBodies) {
+    return fmt::format("group: a whole number from 0 to {} is expected", kMaxBodies);
   }
   return {};
 }
@@ -92,29 +92,29 @@ std::string faultOfName(std::string_view name) {
 
 std::string faultOfWorld(const Aabb& world) {
   for (int axis = 0; axis < 3; ++axis) {
-    const bool right = std::abs(world.min[axis]) <= kMostCoordinate &&
-                       std::abs(world.max[axis]) <= kMostCoordinate &&
+    const bool right = std::abs(world.min[axis]) <= kMaxCoordinate &&
+                       std::abs(world.max[axis]) <= kMaxCoordinate &&
                        world.min[axis] < world.max[axis];
     if (right) continue;
     return fmt::format("world: min below max is expected on every axis, from {:g} to {:g}",
-                       -kMostCoordinate, kMostCoordinate);
+                       -kMaxCoordinate, kMaxCoordinate);
   }
   return {};
 }
 
-void requireSound(const AuthoredBody& body, std::size_t id) {
+void requireValid(const AuthoredBody& body, std::size_t id) {
   const std::string fault = faultOfBody(body, id);
   if (!fault.empty()) throw InputError(fault);
 }
 
-void requireSound(const AuthoredScene& scene) {
+void requireValid(const AuthoredScene& scene) {
   const auto require_no_fault = [](const std::string& fault) {
     if (!fault.empty()) throw InputError("authored scene: " + fault);
   };
   require_no_fault(faultOfName(scene.name));
   require_no_fault(faultOfWorld(scene.world));
-  if (scene.bodies.size() > kMostBodies) {
-    require_no_fault(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMostBodies));
+  if (scene.bodies.size() > kMaxBodies) {
+    require_no_fault(fmt::format("bodies: {} are more than {}", scene.bodies.size(), kMaxBodies));
   }
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     require_no_fault(faultOfBody(scene.bodies[i], i));

@@ -212,7 +212,7 @@ class SceneReader final : public JsonEvents {
   }
 
   void readBody(const Json& json) {
-    if (scene_.bodies.size() == kMostBodies) fail(fmt::format("more than {}", kMostBodies));
+    if (scene_.bodies.size() == kMaxBodies) fail(fmt::format("more than {}", kMaxBodies));
     AuthoredBody body;
     Vec3 edges;
     float radius = 0;

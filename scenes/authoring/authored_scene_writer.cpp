@@ -90,7 +90,7 @@ void appendLayers(std::string& text, const AuthoredScene& scene) {
 }  // namespace
 
 std::string formatAuthoredScene(const AuthoredScene& scene) {
-  requireSound(scene);
+  requireValid(scene);
   constexpr std::size_t kUsualBody = 100;
   std::string text;
   text.reserve(kUsualBody * scene.bodies.size());

@@ -33,7 +33,7 @@ class AuthoredSimulation final : public PhysicsSimulation, public SceneDocument 
         scene_(std::move(scene)),
         file_(std::move(file)),
         parameters_(scene_.parameters) {
-    requireSound(scene_);
+    requireValid(scene_);
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
@@ -157,7 +157,7 @@ AuthoredBody bodyIn(const Aabb& box, const std::string& object_type) {
   for (int axis = 0; axis < 3; ++axis) {
     const float edge = box.max[axis] - box.min[axis];
     body.pose.position[axis] = box.min[axis] + edge / 2;
-    half[axis] = std::max(edge, kLeastEdge) / 2;  // a body has some thickness
+    half[axis] = std::max(edge, kMinEdge) / 2;  // a body has some thickness
   }
   if (object_type == "Spheres") {
     body.shape = SphereShape{half[0]};
@@ -197,14 +197,13 @@ AuthoredParameters::AuthoredParameters(AuthoredParameters&&) noexcept = default;
 AuthoredParameters& AuthoredParameters::operator=(AuthoredParameters&&) noexcept = default;
 
 void AuthoredParameters::visitParameters(const ParameterVisitor& visit) {
-  constexpr double kMostGravity = 1e6;
-  visit({"frames", "number of frames after the initial pose", &frames_, 1, kMostFrames});
+  constexpr double kMaxGravity = 1e6;
+  visit({"frames", "number of frames after the initial pose", &frames_, 1, kMaxFrames});
   visit({"engine", "physics engine that moves the bodies", &engine_});
   visit({"gravity_x", "gravity along x, in world units per second squared", &gravity_x_,
-         -kMostGravity, kMostGravity});
-  visit(
-      {"gravity_y", "gravity along y, which points up", &gravity_y_, -kMostGravity, kMostGravity});
-  visit({"gravity_z", "gravity along z", &gravity_z_, -kMostGravity, kMostGravity});
+         -kMaxGravity, kMaxGravity});
+  visit({"gravity_y", "gravity along y, which points up", &gravity_y_, -kMaxGravity, kMaxGravity});
+  visit({"gravity_z", "gravity along z", &gravity_z_, -kMaxGravity, kMaxGravity});
   physics_.visit(visit);
   engine_parameters_->parameters(engine_.value, physics_).visitParameters(visit);
 }
@@ -252,7 +251,7 @@ AuthoredScene sceneFromFrame(FrameSource& source, std::uint32_t frame) {
       scene.bodies.back().layer = info.filter.groupsOf(id).layer;
     }
   }
-  requireSound(scene);
+  requireValid(scene);
   return scene;
 }
 

@@ -11,9 +11,9 @@
 namespace broadmark::scenes {
 
 /// Throws InputError when the body with this id is wrong.
-void requireSound(const AuthoredBody&, std::size_t id);
+void requireValid(const AuthoredBody&, std::size_t id);
 /// Throws InputError when any part of the scene but its parameters is wrong.
-void requireSound(const AuthoredScene&);
+void requireValid(const AuthoredScene&);
 
 /// What is wrong with a number that is no layer, and what would be right.
 std::string faultOfLayer(std::string_view key);

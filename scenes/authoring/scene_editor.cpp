@@ -275,7 +275,7 @@ void SceneEditor::change(std::string_view verb, const std::function<void(Authore
   for (const std::uint32_t id : *selection_) {
     AuthoredBody& body = bodies.emplace_back(scene_.bodies[id]);
     edit(body);
-    requireSound(body, id);
+    requireValid(body, id);
     differs |= body != scene_.bodies[id];
   }
   if (!differs) return;
@@ -322,11 +322,11 @@ void SceneEditor::changePresence(std::string_view verb, SharedIds ids,
 void SceneEditor::addCopies(std::string_view verb, std::vector<AuthoredBody> bodies) {
   if (bodies.empty()) return;
   const std::size_t first = scene_.bodies.size();
-  if (first + bodies.size() > kMostBodies) {
+  if (first + bodies.size() > kMaxBodies) {
     throw InputError(
-        fmt::format("{} more bodies: a scene has at most {}", bodies.size(), kMostBodies));
+        fmt::format("{} more bodies: a scene has at most {}", bodies.size(), kMaxBodies));
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i) requireSound(bodies[i], first + i);
+  for (std::size_t i = 0; i < bodies.size(); ++i) requireValid(bodies[i], first + i);
   const SharedIds ids = shared(idsFrom(first, first + bodies.size()));
   changePresence(verb, ids, std::move(bodies), ids);
 }

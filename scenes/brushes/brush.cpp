@@ -56,11 +56,11 @@ std::uint64_t cellAt(const std::array<std::int64_t, 3>& indices) {
 
 std::size_t checkedCount(double count) {
   const double whole = std::floor(count);
-  if (whole >= 0 && whole <= static_cast<double>(kMostBodies)) {
+  if (whole >= 0 && whole <= static_cast<double>(kMaxBodies)) {
     return static_cast<std::size_t>(whole);
   }
   throw InputError(fmt::format("the brush would place {:.4g} bodies: a scene has at most {}", whole,
-                               kMostBodies));
+                               kMaxBodies));
 }
 
 }  // namespace
@@ -76,11 +76,11 @@ void Paint::visitParameters(const ParameterVisitor& visit) {
   visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});
 }
 
-TakenRoom::TakenRoom(std::span<const AuthoredBody> bodies) {
+OccupiedSpace::OccupiedSpace(std::span<const AuthoredBody> bodies) {
   for (const AuthoredBody& body : bodies) add(body);
 }
 
-void TakenRoom::add(const AuthoredBody& body) {
+void OccupiedSpace::add(const AuthoredBody& body) {
   const Aabb box = core(tightBox(body.shape, body.pose));
   const int exponent = exponentOf(box);
   const double scale = cellsPerUnit(exponent);
@@ -88,13 +88,13 @@ void TakenRoom::add(const AuthoredBody& body) {
   grids_[exponent][cellAt({along(0), along(1), along(2)})].push_back(box);
 }
 
-bool TakenRoom::overlaps(const AuthoredBody& body) const {
+bool OccupiedSpace::overlaps(const AuthoredBody& body) const {
   const Aabb box = core(tightBox(body.shape, body.pose));
   return std::ranges::any_of(
       grids_, [&](const auto& grid) { return overlapsIn(grid.second, grid.first, box); });
 }
 
-bool TakenRoom::overlapsIn(const Grid& grid, int exponent, const Aabb& box) {
+bool OccupiedSpace::overlapsIn(const Grid& grid, int exponent, const Aabb& box) {
   const auto any_overlaps = [&](const std::vector<Aabb>& boxes) {
     return std::ranges::any_of(boxes, [&](const Aabb& b) { return broadmark::overlaps(b, box); });
   };
@@ -121,12 +121,12 @@ bool TakenRoom::overlapsIn(const Grid& grid, int exponent, const Aabb& box) {
   return false;
 }
 
-Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const TakenRoom& taken,
+Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const OccupiedSpace& taken,
              std::size_t most) {
   Random random(static_cast<std::uint64_t>(paint.seed));
   const ObjectType type = entryOf(objectTypes(), paint.object_type.value, "object type");
   const std::size_t count = checkedCount(brush.count(paint.scale * paint.scale * paint.scale));
-  TakenRoom own;
+  OccupiedSpace own;
   Stroke stroke;
   const int tries = brush.scatters() && !paint.overlap ? kTries : 1;
   for (std::size_t i = 0; i < std::min(count, most); ++i) {
@@ -152,7 +152,7 @@ Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at, const Taken
 Stroke paint(const Brush& brush, const Paint& paint, const Vec3& at,
              std::span<const AuthoredBody> present) {
   return scenes::paint(brush, paint, at,
-                       TakenRoom(paint.overlap ? std::span<const AuthoredBody>() : present));
+                       OccupiedSpace(paint.overlap ? std::span<const AuthoredBody>() : present));
 }
 
 }  // namespace broadmark::scenes

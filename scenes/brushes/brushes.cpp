@@ -20,7 +20,7 @@ template <std::int64_t default_count>
 class CountedBrush : public Brush {
  public:
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"count", "number of bodies", &count_, 1, kMostBodies});
+    visit({"count", "number of bodies", &count_, 1, kMaxBodies});
   }
   [[nodiscard]] double count(double) const override { return static_cast<double>(count_); }
 

@@ -1,7 +1,7 @@
 // Boids: birds of a flock instead of bodies under forces. Each boid keeps a distance from its
 // neighbours, takes on their direction and stays near them, at about its launch speed. Bodies do
 // not collide; they avoid walls and never pass them. O(n) per step: neighbours are found in a
-// uniform grid, and a boid follows at most kMostNeighbours.
+// uniform grid, and a boid follows at most kMaxNeighbours.
 //
 // C. Reynolds: Flocks, Herds, and Schools: A Distributed Behavioral Model. SIGGRAPH 1987.
 // M. Teschner et al.: Optimized Spatial Hashing for Collision Detection of Deformable Objects.
@@ -24,7 +24,7 @@ namespace {
 using Eigen::Vector3f;
 
 /// Enough in a crowd: birds follow far fewer.
-constexpr int kMostNeighbours = 64;
+constexpr int kMaxNeighbours = 64;
 
 Vector3f toEigen(const Vec3& v) { return Vector3f(v.data()); }
 Vec3 fromEigen(const Vector3f& v) { return {v.x(), v.y(), v.z()}; }
@@ -257,7 +257,7 @@ class BoidsEngine final : public PhysicsEngine {
         ways += way;
         ++leaders;
       }
-      return ++seen < kMostNeighbours;
+      return ++seen < kMaxNeighbours;
     });
     Vector3f steering = static_cast<float>(separation_) * away;
     if (leaders > 0) {

@@ -169,7 +169,7 @@ constexpr btScalar kPushedWithin = kHoldAfter;
 
 /// For how long a body has been still: all of it near to one place. Its velocity tells less: few
 /// iterations leave each body of a large pile trembling, and sinking slowly into those below.
-class Stillness {
+class SleepTracker {
  public:
   void update(const btRigidBody& body, btScalar time_step) {
     pose_ = body.getWorldTransform();
@@ -234,7 +234,7 @@ class Stillness {
 /// own.
 struct BodyState {
   std::uint8_t layer = 0;
-  Stillness stillness;
+  SleepTracker stillness;
   bool held = false;       ///< in the last step: still and supported
   bool disturbed = false;  ///< in this step: touches a body that is not still
 };
@@ -370,7 +370,8 @@ class World final : public btDiscreteDynamicsWorld {
   [[nodiscard]] static bool mayBeHeld(const btRigidBody& body, btScalar time_step) {
     const BodyState& state = stateOf(body);
     if (!body.isActive() || !state.stillness.lasts()) return false;
-    if (Stillness::endsWithin(state.disturbed ? kPushedWithin : kLeavesWithin, body)) return false;
+    if (SleepTracker::endsWithin(state.disturbed ? kPushedWithin : kLeavesWithin, body))
+      return false;
     const btScalar freely_fallen = body.getGravity().length2() * time_step;
     return body.getLinearVelocity().dot(body.getGravity()) < (1 - kCarriedShare) * freely_fallen;
   }

@@ -51,12 +51,12 @@ void initialiseOde() {
 }
 
 /// While this lives, the process's random number generator continues the sequence of one world.
-class RandomLoan {
+class ScopedOdeSeed {
  public:
-  explicit RandomLoan(unsigned long& seed) : seed_(seed), lock_(mutex()) { dRandSetSeed(seed_); }
-  ~RandomLoan() { seed_ = dRandGetSeed(); }
-  RandomLoan(const RandomLoan&) = delete;
-  RandomLoan& operator=(const RandomLoan&) = delete;
+  explicit ScopedOdeSeed(unsigned long& seed) : seed_(seed), lock_(mutex()) { dRandSetSeed(seed_); }
+  ~ScopedOdeSeed() { seed_ = dRandGetSeed(); }
+  ScopedOdeSeed(const ScopedOdeSeed&) = delete;
+  ScopedOdeSeed& operator=(const ScopedOdeSeed&) = delete;
 
  private:
   /// Guards the library's generator, one for the whole process.
@@ -293,7 +293,7 @@ class OdeEngine final : public PhysicsEngine {
         static_cast<OdeEngine*>(engine)->touch(a, b);
       });
       {
-        const RandomLoan loan(random_);
+        const ScopedOdeSeed loan(random_);
         dWorldQuickStep(world_.get(), time_);
       }
       dJointGroupEmpty(contacts_.get());

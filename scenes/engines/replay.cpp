@@ -56,9 +56,9 @@ class ReplaySimulation final : public Simulation {
         engine_{engine.listing.id, {engine.listing.id}} {}
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"objects", "number of bodies", &objects_, 0, kMostBodies});
+    visit({"objects", "number of bodies", &objects_, 0, kMaxBodies});
     visit({"frames", "number of frames after the initial pose; 0: all that are recorded", &frames_,
-           0, kMostFrames});
+           0, kMaxFrames});
     visit({"object_type", "what the bodies are", &object_type_});
     visit({"engine", "what replays them", &engine_});
     visit({"input", "recording to replay, or the directory where it lies under its own name",

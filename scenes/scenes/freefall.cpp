@@ -18,7 +18,7 @@ class FreeFall final : public Scene {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"freeze_slow", "freeze slow bodies for good once the scene has settled", &freeze_slow_});
     visit({"freeze_after", "frame after which slow bodies are frozen", &freeze_after_, 0,
-           kMostFrames});
+           kMaxFrames});
     visit({"freeze_speed", "speed below which a body is slow, in world units per second",
            &freeze_speed_, 0, 1e6});
     visit({"freeze_angular_speed",

@@ -29,8 +29,8 @@ void PhysicsSettings::visit(const ParameterVisitor& visit) {
 Settings::Settings() : object_type(choiceOf(objectTypes())), engine(choiceOf(engineEntries())) {}
 
 void Settings::visit(const ParameterVisitor& visit) {
-  visit({"objects", "number of bodies", &objects, 0, kMostBodies});
-  visit({"frames", "number of frames after the initial pose", &frames, 1, kMostFrames});
+  visit({"objects", "number of bodies", &objects, 0, kMaxBodies});
+  visit({"frames", "number of frames after the initial pose", &frames, 1, kMaxFrames});
   visit({"object_type", "what the bodies are", &object_type});
   visit({"engine", "physics engine that moves them", &engine});
   visit({"seed", "start of the random numbers", &seed, 0, 4'294'967'295});

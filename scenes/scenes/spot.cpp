@@ -22,7 +22,7 @@ class Spot final : public Scene {
   }
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"hold", "frame after which the bodies fly apart", &hold_, 1, kMostFrames});
+    visit({"hold", "frame after which the bodies fly apart", &hold_, 1, kMaxFrames});
   }
 
   /// Physics would try to push each out of all the others.

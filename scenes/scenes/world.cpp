@@ -28,7 +28,7 @@ class World final : public Scene {
 
   void visitParameters(const ParameterVisitor& visit) override {
     visit({"movers", "number of bodies that fly about; the others never move", &movers_, 0,
-           kMostBodies});
+           kMaxBodies});
     visit({"largest", "longest edge of a static box, in sides of the world", &largest_, 1e-3, 1});
   }
 

@@ -26,7 +26,7 @@ class OnePair : public PairBroadPhase {
 /// Overrides initialize() without calling its base's.
 class ForgetfulPair final : public OnePair {
  public:
-  void initialize(const SceneInfo&, const Frame&, Execution&) override {}
+  void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}
 };
 
 const std::vector<Aabb> kThreeBoxes = inputs::identical(3, 0, 1);
@@ -35,7 +35,7 @@ constexpr Pair kSecond = {1, 2};
 
 TEST(PairBroadPhase, AnswersWithWhatIsAddedWithoutFurtherCalls) {
   OnePair algorithm;
-  Execution execution(2, Isa::scalar);
+  ExecutionContext execution(2, Isa::scalar);
   algorithm.initialize({}, {0, kThreeBoxes}, execution);
   algorithm.updateObjects({1, kThreeBoxes});
   algorithm.cleanCache();
@@ -47,7 +47,7 @@ TEST(PairBroadPhase, AnswersWithWhatIsAddedWithoutFurtherCalls) {
 
 TEST(PairBroadPhase, CleanCacheEmptiesAnswerAndBuffers) {
   OnePair algorithm;
-  Execution execution(1, Isa::scalar);
+  ExecutionContext execution(1, Isa::scalar);
   algorithm.initialize({}, {0, kThreeBoxes}, execution);
   for (std::uint32_t frame = 1; frame < 4; ++frame) {
     algorithm.updateObjects({frame, kThreeBoxes});
@@ -60,7 +60,7 @@ TEST(PairBroadPhase, CleanCacheEmptiesAnswerAndBuffers) {
 
 TEST(PairBroadPhase, NoticesThatItsInitializeWasNotCalled) {
   ForgetfulPair algorithm;
-  Execution execution(1, Isa::scalar);
+  ExecutionContext execution(1, Isa::scalar);
   algorithm.initialize({}, {0, kThreeBoxes}, execution);
   algorithm.updateObjects({1, kThreeBoxes});
   algorithm.cleanCache();
@@ -86,7 +86,7 @@ class KeptArrays final : public SimdBroadPhase {
 
 TEST(BoxBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
   KeptBoxes algorithm;
-  Execution execution(1, Isa::scalar);
+  ExecutionContext execution(1, Isa::scalar);
   const std::vector<Aabb> first = inputs::uniform(20, 0, 1);
   algorithm.initialize({}, {0, first}, execution);
   EXPECT_EQ(algorithm.boxes(), first);
@@ -97,7 +97,7 @@ TEST(BoxBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
 
 TEST(SimdBroadPhase, KeepsTheBoxesOfTheInitialPoseAndOfEachFrame) {
   KeptArrays algorithm;
-  Execution execution(1, Isa::scalar);
+  ExecutionContext execution(1, Isa::scalar);
   const std::vector<Aabb> first = inputs::uniform(21, 0, 1);
   algorithm.initialize({}, {0, first}, execution);
   ASSERT_EQ(algorithm.arrays().size(), first.size());

@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/changed_bodies.h"
+#include "broadmark/change_detector.h"
 #include "broadmark/error.h"
-#include "broadmark/harness/case_host.h"
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/case_executor.h"
+#include "broadmark/harness/event_accumulator.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "torture/given_frames.h"
@@ -165,8 +165,8 @@ class TestRun {
   explicit TestRun(const Algorithm& algorithm, const Configuration& way = {},
                    const ParameterValues& parameters = {})
       : run_(caseOf(algorithm, way, parameters)),
-        host_(std::make_unique<LocalHost>(run_)),
-        changed_bodies_(std::make_unique<ChangedBodies>()) {}
+        host_(std::make_unique<InProcessExecutor>(run_)),
+        changed_bodies_(std::make_unique<ChangeDetector>()) {}
 
   /// Begins a pass. Throws UnsupportedError.
   TestRun& start(const SceneInfo& scene, const std::vector<Aabb>& first) {
@@ -204,9 +204,9 @@ class TestRun {
   }
 
   Case run_;
-  std::unique_ptr<LocalHost> host_;
-  std::unique_ptr<ChangedBodies> changed_bodies_;
-  FollowedPairs followed_;
+  std::unique_ptr<InProcessExecutor> host_;
+  std::unique_ptr<ChangeDetector> changed_bodies_;
+  EventAccumulator followed_;
   FrameTimes times_;
   std::uint32_t index_ = 0;
 };

@@ -163,7 +163,7 @@ TEST(Session, AutomaticRepetitions) {
   const SessionOptions options = session(
       {"--repetitions", "auto", "--precision", "1%", "--max-seconds", "60", "--order-seed", "7"});
   EXPECT_TRUE(options.repetitions.until_precise);
-  EXPECT_EQ(options.repetitions.most, RepetitionOptions::kMostUntilPrecise);
+  EXPECT_EQ(options.repetitions.most, RepetitionOptions::kMaxUntilPrecise);
   EXPECT_EQ(options.repetitions.precision, 0.01);
   EXPECT_EQ(options.repetitions.max_seconds, 60);
   EXPECT_EQ(options.repetitions.order_seed, 7U);

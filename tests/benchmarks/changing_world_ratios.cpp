@@ -101,7 +101,7 @@ bool worlds(int rounds) {
     WorldContest contest;
     contest.add("together", caseOf(id), all);
     WorldContest::Entrant apart = {.name = "apart"};
-    std::vector<std::unique_ptr<CaseHost>> hosts;
+    std::vector<std::unique_ptr<CaseExecutor>> hosts;
     for (std::uint32_t world = 0; world < all.worlds(); ++world) {
       hosts.push_back(makeLocalHost(caseOf(id), {}));
       hosts.back()->start(all.sceneOfOne(), all.frameOfOne(world));
@@ -110,7 +110,7 @@ bool worlds(int rounds) {
       contest.run(round < 0 ? 1 : 0, round < 0 ? 0 : 1);
       double us = 0;
       for (std::uint32_t world = 0; world < all.worlds(); ++world) {
-        const FrameRun run = hosts[world]->step(all.frameOfOne(world));
+        const StepResult run = hosts[world]->step(all.frameOfOne(world));
         us += static_cast<double>(run.times[Phase::total]) * 1e-3;
       }
       if (round >= 0) apart.us.push_back(us);

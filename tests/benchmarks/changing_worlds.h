@@ -229,7 +229,7 @@ class WorldContest {
       std::ranges::shuffle(order, random);
       for (const std::size_t turn : order) {
         Entrant& entrant = entrants_[turn];
-        const FrameRun run = entrant.host->step(entrant.world->frame());
+        const StepResult run = entrant.host->step(entrant.world->frame());
         if (round < 0) continue;
         entrant.us.push_back(static_cast<double>(run.times[Phase::total]) * 1e-3);
       }
@@ -238,7 +238,7 @@ class WorldContest {
 
   struct Entrant {
     std::string name;
-    std::unique_ptr<CaseHost> host;
+    std::unique_ptr<CaseExecutor> host;
     LivingWorld* world = nullptr;
     std::int64_t start_ns = 0;
     std::vector<double> us = {};  ///< total of each measured frame

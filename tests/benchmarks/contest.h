@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "broadmark/algorithms.h"
-#include "broadmark/changed_bodies.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/change_detector.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/large_array.h"
 #include "broadmark/statistics/statistics.h"
 
@@ -40,7 +40,7 @@ inline Case caseOf(std::string_view id, AnswerKind answer = AnswerKind::pairs, i
 /// A case on the contest's scene, with the times of its frames so far.
 struct Contestant {
   std::string name;
-  std::unique_ptr<CaseHost> host;
+  std::unique_ptr<CaseExecutor> host;
   float margin = 0;
   std::vector<double> milliseconds = {};
 
@@ -66,7 +66,8 @@ class Contest {
   [[nodiscard]] const SceneInfo& scene() const { return scene_; }
 
   /// Throws InputError (parameters) and UnsupportedError.
-  void add(std::string name, const Case& entered, const HostMaker& make_host = makeLocalHost) {
+  void add(std::string name, const Case& entered,
+           const ExecutorFactory& make_host = makeLocalHost) {
     Contestant added = {std::move(name), make_host(entered, {}), makeInstance(entered)->margin()};
     added.host->start(scene_, changed_bodies_.complete({0, frames_[0]}));
     contestants_.push_back(std::move(added));
@@ -122,7 +123,7 @@ class Contest {
 
   SceneInfo scene_;
   std::vector<LargeVector<Aabb>> frames_;
-  ChangedBodies changed_bodies_;
+  ChangeDetector changed_bodies_;
   std::vector<Contestant> contestants_;
   std::uint32_t next_frame_ = 1;
   std::mt19937 random_;

@@ -38,7 +38,7 @@ struct Options {
   bool pin = false;
 };
 
-HostMaker workerMaker(bool pin) {
+ExecutorFactory workerMaker(bool pin) {
   return [pin](const Case& run, CancelQuery) {
     return makeWorkerProcess(run, WorkerOptions{.command = {"/proc/self/exe", "worker"},
                                                 .hard_limit = std::chrono::hours(1),

@@ -35,21 +35,21 @@ std::vector<ChangingWorld> movingClusters() {
 }
 
 /// Pairs, or those that began and those that ended.
-std::vector<std::vector<Pair>> answerOf(CaseHost& host, AnswerKind kind) {
+std::vector<std::vector<Pair>> answerOf(CaseExecutor& host, AnswerKind kind) {
   if (kind == AnswerKind::pairs) return {sorted(host.answer())};
   const PairEvents events = host.events();
   return {sorted(events.began), sorted(events.ended)};
 }
 
 void expectSameAnswers(const Case& run) {
-  LocalHost here(run);
+  InProcessExecutor here(run);
   const auto there = makeWorkerProcess(run, thisProgram());
   for (const ChangingWorld& world : movingClusters()) {
     const std::vector<std::vector<Aabb>>& frames = world.frames;
     SceneInfo scene = sceneOf(frames);
     scene.filter = world.filter;
     scene.all_present = world.name == "plain";
-    ChangedBodies changed_bodies;
+    ChangeDetector changed_bodies;
     const Frame first = changed_bodies.complete({0, frames[0]});
     try {
       here.start(scene, first);
@@ -62,8 +62,8 @@ void expectSameAnswers(const Case& run) {
     }
     for (std::uint32_t index = 1; index < frames.size(); ++index) {
       const Frame frame = changed_bodies.complete({index, frames[index]});
-      const FrameRun run_here = here.step(frame);
-      const FrameRun run_there = there->step(frame);
+      const StepResult run_here = here.step(frame);
+      const StepResult run_there = there->step(frame);
       EXPECT_EQ(run_there.pairs, run_here.pairs);
       EXPECT_GT(run_there.times[Phase::total], 0);
       if (run.answer == AnswerKind::pairs) {

@@ -140,7 +140,7 @@ class OnePairPerWorker final : public BoxBroadPhase {
 };
 
 TEST(HelperLayers, OneRunOfPairsPerWorkerUntilTheNextFrame) {
-  Execution execution(3, Isa::scalar);
+  ExecutionContext execution(3, Isa::scalar);
   OnePairPerWorker broad_phase;
   const std::vector<Aabb> first = chain(4);
   broad_phase.initialize({.objects = 4}, {0, first}, execution);

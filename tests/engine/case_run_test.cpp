@@ -231,19 +231,20 @@ TEST(CaseRun, APassThatFailedHasNoInstance) {
 /// Says which execution each of its instances was given.
 class ExecutionTeller final : public BoxBroadPhase {
  public:
-  explicit ExecutionTeller(std::vector<const Execution*>& told) : told_(told) {}
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  explicit ExecutionTeller(std::vector<const ExecutionContext*>& told) : told_(told) {}
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     told_.push_back(&execution);
   }
 
  private:
   void findPairs() override {}
-  std::vector<const Execution*>& told_;
+  std::vector<const ExecutionContext*>& told_;
 };
 
 TEST(CaseRun, AllPassesShareOneExecution) {
-  std::vector<const Execution*> told;
+  std::vector<const ExecutionContext*> told;
   Case run;
   run.algorithm.create = [&] { return std::make_unique<ExecutionTeller>(told); };
   CaseRun case_run(run);

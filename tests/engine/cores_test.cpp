@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "broadmark/execution.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "engine/made_up_system.h"
 #include "engine/spoilt_cases.h"
 
@@ -141,7 +141,7 @@ TEST(Pinning, OfACaseWhoseThreadsFitTheCores) {
     onAnotherThread([&] {
       Case run = caseOf({.traits = {.on_device = on_device}});
       run.threads = threads;
-      LocalHost host(run, pin);
+      InProcessExecutor host(run, pin);
       host.start(source.scene(), first);
       is_pinned = host.report().pinned;
       if (!is_pinned) {

@@ -20,14 +20,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// An algorithm that takes so long on that machine, and does nothing.
-class TimedHost final : public CaseHost {
+class TimedHost final : public CaseExecutor {
  public:
   TimedHost(std::shared_ptr<UnevenMachine> machine, double seconds)
       : machine_(std::move(machine)), seconds_(seconds) {}
 
   std::int64_t start(const SceneInfo&, const Frame&) override { return 0; }
-  FrameRun step(const Frame&) override {
-    FrameRun run;
+  StepResult step(const Frame&) override {
+    StepResult run;
     run.times[Phase::total] = static_cast<std::int64_t>(machine_->time(seconds_, own_noise_) * 1e9);
     return run;
   }

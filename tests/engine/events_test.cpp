@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "broadmark/adapters.h"
-#include "broadmark/changed_bodies.h"
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/change_detector.h"
+#include "broadmark/harness/event_accumulator.h"
 #include "engine/spoilt_cases.h"
 #include "torture/inputs.h"
 
@@ -35,7 +35,7 @@ class Told final : public BroadPhase {
  public:
   explicit Told(const Pairs& answer) : answer_(answer) {}
 
-  void initialize(const SceneInfo&, const Frame&, Execution&) override {}
+  void initialize(const SceneInfo&, const Frame&, ExecutionContext&) override {}
   void updateObjects(const Frame&) override {}
   void searchOverlaps() override {
     runs_.clear();
@@ -77,7 +77,7 @@ class FromPairs {
  private:
   std::vector<Aabb> boxes_ = std::vector<Aabb>(kWanderers);
   Pairs answer_;
-  Execution execution_;
+  ExecutionContext execution_;
   std::unique_ptr<BroadPhase> events_;
 };
 
@@ -133,7 +133,7 @@ class SpoiltEvents final : public BroadPhase {
 
   [[nodiscard]] float margin() const override { return margin_; }
   void reportEvents() override { told_ = true; }
-  void initialize(const SceneInfo&, const Frame& first, Execution&) override {
+  void initialize(const SceneInfo&, const Frame& first, ExecutionContext&) override {
     EXPECT_TRUE(told_);
     findEvents(first);
   }

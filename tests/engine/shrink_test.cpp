@@ -400,7 +400,8 @@ class SpoiltInChangingWorlds final : public BoxBroadPhase {
 
   explicit SpoiltInChangingWorlds(Spoil spoil) : spoil_(std::move(spoil)) {}
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     scene_ = scene;
     before_ = boxes();

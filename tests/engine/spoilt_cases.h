@@ -60,7 +60,8 @@ class Spoilt final : public BoxBroadPhase {
   void visitParameters(const ParameterVisitor& visit) override {
     visit({.name = "cells", .doc = "does nothing", .value = &cells_, .min = 1, .max = 9});
   }
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     initialised_ = true;
     behaviour_.on_initialize();

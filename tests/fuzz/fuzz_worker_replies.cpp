@@ -19,7 +19,7 @@ namespace broadmark {
 namespace {
 
 /// All calls of a case, until the process is lost.
-void callEverything(CaseHost& host) {
+void callEverything(CaseExecutor& host) {
   const std::vector<Aabb> boxes(2, Aabb{{0, 0, 0, 0}, {1, 1, 1, 0}});
   const SceneInfo scene{.name = "fuzz", .object_type = "Cubes", .objects = 2, .frames = 1};
   const std::vector<std::uint32_t> nobody;

@@ -17,7 +17,7 @@ namespace broadmark::fuzz {
 
 /// Aborts unless all boxes are those of a body, there or absent, and what is not said to have
 /// changed is as in the frame before.
-inline void requireSound(const Frame& frame, const SceneInfo& scene, std::span<const Aabb> before) {
+inline void requireValid(const Frame& frame, const SceneInfo& scene, std::span<const Aabb> before) {
   std::size_t listed = 0;
   for (std::uint32_t body = 0; body < frame.boxes.size(); ++body) {
     const Aabb& box = frame.boxes[body];
@@ -39,7 +39,7 @@ void readThrough(const std::uint8_t* data, std::size_t size) {
     std::vector<Aabb> before(frame.boxes.begin(), frame.boxes.end());
     // Frames without bodies take no bytes: a short file may state any number of them.
     for (int i = 0; i < 1000; ++i) {
-      requireSound(frame, recording.scene(), before);
+      requireValid(frame, recording.scene(), before);
       before.assign(frame.boxes.begin(), frame.boxes.end());
       const auto next = recording.next();
       if (!next) break;

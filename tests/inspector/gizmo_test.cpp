@@ -22,7 +22,7 @@ class GizmoTest : public testing::Test {
     viewpoint.camera.target = {0, 0, 0};
   }
 
-  [[nodiscard]] Sight sight() const { return {ViewSpace{}, viewpoint}; }
+  [[nodiscard]] ViewProjection sight() const { return {ViewSpace{}, viewpoint}; }
 
   [[nodiscard]] Pixel gripOf(Tool tool, Handle handle) const {
     for (const HandleShape& shape : handleShapes(tool, place, sight())) {

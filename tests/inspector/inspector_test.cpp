@@ -483,9 +483,9 @@ TEST_P(RandomEvents, DoNoHarm) {
     }
     draw();
     // Duplicated again and again, bodies in one place only cost the engine hours.
-    constexpr std::size_t kMostBodies = 20'000;
+    constexpr std::size_t kMaxBodies = 20'000;
     Document& document = inspector.session().document;
-    if (document.editor.scene().bodies.size() > kMostBodies) {
+    if (document.editor.scene().bodies.size() > kMaxBodies) {
       document.edit([](scenes::SceneEditor& editor) { editor.undo(); });
     }
   }

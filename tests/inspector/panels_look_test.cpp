@@ -24,11 +24,11 @@ namespace {
 using scenes::SceneEditor;
 
 /// Panels are flat: what moves, or has another colour, is seen in fewer pixels than in a scene.
-constexpr double kMostOfPanel = 0.3;
+constexpr double kMaxOfPanel = 0.3;
 
 /// Says that a frame took what a rule makes of its number, and longer where the algorithm's name is
 /// longer: times look the same whenever they are drawn.
-std::unique_ptr<CaseHost> ruledHost(const Case& test_case, const CancelQuery&) {
+std::unique_ptr<CaseExecutor> ruledHost(const Case& test_case, const CancelQuery&) {
   const auto length = static_cast<std::int64_t>(test_case.algorithm.id.size());
   const auto rule = [length](std::uint32_t frame) {
     FrameTimes times;
@@ -165,7 +165,7 @@ TEST_P(PanelsLook, AsTheyDid) {
     const std::string name = fmt::format("{}-{}x{}-{}.png", panel.name, size.first, size.second,
                                          dark ? "dark" : "light");
     EXPECT_TRUE(looksLikeGolden(
-        pictureOf(panel), places::source("tests/inspector/golden/panels/" + name), kMostOfPanel));
+        pictureOf(panel), places::source("tests/inspector/golden/panels/" + name), kMaxOfPanel));
   }
 }
 

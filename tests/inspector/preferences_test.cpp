@@ -31,7 +31,7 @@ TEST(Preferences, RecentFilesAreFewAndTheLatestFirst) {
   Preferences preferences;
   for (int i = 0; i < 15; ++i) preferences.remember("/tmp/" + std::to_string(i));
   preferences.remember("/tmp/7");
-  EXPECT_EQ(preferences.recent.size(), Preferences::kMostRecent);
+  EXPECT_EQ(preferences.recent.size(), Preferences::kMaxRecent);
   EXPECT_EQ(preferences.recent[0], "/tmp/7");
   EXPECT_EQ(preferences.recent[1], "/tmp/14");
 }

@@ -103,7 +103,7 @@ TEST_F(SecondViewTest, AnotherAlgorithmInTheSameFrame) {
 }
 
 TEST_F(SecondViewTest, AnotherFrameOfTheSameRecording) {
-  session.second = SecondWish{.footage = nullptr, .frame = 5, .lane = sap};
+  session.second = SecondViewRequest{.footage = nullptr, .frame = 5, .lane = sap};
   RunProgress seen = settled(session);
   ASSERT_TRUE(seen.second);
   EXPECT_EQ(seen.second->frame, 5U);

@@ -16,7 +16,7 @@ class TimelineTest : public testing::Test {
   }
 
   Timeline timeline;
-  std::shared_ptr<const FootageRequest> footage = std::make_shared<FootageRequest>();
+  std::shared_ptr<const FrameProviderRequest> footage = std::make_shared<FrameProviderRequest>();
 };
 
 TEST_F(TimelineTest, ShowsTheWholeRecordingAtFirst) {
@@ -73,7 +73,7 @@ TEST_F(TimelineTest, SpansLieWithinTheTimedFrames) {
 TEST_F(TimelineTest, ZoomAndSpanBelongToTheFootage) {
   timeline.zoom(10, 500);
   timeline.select(400, 600);
-  timeline.follow(std::make_shared<FootageRequest>(), 60, 0);
+  timeline.follow(std::make_shared<FrameProviderRequest>(), 60, 0);
   EXPECT_FALSE(timeline.zoomed());
   EXPECT_EQ(timeline.last(), 60);
   EXPECT_FALSE(timeline.span());

@@ -24,7 +24,8 @@ class Silent final : public BroadPhase {
 
   [[nodiscard]] float margin() const override { return inner_->margin(); }
   void visitParameters(const ParameterVisitor& visit) override { inner_->visitParameters(visit); }
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     inner_->initialize(scene, first, execution);
   }
   void updateObjects(const Frame& frame) override { inner_->updateObjects(frame); }

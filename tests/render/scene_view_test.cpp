@@ -8,7 +8,7 @@
 
 #include "broadmark/render/framebuffer.h"
 #include "broadmark/render/offscreen_context.h"
-#include "splatter.h"
+#include "software_rasterizer.h"
 #include "support/drawing.h"
 #include "support/pictures.h"
 #include "support/places.h"
@@ -45,7 +45,8 @@ std::vector<SceneLine> randomLines(std::size_t count) {
     const std::array from = {place(random), place(random), place(random)};
     std::array to = from;
     for (float& at : to) at += (i % 10 == 0 ? 10 : 1) * step(random);
-    const Behind behind = std::array{Behind::hidden, Behind::faint, Behind::shown}[i % 3];
+    const OcclusionStyle behind =
+        std::array{OcclusionStyle::hidden, OcclusionStyle::faint, OcclusionStyle::shown}[i % 3];
     lines.push_back(
         {from, to, i % 2 == 0 ? 0x7A2BBFU : 0x2A9D8FU, static_cast<float>(1 + i % 3), behind});
   }
@@ -123,8 +124,9 @@ INSTANTIATE_TEST_SUITE_P(Render, SceneViewTest, testing::Values(Technique::gl, T
 TEST_P(SceneViewTest, DrawsTheGoldenPictures) {
   const Bodies bodies = randomBodies(60, 0.5F, 1.5F);
   const std::vector<std::uint32_t> selected = {5, 40};
-  const std::vector<SceneLine> lines = {{{-4, -4, 4}, {4, 4, -4}, 0x7A2BBF, 2, Behind::faint},
-                                        {{-4, 4, 4}, {4, -4, 4}, 0x2A9D8F, 3, Behind::shown}};
+  const std::vector<SceneLine> lines = {
+      {{-4, -4, 4}, {4, 4, -4}, 0x7A2BBF, 2, OcclusionStyle::faint},
+      {{-4, 4, 4}, {4, -4, 4}, 0x2A9D8F, 3, OcclusionStyle::shown}};
   const std::vector<SceneWireBox> wire_boxes = {{cube({0, 0, 0}, 6), 0x2A9D8F}};
   SceneViewContent content = contentOf(bodies);
   content.selected = selected;
@@ -225,10 +227,10 @@ TEST_P(SceneViewTest, BodiesAcrossTheNearPlaneAreDrawn) {
 
 TEST_P(SceneViewTest, BodiesHideLinesUnlessTheyAreToBeShown) {
   const Bodies bodies{{cube({0, 0, 0}, 4)}, {kBlue}};
-  std::vector<SceneLine> lines = {{{-4, 0, -4}, {4, 0, -4}, 0xE00000, 3, Behind::hidden}};
+  std::vector<SceneLine> lines = {{{-4, 0, -4}, {4, 0, -4}, 0xE00000, 3, OcclusionStyle::hidden}};
   SceneViewContent content = contentOf(bodies);
   const auto view = makeView();
-  const auto drawnWith = [&](Behind behind) {
+  const auto drawnWith = [&](OcclusionStyle behind) {
     lines[0].behind = behind;
     content.lines = lines;
     ++content.lines_revision;
@@ -237,12 +239,12 @@ TEST_P(SceneViewTest, BodiesHideLinesUnlessTheyAreToBeShown) {
     EXPECT_TRUE(isRed(colourAt(picture, view->viewpoint(), {3.9F, 0, -4, 0})));
     return colourAt(picture, view->viewpoint(), {0, 0, -4, 0});
   };
-  const auto hidden = drawnWith(Behind::hidden);
-  const auto faint = drawnWith(Behind::faint);
+  const auto hidden = drawnWith(OcclusionStyle::hidden);
+  const auto faint = drawnWith(OcclusionStyle::faint);
   EXPECT_TRUE(isBlue(hidden));
   EXPECT_GT(faint[0], hidden[0] + 20);
   EXPECT_FALSE(isRed(faint));
-  EXPECT_TRUE(isRed(drawnWith(Behind::shown)));
+  EXPECT_TRUE(isRed(drawnWith(OcclusionStyle::shown)));
 }
 
 TEST_P(SceneViewTest, SelectionIsSeenThroughOtherBodies) {
@@ -368,7 +370,7 @@ TEST(AxisTips, PointAlongTheAxes) {
   }
 }
 
-TEST(Splatter, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
+TEST(SoftwareRasterizer, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
   const Bodies bodies = randomBodies(5000, 0.01F, 0.6F);
   const ViewSpace space = viewSpaceOf(kWorld);
   const std::vector<SceneLine> lines = randomLines(3000);
@@ -381,13 +383,13 @@ TEST(Splatter, GivesTheSamePictureWithEveryTeamAndInstructionSet) {
   setSurroundings(scene, content);
   const Viewpoint viewpoint{toCamera(wholeWorld(), kAspect, space.toView(kWorld)), 333, 241,
                             0xF5F6F8};
-  Splatter reference(alone, Isa::scalar);
+  SoftwareRasterizer reference(alone, Isa::scalar);
   reference.draw(scene, viewpoint);
   for (const int threads : {1, 3}) {
     for (const auto& [isa, name] : kIsas.entries) {
       if (!isaSupported(isa)) continue;
       ThreadTeam team(threads);
-      Splatter splatter(team, isa);
+      SoftwareRasterizer splatter(team, isa);
       splatter.draw(scene, viewpoint);
       EXPECT_TRUE(std::ranges::equal(splatter.colours(), reference.colours())) << name;
     }

@@ -53,8 +53,8 @@ Vec3 anyVector(std::mt19937& random, float most) {
 
 float anySize(std::mt19937& random) {
   for (;;) {
-    const float size = std::abs(anyFloat(random, kMostEdge / 2));
-    if (size >= kLeastEdge) return size;
+    const float size = std::abs(anyFloat(random, kMaxEdge / 2));
+    if (size >= kMinEdge) return size;
   }
 }
 

@@ -20,15 +20,15 @@ TEST_P(EveryBrush, PaintsTheSameBodiesForTheSameSeed) {
   for (const ObjectType& type : objectTypes()) {
     Paint colour;
     colour.object_type.value = type.listing.id;
-    const Stroke stroke = paint(*brush, colour, {1, 2, 3}, TakenRoom());
-    EXPECT_EQ(paint(*brush, colour, {1, 2, 3}, TakenRoom()).bodies, stroke.bodies);
+    const Stroke stroke = paint(*brush, colour, {1, 2, 3}, OccupiedSpace());
+    EXPECT_EQ(paint(*brush, colour, {1, 2, 3}, OccupiedSpace()).bodies, stroke.bodies);
     EXPECT_GT(stroke.bodies.size(), 0U);
     EXPECT_EQ(static_cast<double>(stroke.bodies.size() + stroke.left_out),
               std::floor(brush->count(1)));
     for (const AuthoredBody& body : stroke.bodies) EXPECT_EQ(faultOfBody(body), "");
     if (!brush->scatters()) continue;
     colour.seed = 2;
-    EXPECT_NE(paint(*brush, colour, {1, 2, 3}, TakenRoom()).bodies, stroke.bodies);
+    EXPECT_NE(paint(*brush, colour, {1, 2, 3}, OccupiedSpace()).bodies, stroke.bodies);
   }
 }
 
@@ -73,7 +73,7 @@ TEST(Brush, ALatticeOfTouchingCubesIsWhole) {
       "lattice", {{"count_x", "7"}, {"count_y", "3"}, {"count_z", "5"}, {"spacing", "0.1"}});
   Paint colour;
   colour.scale = 0.1;
-  const Stroke stroke = paint(*lattice, colour, {}, TakenRoom());
+  const Stroke stroke = paint(*lattice, colour, {}, OccupiedSpace());
   EXPECT_EQ(stroke.left_out, 0U);
   ASSERT_EQ(stroke.bodies.size(), 105U);
   EXPECT_NEAR(stroke.bodies.front().pose.position[0], -0.3, 1e-6);
@@ -83,21 +83,21 @@ TEST(Brush, ALatticeOfTouchingCubesIsWhole) {
 TEST(Brush, ARandomOneFillsToItsDensity) {
   const auto random = brushWith(
       "random", {{"density", "0.05"}, {"size_x", "20"}, {"size_y", "10"}, {"size_z", "5"}});
-  const Stroke stroke = paint(*random, {}, {}, TakenRoom());
+  const Stroke stroke = paint(*random, {}, {}, OccupiedSpace());
   EXPECT_EQ(stroke.bodies.size(), 50U);
   EXPECT_EQ(stroke.left_out, 0U);
 }
 
 TEST(Brush, WhereThereIsNoRoomBodiesAreLeftOut) {
   const Stroke stroke =
-      paint(*brushWith("ball", {{"count", "50"}, {"radius", "1"}}), {}, {}, TakenRoom());
+      paint(*brushWith("ball", {{"count", "50"}, {"radius", "1"}}), {}, {}, OccupiedSpace());
   EXPECT_GT(stroke.left_out, 20U);
   EXPECT_EQ(stroke.bodies.size() + stroke.left_out, 50U);
 }
 
 TEST(Brush, TooManyBodiesAreRefused) {
   const auto random = brushWith("random", {{"density", "1"}, {"size_x", "1e6"}, {"size_y", "1e6"}});
-  EXPECT_THROW(paint(*random, {}, {}, TakenRoom()), InputError);
+  EXPECT_THROW(paint(*random, {}, {}, OccupiedSpace()), InputError);
 }
 
 }  // namespace

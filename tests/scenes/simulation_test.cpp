@@ -9,7 +9,7 @@
 #include <cmath>
 #include <future>
 
-#include "broadmark/changed_bodies.h"
+#include "broadmark/change_detector.h"
 #include "engine/helpers.h"
 #include "scenes/scene_runs.h"
 
@@ -81,7 +81,7 @@ TEST_P(EveryScene, SaysExactlyWhatChangedAndWhoIsAbsent) {
   ASSERT_TRUE(frame.changed);
   EXPECT_TRUE(frame.changed->empty());
   const bool all_present = simulation->scene().all_present;
-  ChangedBodies found;
+  ChangeDetector found;
   found.complete({frame.index, frame.boxes});
   while (const auto next = simulation->next()) {
     EXPECT_THAT(*next->changed,

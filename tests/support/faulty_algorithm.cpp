@@ -51,7 +51,8 @@ class FatBoxes final : public BoxBroadPhase {
            .max = 1});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     fat_.assign(first.boxes.begin(), first.boxes.end());
     has_moved_.assign(fat_.size(), 1);
@@ -141,7 +142,8 @@ class AllPairsButSome final : public BoxBroadPhase {
  public:
   explicit AllPairsButSome(Spoil spoil) : spoil_(spoil) {}
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     scene_ = scene;
     before_ = boxes();

@@ -13,13 +13,13 @@
 namespace broadmark::tests {
 
 /// How many of a thousand pixels may differ in a picture of a scene.
-inline constexpr double kMostOfScene = 1;
+inline constexpr double kMaxOfScene = 1;
 
 /// Whether two pictures look the same: at most `most` of a thousand pixels differ by more than
 /// 8/255 in any channel. Otherwise a picture of the differences (red on the faded first one) is
 /// written to the tests' temporary directory, as NAME-difference.png.
 inline testing::AssertionResult looksLike(const Picture& actual, const Picture& expected,
-                                          const std::string& name, double most = kMostOfScene) {
+                                          const std::string& name, double most = kMaxOfScene) {
   constexpr int kTolerance = 8;
   if (actual.width != expected.width || actual.height != expected.height) {
     return testing::AssertionFailure()
@@ -52,7 +52,7 @@ inline testing::AssertionResult looksLike(const Picture& actual, const Picture& 
 /// environment that picture is written instead.
 inline testing::AssertionResult looksLikeGolden(const Picture& actual,
                                                 const std::filesystem::path& golden,
-                                                double most = kMostOfScene) {
+                                                double most = kMaxOfScene) {
   const char* update = std::getenv("BROADMARK_UPDATE_GOLDEN");
   if (update != nullptr && std::string(update) == "1") {
     writePng(golden, actual);

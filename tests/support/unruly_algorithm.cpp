@@ -66,7 +66,8 @@ class Unruly final : public BoxBroadPhase {
            .max = 1000});
   }
 
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     BoxBroadPhase::initialize(scene, first, execution);
     initialized_ = true;
     std::vector<char>(static_cast<std::size_t>(mebibytes_) * kMebibyte, 1).swap(taken_);

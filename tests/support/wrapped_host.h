@@ -7,18 +7,18 @@
 #include <string>
 #include <utility>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 
 namespace broadmark::tests {
 
-class WrappedHost : public CaseHost {
+class WrappedHost : public CaseExecutor {
  public:
   explicit WrappedHost(const Case& test_case) : inner_(makeLocalHost(test_case, {})) {}
 
   std::int64_t start(const SceneInfo& scene, const Frame& first) override {
     return inner_->start(scene, first);
   }
-  FrameRun step(const Frame& frame) override { return inner_->step(frame); }
+  StepResult step(const Frame& frame) override { return inner_->step(frame); }
   void stop() override { inner_->stop(); }
   PairDigest digest() override { return inner_->digest(); }
   PairRuns answer() override { return inner_->answer(); }
@@ -29,7 +29,7 @@ class WrappedHost : public CaseHost {
   std::string validate() override { return inner_->validate(); }
 
  private:
-  std::unique_ptr<CaseHost> inner_;
+  std::unique_ptr<CaseExecutor> inner_;
 };
 
 /// Calls the test before each frame is run.
@@ -38,7 +38,7 @@ class WatchedHost final : public WrappedHost {
   WatchedHost(const Case& test_case, const std::function<void()>& before_step)
       : WrappedHost(test_case), before_step_(before_step) {}
 
-  FrameRun step(const Frame& frame) override {
+  StepResult step(const Frame& frame) override {
     before_step_();
     return WrappedHost::step(frame);
   }
@@ -63,8 +63,8 @@ class HostOfTimes final : public WrappedHost {
     WrappedHost::start(scene, first);
     return times_.initialize_ns;
   }
-  FrameRun step(const Frame& frame) override {
-    FrameRun result = WrappedHost::step(frame);
+  StepResult step(const Frame& frame) override {
+    StepResult result = WrappedHost::step(frame);
     result.times = times_.of_frame(frame.index);
     return result;
   }

@@ -20,7 +20,8 @@ struct Surface {
 
 /// What is seen at a pixel; of the floor only where the world is. O(boxes).
 std::optional<Surface> surfaceUnder(std::span<const Aabb> boxes, const Aabb& world,
-                                    const Sight& sight, Pixel pixel, BodyMask visible = {});
+                                    const ViewProjection& sight, Pixel pixel,
+                                    BodyMask visible = {});
 
 /// One stroke of the document's brush, from press to release: a dab where it begins, and others as
 /// far from each other as they are wide. What is painted keeps clear of the document's bodies and
@@ -46,7 +47,7 @@ class BrushStroke {
   [[nodiscard]] scenes::Paint nextPaint() const;
 
   const Document* document_;
-  scenes::TakenRoom taken_;
+  scenes::OccupiedSpace taken_;
   scenes::Stroke painted_;
   std::optional<Surface> last_;
 };

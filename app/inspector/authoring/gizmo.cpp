@@ -28,7 +28,7 @@ constexpr double kFlattest = 0.15;
 /// eye.
 constexpr double kRingBehind = 0.12;
 constexpr int kRingPoints = 64;
-constexpr double kLeastFactor = 0.01;
+constexpr double kMinFactor = 0.01;
 
 Vec3 narrow(const Point& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
@@ -60,7 +60,8 @@ bool isInside(const std::vector<Pixel>& corners, Pixel pixel) {
   return inside;
 }
 
-std::optional<HandleShape> axisShape(Handle handle, const GizmoPlace& place, const Sight& sight) {
+std::optional<HandleShape> axisShape(Handle handle, const GizmoPlace& place,
+                                     const ViewProjection& sight) {
   const Point centre = pointOf(place.centre);
   const Point axis = place.axis(axisOf(handle));
   if (axis.cross((sight.eye() - centre).normalized()).norm() < kFlattest) return {};
@@ -68,7 +69,8 @@ std::optional<HandleShape> axisShape(Handle handle, const GizmoPlace& place, con
   return HandleShape{handle, {at(kAxisStart), at(1)}, false, at(kGripAt)};
 }
 
-std::optional<HandleShape> planeShape(Handle handle, const GizmoPlace& place, const Sight& sight) {
+std::optional<HandleShape> planeShape(Handle handle, const GizmoPlace& place,
+                                      const ViewProjection& sight) {
   const Point centre = pointOf(place.centre);
   const std::size_t normal = axisOf(handle);
   if (std::abs(place.axis(normal).dot((sight.eye() - centre).normalized())) < kFlattest) return {};
@@ -83,7 +85,7 @@ std::optional<HandleShape> planeShape(Handle handle, const GizmoPlace& place, co
                      at(kMiddle, kMiddle)};
 }
 
-HandleShape ringShape(Handle handle, const GizmoPlace& place, const Sight& sight) {
+HandleShape ringShape(Handle handle, const GizmoPlace& place, const ViewProjection& sight) {
   const Point centre = pointOf(place.centre);
   const Point axis = place.axis(axisOf(handle));
   const Point towards_eye = (sight.eye() - centre).normalized();
@@ -103,7 +105,7 @@ HandleShape ringShape(Handle handle, const GizmoPlace& place, const Sight& sight
 
 }  // namespace
 
-std::optional<Pixel> Sight::pixelOf(const Point& point) const {
+std::optional<Pixel> ViewProjection::pixelOf(const Point& point) const {
   const Vec3 seen = narrow((point - Point(space_.origin.data())) / space_.side);
   const auto at = project(viewpoint_.camera, seen);
   if (!at) return {};
@@ -111,15 +113,15 @@ std::optional<Pixel> Sight::pixelOf(const Point& point) const {
                (1 - (*at)[1]) / 2 * static_cast<float>(viewpoint_.height)};
 }
 
-Point Sight::eye() const {
+Point ViewProjection::eye() const {
   return Point(space_.origin.data()) + space_.side * pointOf(viewpoint_.camera.eye);
 }
 
-Sight::Line Sight::through(Pixel pixel) const {
+ViewProjection::Line ViewProjection::through(Pixel pixel) const {
   return {eye(), pointOf(broadmark::rayThrough(viewpoint_, pixel[0], pixel[1]).direction)};
 }
 
-double Sight::pixelAt(const Point& point) const {
+double ViewProjection::pixelAt(const Point& point) const {
   const double depth = -(point - eye()).dot(pointOf(axesOf(viewpoint_.camera).back));
   return depth * double{pixelSize(viewpoint_.camera, viewpoint_.height)};
 }
@@ -128,7 +130,8 @@ Eigen::Matrix3d turnOf(const Quaternion& turn) {
   return Eigen::Quaterniond(turn[3], turn[0], turn[1], turn[2]).toRotationMatrix();
 }
 
-std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place, const Sight& sight) {
+std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place,
+                                      const ViewProjection& sight) {
   std::vector<HandleShape> shapes;
   const auto add = [&](std::optional<HandleShape> shape) {
     if (shape) shapes.push_back(std::move(*shape));
@@ -150,8 +153,8 @@ std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place, const 
   return shapes;
 }
 
-std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes, const Sight& sight,
-                                  Pixel pixel, float reach) {
+std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes,
+                                  const ViewProjection& sight, Pixel pixel, float reach) {
   std::optional<Handle> nearest;
   for (const HandleShape& shape : shapes) {
     std::vector<Pixel> seen;
@@ -170,7 +173,7 @@ std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes, const 
   return nearest;
 }
 
-GizmoDrag::GizmoDrag(Tool tool, Handle handle, const GizmoPlace& place, const Sight& sight,
+GizmoDrag::GizmoDrag(Tool tool, Handle handle, const GizmoPlace& place, const ViewProjection& sight,
                      Pixel from)
     : tool_(tool), handle_(handle), place_(place), sight_(sight), from_(from) {}
 
@@ -186,7 +189,7 @@ GizmoDrag::Outcome GizmoDrag::at(Pixel pixel, const Tools& tools, bool snaps) co
 }
 
 double GizmoDrag::along(std::size_t axis, Pixel pixel) const {
-  const Sight::Line line = sight_.through(pixel);
+  const ViewProjection::Line line = sight_.through(pixel);
   const Point direction = place_.axis(axis);
   const Point to_centre = pointOf(place_.centre) - line.from;
   const double cosine = direction.dot(line.direction);
@@ -197,7 +200,7 @@ double GizmoDrag::along(std::size_t axis, Pixel pixel) const {
 }
 
 std::optional<Point> GizmoDrag::across(std::size_t axis, Pixel pixel) const {
-  const Sight::Line line = sight_.through(pixel);
+  const ViewProjection::Line line = sight_.through(pixel);
   const Point normal = place_.axis(axis);
   const Point to_centre = pointOf(place_.centre) - line.from;
   const double share = normal.dot(to_centre) / normal.dot(line.direction);
@@ -275,7 +278,7 @@ GizmoDrag::Outcome GizmoDrag::scaled(Pixel pixel, double step) const {
     factor = along(axisOf(handle_), pixel) / along(axisOf(handle_), from_);
   }
   factor =
-      std::max(roundedTo(std::isfinite(factor) ? factor : 1, step), step > 0 ? step : kLeastFactor);
+      std::max(roundedTo(std::isfinite(factor) ? factor : 1, step), step > 0 ? step : kMinFactor);
   Outcome outcome;
   outcome.change = {.centre = place_.centre, .axes = place_.turn};
   const std::string axes = handle_ == Handle::all ? "xyz" : std::string(1, "xyz"[axisOf(handle_)]);

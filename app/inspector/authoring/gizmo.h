@@ -24,14 +24,14 @@ using Pixel = Eigen::Vector2f;
 inline Point pointOf(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
 /// The way from the world to the picture, and back.
-class Sight {
+class ViewProjection {
  public:
   struct Line {
     Point from;       ///< the eye
     Point direction;  ///< of any length
   };
 
-  Sight(const ViewSpace& space, const Viewpoint& viewpoint)
+  ViewProjection(const ViewSpace& space, const Viewpoint& viewpoint)
       : space_(space), viewpoint_(viewpoint) {}
 
   /// Nothing for a point behind the eye.
@@ -84,16 +84,18 @@ struct HandleShape {
 
 /// The handles of a tool. Those that could not be dragged are left out: an axis seen from its end,
 /// a plane seen from its edge. Of rings the half before the centre.
-std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place, const Sight& sight);
+std::vector<HandleShape> handleShapes(Tool tool, const GizmoPlace& place,
+                                      const ViewProjection& sight);
 
 /// The handle nearest to a pixel, within `reach` pixels; of a plane also all that is inside.
-std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes, const Sight& sight,
-                                  Pixel pixel, float reach);
+std::optional<Handle> handleUnder(const std::vector<HandleShape>& shapes,
+                                  const ViewProjection& sight, Pixel pixel, float reach);
 
 /// One drag of a handle, from press to release, seen from one place.
 class GizmoDrag {
  public:
-  GizmoDrag(Tool tool, Handle handle, const GizmoPlace& place, const Sight& sight, Pixel from);
+  GizmoDrag(Tool tool, Handle handle, const GizmoPlace& place, const ViewProjection& sight,
+            Pixel from);
 
   struct Outcome {
     scenes::Transformation change;
@@ -114,7 +116,7 @@ class GizmoDrag {
   Tool tool_;
   Handle handle_;
   GizmoPlace place_;
-  Sight sight_;
+  ViewProjection sight_;
   Pixel from_;
 };
 

@@ -89,7 +89,7 @@ JobStatus BenchmarkReport::status() const {
 }
 
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const HostMaker& make_host) {
+                    const ExecutorFactory& make_host) {
   const std::filesystem::path file = request.outputs.at("json");
   requireOutput(file);
   job.begin({.file = file},

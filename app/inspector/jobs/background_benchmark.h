@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "broadmark/algorithm.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/results/results.h"
 #include "inspector/jobs/job.h"
 #include "request/run_request.h"
@@ -42,6 +42,6 @@ using BackgroundBenchmark = Task<BenchmarkReport>;
 /// Begins a run with these algorithms to choose from, which run where `make_host` says; its results
 /// are rewritten as JSON after each recording. Throws InputError while another one is running.
 void startBenchmark(BackgroundBenchmark& job, RunRequest request, std::vector<Algorithm> algorithms,
-                    const HostMaker& make_host);
+                    const ExecutorFactory& make_host);
 
 }  // namespace broadmark

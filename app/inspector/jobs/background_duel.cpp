@@ -21,7 +21,7 @@ JobStatus DuelReport::status() const {
 
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
                std::unique_ptr<IndexedFrames> frames, double max_seconds,
-               const HostMaker& make_host) {
+               const ExecutorFactory& make_host) {
   if (cases.size() < 2) throw InputError("duel: one algorithm alone: add another one");
   if (frames->scene().frames == 0) throw InputError("duel: there is no frame to run");
   DuelReport first;

@@ -26,6 +26,6 @@ using BackgroundDuel = Task<DuelReport>;
 /// frame, and while another one is running.
 void startDuel(BackgroundDuel& job, const std::vector<Case>& cases,
                std::unique_ptr<IndexedFrames> frames, double max_seconds,
-               const HostMaker& make_host);
+               const ExecutorFactory& make_host);
 
 }  // namespace broadmark

@@ -8,7 +8,7 @@ namespace {
 
 /// Returns whether it was written: not when cancelled.
 bool shrinkAndWrite(CaseExport& job, IndexedFrames& source, const FrameDifference& known,
-                    const HostMaker& make_host) {
+                    const ExecutorFactory& make_host) {
   const ExportReport begun = job.report();
   const auto note = [&job](const ShrinkProgress& now) {
     job.update([&](ExportReport& report) { report.now = now; });
@@ -39,7 +39,8 @@ JobStatus ExportReport::status() const {
 }
 
 void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
-                 FrameDifference known, std::filesystem::path file, const HostMaker& make_host) {
+                 FrameDifference known, std::filesystem::path file,
+                 const ExecutorFactory& make_host) {
   ExportReport first;
   first.run = run;
   first.file = std::move(file);

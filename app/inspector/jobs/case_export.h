@@ -9,7 +9,7 @@
 
 #include "broadmark/frame.h"
 #include "broadmark/fuzz/shrink.h"
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/harness/oracle.h"
 #include "inspector/jobs/job.h"
 
@@ -35,6 +35,6 @@ using CaseExport = Task<ExportReport>;
 /// while another export is running.
 void startExport(CaseExport& job, const Case& run, std::unique_ptr<IndexedFrames> source,
                  FrameDifference known, std::filesystem::path file,
-                 const HostMaker& make_host = makeLocalHost);
+                 const ExecutorFactory& make_host = makeLocalHost);
 
 }  // namespace broadmark

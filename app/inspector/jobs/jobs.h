@@ -17,7 +17,7 @@ namespace broadmark {
 /// One job of each kind; a new kind is a file, and a line in `jobs_`.
 class Jobs {
  public:
-  explicit Jobs(HostMaker host_maker) : make_host(std::move(host_maker)) {}
+  explicit Jobs(ExecutorFactory host_maker) : make_host(std::move(host_maker)) {}
 
   template <class Kind>
   [[nodiscard]] Kind& get() {
@@ -26,7 +26,7 @@ class Jobs {
   [[nodiscard]] const std::vector<Job*>& all() const { return all_; }
   [[nodiscard]] bool running() const { return std::ranges::any_of(all_, &Job::running); }
 
-  const HostMaker make_host;  ///< where algorithms run
+  const ExecutorFactory make_host;  ///< where algorithms run
 
  private:
   std::tuple<BackgroundBake,       //

@@ -241,7 +241,7 @@ class AuthorPanel final : public Panel {
     std::size_t shape = inputs_.body.shape.index();
     edit(ui.combo("shape", shape, {"box", "sphere"}),
          [&](SceneEditor& editor) { shape == 1 ? editor.makeSpheres() : editor.makeBoxes(); });
-    edit(ui.vector("size", inputs_.size, scenes::kLeastEdge, scenes::kMostEdge,
+    edit(ui.vector("size", inputs_.size, scenes::kMinEdge, scenes::kMaxEdge,
                    "Edges, in world units; of a sphere the first is the diameter"),
          [&](SceneEditor& editor) { editor.setSize(vec(inputs_.size)); });
     set(ui.number("mass", inputs_.body.mass, 1e-6, 1e9), "set the mass of", &AuthoredBody::mass,
@@ -256,10 +256,10 @@ class AuthorPanel final : public Panel {
     set(ui.number("layer", inputs_.layer, 0, LayerMatrix::kLayers - 1,
                   "Which layers collide is in the scene's file"),
         "set the layer of", &AuthoredBody::layer, static_cast<std::uint8_t>(inputs_.layer));
-    set(ui.number("appears", inputs_.appears, 0, kMostFrames, "The first frame that it is in"),
+    set(ui.number("appears", inputs_.appears, 0, kMaxFrames, "The first frame that it is in"),
         "set the first frame of", &AuthoredBody::appears,
         static_cast<std::uint32_t>(inputs_.appears));
-    const bool vanishes = ui.number("vanishes", inputs_.vanishes, 0, kMostFrames,
+    const bool vanishes = ui.number("vanishes", inputs_.vanishes, 0, kMaxFrames,
                                     "The first frame after that which it is not in; 0: it stays");
     const auto frame = static_cast<std::uint32_t>(inputs_.vanishes);
     set(vanishes, "set the last frame of", &AuthoredBody::vanishes,

@@ -113,7 +113,7 @@ class BakeForm : BatchForm {
       if (options_.sources.empty()) throw InputError("no scene is chosen");
       if (options_.scene.object_types.empty()) throw InputError("no object type is chosen");
       if (directory_.empty()) throw InputError("an output directory is needed");
-      options_.scene.objects = countsIn(counts_, "number of bodies", kMostBodies);
+      options_.scene.objects = countsIn(counts_, "number of bodies", kMaxBodies);
       if (options_.scene.objects.empty()) throw InputError("a number of bodies is needed");
       options_.scene.parameters = {{"frames", std::to_string(frames_)},
                                    {"engine", engines_.at(engine_)}};

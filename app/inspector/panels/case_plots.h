@@ -52,7 +52,7 @@ class CasePlots : PanelContext {
   }
 
  private:
-  static constexpr std::size_t kMostCurves = 24;  // more could not be told apart
+  static constexpr std::size_t kMaxCurves = 24;  // more could not be told apart
   static constexpr float kPointPlace = 3;  // pixels around a point that are noted as its place
 
   using Row = OpenedResults::Row;
@@ -60,11 +60,11 @@ class CasePlots : PanelContext {
   /// As many as are plotted; says so where these are not all.
   template <class Curve>
   std::span<const Curve> firstOf(const std::vector<Curve>& curves, const char* which) {
-    if (curves.size() > kMostCurves) {
+    if (curves.size() > kMaxCurves) {
       ImGui::SameLine();
-      ui.faint(fmt::format("the first {} of {} {}", kMostCurves, curves.size(), which));
+      ui.faint(fmt::format("the first {} of {} {}", kMaxCurves, curves.size(), which));
     }
-    return std::span(curves).first(std::min(kMostCurves, curves.size()));
+    return std::span(curves).first(std::min(kMaxCurves, curves.size()));
   }
 
   void drawChoices() {
@@ -84,7 +84,7 @@ class CasePlots : PanelContext {
     }
     const auto curves = firstOf(results.curves(phase()), "marked");
     const Palette& theme = ui.theme;
-    const FootageRequest* open = session.playback.footage().get();
+    const FrameProviderRequest* open = session.playback.footage().get();
     const bool is_open = open != nullptr && open->source == FootageSource::results;
     std::vector<PlotCurve> plotted;
     PlotMarks wrong{.label = "wrong", .colour = theme.bad, .frames = {}};

@@ -43,7 +43,7 @@ class CasesPanel final : public Panel {
       return;
     }
     OpenedResults& results = *session.results;
-    const TwoParts parts{
+    const SplitPane parts{
         .share = kTableShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = plot_alone_};
     drawControls(results, parts.both());
     parts.draw([&] { drawTable(results); }, [&] { plots_.draw(results); });
@@ -186,7 +186,7 @@ class CasesPanel final : public Panel {
 
   /// The cell that opens the case, across the whole row.
   void drawOpener(Row& row, std::optional<Rgb> rgb, bool first) {
-    const FootageRequest* open = session.playback.footage().get();
+    const FrameProviderRequest* open = session.playback.footage().get();
     const bool is_open =
         open != nullptr && open->source == FootageSource::results && open->title == row.result.id;
     const std::string tip = row.obstacle.empty() ? "Opens the case: " + row.result.id

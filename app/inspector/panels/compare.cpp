@@ -32,7 +32,7 @@ class ComparePanel final : public Panel {
       }
       return;
     }
-    const TwoParts parts{
+    const SplitPane parts{
         .share = kPairsShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = times_alone_};
     if (!parts.both()) {
       ui.toggle("Times", times_alone_, "Who is slower where, in place of who finds what");

@@ -33,9 +33,9 @@ class DuelPanel final : public Panel {
     if (!report.result.ok()) return drawFailures(report.result);
     if (report.result.rounds() == 0) return;
     if (!report.result.places.empty()) ui.plain(verdictOf(report.result));
-    const TwoParts parts{.share = kTableShare,
-                         .narrowest = kRoomForBoth * ui.scale,
-                         .second_alone = histogram_alone_};
+    const SplitPane parts{.share = kTableShare,
+                          .narrowest = kRoomForBoth * ui.scale,
+                          .second_alone = histogram_alone_};
     if (!parts.both()) {
       ui.toggle("Histogram", histogram_alone_,
                 "How many rounds had which ratio, in place of the table");

@@ -71,8 +71,8 @@ class ScenePanel final : public Panel {
     }
   }
 
-  std::shared_ptr<const FootageRequest> seen_;  ///< what was open in the last picture
-  ParameterValues parameters_;                  ///< of that, as far as they are known
+  std::shared_ptr<const FrameProviderRequest> seen_;  ///< what was open in the last picture
+  ParameterValues parameters_;                        ///< of that, as far as they are known
 };
 
 }  // namespace

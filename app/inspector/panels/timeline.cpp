@@ -37,7 +37,7 @@ class TimelinePanel final : public Panel {
       curves();
       return;
     }
-    const TwoParts parts{
+    const SplitPane parts{
         .share = kPlotShare, .narrowest = kRoomForBoth * ui.scale, .second_alone = span_alone_};
     if (!parts.both()) {
       Ui::besideIfRoom(50 * ui.scale);

@@ -88,7 +88,7 @@ class ViewPanel final : public Panel {
     }
     if (!session.second) return;
     const auto scope = ui.scope("second");
-    SecondWish& second = *session.second;
+    SecondViewRequest& second = *session.second;
     drawSecondAnswer(second);
     bool stays = second.frame.has_value();
     if (ui.checkbox("at frame", stays, "Stays at a frame while the first view plays")) {
@@ -113,7 +113,7 @@ class ViewPanel final : public Panel {
     ui.checkbox("cameras linked", session.cameras_linked, "One camera moves both views");
   }
 
-  void drawSecondAnswer(SecondWish& second) {
+  void drawSecondAnswer(SecondViewRequest& second) {
     std::vector<std::string> names = {"oracle"};
     std::size_t chosen = 0;
     for (const LaneEdit& lane : session.lanes.list) {

@@ -10,10 +10,10 @@ namespace broadmark {
 namespace {
 
 /// Bodies that all overlap by a mistake should not take all memory: this is half a gigabyte.
-constexpr std::size_t kMostPairs = std::size_t{1} << 26;
+constexpr std::size_t kMaxPairs = std::size_t{1} << 26;
 
 /// Whether one wish's snapshot also serves the other.
-bool showSame(const Wish& a, const Wish& b) {
+bool showSame(const ViewRequest& a, const ViewRequest& b) {
   return a.check == b.check && a.shown_lane == b.shown_lane && a.structure == b.structure &&
          a.tracked == b.tracked && a.second == b.second;
 }
@@ -31,7 +31,7 @@ float fractionOf(std::uint32_t part, std::uint32_t whole) {
 
 }  // namespace
 
-RunThread::RunThread(HostMaker make_host)
+RunThread::RunThread(ExecutorFactory make_host)
     : make_host_(std::move(make_host)), thread_([this] { loop(); }) {}
 
 RunThread::~RunThread() {
@@ -43,7 +43,7 @@ RunThread::~RunThread() {
   thread_.join();
 }
 
-void RunThread::wish(Wish wish) {
+void RunThread::wish(ViewRequest wish) {
   {
     const std::lock_guard lock(mutex_);
     wished_ = std::move(wish);
@@ -71,7 +71,7 @@ void RunThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {
     if (stopping_) return;
-    if (taken_ != wishes_) takeWish();
+    if (taken_ != wishes_) takeRequest();
     if (idle_) {
       changed_.wait(lock, [this] { return stopping_ || taken_ != wishes_; });
       continue;
@@ -94,7 +94,7 @@ void RunThread::loop() {
 }
 
 /// With mutex_ held.
-void RunThread::takeWish() {
+void RunThread::takeRequest() {
   if (!showSame(current_, wished_)) shown_ = false;
   looked_back_ = false;
   // One that rests after the shown frame goes on from there only if it was checked up to there.
@@ -114,7 +114,7 @@ bool RunThread::step() {
   }
   if (footage_ == nullptr) return false;
   if (reconcileLanes()) return true;
-  if (!std::exchange(looked_back_, true) && lookBack()) return true;
+  if (!std::exchange(looked_back_, true) && showCached()) return true;
   if (advance() || advanceSecond()) return true;
   if (shown_) return false;
   show();
@@ -150,7 +150,7 @@ void RunThread::openFootage() {
   lanes_.clear();
   beside_ = {};
   footage_.reset();
-  oracle_ = Oracle(std::size_t{256} << 20, kMostPairs);
+  oracle_ = Oracle(std::size_t{256} << 20, kMaxPairs);
   seen_.clear();
   stop_.reset();
   shown_ = false;
@@ -175,15 +175,15 @@ bool RunThread::reconcileLanes() {
   const auto spec_of = [](const auto& lane) -> const LaneSpec& { return lane->spec(); };
   if (std::ranges::equal(lanes_, current_.lanes, {}, spec_of)) return false;
 
-  std::vector<std::unique_ptr<Lane>> kept = std::move(lanes_);
+  std::vector<std::unique_ptr<AlgorithmTrack>> kept = std::move(lanes_);
   lanes_.clear();
   for (const LaneSpec& spec : current_.lanes) {
     const auto found =
         std::ranges::find_if(kept, [&](const auto& lane) { return lane && lane->spec() == spec; });
-    lanes_.push_back(found != kept.end() ? std::move(*found)
-                                         : std::make_unique<Lane>(spec, make_host_, [this, spec] {
-                                             return isUnwanted(spec);
-                                           }));
+    lanes_.push_back(found != kept.end()
+                         ? std::move(*found)
+                         : std::make_unique<AlgorithmTrack>(
+                               spec, make_host_, [this, spec] { return isUnwanted(spec); }));
   }
   for (const auto& gone : kept) {
     if (gone) seen_.forget(gone->spec().number);
@@ -238,9 +238,9 @@ bool RunThread::advance() {
     return true;
   }
   // The hindmost first: then all pass each frame before any goes on.
-  Lane* hindmost = nullptr;
+  AlgorithmTrack* hindmost = nullptr;
   for (const auto& lane : lanes_) {
-    if (lane->report().ended || lane->standsAt(target()) || mayRest(*lane)) continue;
+    if (lane->report().ended || lane->standsAt(target()) || isCached(*lane)) continue;
     const bool restarts = lane->report().frame > target() || !lane->standsAt(lane->report().frame);
     if (restarts) {
       lane->restart(footage_->scene(), footage_->at(0));
@@ -269,7 +269,7 @@ bool RunThread::advance() {
   return advanceLane(*hindmost, frameAt(next));
 }
 
-bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
+bool RunThread::advanceLane(AlgorithmTrack& lane, const Frame& frame) {
   shown_ = false;
   lane.advance(frame, gate_);
   std::optional<FrameDifference> difference;
@@ -294,7 +294,7 @@ bool RunThread::advanceLane(Lane& lane, const Frame& frame) {
   return true;
 }
 
-void RunThread::report(const Lane& lane) {
+void RunThread::report(const AlgorithmTrack& lane) {
   const LaneReport& now = lane.report();
   const std::lock_guard lock(mutex_);
   const auto shown = std::ranges::find(progress_.lanes, now.spec.number,
@@ -312,15 +312,17 @@ void RunThread::report(const Lane& lane) {
   }
 }
 
-Lane* RunThread::laneOf(int number) const {
+AlgorithmTrack* RunThread::laneOf(int number) const {
   const auto found =
       std::ranges::find(lanes_, number, [](const auto& lane) { return lane->spec().number; });
   return found == lanes_.end() ? nullptr : found->get();
 }
 
-Lane* RunThread::shownLane() const { return target() > 0 ? laneOf(current_.shown_lane) : nullptr; }
+AlgorithmTrack* RunThread::shownLane() const {
+  return target() > 0 ? laneOf(current_.shown_lane) : nullptr;
+}
 
-Footage* RunThread::footageBeside() const {
+FrameProvider* RunThread::footageBeside() const {
   return beside_.opened ? beside_.footage.get() : footage_.get();
 }
 
@@ -328,8 +330,8 @@ std::uint32_t RunThread::targetBeside() const {
   return std::min(current_.second->frame.value_or(target()), footageBeside()->scene().frames);
 }
 
-Lane* RunThread::laneBeside() {
-  Lane* const of_first = laneOf(current_.second->lane);
+AlgorithmTrack* RunThread::laneBeside() {
+  AlgorithmTrack* const of_first = laneOf(current_.second->lane);
   if (of_first == nullptr) {
     beside_.lane.reset();
     return nullptr;
@@ -337,8 +339,8 @@ Lane* RunThread::laneBeside() {
   if (targetBeside() == 0) return nullptr;  // which has no answer
   if (!beside_.opened && targetBeside() == target()) return of_first;
   if (const LaneSpec& spec = of_first->spec(); !beside_.lane || beside_.lane->spec() != spec) {
-    beside_.lane =
-        std::make_unique<Lane>(spec, make_host_, [this, spec] { return isUnwantedBeside(spec); });
+    beside_.lane = std::make_unique<AlgorithmTrack>(
+        spec, make_host_, [this, spec] { return isUnwantedBeside(spec); });
   }
   return beside_.lane.get();
 }
@@ -357,7 +359,7 @@ bool RunThread::advanceSecond() {
     }
     return true;
   }
-  Footage* const footage = footageBeside();
+  FrameProvider* const footage = footageBeside();
   if (footage == nullptr) return false;
   if (footage->known() < targetBeside()) {
     tell(fmt::format("simulating frame {} for the second view", footage->known() + 1), 1);
@@ -365,7 +367,7 @@ bool RunThread::advanceSecond() {
     shown_ = false;
     return true;
   }
-  Lane* const lane = laneBeside();
+  AlgorithmTrack* const lane = laneBeside();
   if (lane == nullptr || lane != beside_.lane.get()) return false;  // advance() sees to it
   const std::uint32_t frame = lane->report().frame;
   if (lane->report().ended || lane->standsAt(targetBeside())) return false;
@@ -426,13 +428,13 @@ void RunThread::show() {
 }
 
 bool RunThread::hasSeen(std::uint32_t frame) const {
-  if (const Lane* lane = shownLane()) {
+  if (const AlgorithmTrack* lane = shownLane()) {
     return seen_.holds(lane->spec().number, frame, current_.check);
   }
   return seen_.holds(0, frame, false);
 }
 
-bool RunThread::mayRest(const Lane& lane) const {
+bool RunThread::isCached(const AlgorithmTrack& lane) const {
   if (current_.playing) return false;
   const std::uint32_t frame = target();
   if (frame == 0) return lane.standsAt(lane.report().frame);
@@ -445,9 +447,9 @@ bool RunThread::mayRest(const Lane& lane) const {
 }
 
 /// Shows a frame that has been seen before any algorithm is run. Returns whether it did.
-bool RunThread::lookBack() {
+bool RunThread::showCached() {
   const std::uint32_t frame = target();
-  const Lane* lane = shownLane();
+  const AlgorithmTrack* lane = shownLane();
   const bool stands = lane != nullptr && lane->standsAt(frame);
   const bool there = shown_ && progress_.snapshot->frame == frame;
   if (current_.playing || current_.second || stands || there || !hasSeen(frame)) return false;

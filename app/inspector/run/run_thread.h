@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "broadmark/harness/oracle.h"
+#include "inspector/run/algorithm_track.h"
+#include "inspector/run/answer_cache.h"
 #include "inspector/run/draw_gate.h"
-#include "inspector/run/footage.h"
-#include "inspector/run/lane.h"
-#include "inspector/run/seen_answers.h"
+#include "inspector/run/frame_provider.h"
 #include "inspector/run/snapshot.h"
 
 namespace broadmark {
@@ -32,17 +32,17 @@ namespace broadmark {
 /// What the second view shows. Of the open footage in the same frame the lanes have the answer
 /// already. For another frame, or other footage, the algorithm has an instance of its own, whose
 /// times count for nothing.
-struct SecondWish {
-  std::shared_ptr<const FootageRequest> footage;  ///< null: that of the first view
-  std::optional<std::uint32_t> frame;             ///< nothing: that of the first view
-  int lane = 0;                                   ///< whose answer, by number; 0: the oracle's
+struct SecondViewRequest {
+  std::shared_ptr<const FrameProviderRequest> footage;  ///< null: that of the first view
+  std::optional<std::uint32_t> frame;                   ///< nothing: that of the first view
+  int lane = 0;  ///< whose answer, by number; 0: the oracle's
 
-  friend bool operator==(const SecondWish&, const SecondWish&) = default;
+  friend bool operator==(const SecondViewRequest&, const SecondViewRequest&) = default;
 };
 
 /// What the interface wants.
-struct Wish {
-  std::shared_ptr<const FootageRequest> footage;
+struct ViewRequest {
+  std::shared_ptr<const FrameProviderRequest> footage;
   std::vector<LaneSpec> lanes;
   std::uint32_t frame = 0;
   bool playing = false;  ///< it goes on from there: what has been seen does not do
@@ -54,15 +54,15 @@ struct Wish {
   int shown_lane = 0;                  ///< whose answer is looked at, by number; none: the oracle's
   bool structure = false;              ///< whether its structure is looked at, too
   std::vector<std::uint32_t> tracked;  ///< bodies whose last frames are wanted
-  std::optional<SecondWish> second = {};  ///< what the second view shows, if there is one
+  std::optional<SecondViewRequest> second = {};  ///< what the second view shows, if there is one
 
-  friend bool operator==(const Wish&, const Wish&) = default;
+  friend bool operator==(const ViewRequest&, const ViewRequest&) = default;
 };
 
 /// How far the thread has got.
 struct RunProgress {
-  std::shared_ptr<const FootageRequest> footage;  ///< what is open
-  std::string failure;                            ///< why it could not be opened, or not be read on
+  std::shared_ptr<const FrameProviderRequest> footage;  ///< what is open
+  std::string failure;  ///< why it could not be opened, or not be read on
   SceneInfo scene;
   std::uint32_t known_frames = 0;  ///< that exist already
   FrameOpener frames;              ///< opens them
@@ -95,13 +95,13 @@ class RunThread {
   static constexpr std::size_t kSeenBytes = std::size_t{512} << 20;
 
   /// `make_host`: where algorithms run.
-  explicit RunThread(HostMaker make_host);
+  explicit RunThread(ExecutorFactory make_host);
   /// Ends soon: waits for the frame that is being run only where its host cannot be cancelled.
   ~RunThread();
   RunThread(const RunThread&) = delete;
   RunThread& operator=(const RunThread&) = delete;
 
-  void wish(Wish wish);
+  void wish(ViewRequest wish);
   /// Calls `at` with the progress, which does not change meanwhile.
   void look(const std::function<void(const RunProgress&)>& at);
   /// Whether everything wished for has been done (or has failed).
@@ -113,18 +113,18 @@ class RunThread {
 
  private:
   void loop();
-  void takeWish();
+  void takeRequest();
   bool step();
   void openFootage();
   bool reconcileLanes();
   bool advance();
-  bool advanceLane(Lane& lane, const Frame& frame);
+  bool advanceLane(AlgorithmTrack& lane, const Frame& frame);
   bool advanceSecond();
   Frame frameAt(std::uint32_t index);
   void notePopulation(std::uint32_t index, std::span<const Aabb> boxes);
   void show();
   void tell(std::string doing, float fraction);
-  void report(const Lane& lane);
+  void report(const AlgorithmTrack& lane);
   void fail(std::string reason);
   /// Whether to give up what a lane of this spec is at.
   [[nodiscard]] bool isUnwanted(const LaneSpec& spec);
@@ -132,46 +132,46 @@ class RunThread {
   [[nodiscard]] bool isUnwantedBeside(const LaneSpec& spec);
   [[nodiscard]] std::uint32_t target() const;
   /// The lane of this number, or null.
-  [[nodiscard]] Lane* laneOf(int number) const;
-  [[nodiscard]] Lane* shownLane() const;
+  [[nodiscard]] AlgorithmTrack* laneOf(int number) const;
+  [[nodiscard]] AlgorithmTrack* shownLane() const;
   /// Of the second view; null: it could not be opened.
-  [[nodiscard]] Footage* footageBeside() const;
+  [[nodiscard]] FrameProvider* footageBeside() const;
   [[nodiscard]] std::uint32_t targetBeside() const;
   /// The lane that has the second view's answer, or is to have it; null: the oracle.
-  Lane* laneBeside();
+  AlgorithmTrack* laneBeside();
   /// Null when the lane was lost on the way.
   std::shared_ptr<const Snapshot> takeBeside();
   /// Whether the answer of the shown lane, or the oracle's, is kept for a frame.
   [[nodiscard]] bool hasSeen(std::uint32_t frame) const;
   /// Whether nothing is wanted of a lane at the target but what is kept.
-  [[nodiscard]] bool mayRest(const Lane& lane) const;
-  bool lookBack();
+  [[nodiscard]] bool isCached(const AlgorithmTrack& lane) const;
+  bool showCached();
 
-  const HostMaker make_host_;
+  const ExecutorFactory make_host_;
   DrawGate gate_;
 
   // Used by the thread alone.
-  Wish current_;
-  std::shared_ptr<const FootageRequest> opened_;
-  std::unique_ptr<Footage> footage_;
-  std::vector<std::unique_ptr<Lane>> lanes_;
+  ViewRequest current_;
+  std::shared_ptr<const FrameProviderRequest> opened_;
+  std::unique_ptr<FrameProvider> footage_;
+  std::vector<std::unique_ptr<AlgorithmTrack>> lanes_;
   Oracle oracle_{std::size_t{256} << 20};
-  SeenAnswers seen_{kSeenBytes};
+  AnswerCache seen_{kSeenBytes};
   std::optional<RunProgress::Stop> stop_;
   struct {
-    std::shared_ptr<const FootageRequest> opened = {};  ///< null: that of the first view
-    std::unique_ptr<Footage> footage = {};              ///< of `opened`
-    std::string failure = {};                           ///< why there is none
-    std::unique_ptr<Lane> lane = {};  ///< the instance of its own, if one is needed
-  } beside_;                          ///< what the second view has of its own
+    std::shared_ptr<const FrameProviderRequest> opened = {};  ///< null: that of the first view
+    std::unique_ptr<FrameProvider> footage = {};              ///< of `opened`
+    std::string failure = {};                                 ///< why there is none
+    std::unique_ptr<AlgorithmTrack> lane = {};  ///< the instance of its own, if one is needed
+  } beside_;                                    ///< what the second view has of its own
   Oracle oracle_beside_{std::size_t{256} << 20};
   bool shown_ = false;        ///< whether the snapshots are what current_ wants
-  bool looked_back_ = false;  ///< since that wish came: see lookBack()
+  bool looked_back_ = false;  ///< since that wish came: see showCached()
 
   // Guarded by mutex_.
   std::mutex mutex_;
   std::condition_variable changed_;
-  Wish wished_;
+  ViewRequest wished_;
   std::uint64_t wishes_ = 0;
   std::uint64_t taken_ = 0;  ///< of the wishes
   bool idle_ = false;

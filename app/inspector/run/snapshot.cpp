@@ -24,7 +24,7 @@ std::vector<Track> tracksOf(const SnapshotWish& wish) {
   return tracks;
 }
 
-std::shared_ptr<const std::vector<Aabb>> boxesOf(Footage& footage, std::uint32_t index) {
+std::shared_ptr<const std::vector<Aabb>> boxesOf(FrameProvider& footage, std::uint32_t index) {
   const Frame frame = footage.at(index);
   return std::make_shared<const std::vector<Aabb>>(frame.boxes.begin(), frame.boxes.end());
 }
@@ -81,7 +81,7 @@ std::uint32_t presentIn(std::span<const Aabb> boxes) {
          static_cast<std::uint32_t>(std::ranges::count_if(boxes, isEmpty));
 }
 
-SeenAnswer answerOf(Lane& lane, const Frame& frame, bool judged,
+SeenAnswer answerOf(AlgorithmTrack& lane, const Frame& frame, bool judged,
                     std::optional<FrameDifference> difference, const CollisionFilter& filter,
                     Oracle& oracle) {
   SeenAnswer answer{.pairs = lane.answer(),
@@ -106,7 +106,7 @@ std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& o
   snapshot->boxes = boxesOf(wish.footage, wish.frame);
   snapshot->present = presentIn(*snapshot->boxes);
   const Frame frame{wish.frame, *snapshot->boxes};
-  Lane* const lane = wish.lane;
+  AlgorithmTrack* const lane = wish.lane;
   const int number = lane != nullptr ? lane->spec().number : 0;
   SeenAnswer answer;
   if (lane != nullptr && lane->standsAt(wish.frame)) {

@@ -13,9 +13,9 @@
 #include "broadmark/names.h"
 #include "broadmark/pair.h"
 #include "broadmark/recorded_drawing.h"
-#include "inspector/run/footage.h"
-#include "inspector/run/lane.h"
-#include "inspector/run/seen_answers.h"
+#include "inspector/run/algorithm_track.h"
+#include "inspector/run/answer_cache.h"
+#include "inspector/run/frame_provider.h"
 
 namespace broadmark {
 
@@ -29,7 +29,7 @@ inline constexpr NameTable kFootageSources{
      {FootageSource::results, "case of results"}}};
 
 /// What to look at. Compared by address: the same one is opened once.
-struct FootageRequest {
+struct FrameProviderRequest {
   FootageOpener open;  ///< called on the run thread
   FootageSource source = FootageSource::simulation;
   std::string title;
@@ -49,7 +49,7 @@ struct Track {
 
 /// Everything to be seen of one frame. Immutable.
 struct Snapshot {
-  std::shared_ptr<const FootageRequest> footage;
+  std::shared_ptr<const FrameProviderRequest> footage;
   SceneInfo scene;
   std::uint32_t frame = 0;
   std::shared_ptr<const std::vector<Aabb>> boxes;
@@ -69,11 +69,12 @@ struct Snapshot {
 
 /// What a snapshot is to show; borrowed.
 struct SnapshotWish {
-  const std::shared_ptr<const FootageRequest>& request;
-  Footage& footage;
+  const std::shared_ptr<const FrameProviderRequest>& request;
+  FrameProvider& footage;
   std::uint32_t frame = 0;  ///< that the footage knows
-  Lane* lane = nullptr;     ///< whose answer; null, or neither at this frame nor kept: the oracle's
-  SeenAnswers* seen = nullptr;  ///< answers that are kept, and where this one is kept; null: none
+  AlgorithmTrack* lane =
+      nullptr;  ///< whose answer; null, or neither at this frame nor kept: the oracle's
+  AnswerCache* seen = nullptr;  ///< answers that are kept, and where this one is kept; null: none
   bool check = true;
   bool structure = false;
   std::span<const std::uint32_t> tracked;  ///< bodies whose last frames are wanted
@@ -83,7 +84,7 @@ std::shared_ptr<const Snapshot> takeSnapshot(const SnapshotWish& wish, Oracle& o
 
 /// The answer of a lane that stands at this frame, with the difference from the right one, if it
 /// was compared (`judged`) and can be.
-SeenAnswer answerOf(Lane& lane, const Frame& frame, bool judged,
+SeenAnswer answerOf(AlgorithmTrack& lane, const Frame& frame, bool judged,
                     std::optional<FrameDifference> difference, const CollisionFilter& filter,
                     Oracle& oracle);
 

@@ -81,7 +81,7 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& l
   return text;
 }
 
-std::string sourceText(const FootageRequest* footage) {
+std::string sourceText(const FrameProviderRequest* footage) {
   if (footage == nullptr) return "";
   return fmt::format("{}: {}", kFootageSources.nameOf(footage->source), footage->title);
 }

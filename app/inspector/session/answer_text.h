@@ -25,6 +25,6 @@ AnswerText answerText(const Snapshot& snapshot, const std::vector<LaneReport>& l
                       std::span<const std::uint32_t> selection);
 
 /// "live simulation: Brownian"; "" for nothing.
-std::string sourceText(const FootageRequest* footage);
+std::string sourceText(const FrameProviderRequest* footage);
 
 }  // namespace broadmark

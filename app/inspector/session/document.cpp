@@ -22,7 +22,7 @@ FootageOpener stillOf(const scenes::AuthoredScene& scene) {
                        .world = scene.world,
                        .filter = scenes::collisionFilterOf(scene)};
   const auto boxes = std::make_shared<const std::vector<Aabb>>(boxesOf(scene));
-  return [info, boxes] { return std::make_unique<Footage>(info, *boxes); };
+  return [info, boxes] { return std::make_unique<FrameProvider>(info, *boxes); };
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ void Document::startFromFrame() {
                      .scene = std::make_shared<scenes::AuthoredScene>()};
   playback_.show({.open =
                       [former = wanted.former, frame = wanted.frame, scene = wanted.scene] {
-                        const std::unique_ptr<Footage> footage = former->open();
+                        const std::unique_ptr<FrameProvider> footage = former->open();
                         while (footage->known() < frame) footage->extend();
                         *scene = footage->authoredScene(frame);
                         return stillOf(*scene)();
@@ -114,7 +114,7 @@ void Document::simulate() {
   const auto scene = std::make_shared<const scenes::AuthoredScene>(editor.scene());
   showAs(
       [scene, path = path()] {
-        return std::make_unique<Footage>(scenes::makeAuthoredSimulation(*scene, path));
+        return std::make_unique<FrameProvider>(scenes::makeAuthoredSimulation(*scene, path));
       },
       true);
 }

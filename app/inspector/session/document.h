@@ -112,9 +112,9 @@ class Document {
  private:
   /// A frame that becomes a scene when `shown` is open.
   struct FrameToTake {
-    std::shared_ptr<const FootageRequest> former;  ///< to return to when that fails
+    std::shared_ptr<const FrameProviderRequest> former;  ///< to return to when that fails
     std::uint32_t frame = 0;
-    std::shared_ptr<const FootageRequest> shown;
+    std::shared_ptr<const FrameProviderRequest> shown;
     std::shared_ptr<scenes::AuthoredScene> scene;
   };
 
@@ -127,9 +127,9 @@ class Document {
   bool unsaved_ = false;  ///< no file holds it as it was handed in
   std::size_t chosen_brush_ = 0;
   std::unique_ptr<scenes::Brush> brush_;
-  std::shared_ptr<const FootageRequest> footage_;  ///< that shows the document last
+  std::shared_ptr<const FrameProviderRequest> footage_;  ///< that shows the document last
   bool moves_ = false;
-  std::uint64_t scene_ = 0;  ///< see FootageRequest; 0: not shown yet
+  std::uint64_t scene_ = 0;  ///< see FrameProviderRequest; 0: not shown yet
   std::uint64_t last_scene_ = 0;
   Aabb world_{};
   std::optional<FrameToTake> to_take_;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "inspector/run/lane.h"
+#include "inspector/run/algorithm_track.h"
 #include "inspector/session/timeline.h"
 
 namespace broadmark {

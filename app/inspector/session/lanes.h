@@ -10,7 +10,7 @@
 
 #include "broadmark/algorithm.h"
 #include "broadmark/harness/case.h"
-#include "inspector/run/lane.h"
+#include "inspector/run/algorithm_track.h"
 #include "request/cases.h"
 
 namespace broadmark {

@@ -5,7 +5,7 @@
 
 #include "broadmark/error.h"
 #include "broadmark/scenes/authored_simulation.h"
-#include "inspector/session/footage_requests.h"
+#include "inspector/session/frame_provider_requests.h"
 #include "inspector/session/session.h"
 #include "sources/make_source.h"
 #include "sources/results.h"
@@ -77,7 +77,7 @@ void Session::enter(PlanEntry& entry, Opened document_is) {
 
 void Session::enterSource(PlanEntry& entry, Opened document_is) {
   Source& source = entry.source;
-  const auto show = [&](FootageRequest footage) {
+  const auto show = [&](FrameProviderRequest footage) {
     if (entry.known) {
       footage.source = FootageSource::results;
       footage.title = entry.known->id;

@@ -18,8 +18,8 @@ namespace broadmark {
 class Playback {
  public:
   /// Shows other footage, from frame 0 on.
-  void show(FootageRequest footage) {
-    footage_ = std::make_shared<const FootageRequest>(std::move(footage));
+  void show(FrameProviderRequest footage) {
+    footage_ = std::make_shared<const FrameProviderRequest>(std::move(footage));
     frame_ = 0;
     due_ = 0;
     scene_ = {};
@@ -28,7 +28,7 @@ class Playback {
   }
 
   /// Returns to what has been shown before.
-  void showAgain(std::shared_ptr<const FootageRequest> footage, std::uint32_t frame) {
+  void showAgain(std::shared_ptr<const FrameProviderRequest> footage, std::uint32_t frame) {
     footage_ = std::move(footage);
     frame_ = frame;
     scene_known_ = false;
@@ -96,7 +96,7 @@ class Playback {
     due_ = std::min(due_ - frames, 1.0);
     ++counted_frames_;
     if (frame_ < scene_.frames) {
-      seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMostFramesAtOnce)));
+      seek(frame_ + static_cast<std::int64_t>(std::min(frames, kMaxFramesAtOnce)));
     } else if (loop) {
       frame_ = 0;
     } else {
@@ -107,7 +107,9 @@ class Playback {
   [[nodiscard]] std::optional<double> achieved() const { return achieved_; }
 
   /// The wished footage; null: none.
-  [[nodiscard]] const std::shared_ptr<const FootageRequest>& footage() const { return footage_; }
+  [[nodiscard]] const std::shared_ptr<const FrameProviderRequest>& footage() const {
+    return footage_;
+  }
   /// The wished frame.
   [[nodiscard]] std::uint32_t frame() const { return frame_; }
   /// Of the footage, once it is open.
@@ -128,9 +130,9 @@ class Playback {
   /// Over so many seconds the frames that are shown are counted.
   static constexpr double kCountedSeconds = 1;
   /// What cannot keep pace leaves out no more than this.
-  static constexpr double kMostFramesAtOnce = 4;
+  static constexpr double kMaxFramesAtOnce = 4;
 
-  std::shared_ptr<const FootageRequest> footage_;
+  std::shared_ptr<const FrameProviderRequest> footage_;
   std::uint32_t frame_ = 0;
   SceneInfo scene_;
   bool scene_known_ = false;  ///< the footage has been opened

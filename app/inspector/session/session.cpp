@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 /// At most so many bodies are followed through the last frames.
-constexpr std::size_t kMostTracked = 2;
+constexpr std::size_t kMaxTracked = 2;
 
 }  // namespace
 
-Session::Session(std::vector<Algorithm> algorithms, HostMaker make_host)
+Session::Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host)
     : lanes(std::move(algorithms)), jobs(make_host), runs(std::move(make_host)) {
   playback.on_show = [this] {
     selection.reset();
@@ -46,24 +46,24 @@ void Session::advance(const RunProgress& progress, double seconds) {
 
 bool Session::busy() { return playback.playing() || !runs.settled() || jobs.running(); }
 
-Wish Session::wish() const {
-  Wish wish{.footage = playback.footage(),
-            .lanes = lanes.specs(),
-            .frame = playback.frame(),
-            .playing = playback.playing(),
-            .check = mismatches.check,
-            .stop_at_mismatch = mismatches.stop_at_mismatch,
-            .known_mismatch = mismatches.known(),
-            .shown_lane = lanes.shown(),
-            .structure = view.structure || view.colourMode().of_tests,
-            .tracked = selection.bodies(),
-            .second = second};
-  if (wish.tracked.size() > kMostTracked) wish.tracked.clear();
+ViewRequest Session::wish() const {
+  ViewRequest wish{.footage = playback.footage(),
+                   .lanes = lanes.specs(),
+                   .frame = playback.frame(),
+                   .playing = playback.playing(),
+                   .check = mismatches.check,
+                   .stop_at_mismatch = mismatches.stop_at_mismatch,
+                   .known_mismatch = mismatches.known(),
+                   .shown_lane = lanes.shown(),
+                   .structure = view.structure || view.colourMode().of_tests,
+                   .tracked = selection.bodies(),
+                   .second = second};
+  if (wish.tracked.size() > kMaxTracked) wish.tracked.clear();
   return wish;
 }
 
 void Session::commit() {
-  if (Wish now = wish(); now != committed_) {
+  if (ViewRequest now = wish(); now != committed_) {
     runs.wish(now);
     committed_ = std::move(now);
   }
@@ -144,10 +144,11 @@ void Session::showSecond(bool on) {
 
 void Session::showBeside(const fs::path& recording) {
   notices.attempt([&] {
-    FootageRequest footage = recordingFootage(recording, {}, playback.swept);
-    second = SecondWish{.footage = std::make_shared<const FootageRequest>(std::move(footage)),
-                        .frame = {},
-                        .lane = lanes.shown()};
+    FrameProviderRequest footage = recordingFootage(recording, {}, playback.swept);
+    second = SecondViewRequest{
+        .footage = std::make_shared<const FrameProviderRequest>(std::move(footage)),
+        .frame = {},
+        .lane = lanes.shown()};
   });
 }
 

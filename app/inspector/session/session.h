@@ -11,7 +11,7 @@
 #include "inspector/jobs/jobs.h"
 #include "inspector/run/run_thread.h"
 #include "inspector/session/body_selection.h"
-#include "inspector/session/footage_requests.h"
+#include "inspector/session/frame_provider_requests.h"
 #include "inspector/session/lanes.h"
 #include "inspector/session/mismatches.h"
 #include "inspector/session/notices.h"
@@ -27,7 +27,7 @@ namespace broadmark {
 class Session {
  public:
   /// Algorithms that can be chosen, and where they run.
-  explicit Session(std::vector<Algorithm> algorithms, HostMaker make_host = makeLocalHost);
+  explicit Session(std::vector<Algorithm> algorithms, ExecutorFactory make_host = makeLocalHost);
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -80,9 +80,9 @@ class Session {
   Mismatches mismatches{playback, lanes, selection, notices};
   Draft draft{playback};
   ViewOptions view;
-  std::optional<SecondWish> second;      ///< nothing: there is no second view
-  bool cameras_linked = true;            ///< one camera moves both views
-  std::optional<OpenedResults> results;  ///< the latest; what is played may be of others
+  std::optional<SecondViewRequest> second;  ///< nothing: there is no second view
+  bool cameras_linked = true;               ///< one camera moves both views
+  std::optional<OpenedResults> results;     ///< the latest; what is played may be of others
   RunThread runs;
 
  private:
@@ -92,14 +92,14 @@ class Session {
   void enter(PlanEntry& entry, Opened document_is);
   void enterSource(PlanEntry& entry, Opened document_is);
   void listCases(const std::filesystem::path& file, Results listed);
-  [[nodiscard]] Wish wish() const;
+  [[nodiscard]] ViewRequest wish() const;
   void noticeFailure(const RunProgress& progress);
   void noticeJobs();
 
   std::string noticed_failure_;
   std::uint32_t known_frames_ = 0;
   FrameOpener frames_;  ///< opens those of what is played; null: nothing is open
-  Wish committed_;
+  ViewRequest committed_;
 };
 
 }  // namespace broadmark

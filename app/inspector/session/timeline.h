@@ -25,7 +25,7 @@ class Timeline {
  public:
   /// Takes note of what is played, and at which frame. A frame that was moved to is in sight from
   /// then on.
-  void follow(const std::shared_ptr<const FootageRequest>& footage, std::uint32_t last_frame,
+  void follow(const std::shared_ptr<const FrameProviderRequest>& footage, std::uint32_t last_frame,
               std::uint32_t frame) {
     if (std::exchange(footage_, footage) != footage || last_frame_ != last_frame) {
       last_frame_ = last_frame;
@@ -56,7 +56,7 @@ class Timeline {
   void showAll() { show(0, whole()); }
   /// Shows just the span. There must be one.
   void showSpan() {
-    const double extent = std::max<double>(span_->last - span_->first, kFewestFrames);
+    const double extent = std::max<double>(span_->last - span_->first, kMinFrames);
     const double middle = (static_cast<double>(span_->first) + span_->last) / 2;
     show(middle - extent / 2, extent);
   }
@@ -77,7 +77,7 @@ class Timeline {
   double budget_ms = 16.7;  ///< that a frame may take; 0: any
 
  private:
-  static constexpr double kFewestFrames = 4;  // shown at once
+  static constexpr double kMinFrames = 4;  // shown at once
   static constexpr double kExtentPerTurn = 0.8;
   static constexpr double kMargin =
       0.1;  // share of what is shown, beyond a frame that comes into sight
@@ -86,7 +86,7 @@ class Timeline {
   [[nodiscard]] double whole() const { return std::max<double>(last_frame_, 1); }
   /// The nearest to `extent` frames that can be shown at once.
   [[nodiscard]] double allowed(double extent) const {
-    return std::clamp(extent, std::min(kFewestFrames, whole()), whole());
+    return std::clamp(extent, std::min(kMinFrames, whole()), whole());
   }
 
   void show(double first, double extent) {
@@ -95,7 +95,7 @@ class Timeline {
     last_ = first_ + extent;
   }
 
-  std::shared_ptr<const FootageRequest> footage_;
+  std::shared_ptr<const FrameProviderRequest> footage_;
   std::uint32_t last_frame_ = 0;
   std::uint32_t frame_ = 0;
   double first_ = 0;

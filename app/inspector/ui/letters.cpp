@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr ImWchar kRanges[] = {0x20,   0xFF,   0x2010, 0x2026, 0x2190, 0x2193, 0x2212,
                                0x2212, 0x2248, 0x2248, 0x2264, 0x2265, 0};
 /// So many fonts are looked through for a letter.
-constexpr std::size_t kMostTried = 40;
+constexpr std::size_t kMaxTried = 40;
 constexpr std::uintmax_t kLargestFont = 64 << 20;  // bytes
 
 bool isInRanges(ImWchar letter) {
@@ -67,7 +67,7 @@ std::vector<fs::path> systemFonts() {
   std::ranges::sort(found);
   std::vector<fs::path> fonts;
   for (auto& [rank, path] : found) {
-    if (fonts.size() < kMostTried) fonts.push_back(std::move(path));
+    if (fonts.size() < kMaxTried) fonts.push_back(std::move(path));
   }
   return fonts;
 }

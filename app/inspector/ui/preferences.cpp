@@ -54,7 +54,7 @@ void Preferences::remember(const std::filesystem::path& file) {
   const std::string name = std::filesystem::absolute(file, failed).lexically_normal().string();
   std::erase(recent, name);
   recent.insert(recent.begin(), name);
-  if (recent.size() > kMostRecent) recent.resize(kMostRecent);
+  if (recent.size() > kMaxRecent) recent.resize(kMaxRecent);
 }
 
 std::filesystem::path preferencesPath() {
@@ -77,7 +77,7 @@ Preferences parsePreferences(std::string_view text) {
   read.left = within(read.left, 120, 4000);
   read.right = within(read.right, 120, 4000);
   read.bottom = within(read.bottom, 80, 4000);
-  if (read.recent.size() > Preferences::kMostRecent) read.recent.resize(Preferences::kMostRecent);
+  if (read.recent.size() > Preferences::kMaxRecent) read.recent.resize(Preferences::kMaxRecent);
   return read;
 }
 

@@ -10,7 +10,7 @@
 namespace broadmark {
 
 struct Preferences {
-  static constexpr std::size_t kMostRecent = 10;
+  static constexpr std::size_t kMaxRecent = 10;
 
   bool dark = true;
   double scale = 0;  ///< of text and widgets; 0: as the screen suggests

@@ -541,9 +541,10 @@ void beginAt(const char* id, ImVec2 position, ImVec2 size, ImGuiWindowFlags flag
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
 }
 
-bool TwoParts::both() const { return ImGui::GetContentRegionAvail().x >= narrowest; }
+bool SplitPane::both() const { return ImGui::GetContentRegionAvail().x >= narrowest; }
 
-void TwoParts::draw(const std::function<void()>& first, const std::function<void()>& second) const {
+void SplitPane::draw(const std::function<void()>& first,
+                     const std::function<void()>& second) const {
   const bool both = this->both();
   const float width = ImGui::GetContentRegionAvail().x;
   const auto part = [](const char* id, float extent, const std::function<void()>& draw_it) {

@@ -193,7 +193,7 @@ void drawHistogram(Ui& ui, std::span<const double> values,
                    const std::function<std::string(double)>& text, std::optional<double> line = {});
 
 /// A panel of two parts: beside each other, or, where there is no room for that, one of them.
-struct TwoParts {
+struct SplitPane {
   float share = 0.5F;         ///< of the width: the first one's
   float narrowest = 0;        ///< pixels that both need
   bool second_alone = false;  ///< which of them, where there is room for one only

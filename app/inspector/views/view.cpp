@@ -140,13 +140,13 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
   ui.note("scene");
-  Hands::Seen seen{.session = session,
-                   .snapshot = content_.snapshot(),
-                   .visible = content_.picture.visible,
-                   .sight = Sight(space_, scene_.viewpoint()),
-                   .scale = ui.scale,
-                   .mouse = {},
-                   .ctrl = io.KeyCtrl};
+  ViewportManipulator::Seen seen{.session = session,
+                                 .snapshot = content_.snapshot(),
+                                 .visible = content_.picture.visible,
+                                 .sight = ViewProjection(space_, scene_.viewpoint()),
+                                 .scale = ui.scale,
+                                 .mouse = {},
+                                 .ctrl = io.KeyCtrl};
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     seen.mouse = Pixel{mouse_.x, mouse_.y};
   }
@@ -163,7 +163,7 @@ void View::draw(Ui& ui, Session& session, const RunProgress& progress, const Sho
   if (session.view.axes) drawAxisNames(ui.scale);
 }
 
-void View::beginDrag(const Hands::Seen& seen) {
+void View::beginDrag(const ViewportManipulator::Seen& seen) {
   const ImGuiIO& io = ImGui::GetIO();
   drag_from_ = mouse_;
   dragged_ = false;
@@ -174,7 +174,7 @@ void View::beginDrag(const Hands::Seen& seen) {
   flight_.reset();
 }
 
-void View::handleRelease(const Hands::Seen& seen) {
+void View::handleRelease(const ViewportManipulator::Seen& seen) {
   const Drag drag = std::exchange(drag_, Drag::none);
   if (drag == Drag::hands && !hands_.busy()) return;  // given up
   if (hands_.busy() && (dragged_ || hands_.painting())) {
@@ -187,7 +187,7 @@ void View::handleRelease(const Hands::Seen& seen) {
   }
 }
 
-void View::handleMouse(Ui& ui, const Hands::Seen& seen) {
+void View::handleMouse(Ui& ui, const ViewportManipulator::Seen& seen) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemActivated()) beginDrag(seen);
   if (ImGui::IsItemActive()) handleDrag();

@@ -12,7 +12,7 @@
 #include "broadmark/render/input_queue.h"
 #include "broadmark/render/orbit_camera.h"
 #include "broadmark/render/scene_view.h"
-#include "inspector/authoring/hands.h"
+#include "inspector/authoring/viewport_manipulator.h"
 #include "inspector/session/answer_text.h"
 #include "inspector/session/session.h"
 #include "inspector/ui/ui.h"
@@ -54,7 +54,7 @@ class View {
   [[nodiscard]] const AnswerText& answer() const { return answer_; }
   [[nodiscard]] const OrbitCamera& camera() const { return camera_; }
   /// What the mouse does with bodies.
-  [[nodiscard]] Hands& hands() { return hands_; }
+  [[nodiscard]] ViewportManipulator& hands() { return hands_; }
 
   void lookFrom(Direction direction);
   void lookAtAll();
@@ -73,11 +73,11 @@ class View {
   void takeFlightRequest(Session& session);
   void fly(const OrbitCamera& to);
   void moveOn(float seconds);
-  void handleMouse(Ui& ui, const Hands::Seen& seen);
-  void handleRelease(const Hands::Seen& seen);
+  void handleMouse(Ui& ui, const ViewportManipulator::Seen& seen);
+  void handleRelease(const ViewportManipulator::Seen& seen);
   void handleDrag();
   void handleKeys();
-  void beginDrag(const Hands::Seen& seen);
+  void beginDrag(const ViewportManipulator::Seen& seen);
   void click(Session& session, bool fly_there);
   void selectWithin(Session& session);
   void drawAxisNames(float scale) const;
@@ -89,9 +89,9 @@ class View {
   OrbitCamera camera_;
   std::optional<Flight> flight_;
   bool moved_ = false;
-  std::shared_ptr<const FootageRequest> footage_;  ///< the camera has been placed for
+  std::shared_ptr<const FrameProviderRequest> footage_;  ///< the camera has been placed for
   AnswerText answer_;
-  Hands hands_;
+  ViewportManipulator hands_;
   // In pixels, of the present picture.
   ImVec2 corner_;
   ImVec2 size_{1, 1};

@@ -8,7 +8,7 @@
 namespace broadmark {
 namespace {
 
-constexpr std::size_t kMostXrayed = 2000;
+constexpr std::size_t kMaxXrayed = 2000;
 
 }  // namespace
 
@@ -100,11 +100,11 @@ void ViewContent::updateVisible() {
 
 void ViewContent::addXray() {
   for (const std::uint32_t body :
-       std::span(shown_.selection).first(std::min(kMostXrayed, shown_.selection.size()))) {
+       std::span(shown_.selection).first(std::min(kMaxXrayed, shown_.selection.size()))) {
     wire_boxes_.push_back({.box = (*shown_.snapshot->boxes)[body],
                            .colour = picture.theme.selected,
                            .width = 2.5F,
-                           .behind = Behind::shown});
+                           .behind = OcclusionStyle::shown});
   }
 }
 
@@ -129,7 +129,7 @@ void ViewContent::addTracks(std::span<const Track> tracks) {
       lines_.push_back({.from = middle(track.boxes[i - 1]),
                         .to = middle(track.boxes[i]),
                         .colour = picture.theme.selected,
-                        .behind = Behind::faint});
+                        .behind = OcclusionStyle::faint});
     }
   }
 }
@@ -150,8 +150,9 @@ void ViewContent::updateLines() {
     add(pairLines(boxes, {&run, 1}, {.colour = picture.theme.pair}, selected));
   }
   if (const PairRun missed = snapshot.difference.missed_pairs; !missed.empty()) {
-    add(pairLines(boxes, {&missed, 1},
-                  {.colour = picture.theme.missed, .width = 2.5F, .behind = Behind::shown}));
+    add(pairLines(
+        boxes, {&missed, 1},
+        {.colour = picture.theme.missed, .width = 2.5F, .behind = OcclusionStyle::shown}));
   }
   if (snapshot.structure && options.structure) {
     StructureLook look{.by_population = options.structure_population, .dark = shown_.dark};
@@ -165,8 +166,10 @@ void ViewContent::updateLines() {
   addTracks(snapshot.tracks);
   if (options.xray) addXray();
   if (const std::optional<Aabb> plane = clipPlane(options.filter, snapshot.scene.world)) {
-    wire_boxes_.push_back(
-        {.box = *plane, .colour = picture.theme.world, .width = 2, .behind = Behind::faint});
+    wire_boxes_.push_back({.box = *plane,
+                           .colour = picture.theme.world,
+                           .width = 2,
+                           .behind = OcclusionStyle::faint});
   }
   picture.lines = lines_;
   picture.wire_boxes = wire_boxes_;

@@ -27,7 +27,8 @@ class EventsFromPairs final : public BroadPhase {
   }
   [[nodiscard]] float margin() const override { return algorithm_->margin(); }
   /// The pairs of the initial pose are found as those of a frame in which nothing changed.
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     team_ = &execution.team();
     bodies_ = first.boxes.size();
     body_bits_ = static_cast<int>(std::bit_width(bodies_));

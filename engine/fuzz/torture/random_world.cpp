@@ -89,10 +89,10 @@ std::unique_ptr<IndexedFrames> picked(SceneInfo scene, BoxesOf boxes_of,
 
 /// All of a recording, if it is small; else some bodies that follow each other, in some frames.
 RandomWorld partOf(const TortureRecording& given, Random& random) {
-  constexpr std::uint32_t kMostBodies = 1000;
-  constexpr std::uint32_t kMostFrames = 31;
-  const std::vector<std::uint32_t> bodies = randomRow(random, given.scene.objects, kMostBodies);
-  const std::vector<std::uint32_t> frames = randomRow(random, given.scene.frames + 1, kMostFrames);
+  constexpr std::uint32_t kMaxBodies = 1000;
+  constexpr std::uint32_t kMaxFrames = 31;
+  const std::vector<std::uint32_t> bodies = randomRow(random, given.scene.objects, kMaxBodies);
+  const std::vector<std::uint32_t> frames = randomRow(random, given.scene.frames + 1, kMaxFrames);
   const auto boxes_of = [&](std::uint32_t frame) { return std::span(given.frames[frame]); };
   return {kGiven, picked(given.scene, boxes_of, bodies, frames)};
 }

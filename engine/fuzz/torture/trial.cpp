@@ -7,7 +7,7 @@
 
 namespace broadmark {
 
-Trial::Trial(Case run, const HostMaker& make_host, const CancelQuery& cancelled)
+Trial::Trial(Case run, const ExecutorFactory& make_host, const CancelQuery& cancelled)
     : case_(std::move(run)), make_host_(make_host), cancelled_(cancelled) {}
 
 std::optional<Fault> Trial::run(IndexedFrames& world, std::vector<PairDigest>* answers) {
@@ -72,13 +72,13 @@ std::optional<Fault> Trial::leak(IndexedFrames& world) {
   // the passes.
   constexpr int kFirstPasses = 10;
   constexpr std::array kPasses = {8, 16, 32, 64};
-  constexpr std::uint64_t kLeastBytes = 16;  // that an allocation takes
+  constexpr std::uint64_t kMinBytes = 16;  // that an allocation takes
   constexpr double kGrows = 1.5;
   std::optional<std::uint64_t> before = heapAfter(world, kFirstPasses);
   std::uint64_t grown = 0;
   for (const int passes : kPasses) {
     const std::optional<std::uint64_t> now = heapAfter(world, passes);
-    if (!before || !now || *now < *before + kLeastBytes * static_cast<std::uint64_t>(passes) ||
+    if (!before || !now || *now < *before + kMinBytes * static_cast<std::uint64_t>(passes) ||
         static_cast<double>(*now - *before) < kGrows * static_cast<double>(grown)) {
       return std::nullopt;
     }

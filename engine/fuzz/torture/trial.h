@@ -13,7 +13,7 @@ namespace broadmark {
 class Trial {
  public:
   /// `make_host` and `cancelled` are borrowed. Throws InputError for a bad parameter.
-  Trial(Case run, const HostMaker& make_host, const CancelQuery& cancelled);
+  Trial(Case run, const ExecutorFactory& make_host, const CancelQuery& cancelled);
 
   /// All frames of a world; what goes wrong first. With `answers`: appends the digest of each
   /// answer. Throws Cancelled, and InputError for a device that does not exist.
@@ -32,7 +32,7 @@ class Trial {
   std::optional<std::uint64_t> heapAfter(IndexedFrames& world, int passes);
 
   Case case_;
-  const HostMaker& make_host_;
+  const ExecutorFactory& make_host_;
   const CancelQuery& cancelled_;
   std::optional<CaseRun> run_;
   bool supported_ = true;

@@ -1,4 +1,4 @@
-// The worker's side: a LocalHost whose calls come by messages.
+// The worker's side: a InProcessExecutor whose calls come by messages.
 
 #include <malloc.h>
 #include <sys/prctl.h>
@@ -32,12 +32,12 @@ std::uint64_t heapBytes() {
 }
 
 /// Should memory run out nonetheless, this process is to go, not the one that waits for it.
-void beFirstToGo() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
+void raiseOomScore() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
 /// What an algorithm has no use for. A crash is told of by its signal, and a dump of all that
 /// memory would fill the disc; nobody runs programs with more rights than the user's (sudo) from
 /// here.
-void dropRights() {
+void dropPrivileges() {
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
@@ -93,13 +93,13 @@ class Server {
     return Json::object();
   }
 
-  LocalHost& host() {
+  InProcessExecutor& host() {
     if (!host_) throw std::runtime_error("no case has been named");
     return *host_;
   }
 
   /// In a pass: with an instance.
-  LocalHost& startedHost() {
+  InProcessExecutor& startedHost() {
     if (!started_) throw std::runtime_error("no pass has been started");
     return host();
   }
@@ -130,7 +130,7 @@ class Server {
   }
 
   Json step(const Json& message) {
-    const FrameRun run = startedHost().step(takeFrame(message));
+    const StepResult run = startedHost().step(takeFrame(message));
     return {{"times_ns", worker::namedToJson(kPhases, run.times)}, {"pairs", run.pairs}};
   }
 
@@ -199,7 +199,7 @@ class Server {
   LargeVector<Aabb> boxes_;  ///< of the last frame
   std::vector<std::uint32_t> changed_;
   std::vector<Aabb> changed_boxes_;
-  std::optional<LocalHost> host_;
+  std::optional<InProcessExecutor> host_;
   bool started_ = false;
   bool measured_ = false;
   std::optional<std::uint64_t> peak_before_;
@@ -212,8 +212,8 @@ void serveCase(const AlgorithmFinder& find) {
   // Ctrl-C is for the process that started this one. When that is gone, so is the reason to go on.
   std::signal(SIGINT, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  beFirstToGo();
-  dropRights();
+  raiseOomScore();
+  dropPrivileges();
   worker::Channel channel{FileDescriptor(worker::kChannelDescriptor)};
   if (!channel.send(
           {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {

@@ -96,7 +96,7 @@ class Link {
     call(case_message, options_.begin_limit);
   }
 
-  /// The answer to a call into the algorithm. Throws what that threw, and as CaseHost says.
+  /// The answer to a call into the algorithm. Throws what that threw, and as CaseExecutor says.
   Json call(const Json& message) { return call(message, options_.hard_limit); }
 
  private:
@@ -178,7 +178,7 @@ class Link {
   std::optional<worker::Channel> channel_;
 };
 
-class WorkerProcess final : public CaseHost {
+class WorkerProcess final : public CaseExecutor {
  public:
   WorkerProcess(Case run, WorkerOptions options)
       : case_(std::move(run)), options_(std::move(options)) {}
@@ -195,13 +195,13 @@ class WorkerProcess final : public CaseHost {
     return started.at("initialize_ns").get<std::int64_t>();
   }
 
-  FrameRun step(const Frame& frame) override {
+  StepResult step(const Frame& frame) override {
     changed_boxes_.clear();
     for (const std::uint32_t body : *frame.changed) changed_boxes_.push_back(frame.boxes[body]);
     link_->frames.write(std::span<const Aabb>(changed_boxes_), link_->frames.write(*frame.changed));
     const Json run =
         link_->call({{"call", "step"}, {"frame", frame.index}, {"changed", frame.changed->size()}});
-    FrameRun result{.pairs = run.at("pairs").get<std::uint64_t>()};
+    StepResult result{.pairs = run.at("pairs").get<std::uint64_t>()};
     worker::readNamed(run.at("times_ns"), kPhases, result.times);
     return result;
   }
@@ -294,7 +294,7 @@ class WorkerProcess final : public CaseHost {
 
 }  // namespace
 
-std::unique_ptr<CaseHost> makeWorkerProcess(Case run, WorkerOptions options) {
+std::unique_ptr<CaseExecutor> makeWorkerProcess(Case run, WorkerOptions options) {
   return std::make_unique<WorkerProcess>(std::move(run), std::move(options));
 }
 

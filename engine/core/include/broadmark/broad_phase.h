@@ -42,7 +42,8 @@ class BroadPhase : public Parametrised {
 
   /// Builds everything for the initial pose. `execution` outlives the instance. Throws
   /// UnsupportedError when it cannot run here.
-  virtual void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) = 0;
+  virtual void initialize(const SceneInfo& scene, const Frame& first,
+                          ExecutionContext& execution) = 0;
 
   /// Phase 1: takes over the new boxes. The frame is valid only until this returns.
   virtual void updateObjects(const Frame& frame) = 0;
@@ -87,7 +88,7 @@ class BroadPhase : public Parametrised {
 /// throws std::logic_error.
 class PairBroadPhase : public BroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void cleanCache() final;
   void searchOverlaps() final;
   [[nodiscard]] PairRuns overlaps() const final { return runs_; }
@@ -96,13 +97,13 @@ class PairBroadPhase : public BroadPhase {
   /// Adds every pair of the frame to the buffer of any worker.
   virtual void findPairs() = 0;
 
-  Execution& execution() { return *execution_; }
+  ExecutionContext& execution() { return *execution_; }
   ThreadTeam& team() { return execution_->team(); }
   /// The pair buffer of one worker.
   PairBuffer& pairs(int worker = 0) { return buffers_[static_cast<std::size_t>(worker)]; }
 
  private:
-  Execution* execution_ = nullptr;
+  ExecutionContext* execution_ = nullptr;
   std::vector<PairBuffer> buffers_;
   std::vector<PairRun> runs_;
 };
@@ -110,7 +111,7 @@ class PairBroadPhase : public BroadPhase {
 /// Layer 2: also keeps a copy of the boxes.
 class BoxBroadPhase : public PairBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
 
  protected:
@@ -123,7 +124,7 @@ class BoxBroadPhase : public PairBroadPhase {
 /// Layer 2 for SIMD: keeps the copy as six arrays (structure of arrays).
 class SimdBroadPhase : public PairBroadPhase {
  public:
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override;
+  void initialize(const SceneInfo& scene, const Frame& first, ExecutionContext& execution) override;
   void updateObjects(const Frame& frame) override;
 
  protected:

@@ -1,9 +1,9 @@
 // Libraries with process-wide state: who may use it when.
 //
 // Each such state has a name. Code that changes it, even for the length of a call, holds an
-// ExclusiveUse; code that only depends on it holds a SharedUse. LocalHost holds an ExclusiveUse
-// around every call into an algorithm whose traits name a state, so algorithms need not do it
-// themselves.
+// ExclusiveUse; code that only depends on it holds a SharedUse. InProcessExecutor holds an
+// ExclusiveUse around every call into an algorithm whose traits name a state, so algorithms need
+// not do it themselves.
 #pragma once
 
 #include <string_view>

@@ -76,7 +76,7 @@ class ThreadTeam {
     void* context = nullptr;
   };
   void start(Job);
-  void keepApart();
+  void avoidCallerCore();
   void tell(unsigned generation);
   void perform(int worker);
   void loop(int worker);
@@ -102,16 +102,16 @@ class SharedResource {
 };
 
 /// What the runner gives to an algorithm. Outlives the algorithm's instance.
-class Execution {
+class ExecutionContext {
  public:
-  Execution(int threads, Isa isa, std::string device = {})
+  ExecutionContext(int threads, Isa isa, std::string device = {})
       : isa_(isa), device_(std::move(device)), team_(threads) {}
   /// Ends the latest resource first: it may be made from earlier ones.
-  ~Execution() {
+  ~ExecutionContext() {
     while (!resources_.empty()) resources_.pop_back();
   }
-  Execution(const Execution&) = delete;
-  Execution& operator=(const Execution&) = delete;
+  ExecutionContext(const ExecutionContext&) = delete;
+  ExecutionContext& operator=(const ExecutionContext&) = delete;
 
   [[nodiscard]] Isa isa() const { return isa_; }
   [[nodiscard]] int threads() const { return team_.size(); }

@@ -25,7 +25,7 @@ struct Overlay {
 struct PairLineStyle {
   Rgb colour = 0;
   float width = 1.5F;
-  Behind behind = Behind::faint;
+  OcclusionStyle behind = OcclusionStyle::faint;
   std::size_t most = 50'000;  ///< lines
 };
 

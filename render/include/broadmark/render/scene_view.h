@@ -22,7 +22,7 @@ namespace broadmark {
 class Framebuffer;
 
 /// How a line is drawn where bodies hide it.
-enum class Behind { hidden, faint, shown };
+enum class OcclusionStyle { hidden, faint, shown };
 
 /// A straight line in the world.
 struct SceneLine {
@@ -30,7 +30,7 @@ struct SceneLine {
   std::array<float, 3> to{};
   Rgb colour = 0;
   float width = 1;  ///< pixels, before SceneViewContent::scale
-  Behind behind = Behind::hidden;
+  OcclusionStyle behind = OcclusionStyle::hidden;
 };
 
 /// The twelve edges of a box in the world.
@@ -38,7 +38,7 @@ struct SceneWireBox {
   Aabb box;
   Rgb colour = 0;
   float width = 1;
-  Behind behind = Behind::hidden;
+  OcclusionStyle behind = OcclusionStyle::hidden;
 };
 
 /// What to draw. The spans are borrowed for one call of draw(). They are read only if their

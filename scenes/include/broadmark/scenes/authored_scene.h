@@ -15,8 +15,8 @@ namespace broadmark::scenes {
 
 inline constexpr std::string_view kAuthoredSceneSchema = "broadmark-scene/1";
 /// Limits of a box's edges and of a sphere's diameter.
-inline constexpr float kLeastEdge = 1e-6F;
-inline constexpr float kMostEdge = 1e6F;
+inline constexpr float kMinEdge = 1e-6F;
+inline constexpr float kMaxEdge = 1e6F;
 /// The frame in which a body vanishes that stays.
 inline constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
 
@@ -31,7 +31,7 @@ struct AuthoredBody {
   std::uint8_t layer = 0;
   std::uint32_t appears = 0;        ///< the first frame that it is in, as stated above
   std::uint32_t vanishes = kNever;  ///< the first frame after that which it is not in
-  std::uint32_t group = 0;  ///< whose bodies an editor selects together, 1 to kMostBodies; 0: none
+  std::uint32_t group = 0;  ///< whose bodies an editor selects together, 1 to kMaxBodies; 0: none
 
   friend bool operator==(const AuthoredBody&, const AuthoredBody&) = default;
 };
@@ -53,7 +53,7 @@ void visitProperties(Body& body, const Visit& visit) {
   visit("group", body.group, standard.group);
 }
 
-/// A plain value. Lengths are in world units. Body id = position in the list. At most kMostBodies
+/// A plain value. Lengths are in world units. Body id = position in the list. At most kMaxBodies
 /// (simulation.h) bodies.
 struct AuthoredScene {
   std::string name = "Untitled";  ///< as recordings state it

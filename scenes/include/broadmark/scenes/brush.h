@@ -63,9 +63,9 @@ struct Stroke {
 /// power of two of box sizes, so that neither a floor under thousands of small bodies nor dust
 /// among large ones crowds a cell: O(1) per body unless sizes differ by orders of magnitude, and
 /// never more than a comparison with every box.
-class TakenRoom {
+class OccupiedSpace {
  public:
-  explicit TakenRoom(std::span<const AuthoredBody> bodies = {});
+  explicit OccupiedSpace(std::span<const AuthoredBody> bodies = {});
 
   void add(const AuthoredBody&);
   [[nodiscard]] bool overlaps(const AuthoredBody&) const;
@@ -84,8 +84,8 @@ class TakenRoom {
 /// Bodies placed around the point `at`, `most` of them or fewer. Unless the paint allows overlaps,
 /// no tight box overlaps that of another placed body or `taken` by more than a touch: a brush that
 /// scatters tries other places, and a body without room is left out. The same arguments give the
-/// same bodies. O(placed). Throws InputError when the brush would place more than kMostBodies.
-Stroke paint(const Brush&, const Paint&, const Vec3& at, const TakenRoom& taken,
+/// same bodies. O(placed). Throws InputError when the brush would place more than kMaxBodies.
+Stroke paint(const Brush&, const Paint&, const Vec3& at, const OccupiedSpace& taken,
              std::size_t most = std::numeric_limits<std::size_t>::max());
 /// The same among the bodies that are `present`. O(present + placed).
 Stroke paint(const Brush&, const Paint&, const Vec3& at, std::span<const AuthoredBody> present);

@@ -19,9 +19,9 @@
 namespace broadmark {
 
 /// Most bodies of any scene, built-in or authored.
-inline constexpr std::uint32_t kMostBodies = 10'000'000;
+inline constexpr std::uint32_t kMaxBodies = 10'000'000;
 /// Most frames after the initial pose.
-inline constexpr std::uint32_t kMostFrames = 1'000'000;
+inline constexpr std::uint32_t kMaxFrames = 1'000'000;
 
 /// A built-in scene, for lists and help.
 struct SceneListing {

@@ -18,7 +18,7 @@ namespace broadmark {
 struct DuelSide {
   std::string name;
   Case run;
-  HostMaker make_host = makeLocalHost;
+  ExecutorFactory make_host = makeLocalHost;
 };
 
 struct DuelResult;

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recordings/sub_recording.h"
 
@@ -26,8 +26,8 @@ struct ShrinkOptions {
   /// A part of the recording that takes no more than this is held in memory; a larger one is read
   /// again for each trial.
   std::size_t memory_bytes = std::size_t{256} << 20;
-  HostMaker make_host = makeLocalHost;  ///< where the trials of a case run
-  std::string subject = "it";           ///< what fails, in messages; of a case its name
+  ExecutorFactory make_host = makeLocalHost;  ///< where the trials of a case run
+  std::string subject = "it";                 ///< what fails, in messages; of a case its name
 };
 
 /// A part of a recording on which something fails.

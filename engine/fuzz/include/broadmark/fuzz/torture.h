@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/recordings/sub_recording.h"
 
 namespace broadmark {
@@ -83,7 +83,7 @@ struct TortureOptions {
   std::vector<Algorithm> algorithms;   ///< one at least, unless there is a case
   std::optional<Case> only_case = {};  ///< which is run in all rounds
   std::uint64_t seed = 1;
-  HostMaker make_host = makeLocalHost;
+  ExecutorFactory make_host = makeLocalHost;
   std::vector<TortureRecording> given = {};  ///< small parts of them are worlds, too: "given"
   bool only_given = false;                   ///< there is one at least
   double most_shrink_seconds = 30;           ///< for a fault; then the best part so far is it

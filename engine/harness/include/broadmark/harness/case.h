@@ -23,7 +23,7 @@ struct Case {
   Algorithm algorithm;
   Isa isa = Isa::scalar;
   int threads = 1;
-  std::string device = {};          ///< as Execution::device()
+  std::string device = {};          ///< as ExecutionContext::device()
   ParameterValues parameters = {};  ///< those that differ from the default
   AnswerKind answer = AnswerKind::pairs;
 };

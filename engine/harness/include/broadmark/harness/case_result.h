@@ -65,7 +65,7 @@ struct CaseResult {
   Isa isa = Isa::scalar;
   bool vectorised = false;  ///< whether the algorithm is vectorised, so that `isa` means something
   int threads = 1;
-  std::string device;          ///< the compute device asked for, as Execution::device()
+  std::string device;          ///< the compute device asked for, as ExecutionContext::device()
   std::string plugin;          ///< the file that the algorithm was loaded from; "": built in
   ParameterValues parameters;  ///< all, defaults included
   AnswerKind answer = AnswerKind::pairs;

@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
-#include "broadmark/changed_bodies.h"
+#include "broadmark/change_detector.h"
 #include "broadmark/harness/case.h"
-#include "broadmark/harness/case_host.h"
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/case_executor.h"
+#include "broadmark/harness/event_accumulator.h"
 #include "broadmark/harness/frame_times.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/harness/status.h"
@@ -51,8 +51,8 @@ class CaseRun {
  public:
   /// Checks the parameters; threads and structures are made by start(). `cancelled` ends what the
   /// host would wait for. Throws InputError for a bad parameter.
-  explicit CaseRun(Case run, RunPolicy policy = {}, const HostMaker& make_host = makeLocalHost,
-                   CancelQuery cancelled = {});
+  explicit CaseRun(Case run, RunPolicy policy = {},
+                   const ExecutorFactory& make_host = makeLocalHost, CancelQuery cancelled = {});
 
   [[nodiscard]] const Case& description() const { return case_; }
   /// As BroadPhase::margin().
@@ -96,8 +96,8 @@ class CaseRun {
   /// What its host knows of it.
   [[nodiscard]] const PassReport& report() const { return host_->report(); }
 
-  // What the instance tells of itself, as in CaseHost. Empty, and a status, when that fails. Only
-  // while hasInstance().
+  // What the instance tells of itself, as in CaseExecutor. Empty, and a status, when that fails.
+  // Only while hasInstance().
   /// Of events: the pairs that they have led to, if checks(); else empty.
   PairRuns answer();
   Counts counters();
@@ -111,7 +111,7 @@ class CaseRun {
   bool attempt(Call&& call);
   /// What the host answers; empty when that fails.
   template <class Answer>
-  Answer ask(Answer (CaseHost::*question)());
+  Answer ask(Answer (CaseExecutor::*question)());
   void fail(Status status, std::string reason);
   [[nodiscard]] bool answersEvents() const { return case_.answer == AnswerKind::events; }
   /// Takes the events of this frame into account, if they are to be judged.
@@ -121,19 +121,19 @@ class CaseRun {
   Case case_;
   RunPolicy policy_;
   float margin_ = 0;
-  std::unique_ptr<CaseHost> host_;
+  std::unique_ptr<CaseExecutor> host_;
   bool has_instance_ = false;
   bool ended_ = false;        ///< the present pass, by a time limit: its instance is still there
   bool ended_early_ = false;  ///< some pass, by a failure or a limit: reason_ says which
   Status status_ = Status::ok;
   std::string reason_;
   CollisionFilter filter_;  ///< of the present scene
-  ChangedBodies changed_bodies_;
-  FollowedPairs followed_;  ///< what events have led to
+  ChangeDetector changed_bodies_;
+  EventAccumulator followed_;  ///< what events have led to
   std::uint64_t changed_count_ = 0;
   std::uint32_t frame_ = 0;  ///< that was begun last
   std::int64_t initialize_ns_ = 0;
-  FrameRun last_;
+  StepResult last_;
   std::int64_t total_ns_ = 0;  ///< of all frames in this pass
   std::uint32_t frames_ = 0;   ///< in this pass
 };

@@ -54,7 +54,7 @@ class Oracle {
 /// *allowed* when they are wanted and overlap once enlarged by the algorithm's margin, else it is
 /// *false*. An invalid pair is a duplicate, has
 /// a >= b, or names a body that does not exist; of events also one that cannot be, as
-/// FollowedPairs says.
+/// EventAccumulator says.
 struct FrameDifference {
   /// At most this many pairs of each kind are listed; the counts are always complete.
   static constexpr std::size_t kListed = 1000;

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 
 namespace broadmark {
 
@@ -27,14 +27,14 @@ struct WorkerOptions {
   std::chrono::duration<double> begin_limit{60};
   /// Data that the process may hold; beyond it, allocating fails. 0: whatever the system gives.
   std::uint64_t memory_limit_bytes = 0;
-  bool pin = false;  ///< as LocalHost does
+  bool pin = false;  ///< as InProcessExecutor does
   CancelQuery cancelled = {};
 };
 
 /// The host of a case in a worker process, which lasts from the first start() until it fails or the
 /// host goes. The next start() after a failure has a new process; it throws InputError when the
 /// process cannot be started or speaks another version.
-std::unique_ptr<CaseHost> makeWorkerProcess(Case run, WorkerOptions options);
+std::unique_ptr<CaseExecutor> makeWorkerProcess(Case run, WorkerOptions options);
 
 /// Finds an algorithm by its id and the file of its plug-in ("": built in). Throws InputError.
 using AlgorithmFinder = std::function<Algorithm(const std::string& id, const std::string& plugin)>;

@@ -23,6 +23,6 @@ struct MachineState {
 MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders& = {});
 
 /// What may disturb the times of a case, a sentence each; nothing of what the system does not tell.
-std::vector<std::string> disturbances(const Environment&, const MachineState&, const Case&);
+std::vector<std::string> noiseWarnings(const Environment&, const MachineState&, const Case&);
 
 }  // namespace broadmark

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/changed_bodies.h"
-#include "broadmark/harness/case_host.h"
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/change_detector.h"
+#include "broadmark/harness/case_executor.h"
+#include "broadmark/harness/event_accumulator.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/recorded_drawing.h"
 #include "support/changing_worlds.h"
@@ -29,7 +29,7 @@ using Boxes = std::vector<Aabb>;
 using Pairs = std::vector<Pair>;
 using Ids = std::vector<std::uint32_t>;
 
-Pairs listed(PairRuns runs) {
+Pairs concatenated(PairRuns runs) {
   Pairs pairs;
   for (const PairRun run : runs) pairs.insert(pairs.end(), run.begin(), run.end());
   return pairs;
@@ -45,7 +45,8 @@ class Witness final : public BroadPhase {
   explicit Witness(const Pairs& nonsense) : nonsense_(nonsense) {}
 
   [[nodiscard]] float margin() const override { return 0.25F; }
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     scene_ = scene;
     threads_ = execution.threads();
     isa_ = execution.isa();
@@ -178,15 +179,15 @@ class Watched {
   }
 
   Options options_;
-  Execution execution_;
+  ExecutionContext execution_;
   std::vector<Witness*> witnesses_;
   std::unique_ptr<BroadPhase> worlds_;
-  ChangedBodies changes_;
+  ChangeDetector changes_;
   Boxes boxes_;
   std::uint32_t index_ = 0;
 };
 
-TEST(WorldsApart, AreAsManyAsBodiesAreIn) {
+TEST(PerWorldBroadPhase, AreAsManyAsBodiesAreIn) {
   const auto count = [](const CollisionFilter& filter) {
     SceneInfo scene;
     scene.filter = filter;
@@ -198,7 +199,7 @@ TEST(WorldsApart, AreAsManyAsBodiesAreIn) {
   EXPECT_EQ(count(worldsOf({0, 7, 5})), 3U);
 }
 
-TEST(WorldsApart, ShowEachInstanceItsOwnBodiesOnly) {
+TEST(PerWorldBroadPhase, ShowEachInstanceItsOwnBodiesOnly) {
   std::vector<BodyGroups> groups = {{.layer = 3, .world = 9},
                                     {.world = 2, .tags = {5, 6, 7}},
                                     {.layer = 1, .world = 9},
@@ -231,33 +232,33 @@ TEST(WorldsApart, ShowEachInstanceItsOwnBodiesOnly) {
   EXPECT_EQ(nine.phases_, 1234);
 }
 
-TEST(WorldsApart, OfOneBodyEachHaveNoInstance) {
+TEST(PerWorldBroadPhase, OfOneBodyEachHaveNoInstance) {
   Boxes boxes(3, unitAt(0));
   Watched watched(worldsOf({1, 2, 3}), boxes);
   boxes[1] = unitAt(1);
   watched.step(boxes);
   EXPECT_EQ(watched.count(), 0U);
-  EXPECT_THAT(listed(watched.all().overlaps()), IsEmpty());
+  EXPECT_THAT(concatenated(watched.all().overlaps()), IsEmpty());
   EXPECT_EQ(watched.all().margin(), 0);
 }
 
-TEST(WorldsApart, InWhichNothingChangesAreNotTouchedAndKeepTheirAnswers) {
+TEST(PerWorldBroadPhase, InWhichNothingChangesAreNotTouchedAndKeepTheirAnswers) {
   const CollisionFilter filter = worldsOf({0, 0, 1, 1, 2, 2});
   const Boxes first(6, unitAt(0));
   Boxes boxes = first;
   Watched watched(filter, boxes);
   watched.step(boxes);  // the first frame is for all: before it there are no answers
   for (std::size_t world = 0; world < 3; ++world) EXPECT_EQ(watched.of(world).frames_, 1);
-  EXPECT_EQ(listed(watched.all().overlaps()), (Pairs{{0, 1}, {2, 3}, {4, 5}}));
+  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {2, 3}, {4, 5}}));
   boxes[3] = unitAt(9);
   watched.step(boxes);
-  EXPECT_EQ(listed(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
+  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
   watched.step(boxes);
-  EXPECT_EQ(listed(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
+  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}, {4, 5}}));
   boxes[0] = unitAt(0.5F);
   boxes[4] = unitAt(9);
   watched.step(boxes);
-  EXPECT_EQ(listed(watched.all().overlaps()), (Pairs{{0, 1}}));
+  EXPECT_EQ(concatenated(watched.all().overlaps()), (Pairs{{0, 1}}));
   EXPECT_EQ(watched.of(0).frames_, 2);
   EXPECT_EQ(watched.of(1).frames_, 2);
   EXPECT_EQ(watched.of(2).frames_, 2);
@@ -265,27 +266,27 @@ TEST(WorldsApart, InWhichNothingChangesAreNotTouchedAndKeepTheirAnswers) {
   EXPECT_EQ(watched.of(1).index_, 2U);
 }
 
-TEST(WorldsApart, InWhichNothingChangesHaveNoEvents) {
+TEST(PerWorldBroadPhase, InWhichNothingChangesHaveNoEvents) {
   Boxes boxes(4, unitAt(0));
   Watched watched(worldsOf({0, 1, 0, 1}), boxes, {.events = true});
-  EXPECT_EQ(listed(watched.all().events().began), (Pairs{{0, 2}, {1, 3}}));
+  EXPECT_EQ(concatenated(watched.all().events().began), (Pairs{{0, 2}, {1, 3}}));
   watched.step(boxes);
   EXPECT_EQ(eventCount(watched.all().events()), 0U);
   boxes[3] = unitAt(9);
   watched.step(boxes);
-  EXPECT_THAT(listed(watched.all().events().began), IsEmpty());
-  EXPECT_EQ(listed(watched.all().events().ended), (Pairs{{1, 3}}));
+  EXPECT_THAT(concatenated(watched.all().events().began), IsEmpty());
+  EXPECT_EQ(concatenated(watched.all().events().ended), (Pairs{{1, 3}}));
   watched.step(boxes);
   EXPECT_EQ(eventCount(watched.all().events()), 0U);
   boxes[0] = unitAt(9);
   boxes[3] = unitAt(0);
   watched.step(boxes);
-  EXPECT_EQ(listed(watched.all().events().began), (Pairs{{1, 3}}));
-  EXPECT_EQ(listed(watched.all().events().ended), (Pairs{{0, 2}}));
+  EXPECT_EQ(concatenated(watched.all().events().began), (Pairs{{1, 3}}));
+  EXPECT_EQ(concatenated(watched.all().events().ended), (Pairs{{0, 2}}));
 }
 
 // Some worlds are empty in some frames, or change late; their bodies are mixed.
-TEST(WorldsApart, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
+TEST(PerWorldBroadPhase, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
   constexpr std::uint32_t kAll = 90;
   constexpr std::uint32_t kWorlds = 7;
   const CollisionFilter filter =
@@ -302,34 +303,34 @@ TEST(WorldsApart, AnswerWithTheScenesOwnIdsWhateverTheTeam) {
     Watched of_pairs(filter, frames[0], {.threads = threads});
     Watched again(filter, frames[0], {.threads = threads});
     Watched of_events(filter, frames[0], {.threads = threads, .events = true});
-    FollowedPairs followed;
+    EventAccumulator followed;
     followed.apply(of_events.all().events(), kAll);
     for (std::size_t frame = 1; frame < frames.size(); ++frame) {
       const Pairs right = bruteForcePairs(frames[frame], filter);
       of_pairs.step(frames[frame]);
       again.step(frames[frame]);
       of_events.step(frames[frame]);
-      EXPECT_EQ(sorted(listed(of_pairs.all().overlaps())), right);
-      EXPECT_EQ(listed(again.all().overlaps()), listed(of_pairs.all().overlaps()));
+      EXPECT_EQ(sorted(concatenated(of_pairs.all().overlaps())), right);
+      EXPECT_EQ(concatenated(again.all().overlaps()), concatenated(of_pairs.all().overlaps()));
       followed.apply(of_events.all().events(), kAll);
       EXPECT_THAT(followed.impossible(), IsEmpty());
-      EXPECT_EQ(sorted(listed(followed.pairs())), right);
+      EXPECT_EQ(sorted(concatenated(followed.pairs())), right);
     }
   }
 }
 
 // Order and repetition are kept; ids that do not exist stay such.
-TEST(WorldsApart, LetWrongPairsBeWrong) {
+TEST(PerWorldBroadPhase, LetWrongPairsBeWrong) {
   const Boxes boxes = {unitAt(0), unitAt(0), unitAt(5), unitAt(9)};
   Watched watched(worldsOf({0, 1, 0, 1}), boxes,
                   {.nonsense = {{1, 0}, {1, 1}, {0, 2}, {0xFFFF'FFFF, 0}}});
   watched.step(boxes);
   constexpr Pair kNone = {0xFFFF'FFFF, 0xFFFF'FFFF};
-  EXPECT_EQ(listed(watched.all().overlaps()),
+  EXPECT_EQ(concatenated(watched.all().overlaps()),
             (Pairs{{2, 0}, {2, 2}, kNone, kNone, {3, 1}, {3, 3}, kNone, kNone}));
 }
 
-TEST(WorldsApart, AreSharedOutWhereEachWorkerGetsOne) {
+TEST(PerWorldBroadPhase, AreSharedOutWhereEachWorkerGetsOne) {
   const Ids three = {0, 0, 1, 1, 2, 2};
   const Boxes boxes(three.size(), unitAt(0));
   const auto threads_of_each = [&](const Watched::Options& options) {
@@ -357,7 +358,7 @@ std::map<std::string, std::uint64_t> countersOf(
   return counts;
 }
 
-TEST(WorldsApart, TellAndDrawWhatAllInstancesDo) {
+TEST(PerWorldBroadPhase, TellAndDrawWhatAllInstancesDo) {
   Boxes boxes(7, unitAt(0));
   Watched watched(worldsOf({0, 0, 1, 1, 1, 20, 20}), boxes);
   watched.step(boxes);
@@ -391,13 +392,13 @@ bool isApart(const AlgorithmTraits& traits, std::uint32_t bodies_each, std::uint
   scene.filter = worldsOf(of_bodies);
   const Boxes boxes(scene.objects);
   const Ids none;
-  LocalHost host(run);
+  InProcessExecutor host(run);
   host.start(scene, {0, boxes, none});
   host.step({1, boxes, none});
   return host.counters().contains("worlds with changes");
 }
 
-TEST(WorldsApart, AreForThoseWhoWantThemAndForManyBodies) {
+TEST(PerWorldBroadPhase, AreForThoseWhoWantThemAndForManyBodies) {
   const AlgorithmTraits native = {.changing_worlds = ChangingWorlds::native};
   const AlgorithmTraits native_each = {.changing_worlds = ChangingWorlds::native,
                                        .instance_per_world = true};

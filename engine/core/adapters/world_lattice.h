@@ -15,10 +15,10 @@ namespace broadmark {
 /// Moves the boxes of each world to a place of its own in a lattice, as large as the scene's world.
 /// Boxes that overlap do so afterwards: rounding never turns the order of two sums around. Others
 /// may come to overlap, those of bodies of two worlds that poke out among them.
-class SideBySide {
+class WorldLattice {
  public:
   /// The lattice is a cube of worlds, or as close to one as their number allows.
-  explicit SideBySide(const SceneInfo& scene) : world_(scene.world) {
+  explicit WorldLattice(const SceneInfo& scene) : world_(scene.world) {
     const std::span<const std::uint32_t> worlds = scene.filter.worlds();
     std::vector<std::uint32_t> present(worlds.begin(), worlds.end());
     std::ranges::sort(present);

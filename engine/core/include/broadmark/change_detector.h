@@ -10,7 +10,7 @@ namespace broadmark {
 
 /// Completes frames whose source does not know what changed. Keeps a copy of the boxes. A steady
 /// state allocates nothing.
-class ChangedBodies {
+class ChangeDetector {
  public:
   /// The frame, with what changed since the last call for a frame of this source, or nothing for
   /// its frame 0. Valid until the next call.

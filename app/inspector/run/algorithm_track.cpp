@@ -1,4 +1,4 @@
-#include "inspector/run/lane.h"
+#include "inspector/run/algorithm_track.h"
 
 #include <algorithm>
 #include <span>
@@ -9,7 +9,7 @@ namespace broadmark {
 namespace {
 
 constexpr RunPolicy kPolicy{.check = CheckMode::hash,
-                            .frame_limit_seconds = Lane::kFrameLimitSeconds};
+                            .frame_limit_seconds = AlgorithmTrack::kFrameLimitSeconds};
 
 }  // namespace
 
@@ -37,7 +37,7 @@ std::uint64_t framesOver(const LaneReport& lane, double ms) {
 }
 
 template <class Call>
-void Lane::attempt(Call&& call) {
+void AlgorithmTrack::attempt(Call&& call) {
   try {
     call();
     report_.status = run_->status();
@@ -50,7 +50,7 @@ void Lane::attempt(Call&& call) {
   }
 }
 
-void Lane::restart(const SceneInfo& scene, const Frame& first) {
+void AlgorithmTrack::restart(const SceneInfo& scene, const Frame& first) {
   report_.frame = 0;
   outdated_ = false;
   attempt([&] {
@@ -62,12 +62,12 @@ void Lane::restart(const SceneInfo& scene, const Frame& first) {
   report_.initialize_ns = run_->initializeNanoseconds();
 }
 
-FrameRecord& Lane::recordOf(std::uint32_t index) {
+FrameRecord& AlgorithmTrack::recordOf(std::uint32_t index) {
   if (report_.frames.size() < index) report_.frames.resize(index);
   return report_.frames[index - 1];
 }
 
-void Lane::advance(const Frame& frame, DrawGate& gate) {
+void AlgorithmTrack::advance(const Frame& frame, DrawGate& gate) {
   FrameRecord record;
   gate.beginTiming();
   attempt([&] { run_->step(frame); });
@@ -83,7 +83,7 @@ void Lane::advance(const Frame& frame, DrawGate& gate) {
   attempt([&] { report_.counters = run_->counters(); });
 }
 
-std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
+std::optional<FrameDifference> AlgorithmTrack::check(const Frame& frame, Oracle& oracle) {
   std::optional<FrameDifference> difference;
   attempt([&] { difference = run_->check(frame, oracle); });
   if (!difference) return difference;
@@ -98,13 +98,13 @@ std::optional<FrameDifference> Lane::check(const Frame& frame, Oracle& oracle) {
   return difference;
 }
 
-void Lane::requireChecked(std::uint32_t after) {
+void AlgorithmTrack::requireChecked(std::uint32_t after) {
   if (!spec().run.algorithm.traits.finds_pairs || after >= report_.frame) return;
   outdated_ = !std::ranges::all_of(std::span(report_.frames).subspan(after, report_.frame - after),
                                    &FrameRecord::checked);
 }
 
-std::vector<Pair> Lane::answer() {
+std::vector<Pair> AlgorithmTrack::answer() {
   std::vector<Pair> pairs;
   attempt([&] {
     const PairRuns runs = run_->answer();
@@ -114,7 +114,7 @@ std::vector<Pair> Lane::answer() {
   return pairs;
 }
 
-RecordedDrawing Lane::structure() {
+RecordedDrawing AlgorithmTrack::structure() {
   RecordedDrawing drawing;
   attempt([&] { drawing = run_->structure(); });
   return drawing;

@@ -1,6 +1,6 @@
 // Each warning has a function of its own, which adds to the list.
 
-#include "broadmark/harness/quietness.h"
+#include "broadmark/harness/noise_warnings.h"
 
 #include <fmt/format.h>
 
@@ -91,8 +91,8 @@ MachineState watchMachine(std::chrono::milliseconds moment, const SystemFolders&
           .turbo = hasTurbo(folders)};
 }
 
-std::vector<std::string> disturbances(const Environment& environment, const MachineState& machine,
-                                      const Case& run) {
+std::vector<std::string> noiseWarnings(const Environment& environment, const MachineState& machine,
+                                       const Case& run) {
   Texts warnings;
   warnOfLoad(warnings, machine);
   warnOfSiblings(warnings, machine, run.threads);

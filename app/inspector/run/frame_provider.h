@@ -20,13 +20,13 @@ using FrameOpener = std::function<std::unique_ptr<IndexedFrames>(std::uint32_t l
 /// A recording, or a live simulation or import that goes only as far as it is watched: its frames
 /// are kept in an unnamed temporary file, so that any of them can be seen again. Either can be
 /// shown as swept boxes. To be used from one thread.
-class Footage {
+class FrameProvider {
  public:
-  explicit Footage(std::unique_ptr<Recording> recording, bool swept = false);
+  explicit FrameProvider(std::unique_ptr<Recording> recording, bool swept = false);
   /// The simulation begins with its present parameters.
-  explicit Footage(std::unique_ptr<FrameSource> simulation, bool swept = false);
+  explicit FrameProvider(std::unique_ptr<FrameSource> simulation, bool swept = false);
   /// A scene of a single frame; `scene.frames` is 0.
-  Footage(SceneInfo scene, std::span<const Aabb> boxes);
+  FrameProvider(SceneInfo scene, std::span<const Aabb> boxes);
 
   /// Its `frames` counts all there may ever be.
   [[nodiscard]] const SceneInfo& scene() const { return frames_->scene(); }
@@ -57,6 +57,6 @@ class Footage {
 };
 
 /// Opens some footage, each time anew. Throws InputError.
-using FootageOpener = std::function<std::unique_ptr<Footage>()>;
+using FootageOpener = std::function<std::unique_ptr<FrameProvider>()>;
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-#include "inspector/session/footage_requests.h"
+#include "inspector/session/frame_provider_requests.h"
 
 #include <fmt/format.h>
 
@@ -29,19 +29,19 @@ std::string parametersOf(const Recording& recording, const fs::path& path) {
 
 }  // namespace
 
-FootageRequest simulationFootage(Simulation& simulation, bool swept) {
+FrameProviderRequest simulationFootage(Simulation& simulation, bool swept) {
   const std::string text = formatSceneParameters(simulation);
   return {.open =
               [text, swept] {
-                return std::make_unique<Footage>(parseSceneParameters(text, "scene parameters"),
-                                                 swept);
+                return std::make_unique<FrameProvider>(
+                    parseSceneParameters(text, "scene parameters"), swept);
               },
           .source = FootageSource::simulation,
           .title = simulation.listing().name,
           .scene_parameters = text};
 }
 
-FootageRequest recordingFootage(const fs::path& path, const std::string& hash, bool swept) {
+FrameProviderRequest recordingFootage(const fs::path& path, const std::string& hash, bool swept) {
   // A bad one is an error at once, and changes nothing.
   const std::string parameters = parametersOf(*openRecordingFile(path), path);
   const auto open = [path, hash, swept] {
@@ -49,7 +49,7 @@ FootageRequest recordingFootage(const fs::path& path, const std::string& hash, b
     if (!hash.empty()) {
       requireHash(path.string(), swept ? sweptHash(recording->hash()) : recording->hash(), hash);
     }
-    return std::make_unique<Footage>(std::move(recording), swept);
+    return std::make_unique<FrameProvider>(std::move(recording), swept);
   };
   return {.open = open,
           .source = FootageSource::recording,
@@ -58,21 +58,21 @@ FootageRequest recordingFootage(const fs::path& path, const std::string& hash, b
           .scene_parameters = parameters};
 }
 
-FootageRequest importFootage(const RecordingReference& reference, bool swept) {
-  const auto open = [reference, swept]() -> std::unique_ptr<Footage> {
+FrameProviderRequest importFootage(const RecordingReference& reference, bool swept) {
+  const auto open = [reference, swept]() -> std::unique_ptr<FrameProvider> {
     ReadingOptions reading;
     setParameters(reading, reference.reading);
     const auto import = importOf(reference.path);
     if (!import) throw InputError(fmt::format("{}: no longer there", reference.path));
     Source source = importedSource({reference.path}, *import, reading);
-    return std::make_unique<Footage>(std::move(source.imported), swept);
+    return std::make_unique<FrameProvider>(std::move(source.imported), swept);
   };
   return {.open = open,
           .source = FootageSource::import,
           .title = fs::path(reference.path).filename().string()};
 }
 
-ParameterValues sceneParametersOf(const FootageRequest* footage) {
+ParameterValues sceneParametersOf(const FrameProviderRequest* footage) {
   if (footage == nullptr || footage->scene_parameters.empty()) return {};
   const auto simulation = parseSceneParameters(footage->scene_parameters, footage->title);
   ParameterValues values = parameterValues(*simulation);

@@ -1,7 +1,7 @@
 // All is drawn over the finished picture of the scene, which therefore need not be drawn anew while
 // the mouse moves.
 
-#include "inspector/authoring/hands.h"
+#include "inspector/authoring/viewport_manipulator.h"
 
 #include <fmt/format.h>
 
@@ -21,8 +21,8 @@ constexpr float kReach = 8;  // of the mouse, around a handle
 constexpr float kTip = 6;    // half the size of what an axis ends in
 constexpr float kBetweenDabs = 12;
 
-constexpr std::size_t kMostGhosts = 1000;
-constexpr int kMostDabsAtOnce = 8;  // in a picture, between two places of the mouse
+constexpr std::size_t kMaxGhosts = 1000;
+constexpr int kMaxDabsAtOnce = 8;  // in a picture, between two places of the mouse
 
 Rgb colourOf(Handle handle, const Palette& theme) {
   // A plane has the colour of the axis across it.
@@ -31,7 +31,7 @@ Rgb colourOf(Handle handle, const Palette& theme) {
 
 }  // namespace
 
-void Hands::look(const Seen& seen) {
+void ViewportManipulator::look(const Seen& seen) {
   const auto& shown = seen.session.playback.footage();
   const bool edited = document_ != shown;
   if (edited) {
@@ -46,7 +46,7 @@ void Hands::look(const Seen& seen) {
   lookAtBrush(seen);
 }
 
-void Hands::lookAtGizmo(const Seen& seen) {
+void ViewportManipulator::lookAtGizmo(const Seen& seen) {
   const Document& document = seen.session.document;
   const Tools& tools = document.tools;
   const scenes::SceneEditor& editor = document.editor;
@@ -81,7 +81,7 @@ void Hands::lookAtGizmo(const Seen& seen) {
                     : std::nullopt;
 }
 
-Vec3 Hands::centreOf(const Session& session) {
+Vec3 ViewportManipulator::centreOf(const Session& session) {
   const scenes::SceneEditor& editor = session.document.editor;
   if (centred_ != editor.selection()) {
     centred_ = editor.selection();
@@ -90,7 +90,7 @@ Vec3 Hands::centreOf(const Session& session) {
   return centre_;
 }
 
-void Hands::lookAtBrush(const Seen& seen) {
+void ViewportManipulator::lookAtBrush(const Seen& seen) {
   const Document& document = seen.session.document;
   if (document.tools.tool != Tool::brush || !document.atRest()) {
     painting_ = false;
@@ -111,18 +111,18 @@ void Hands::lookAtBrush(const Seen& seen) {
   }
 }
 
-void Hands::previewDab(const Seen& seen) {
+void ViewportManipulator::previewDab(const Seen& seen) {
   const std::optional<Surface> surface = surfaceAt(seen, *seen.mouse);
   if (!surface) return;
-  const scenes::Stroke dab = stroke_->dab(*surface, kMostGhosts);
+  const scenes::Stroke dab = stroke_->dab(*surface, kMaxGhosts);
   ghosts_ = dab.bodies;
   if (dab.bodies.empty()) text_ = "no room here";
 }
 
-void Hands::paintTo(const Seen& seen, Pixel to) {
+void ViewportManipulator::paintTo(const Seen& seen, Pixel to) {
   const Pixel way = to - painted_at_;
   const float steps = std::ceil(way.norm() / (kBetweenDabs * seen.scale));
-  const int count = std::clamp(static_cast<int>(steps), 1, kMostDabsAtOnce);
+  const int count = std::clamp(static_cast<int>(steps), 1, kMaxDabsAtOnce);
   for (int i = 1; i <= count; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(count);
     const auto surface = surfaceAt(seen, painted_at_ + share * way);
@@ -130,12 +130,12 @@ void Hands::paintTo(const Seen& seen, Pixel to) {
   }
   painted_at_ = to;
   const std::vector<scenes::AuthoredBody>& bodies = stroke_->painted().bodies;
-  const std::size_t left_out = bodies.size() - std::min(bodies.size(), kMostGhosts);
+  const std::size_t left_out = bodies.size() - std::min(bodies.size(), kMaxGhosts);
   ghosts_.assign(bodies.begin() + static_cast<std::ptrdiff_t>(left_out), bodies.end());
   text_ = counted(bodies.size(), "body", "bodies");
 }
 
-std::optional<Surface> Hands::surfaceAt(const Seen& seen, Pixel pixel) {
+std::optional<Surface> ViewportManipulator::surfaceAt(const Seen& seen, Pixel pixel) {
   const bool same = pointed_.snapshot == seen.snapshot && pointed_.pixel == pixel &&
                     pointed_.viewpoint == seen.sight.viewpoint();
   if (!same) {
@@ -146,10 +146,10 @@ std::optional<Surface> Hands::surfaceAt(const Seen& seen, Pixel pixel) {
   return pointed_.surface;
 }
 
-void Hands::takeBodies(const scenes::SceneEditor& editor) {
+void ViewportManipulator::takeBodies(const scenes::SceneEditor& editor) {
   taken_.clear();
   const std::vector<scenes::AuthoredBody>& bodies = editor.scene().bodies;
-  if (editor.selection().size() <= kMostGhosts) {
+  if (editor.selection().size() <= kMaxGhosts) {
     for (const std::uint32_t id : editor.selection()) taken_.push_back(bodies[id]);
     return;
   }
@@ -160,7 +160,7 @@ void Hands::takeBodies(const scenes::SceneEditor& editor) {
   taken_.push_back(scenes::bodyIn(all));
 }
 
-bool Hands::press(const Seen& seen) {
+bool ViewportManipulator::press(const Seen& seen) {
   if (!seen.mouse) return false;
   const Document& document = seen.session.document;
   if (hot_) {
@@ -174,7 +174,7 @@ bool Hands::press(const Seen& seen) {
   return busy();
 }
 
-void Hands::release(const Seen& seen) {
+void ViewportManipulator::release(const Seen& seen) {
   Document& document = seen.session.document;
   if (drag_) {
     drag_.reset();
@@ -190,7 +190,7 @@ void Hands::release(const Seen& seen) {
   stroke_.reset();
 }
 
-bool Hands::cancel() {
+bool ViewportManipulator::cancel() {
   if (!busy()) return false;
   drag_.reset();
   painting_ = false;
@@ -199,7 +199,7 @@ bool Hands::cancel() {
   return true;
 }
 
-void Hands::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
+void ViewportManipulator::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
   drawGhosts(ui, seen.sight, corner);
   const Tool tool = seen.session.document.tools.tool;
   for (const HandleShape& shape : shapes_) {
@@ -223,8 +223,8 @@ void Hands::draw(Ui& ui, const Seen& seen, ImVec2 corner) const {
   draw.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), text_.c_str());
 }
 
-void Hands::drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sight, Tool tool,
-                       ImVec2 corner) const {
+void ViewportManipulator::drawHandle(const Ui& ui, const HandleShape& shape,
+                                     const ViewProjection& sight, Tool tool, ImVec2 corner) const {
   std::vector<ImVec2> points;
   for (const Point& point : shape.points) {
     if (const auto at = sight.pixelOf(point)) {
@@ -255,7 +255,8 @@ void Hands::drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sigh
                          {tip.x + on.y, tip.y - on.x}, colour(rgb));
 }
 
-void Hands::drawGhosts(const Ui& ui, const Sight& sight, ImVec2 corner) const {
+void ViewportManipulator::drawGhosts(const Ui& ui, const ViewProjection& sight,
+                                     ImVec2 corner) const {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImU32 line = colour(ui.theme.selected);
   for (const scenes::AuthoredBody& body : ghosts_) {

@@ -23,7 +23,7 @@ namespace broadmark {
 using Counts = std::map<std::string, std::uint64_t>;
 
 /// What running one frame gave.
-struct FrameRun {
+struct StepResult {
   FrameTimes times;
   std::uint64_t pairs = 0;  ///< in the answer, duplicates included; of events all that there are
 };
@@ -41,16 +41,16 @@ struct PassReport {
 /// Every call throws what the algorithm throws. A host outside this process also throws HostError
 /// when that ended, HardLimitError when a call took too long, and Cancelled; then the instance is
 /// gone.
-class CaseHost {
+class CaseExecutor {
  public:
-  virtual ~CaseHost() = default;
+  virtual ~CaseExecutor() = default;
 
   /// Makes a fresh instance at the initial pose. Returns how long it took to initialise, in
   /// nanoseconds. Throws UnsupportedError for what the processor or the number of bodies forbids,
   /// and InputError for a device that does not exist.
   virtual std::int64_t start(const SceneInfo& scene, const Frame& first) = 0;
   /// Runs the four phases on the next frame.
-  virtual FrameRun step(const Frame& frame) = 0;
+  virtual StepResult step(const Frame& frame) = 0;
   /// Frees the instance, if there is one.
   virtual void stop() = 0;
 
@@ -78,18 +78,18 @@ class CaseHost {
 /// A host in this process. All passes share one Execution: threads, a device's context and its
 /// kernels are made once. Every call into the algorithm holds its traits' exclusive use; waiting
 /// for that is not timed.
-class LocalHost final : public CaseHost {
+class InProcessExecutor final : public CaseExecutor {
  public:
   /// With `pin`, each of the case's threads is bound to a core of its own, chosen anew for every
   /// pass; unless they are more than the cores, or a device's driver has threads, too. That goes
   /// for the calling thread as well, which so stays: for a process that does nothing else.
-  explicit LocalHost(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
-  ~LocalHost() override;
-  LocalHost(const LocalHost&) = delete;
-  LocalHost& operator=(const LocalHost&) = delete;
+  explicit InProcessExecutor(Case run, bool pin = false) : case_(std::move(run)), pin_(pin) {}
+  ~InProcessExecutor() override;
+  InProcessExecutor(const InProcessExecutor&) = delete;
+  InProcessExecutor& operator=(const InProcessExecutor&) = delete;
 
   std::int64_t start(const SceneInfo& scene, const Frame& first) override;
-  FrameRun step(const Frame& frame) override;
+  StepResult step(const Frame& frame) override;
   void stop() override;
   PairDigest digest() override { return broadmark::digest(answer_); }
   PairRuns answer() override { return answer_; }
@@ -113,7 +113,7 @@ class LocalHost final : public CaseHost {
   std::vector<int> usable_cores_;  ///< before any thread was pinned
   // From the first start() on. The counters come first: they count the threads made after them.
   std::optional<ProcessorCounters> processor_;
-  std::optional<Execution> execution_;
+  std::optional<ExecutionContext> execution_;
   std::unique_ptr<BroadPhase> instance_;
   std::uint32_t bodies_ = 0;  ///< of its scene
   PairRuns answer_;
@@ -125,9 +125,10 @@ using CancelQuery = std::function<bool()>;
 
 /// Makes the host of a case. A host that may wait for long gives up, and throws Cancelled, soon
 /// after `cancelled` is true.
-using HostMaker = std::function<std::unique_ptr<CaseHost>(const Case&, CancelQuery cancelled)>;
+using ExecutorFactory =
+    std::function<std::unique_ptr<CaseExecutor>(const Case&, CancelQuery cancelled)>;
 
 /// Hosts in this process, which cannot be cancelled.
-std::unique_ptr<CaseHost> makeLocalHost(const Case&, CancelQuery);
+std::unique_ptr<CaseExecutor> makeLocalHost(const Case&, CancelQuery);
 
 }  // namespace broadmark

@@ -1,6 +1,6 @@
 // What events lead to, and which of them cannot be.
 
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/event_accumulator.h"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ class Followed : public testing::Test {
   }
 
   using Pairs = std::vector<Pair>;
-  FollowedPairs followed_;
+  EventAccumulator followed_;
 
  private:
   static PairRuns inTwo(const std::vector<Pair>& pairs, std::vector<PairRun>& runs) {

@@ -11,11 +11,11 @@ namespace broadmark {
 
 /// Keeps the pairs that have begun and not ended. For who is told events and wants all pairs:
 /// the one who checks them, for instance.
-class FollowedPairs {
+class EventAccumulator {
  public:
-  FollowedPairs() = default;
-  FollowedPairs(FollowedPairs&&) = default;
-  FollowedPairs& operator=(FollowedPairs&&) = default;
+  EventAccumulator() = default;
+  EventAccumulator(EventAccumulator&&) = default;
+  EventAccumulator& operator=(EventAccumulator&&) = default;
 
   /// No pair has begun.
   void clear();

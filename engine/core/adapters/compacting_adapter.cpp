@@ -14,9 +14,9 @@
 #include <optional>
 #include <utility>
 
-#include "adapters/near_grid.h"
-#include "adapters/renamed_bodies.h"
-#include "adapters/side_by_side.h"
+#include "adapters/occupancy_bitmap.h"
+#include "adapters/remapping_debug_draw.h"
+#include "adapters/world_lattice.h"
 #include "broadmark/adapters.h"
 #include "broadmark/non_colliding_layers.h"
 
@@ -24,16 +24,17 @@ namespace broadmark {
 namespace {
 
 /// Wraps an algorithm whose frames may each have another number of bodies.
-class CompactedWorld final : public BroadPhase {
+class CompactingAdapter final : public BroadPhase {
  public:
-  explicit CompactedWorld(std::unique_ptr<BroadPhase> algorithm)
+  explicit CompactingAdapter(std::unique_ptr<BroadPhase> algorithm)
       : algorithm_(std::move(algorithm)) {}
 
   void visitParameters(const ParameterVisitor& visit) override {
     algorithm_->visitParameters(visit);
   }
   [[nodiscard]] float margin() const override { return algorithm_->margin(); }
-  void initialize(const SceneInfo& scene, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo& scene, const Frame& first,
+                  ExecutionContext& execution) override {
     team_ = &execution.team();
     margin_ = algorithm_->margin();
     filter_ = scene.filter;
@@ -82,7 +83,7 @@ class CompactedWorld final : public BroadPhase {
   [[nodiscard]] PairRuns overlaps() const override { return runs_; }
   [[nodiscard]] TransferTimes transfers() const override { return algorithm_->transfers(); }
   void drawStructure(DebugDraw& draw) const override {
-    RenamedBodies renamed(draw, bodies_);
+    RemappingDebugDraw renamed(draw, bodies_);
     algorithm_->drawStructure(renamed);
   }
 
@@ -240,10 +241,10 @@ class CompactedWorld final : public BroadPhase {
   NonCollidingLayers non_colliding_;  ///< if that is worth it
   std::vector<std::uint32_t> stranger_bodies_;
   std::vector<std::uint32_t> meeting_bodies_;  ///< those that may meet non-colliding layers
-  std::optional<NearGrid> near_;               ///< of these
+  std::optional<OccupancyBitmap> near_;        ///< of these
   std::vector<std::uint32_t> appearing_;       ///< bodies that take part from this frame on
 
-  std::optional<SideBySide> worlds_;
+  std::optional<WorldLattice> worlds_;
   std::vector<Aabb> boxes_;             ///< of those who take part, side by side, in no order
   std::vector<Aabb> true_boxes_;        ///< the same where they are, if that differs
   std::vector<std::uint32_t> bodies_;   ///< whose they are
@@ -260,7 +261,7 @@ bool isChangingWorld(const SceneInfo& scene) {
 }
 
 std::unique_ptr<BroadPhase> compacted(std::unique_ptr<BroadPhase> algorithm) {
-  return std::make_unique<CompactedWorld>(std::move(algorithm));
+  return std::make_unique<CompactingAdapter>(std::move(algorithm));
 }
 
 }  // namespace broadmark

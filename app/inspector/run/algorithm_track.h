@@ -76,13 +76,14 @@ const LaneReport* laneOf(const std::vector<LaneReport>& lanes, int number);
 std::uint64_t framesOver(const LaneReport& lane, double ms);
 
 /// The running lane: a CaseRun, which begins another pass when an earlier frame is wanted.
-class Lane {
+class AlgorithmTrack {
  public:
   /// A frame that takes longer, on average, ends the lane.
   static constexpr double kFrameLimitSeconds = 10;
 
   /// `cancelled` ends what it waits for; the call then throws Cancelled.
-  explicit Lane(LaneSpec spec, HostMaker make_host = makeLocalHost, CancelQuery cancelled = {})
+  explicit AlgorithmTrack(LaneSpec spec, ExecutorFactory make_host = makeLocalHost,
+                          CancelQuery cancelled = {})
       : make_host_(std::move(make_host)), cancelled_(std::move(cancelled)) {
     report_.spec = std::move(spec);
   }
@@ -119,7 +120,7 @@ class Lane {
   void attempt(Call&& call);
 
   LaneReport report_;
-  HostMaker make_host_;
+  ExecutorFactory make_host_;
   CancelQuery cancelled_;
   std::optional<CaseRun> run_;  ///< from the first restart() on, for all passes
   bool outdated_ = false;       ///< it has to begin anew before it is used

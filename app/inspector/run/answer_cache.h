@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 #include "broadmark/harness/oracle.h"
 #include "broadmark/pair.h"
 
@@ -45,9 +45,9 @@ struct SeenAnswer {
 };
 
 /// The answers of all frames and lanes that fit in a budget; the oldest give way.
-class SeenAnswers {
+class AnswerCache {
  public:
-  explicit SeenAnswers(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
+  explicit AnswerCache(std::size_t budget_bytes) : budget_bytes_(budget_bytes) {}
 
   /// `lane`: its number; 0: the oracle. Replaces what was kept before.
   void remember(int lane, std::uint32_t frame, const SeenAnswer& answer);

@@ -1,6 +1,6 @@
 // What is said of a machine that is not quiet, with made-up machines.
 
-#include "broadmark/harness/quietness.h"
+#include "broadmark/harness/noise_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using testing::IsEmpty;
 class Quietness : public testing::Test {
  protected:
   [[nodiscard]] std::vector<std::string> warnings() const {
-    return disturbances(environment_, machine_, run_);
+    return noiseWarnings(environment_, machine_, run_);
   }
 
   Environment environment_{.governor = "performance", .build_type = "Release"};

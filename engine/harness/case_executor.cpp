@@ -1,6 +1,6 @@
 // The clock, and the calls into an algorithm.
 
-#include "broadmark/harness/case_host.h"
+#include "broadmark/harness/case_executor.h"
 
 #include <fmt/format.h>
 
@@ -85,13 +85,13 @@ CounterVisitor into(Counts& counts) {
 
 }  // namespace
 
-LocalHost::~LocalHost() {
+InProcessExecutor::~InProcessExecutor() {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   instance_.reset();
   execution_.reset();
 }
 
-std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
+std::int64_t InProcessExecutor::start(const SceneInfo& scene, const Frame& first) {
   stop();
   requireRunnable(case_, scene);
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
@@ -110,7 +110,7 @@ std::int64_t LocalHost::start(const SceneInfo& scene, const Frame& first) {
   return nanoseconds(end - start);
 }
 
-std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) const {
+std::unique_ptr<BroadPhase> InProcessExecutor::makeInstanceFor(const SceneInfo& scene) const {
   const AlgorithmTraits& traits = case_.algorithm.traits;
   const auto make = [this](const SceneInfo& world) { return makeForOneWorld(case_, world); };
   std::unique_ptr<BroadPhase> instance =
@@ -124,7 +124,7 @@ std::unique_ptr<BroadPhase> LocalHost::makeInstanceFor(const SceneInfo& scene) c
 }
 
 /// Asked once a frame: whoever looks at the answer sees the same one. Returns its size.
-std::uint64_t LocalHost::takeAnswer() {
+std::uint64_t InProcessExecutor::takeAnswer() {
   if (case_.answer == AnswerKind::events) {
     events_ = instance_->events();
     return eventCount(events_);
@@ -133,7 +133,7 @@ std::uint64_t LocalHost::takeAnswer() {
   return pairCount(answer_);
 }
 
-void LocalHost::pinThreads() {
+void InProcessExecutor::pinThreads() {
   // A library that starts threads would have them all on one core.
   if (case_.algorithm.traits.on_device) return;
   constexpr std::chrono::milliseconds kMoment{60};
@@ -144,19 +144,19 @@ void LocalHost::pinThreads() {
   report_.pinned = execution_->team().pin(cores, usable_cores_);
 }
 
-FrameTimes LocalHost::runCounted(const Frame& frame) {
+FrameTimes InProcessExecutor::runCounted(const Frame& frame) {
   const ProcessorCounters::Counting counting(*processor_);
   return runPhases(*instance_, frame);
 }
 
-FrameRun LocalHost::step(const Frame& frame) {
+StepResult InProcessExecutor::step(const Frame& frame) {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
-  FrameRun run{.times = runCounted(frame)};
+  StepResult run{.times = runCounted(frame)};
   run.pairs = takeAnswer();
   return run;
 }
 
-void LocalHost::stop() {
+void InProcessExecutor::stop() {
   answer_ = {};
   events_ = {};
   if (instance_ == nullptr) return;
@@ -165,31 +165,31 @@ void LocalHost::stop() {
   instance_.reset();
 }
 
-Counts LocalHost::counters() {
+Counts InProcessExecutor::counters() {
   Counts counts;
   instance_->visitCounters(into(counts));
   return counts;
 }
 
-Counts LocalHost::setup() {
+Counts InProcessExecutor::setup() {
   Counts counts;
   instance_->visitSetup(into(counts));
   return counts;
 }
 
-RecordedDrawing LocalHost::structure() {
+RecordedDrawing InProcessExecutor::structure() {
   RecordedDrawing drawing(bodies_);
   instance_->drawStructure(drawing);
   return drawing;
 }
 
-std::string LocalHost::validate() {
+std::string InProcessExecutor::validate() {
   const ExclusiveUse alone(case_.algorithm.traits.exclusive);
   return instance_->validate();
 }
 
-std::unique_ptr<CaseHost> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
-  return std::make_unique<LocalHost>(run);
+std::unique_ptr<CaseExecutor> makeLocalHost(const Case& run, CancelQuery /*cancelled*/) {
+  return std::make_unique<InProcessExecutor>(run);
 }
 
 }  // namespace broadmark

@@ -1,4 +1,4 @@
-#include "inspector/run/seen_answers.h"
+#include "inspector/run/answer_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ TEST(PackedPairsTest, TakesAboutHalfTheMemory) {
 }
 
 TEST(SeenAnswersTest, AreToldApartByLaneAndFrame) {
-  SeenAnswers seen(1 << 20);
+  AnswerCache seen(1 << 20);
   SeenAnswer wrong = answerOf({{1, 2}});
   wrong.judged = true;
   wrong.difference = FrameDifference{.missed_count = 1, .missed_pairs = {{3, 4}}};
@@ -58,7 +58,7 @@ TEST(SeenAnswersTest, AreToldApartByLaneAndFrame) {
 
 TEST(SeenAnswersTest, TheOldestGiveWayToTheBudget) {
   constexpr std::size_t kBudget = 100'000;
-  SeenAnswers seen(kBudget);
+  AnswerCache seen(kBudget);
   for (std::uint32_t frame = 0; frame < 100; ++frame) {
     seen.remember(1, frame, answerOf(manyPairs(1000)));
     EXPECT_LE(seen.bytes(), kBudget);

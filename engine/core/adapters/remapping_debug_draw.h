@@ -10,10 +10,10 @@
 namespace broadmark {
 
 /// Passes a drawing on, and what is told of bodies under the scene's own numbers.
-class RenamedBodies final : public DebugDraw {
+class RemappingDebugDraw final : public DebugDraw {
  public:
   /// `bodies`: the scene's numbers, by those of the algorithm; borrowed.
-  RenamedBodies(DebugDraw& draw, std::span<const std::uint32_t> bodies)
+  RemappingDebugDraw(DebugDraw& draw, std::span<const std::uint32_t> bodies)
       : draw_(draw), bodies_(bodies) {}
 
   void box(const Aabb& box, StructureRole role, int level) override { draw_.box(box, role, level); }

@@ -1,4 +1,4 @@
-#include "inspector/run/seen_answers.h"
+#include "inspector/run/answer_cache.h"
 
 #include <iterator>
 
@@ -69,7 +69,7 @@ std::vector<Pair> PackedPairs::unpacked() const {
   return pairs;
 }
 
-void SeenAnswers::remember(int lane, std::uint32_t frame, const SeenAnswer& answer) {
+void AnswerCache::remember(int lane, std::uint32_t frame, const SeenAnswer& answer) {
   const Key key{lane, frame};
   if (const auto found = places_.find(key); found != places_.end()) drop(found->second);
   Kept kept{
@@ -86,7 +86,7 @@ void SeenAnswers::remember(int lane, std::uint32_t frame, const SeenAnswer& answ
   places_[key] = std::prev(kept_.end());
 }
 
-std::optional<SeenAnswer> SeenAnswers::recall(int lane, std::uint32_t frame) const {
+std::optional<SeenAnswer> AnswerCache::recall(int lane, std::uint32_t frame) const {
   const auto found = places_.find({lane, frame});
   if (found == places_.end()) return {};
   SeenAnswer answer = found->second->rest;
@@ -95,23 +95,23 @@ std::optional<SeenAnswer> SeenAnswers::recall(int lane, std::uint32_t frame) con
   return answer;
 }
 
-bool SeenAnswers::holds(int lane, std::uint32_t frame, bool judged) const {
+bool AnswerCache::holds(int lane, std::uint32_t frame, bool judged) const {
   const auto found = places_.find({lane, frame});
   return found != places_.end() && (!judged || found->second->rest.judged);
 }
 
-void SeenAnswers::forget(int lane) {
+void AnswerCache::forget(int lane) {
   auto at = places_.lower_bound({lane, 0});
   while (at != places_.end() && at->first.first == lane) drop((at++)->second);
 }
 
-void SeenAnswers::clear() {
+void AnswerCache::clear() {
   kept_.clear();
   places_.clear();
   bytes_ = 0;
 }
 
-void SeenAnswers::drop(Place place) {
+void AnswerCache::drop(Place place) {
   bytes_ -= place->bytes;
   places_.erase(place->key);
   kept_.erase(place);

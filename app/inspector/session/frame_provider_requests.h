@@ -17,15 +17,15 @@ namespace broadmark {
 // `swept`: shown as swept boxes.
 
 /// The simulation with its present parameters.
-FootageRequest simulationFootage(Simulation& simulation, bool swept);
+FrameProviderRequest simulationFootage(Simulation& simulation, bool swept);
 /// `hash`: the expected one; "": any. Throws InputError.
-FootageRequest recordingFootage(const std::filesystem::path& path, const std::string& hash,
-                                bool swept);
+FrameProviderRequest recordingFootage(const std::filesystem::path& path, const std::string& hash,
+                                      bool swept);
 /// Throws InputError.
-FootageRequest importFootage(const RecordingReference& reference, bool swept);
+FrameProviderRequest importFootage(const RecordingReference& reference, bool swept);
 
 /// The parameters of the request's scene, "scene" among them, as far as they are known. Null: none.
-ParameterValues sceneParametersOf(const FootageRequest* footage);
+ParameterValues sceneParametersOf(const FrameProviderRequest* footage);
 
 /// The built-in scene that the user adjusts, and starts.
 class Draft {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "adapters/near_grid.h"
+#include "adapters/occupancy_bitmap.h"
 #include "broadmark/adapters.h"
 #include "broadmark/harness/oracle.h"
 #include "support/changing_worlds.h"
@@ -78,7 +78,7 @@ class Watched {
  private:
   Boxes boxes_;
   CollisionFilter filter_;
-  Execution execution_{1, Isa::scalar};
+  ExecutionContext execution_{1, Isa::scalar};
   Witness* witness_ = nullptr;
   std::unique_ptr<BroadPhase> world_;
   std::uint32_t index_ = 0;
@@ -94,7 +94,7 @@ CollisionFilter layers(const std::vector<std::uint8_t>& of_bodies, const LayerMa
   return {groups, matrix};
 }
 
-TEST(CompactedWorld, ShowsNobodyWhoCanMeetNobody) {
+TEST(CompactingAdapter, ShowsNobodyWhoCanMeetNobody) {
   // Layer 2 meets layer 1, and layer 0 itself only.
   const CollisionFilter filter = layers({0, 0, 1, 2, 2}, LayerMatrix().set(0, 0).set(1, 2));
   Boxes boxes(5, unitAt(0));
@@ -113,7 +113,7 @@ TEST(CompactedWorld, ShowsNobodyWhoCanMeetNobody) {
   EXPECT_EQ(watched.shown().size(), 1U);
 }
 
-TEST(CompactedWorld, ShowsOfALevelOnlyWhatIsNearSomebody) {
+TEST(CompactingAdapter, ShowsOfALevelOnlyWhatIsNearSomebody) {
   constexpr std::size_t kLevel = 1000;
   std::vector<std::uint8_t> of_bodies(kLevel + 1, 0);
   of_bodies.back() = 1;
@@ -138,7 +138,7 @@ TEST(CompactedWorld, ShowsOfALevelOnlyWhatIsNearSomebody) {
   EXPECT_TRUE(watched.shown().empty());
 }
 
-TEST(CompactedWorld, FormsNoPairsOfTwoWorlds) {
+TEST(CompactingAdapter, FormsNoPairsOfTwoWorlds) {
   constexpr std::uint32_t kEach = 4;
   constexpr std::uint32_t kAll = 600;
   const CollisionFilter filter = filterOf(
@@ -158,7 +158,7 @@ TEST(CompactedWorld, FormsNoPairsOfTwoWorlds) {
 }
 
 // Where adding an offset rounds, boxes come to touch that do not.
-TEST(CompactedWorld, JudgesBoxesWhereTheyAre) {
+TEST(CompactingAdapter, JudgesBoxesWhereTheyAre) {
   const CollisionFilter filter(
       {{BodyGroups{}, BodyGroups{}, BodyGroups{.world = 1}, BodyGroups{.world = 1}}},
       LayerMatrix().set(0, 0));
@@ -171,7 +171,7 @@ TEST(CompactedWorld, JudgesBoxesWhereTheyAre) {
 }
 
 // As large as floats: the worlds stay where they are.
-TEST(CompactedWorld, LeavesHugeWorldsAtTheirPlace) {
+TEST(CompactingAdapter, LeavesHugeWorldsAtTheirPlace) {
   constexpr std::uint32_t kAll = 60;
   const CollisionFilter filter =
       filterOf(kAll, LayerMatrix().set(0, 0),
@@ -185,7 +185,7 @@ TEST(CompactedWorld, LeavesHugeWorldsAtTheirPlace) {
 }
 
 // Boxes of all inputs in worlds of all kinds, too small and degenerate ones among them.
-TEST(NearGrid, KnowsEveryOverlap) {
+TEST(OccupancyBitmap, KnowsEveryOverlap) {
   const Aabb nothing = kEmptyBox;
   for (const inputs::Input& input : inputs::kAll) {
     SCOPED_TRACE(input.name);
@@ -193,7 +193,7 @@ TEST(NearGrid, KnowsEveryOverlap) {
     Aabb all = boxes[0];
     for (const Aabb& box : boxes) all = merged(all, box);
     for (const Aabb& world : {all, kBounds, boxes[0], nothing, Aabb{}}) {
-      NearGrid grid(world);
+      OccupancyBitmap grid(world);
       for (const Aabb& marked : boxes) {
         grid.clear();
         grid.mark(marked);
@@ -205,8 +205,8 @@ TEST(NearGrid, KnowsEveryOverlap) {
   }
 }
 
-TEST(NearGrid, TellsApartWhatIsFar) {
-  NearGrid grid(kBounds);
+TEST(OccupancyBitmap, TellsApartWhatIsFar) {
+  OccupancyBitmap grid(kBounds);
   grid.mark(unitAt(50, 50, 50));
   EXPECT_TRUE(grid.isNear(unitAt(50, 50, 51)));
   EXPECT_FALSE(grid.isNear(unitAt(50, 50, 60)));

@@ -3,7 +3,7 @@
 // each pixel is coloured once, and lines are blended in, tested against the depths of the boxes.
 // The picture is cut into bands of rows, which the workers take one after another.
 // O(boxes + lines + pixels tested).
-#include "splatter.h"
+#include "software_rasterizer.h"
 
 #include <algorithm>
 
@@ -62,10 +62,10 @@ std::uint32_t pixelOf(Rgb colour) {
 
 }  // namespace
 
-Splatter::Splatter(ThreadTeam& team, Isa isa)
+SoftwareRasterizer::SoftwareRasterizer(ThreadTeam& team, Isa isa)
     : kernels_(&splatKernels(isa)), team_(&team), workers_(static_cast<std::size_t>(team.size())) {}
 
-void Splatter::draw(const ScenePrimitives& scene, const Viewpoint& viewpoint) {
+void SoftwareRasterizer::draw(const ScenePrimitives& scene, const Viewpoint& viewpoint) {
   const SplatView view = splatView(viewpoint);
   const std::uint32_t background = pixelOf(viewpoint.haze);
   const int bands = (view.height + BandLists::kRows - 1) / BandLists::kRows;
@@ -80,7 +80,7 @@ void Splatter::draw(const ScenePrimitives& scene, const Viewpoint& viewpoint) {
   });
 }
 
-void Splatter::take(const ScenePrimitives& scene, int bands) {
+void SoftwareRasterizer::take(const ScenePrimitives& scene, int bands) {
   const auto take_boxes = [&](BoxLayer& layer, std::span<const Primitive> boxes) {
     layer.boxes = itemsOf<SplatBox>(boxes);
     layer.lists.reset(boxes.size(), bands, team_->size());
@@ -98,7 +98,7 @@ void Splatter::take(const ScenePrimitives& scene, int bands) {
   }
 }
 
-void Splatter::project(const SplatView& view, int worker) {
+void SoftwareRasterizer::project(const SplatView& view, int worker) {
   for (BoxLayer* layer : {&floor_, &bodies_}) {
     layer->lists.fill(worker, [&](std::size_t first, std::size_t last, PixelRectangle* rectangles) {
       kernels_->project_boxes(view, layer->boxes.data(), first, last, rectangles);
@@ -112,8 +112,8 @@ void Splatter::project(const SplatView& view, int worker) {
   }
 }
 
-void Splatter::drawBand(const SplatView& view, std::uint32_t background, int number,
-                        Worker& worker) {
+void SoftwareRasterizer::drawBand(const SplatView& view, std::uint32_t background, int number,
+                                  Worker& worker) {
   SplatBand band;
   band.begin = number * BandLists::kRows;
   band.end = std::min(band.begin + BandLists::kRows, view.height);
@@ -138,8 +138,8 @@ void Splatter::drawBand(const SplatView& view, std::uint32_t background, int num
   }
 }
 
-void Splatter::drawBoxes(const SplatView& view, const BoxLayer& layer, int number,
-                         const SplatBand& band) const {
+void SoftwareRasterizer::drawBoxes(const SplatView& view, const BoxLayer& layer, int number,
+                                   const SplatBand& band) const {
   layer.lists.forEach(number, [&](std::span<const std::uint32_t> boxes,
                                   const PixelRectangle* rectangles) {
     kernels_->splat_boxes(view, layer.boxes.data(), rectangles, boxes.data(), boxes.size(), band);
@@ -147,7 +147,8 @@ void Splatter::drawBoxes(const SplatView& view, const BoxLayer& layer, int numbe
   kernels_->shade_boxes(view, layer.boxes.data(), band);
 }
 
-void Splatter::drawLines(const StripLayer& layer, int number, const SplatBand& band) const {
+void SoftwareRasterizer::drawLines(const StripLayer& layer, int number,
+                                   const SplatBand& band) const {
   const auto draw = [&](const LinePass& pass) {
     layer.lists.forEach(
         number, [&](std::span<const std::uint32_t> lines, const PixelRectangle* rectangles) {

@@ -13,9 +13,9 @@ namespace broadmark {
 /// 64³ cells over a world, one bit each, those at its sides reaching on outwards. A box that
 /// overlaps a marked one touches a marked cell, always: the cell of a number never falls when the
 /// number rises.
-class NearGrid {
+class OccupancyBitmap {
  public:
-  explicit NearGrid(const Aabb& world) {
+  explicit OccupancyBitmap(const Aabb& world) {
     for (int axis = 0; axis < 3; ++axis) {
       low_[axis] = world.min[axis];
       const float extent = world.max[axis] - world.min[axis];

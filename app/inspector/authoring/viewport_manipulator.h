@@ -15,14 +15,14 @@
 
 namespace broadmark {
 
-class Hands {
+class ViewportManipulator {
  public:
   /// What is seen in a picture; borrowed.
   struct Seen {
     Session& session;
     const std::shared_ptr<const Snapshot>& snapshot;
     BodyMask visible;
-    Sight sight;
+    ViewProjection sight;
     float scale = 1;             ///< pixels per unit
     std::optional<Pixel> mouse;  ///< nothing: elsewhere
     bool ctrl = false;           ///< whether that key is down
@@ -54,14 +54,14 @@ class Hands {
   void paintTo(const Seen& seen, Pixel to);
   std::optional<Surface> surfaceAt(const Seen& seen, Pixel pixel);
   void takeBodies(const scenes::SceneEditor& editor);
-  void drawHandle(const Ui& ui, const HandleShape& shape, const Sight& sight, Tool tool,
+  void drawHandle(const Ui& ui, const HandleShape& shape, const ViewProjection& sight, Tool tool,
                   ImVec2 corner) const;
-  void drawGhosts(const Ui& ui, const Sight& sight, ImVec2 corner) const;
+  void drawGhosts(const Ui& ui, const ViewProjection& sight, ImVec2 corner) const;
   /// The common centre of the selected bodies. O(1) while nothing changes.
   Vec3 centreOf(const Session& session);
 
   /// What the document looks like; another one after each edit.
-  std::shared_ptr<const FootageRequest> document_;
+  std::shared_ptr<const FrameProviderRequest> document_;
 
   // The gizmo.
   std::vector<HandleShape> shapes_;  ///< none: it is not shown

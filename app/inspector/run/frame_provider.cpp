@@ -1,4 +1,4 @@
-#include "inspector/run/footage.h"
+#include "inspector/run/frame_provider.h"
 
 #include <fmt/format.h>
 
@@ -50,33 +50,33 @@ std::unique_ptr<IndexedFrames> shown(std::unique_ptr<IndexedFrames> frames, bool
 
 }  // namespace
 
-Footage::Footage(std::unique_ptr<Recording> recording, bool swept)
+FrameProvider::FrameProvider(std::unique_ptr<Recording> recording, bool swept)
     : swept_(swept),
       known_(recording->scene().frames),
       frames_(shown(std::move(recording), swept)) {}
 
-Footage::Footage(std::unique_ptr<FrameSource> simulation, bool swept)
+FrameProvider::FrameProvider(std::unique_ptr<FrameSource> simulation, bool swept)
     : swept_(swept), simulation_(std::move(simulation)) {
   const Frame first = simulation_->rewind();
   keep(simulation_->scene(), first.boxes);
 }
 
-Footage::Footage(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, boxes); }
+FrameProvider::FrameProvider(SceneInfo scene, std::span<const Aabb> boxes) { keep(scene, boxes); }
 
-void Footage::keep(const SceneInfo& scene, std::span<const Aabb> first) {
+void FrameProvider::keep(const SceneInfo& scene, std::span<const Aabb> first) {
   kept_ = std::make_shared<const FileDescriptor>(unnamedFile());
   frames_ = shown(std::make_unique<KeptFrames>(scene, kept_), swept_);
   append(*kept_, first);
 }
 
-void Footage::extend() {
+void FrameProvider::extend() {
   const std::optional<Frame> frame = simulation_->next();
   if (!frame) throw std::logic_error("simulated beyond the last frame");
   append(*kept_, frame->boxes);
   ++known_;
 }
 
-scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
+scenes::AuthoredScene FrameProvider::authoredScene(std::uint32_t index) {
   if (auto* whole = dynamic_cast<scenes::SceneSource*>(simulation_.get());
       whole && index == known_) {
     return whole->authoredScene();
@@ -85,7 +85,7 @@ scenes::AuthoredScene Footage::authoredScene(std::uint32_t index) {
   return scenes::sceneFromFrame(*frames_, index);
 }
 
-FrameOpener Footage::opener() const {
+FrameOpener FrameProvider::opener() const {
   if (!kept_) {
     return [name = frames_->name(), swept = swept_](std::uint32_t /*last*/) {
       return shown(openRecordingFile(name), swept);

@@ -67,10 +67,10 @@ class BandLists {
 
 /// Draws a scene on the processor; it looks as if OpenGL had drawn it. The picture stays until the
 /// next draw(). It is the same for every number of threads and every instruction set.
-class Splatter {
+class SoftwareRasterizer {
  public:
   /// `team` does the drawing and must outlive this.
-  explicit Splatter(ThreadTeam& team, Isa isa = bestIsa());
+  explicit SoftwareRasterizer(ThreadTeam& team, Isa isa = bestIsa());
 
   /// On a background of the viewpoint's haze. Each side of the picture: 1 to 16384 pixels.
   void draw(const ScenePrimitives& scene, const Viewpoint& viewpoint);

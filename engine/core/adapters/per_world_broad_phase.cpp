@@ -19,7 +19,7 @@
 #include <span>
 #include <utility>
 
-#include "adapters/renamed_bodies.h"
+#include "adapters/remapping_debug_draw.h"
 #include "broadmark/adapters.h"
 
 namespace broadmark {
@@ -68,10 +68,10 @@ class Sums {
 
 /// Wraps the instances. A team of several workers gets a fixed share of the worlds for each; where
 /// the worlds are fewer than the workers, they come one after the other, each for the whole team.
-class WorldsApart final : public BroadPhase {
+class PerWorldBroadPhase final : public BroadPhase {
  public:
   /// Makes the instances. With `concurrent`, several may be called at once.
-  WorldsApart(const SceneInfo& scene, const InstanceMaker& make, bool concurrent)
+  PerWorldBroadPhase(const SceneInfo& scene, const InstanceMaker& make, bool concurrent)
       : concurrent_(concurrent) {
     std::map<std::uint32_t, std::vector<std::uint32_t>> bodies_of;
     for (std::uint32_t body = 0; body < scene.objects; ++body) {
@@ -95,7 +95,7 @@ class WorldsApart final : public BroadPhase {
     return worlds_.empty() ? 0 : worlds_.front().instance->margin();
   }
 
-  void initialize(const SceneInfo&, const Frame& first, Execution& execution) override {
+  void initialize(const SceneInfo&, const Frame& first, ExecutionContext& execution) override {
     shareOut(execution);
     active_.resize(worlds_.size());
     std::iota(active_.begin(), active_.end(), 0U);
@@ -163,7 +163,7 @@ class WorldsApart final : public BroadPhase {
 
   void drawStructure(DebugDraw& draw) const override {
     for (const World& world : worlds_) {
-      RenamedBodies renamed(draw, world.bodies);
+      RemappingDebugDraw renamed(draw, world.bodies);
       world.instance->drawStructure(renamed);
     }
   }
@@ -200,7 +200,7 @@ class WorldsApart final : public BroadPhase {
     std::vector<std::uint32_t> bodies;  ///< their ids, ascending
     SceneInfo scene;
     std::unique_ptr<BroadPhase> instance;
-    Execution* execution = nullptr;
+    ExecutionContext* execution = nullptr;
     std::uint32_t index = 0;  ///< of the instance's frame: it sees only those with changes
     std::vector<Aabb> boxes;
     std::vector<std::uint32_t> changed;  ///< positions in these, ascending
@@ -240,7 +240,7 @@ class WorldsApart final : public BroadPhase {
       return;
     }
     team_->run([&](int worker) {
-      const Execution* const own = executions_[static_cast<std::size_t>(worker)].get();
+      const ExecutionContext* const own = executions_[static_cast<std::size_t>(worker)].get();
       for (const std::uint32_t world : active_) {
         if (worlds_[world].execution == own) call(worlds_[world]);
       }
@@ -248,12 +248,13 @@ class WorldsApart final : public BroadPhase {
   }
 
   /// Which worker runs which world, for good: it finds it in its caches.
-  void shareOut(Execution& execution) {
+  void shareOut(ExecutionContext& execution) {
     const auto workers = static_cast<std::size_t>(execution.threads());
     if (concurrent_ && workers > 1 && worlds_.size() >= workers) {
       team_ = &execution.team();
       for (std::size_t worker = 0; worker < workers; ++worker) {
-        executions_.push_back(std::make_unique<Execution>(1, execution.isa(), execution.device()));
+        executions_.push_back(
+            std::make_unique<ExecutionContext>(1, execution.isa(), execution.device()));
       }
     }
     for (std::size_t i = 0; i < worlds_.size(); ++i) {
@@ -271,9 +272,9 @@ class WorldsApart final : public BroadPhase {
   }
 
   ThreadTeam* team_ = nullptr;  ///< if the worlds are shared out over its workers
-  std::vector<std::unique_ptr<Execution>> executions_;  ///< then: one for each of these
-  std::vector<World> worlds_;                           ///< those of two bodies or more, by number
-  std::vector<Place> places_;                           ///< by body
+  std::vector<std::unique_ptr<ExecutionContext>> executions_;  ///< then: one for each of these
+  std::vector<World> worlds_;  ///< those of two bodies or more, by number
+  std::vector<Place> places_;  ///< by body
   bool concurrent_;
   bool reports_events_ = false;
   std::vector<std::uint32_t> active_;  ///< the worlds in which something changed in this frame
@@ -293,7 +294,7 @@ std::size_t worldCount(const SceneInfo& scene) {
 
 std::unique_ptr<BroadPhase> perWorld(const SceneInfo& scene, const InstanceMaker& make,
                                      bool concurrent) {
-  return std::make_unique<WorldsApart>(scene, make, concurrent);
+  return std::make_unique<PerWorldBroadPhase>(scene, make, concurrent);
 }
 
 }  // namespace broadmark

@@ -1,19 +1,19 @@
 // Events sorted, so that those of one pair stand side by side.
 
-#include "broadmark/harness/followed_pairs.h"
+#include "broadmark/harness/event_accumulator.h"
 
 #include <algorithm>
 #include <iterator>
 
 namespace broadmark {
 
-void FollowedPairs::clear() {
+void EventAccumulator::clear() {
   pairs_.clear();
   impossible_.clear();
   run_ = {};
 }
 
-void FollowedPairs::apply(const PairEvents& events, std::size_t bodies) {
+void EventAccumulator::apply(const PairEvents& events, std::size_t bodies) {
   impossible_.clear();
   if (eventCount(events) == 0) return;
   events_.clear();
