@@ -106,8 +106,7 @@ class Grid final : public PairBroadPhase {
       : cut_(cut), search_(search), objects_per_cell_(objects_per_cell) {}
 
   void visitParameters(const ParameterVisitor& visit) override {
-    visit({"objects_per_cell", "number of bodies for which there is a cell", &objects_per_cell_, 1,
-           1'000'000'000});
+    visit({"objects_per_cell", "target bodies per cell", &objects_per_cell_, 1, 1'000'000'000});
   }
 
   void initialize(const SceneInfo& scene, const Frame& first,

@@ -228,7 +228,7 @@ std::vector<CLI::Option*> addResultOutputs(CLI::App& app, ResultPaths& outputs) 
 }
 
 CLI::Option* addQuiet(CLI::App& app, bool& quiet) {
-  return app.add_flag("--quiet", quiet, "no progress");
+  return app.add_flag("--quiet", quiet, "suppress progress output");
 }
 
 CLI::Option* addRecorders(CLI::App& app, std::vector<std::string>& recorders) {

@@ -35,7 +35,7 @@ NamedResults readResults(const fs::path& path) {
 std::vector<fs::path> judgedFiles(const Options& options) {
   if (!options.after.empty()) return options.after;
   if (!options.comparison.by.empty()) return {options.before};
-  throw InputError("compare: one file alone: name the results to judge, too, or say --by");
+  throw InputError("compare: needs two results files, or one with --by");
 }
 
 void write(const Options& options, const Comparison& comparison) {

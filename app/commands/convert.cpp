@@ -97,7 +97,7 @@ std::function<int()> add(CLI::App& app) {
 }  // namespace
 
 Command command() {
-  return {.name = "convert", .summary = "Makes a recording of another kind of one.", .add = add};
+  return {.name = "convert", .summary = "Converts a recording to another format.", .add = add};
 }
 
 }  // namespace broadmark::commands::convert

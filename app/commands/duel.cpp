@@ -39,7 +39,7 @@ struct Options : RunRequest {
 Source open(const Options& options) {
   Plan plan = makePlan(options, PlanUse::open, {});
   if (plan.entries.size() != 1) {
-    throw InputError(fmt::format("duel: {} stands for {}; a duel is on one",
+    throw InputError(fmt::format("duel: {} expands to {}; pass exactly one",
                                  options.sources.front(),
                                  counted(plan.entries.size(), "recording")));
   }

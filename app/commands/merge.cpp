@@ -25,7 +25,8 @@ struct Options {
 };
 
 int run(const Options& options) {
-  if (options.outputs.empty()) throw InputError("merge: say where to: --json, --jsonl, --csv …");
+  if (options.outputs.empty())
+    throw InputError("merge: no output given; use --json, --jsonl or --csv");
   for (const auto& [name, path] : options.outputs) requireOutput(path);
   std::vector<Results> runs;
   std::vector<std::string> names = {"merge"};

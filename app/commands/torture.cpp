@@ -80,7 +80,7 @@ class Torture {
     writeTextFile(log_file_, tortureLogText(log_));
     progress.print(formatTortureLog(log_));
     if (InterruptGuard::requested()) {
-      throw Interrupted(fmt::format("the same command goes on from {}", log_file_.string()));
+      throw Interrupted(fmt::format("the same command resumes from {}", log_file_.string()));
     }
     progress.update(kTicks);
     return log_.times.empty() ? exit_status::fine : exit_status::wrong_answer;
@@ -139,7 +139,7 @@ class Torture {
                       log_file_.string(), log.seed));
     }
     if (log.builds != log_.builds) {
-      if (!options_.quiet) fmt::print(stderr, "torture: another build of a plug-in: begins anew\n");
+      if (!options_.quiet) fmt::print(stderr, "torture: a plug-in was rebuilt; starting over\n");
       log_.seed = log.seed;
       return;
     }
@@ -290,7 +290,7 @@ class Torture {
 std::function<int()> add(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   addRepeatable(app, "source", "SOURCE", options->sources,
-                "small parts of these are worlds, too: recordings, meshes, scenes");
+                "also fuzz with excerpts of these recordings, meshes or scenes");
   app.add_flag("--only-sources", options->only_sources, "no worlds but those")->needs("source");
   const auto set_algorithms = [options = options.get()](const std::vector<std::string>& parts) {
     options->cases.algorithms = parts;

@@ -87,7 +87,8 @@ void requireUsedKey(const std::string& key, const std::vector<Case>& cases,
     std::ranges::move(parameterNames(*run.algorithm.create()), std::back_inserter(parameters));
   }
   if (!any) {
-    throw InputError(fmt::format("--param: '{}': no case is of '{}'", key, selector));
+    throw InputError(
+        fmt::format("--param: '{}': no selected case uses algorithm '{}'", key, selector));
   }
   requireKnownParameters({{parameter, ""}}, std::move(parameters));
 }

@@ -124,7 +124,8 @@ bool isProgramThere(const std::string& name) {
 
 void openByDesktop(const fs::path& file) {
   if (isSandboxed()) {
-    throw InputError(fmt::format("{}: scripts open nothing by other programs", file.string()));
+    throw InputError(
+        fmt::format("{}: scripts may not open files with other programs", file.string()));
   }
   // In a session of its own it outlives this program, and nobody waits for it.
   const FileDescriptor nowhere(::open("/dev/null", O_WRONLY | O_CLOEXEC));

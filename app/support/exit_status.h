@@ -24,7 +24,7 @@ enum Value : int {
 
 /// The meaning of each, for help and manual.
 inline constexpr NameTable kExitStatuses{
-    {NamedValue{exit_status::fine, "all well"},
+    {NamedValue{exit_status::fine, "success"},
      {exit_status::wrong_answer, "a wrong answer, or an algorithm that failed"},
      {exit_status::bad_input, "bad usage or bad input"},
      {exit_status::regression, "a regression (compare)"},

@@ -17,7 +17,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// So many rounds are run, whatever is known.
+/// Minimum number of rounds.
 constexpr std::size_t kMinRounds = 60;
 /// After so many times more rounds the intervals are looked at again: they narrow with the root.
 constexpr double kNextLook = 1.3;

@@ -126,7 +126,7 @@ void setParameters(Parametrised& object, const ParameterValues& values) {
   for (const auto& [name, value] : values) {
     if (std::ranges::find(known, name) != known.end()) continue;
     if (known.empty()) {
-      throw InputError(fmt::format("unknown parameter '{}': there are none here", name));
+      throw InputError(fmt::format("unknown parameter '{}': this object has no parameters", name));
     }
     throw InputError(unknownName("parameter", name, known));
   }

@@ -52,8 +52,9 @@ void requireRunnable(const Case& run, const SceneInfo& scene) {
         fmt::format("at most {} bodies, the scene has {}", traits.max_objects, scene.objects));
   }
   if (isChangingWorld(scene) && traits.changing_worlds == ChangingWorlds::unknown) {
-    throw UnsupportedError(scene.all_present ? "does not know which pairs are wanted"
-                                             : "does not know bodies that come and go");
+    throw UnsupportedError(scene.all_present
+                               ? "does not support collision filters"
+                               : "does not support scenes where bodies appear or disappear");
   }
 }
 

@@ -39,7 +39,7 @@ void warnOfLoad(Texts& warnings, const MachineState& machine) {
                   busy, machine.usable_cores.size()));
 }
 
-/// A busy core slows the one with which it shares its units, even if the case stays off it.
+/// A busy core slows its SMT sibling, even if the case does not run on it.
 void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
   if (std::cmp_greater_equal(threads, machine.usable_cores.size())) return;  // it needs all of them
   for (const int core : machine.usable_cores) {
@@ -48,8 +48,8 @@ void warnOfSiblings(Texts& warnings, const MachineState& machine, int threads) {
     for (const int sibling : beside->second) {
       if (busyShare(machine.busy, sibling) < kLittle) continue;
       warnings.push_back(
-          fmt::format("core {} is busy: it shares its units with core {}, which is slower then",
-                      sibling, core));
+          fmt::format("core {} (SMT sibling of core {}) is busy; timings on core {} will be slower",
+                      sibling, core, core));
     }
   }
 }
@@ -61,7 +61,7 @@ void warnOfFrequency(Texts& warnings, const Environment& environment, const Mach
         environment.governor));
   }
   if (machine.turbo) {
-    warnings.push_back("turbo is on: the cores are the slower the warmer they are");
+    warnings.push_back("CPU turbo is enabled: clock speed varies with temperature");
   }
 }
 

@@ -121,7 +121,7 @@ TEST(Plan, ParametersOfOneAlgorithmMustBeItsOwn) {
   refused("kdd:objects_per_leaf", {"--param", "'kdd'", "'kd'"});
   refused("kd:objects_per_lef", {"--param", "'objects_per_lef'", "'objects_per_leaf'"});
   refused("kd:density", {"--param", "'density'"});
-  refused("tracy:objects_per_cell", {"--param", "'tracy:objects_per_cell'", "no case"});
+  refused("tracy:objects_per_cell", {"--param", "'tracy:objects_per_cell'", "no selected case"});
 }
 
 TEST(Plan, EveryValueOfAParameterMakesARecordingOrACase) {

@@ -126,7 +126,7 @@ TEST_F(Compare, AcrossAlgorithmsOfOneRun) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(linesOf(ended.out).back(), testing::StartsWith("2 cases: "));
   EXPECT_THAT(ended.out, HasSubstr(" against "));
-  expectRefusal({"compare", "before.json"}, {"one file alone", "--by"});
+  expectRefusal({"compare", "before.json"}, {"needs two results files", "--by"});
   expectRefusal({"compare", "before.json", "--by", "colour"}, {"--by", "colour"});
 }
 

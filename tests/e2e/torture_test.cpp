@@ -125,7 +125,7 @@ TEST_F(Torture, FinishesRoundsThatWereInterrupted) {
   program.signal(SIGINT);
   const Ended ended = program.wait();
   EXPECT_EQ(ended.status, 130);
-  EXPECT_THAT(ended.err, HasSubstr("the same command goes on from cut/torture.json"));
+  EXPECT_THAT(ended.err, HasSubstr("the same command resumes from cut/torture.json"));
 
   const std::size_t left = log("cut").at("left").size();
   Arguments more = call(subject, "cut");

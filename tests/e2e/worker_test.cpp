@@ -158,7 +158,7 @@ TEST_F(Worker, IsGoneWithTheProcessThatStartedIt) {
   }
 }
 
-TEST_F(Worker, IsNotToBeCalledByHand) { expectRefusal({"worker"}, {"nobody to work for"}); }
+TEST_F(Worker, IsNotToBeCalledByHand) { expectRefusal({"worker"}, {"'worker' is internal"}); }
 
 }  // namespace
 }  // namespace broadmark::tests

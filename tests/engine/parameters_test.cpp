@@ -140,7 +140,7 @@ TEST(Parameters, UnknownNamesSuggestTheNearest) {
   EXPECT_THAT(inputErrorOf([&] {
                 setParameters(nothing, {{"cells", "7"}});
               }),
-              AllOf(HasSubstr("unknown"), HasSubstr("'cells'"), HasSubstr("none")));
+              AllOf(HasSubstr("unknown"), HasSubstr("'cells'"), HasSubstr("no parameters")));
 }
 
 TEST(Parameters, RangesAsText) {

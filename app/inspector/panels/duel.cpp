@@ -61,7 +61,7 @@ class DuelPanel final : public Panel {
     }
     ImGui::SameLine();
     ImGui::SetNextItemWidth(60 * ui.scale);
-    ui.entry("seconds", max_seconds_, 1, 3600, "Ends it, whatever is known then");
+    ui.entry("seconds", max_seconds_, 1, 3600, "Time after which the duel stops");
     ImGui::SameLine();
     ui.faint("s at most");
     if (report.state == TaskState::idle) return;

@@ -217,7 +217,7 @@ void serveCase(const AlgorithmFinder& find) {
   worker::Channel channel{FileDescriptor(worker::kChannelDescriptor)};
   if (!channel.send(
           {{"protocol", worker::kProtocolVersion}, {"program", BROADMARK_VERSION_TEXT}})) {
-    throw InputError("nobody to work for: only Broadmark itself starts a worker process");
+    throw InputError("'worker' is internal: it is started by broadmark");
   }
   worker::answerCalls(channel, SharedMemory(FileDescriptor(worker::kFramesDescriptor)),
                       SharedMemory(FileDescriptor(worker::kAnswersDescriptor)), find);

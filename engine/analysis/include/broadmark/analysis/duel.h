@@ -27,7 +27,7 @@ struct DuelOptions {
   /// Width of the intervals at which the duel ends. The margin is twice that: an interval that
   /// misses 1 by little is no news, one in twenty does.
   double precision = 0.01;
-  double max_seconds = 60;            ///< after which it ends whatever is known
+  double max_seconds = 60;            ///< stops after this time
   std::uint64_t seed = 1;             ///< of the order of turns
   CheckMode check = CheckMode::hash;  ///< of the first pass; later ones give the same answers
   /// Told after each round what is known so far.
