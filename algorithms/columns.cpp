@@ -404,7 +404,7 @@ std::vector<Algorithm> variants() {
                  .side_by_side_below = 400,
                  .max_objects = kMaxCellBodies - 1},
       .description = {.principle = "grid, sorting",
-                      .optimisations = "sampleIndex layout, quantised bounds, bucket sort",
+                      .optimisations = "sampled layout, quantised bounds, bucket sort",
                       .time = "O(n + w), w pairs that share a column and overlap along it",
                       .space = "O(n + k)",
                       .source = "Broadmark; Ericson 2005, 7.1 and 7.5"}};

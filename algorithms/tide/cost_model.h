@@ -13,7 +13,7 @@
 
 namespace broadmark::tide {
 
-/// In nanoseconds, fitted to the measurements in docs/records.md. Only ratios matter.
+/// In nanoseconds, fitted to the measurements in docs/columns-and-tide.md. Only ratios matter.
 struct Costs {
   // In the grid.
   double build = 100;  ///< per body
@@ -22,7 +22,7 @@ struct Costs {
   double test = 13;
   double change = 0;  ///< per pair inserted into or erased from the pair set
   // In a full search.
-  double sampleIndex = 17;  ///< per sampleIndex body
+  double sampled = 17;  ///< per body of the sample
   double body = 12;
   double pair = 22;
 };
@@ -89,7 +89,7 @@ class CostModel {
     return move_cost_ * static_cast<double>(moves);
   }
   [[nodiscard]] double fullSearchCost() const {
-    return full_search_scale_ * (costs_.sampleIndex * static_cast<double>(sampleSize(bodies_)) +
+    return full_search_scale_ * (costs_.sampled * static_cast<double>(sampleSize(bodies_)) +
                                  costs_.body * static_cast<double>(bodies_) + costs_.pair * pairs_);
   }
   [[nodiscard]] double buildCost() const { return costs_.build * static_cast<double>(bodies_); }

@@ -111,9 +111,9 @@ double parseNumber(const std::string& text, std::string_view option, double min,
 }
 
 CLI::Option* addValue(CLI::App& app, const std::string& name, const std::string& type,
-                      std::function<void(const std::string&)> set, const ValueText& get,
+                      const std::function<void(const std::string&)>& set, const ValueText& get,
                       const std::string& doc) {
-  CLI::Option* option = app.add_option_function<std::string>(name, std::move(set), doc);
+  CLI::Option* option = app.add_option_function<std::string>(name, set, doc);
   return option->type_name(type)->default_function(get)->capture_default_str();
 }
 

@@ -42,7 +42,7 @@ using ValueText = std::function<std::string()>;
 
 /// An option of one value, which `set` takes over. Help shows the default, `get()` at first.
 CLI::Option* addValue(CLI::App&, const std::string& name, const std::string& type,
-                      std::function<void(const std::string&)> set, const ValueText& get,
+                      const std::function<void(const std::string&)>& set, const ValueText& get,
                       const std::string& doc);
 
 /// An option without a value.

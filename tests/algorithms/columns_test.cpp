@@ -456,13 +456,13 @@ TEST_P(ColumnsFamily, CopyGiantsIntoAllColumns) {
 
 /// Small boxes at the indices of the first sample (sampleIndex()), plates at all others.
 std::vector<Aabb> misleading(std::size_t n) {
-  std::set<std::size_t> sampleIndex;
+  std::set<std::size_t> sampled;
   for (std::size_t k = 0; k < 256; ++k) {
-    sampleIndex.insert(static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{n} >> 32);
+    sampled.insert(static_cast<std::uint32_t>(k * 0x9E3779B9U) * std::uint64_t{n} >> 32);
   }
   return inputs::generate(n, 0, 1, [&](inputs::Random& random, std::size_t i) {
     const inputs::Vec3 corner = random.inCube(100);
-    if (sampleIndex.contains(i)) return inputs::boxAt(corner, {0.1F, 0.1F, 0.1F});
+    if (sampled.contains(i)) return inputs::boxAt(corner, {0.1F, 0.1F, 0.1F});
     return inputs::boxAt({corner[0], 0, 0}, {0.01F, 100, 100});
   });
 }

@@ -40,17 +40,17 @@ struct AuthoredBody {
 /// it has in files.
 template <class Body, class Visit>
 void visitProperties(Body& body, const Visit& visit) {
-  static constexpr AuthoredBody standard;
-  visit("position", body.pose.position, standard.pose.position);
-  visit("rotation", body.pose.rotation, standard.pose.rotation);
-  visit("velocity", body.linear_velocity, standard.linear_velocity);
-  visit("angular_velocity", body.angular_velocity, standard.angular_velocity);
-  visit("mass", body.mass, standard.mass);
-  visit("frozen", body.frozen, standard.frozen);
-  visit("layer", body.layer, standard.layer);
-  visit("appears", body.appears, standard.appears);
-  visit("vanishes", body.vanishes, standard.vanishes);
-  visit("group", body.group, standard.group);
+  static constexpr AuthoredBody kDefault;
+  visit("position", body.pose.position, kDefault.pose.position);
+  visit("rotation", body.pose.rotation, kDefault.pose.rotation);
+  visit("velocity", body.linear_velocity, kDefault.linear_velocity);
+  visit("angular_velocity", body.angular_velocity, kDefault.angular_velocity);
+  visit("mass", body.mass, kDefault.mass);
+  visit("frozen", body.frozen, kDefault.frozen);
+  visit("layer", body.layer, kDefault.layer);
+  visit("appears", body.appears, kDefault.appears);
+  visit("vanishes", body.vanishes, kDefault.vanishes);
+  visit("group", body.group, kDefault.group);
 }
 
 /// A plain value. Lengths are in world units. Body id = position in the list. At most kMaxBodies
